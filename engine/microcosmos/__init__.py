@@ -1,0 +1,1 @@
+"""Evolve swimming creatures: filaments in a viscous fluid, NEAT inside quality-diversity."""

@@ -1,0 +1,125 @@
+"""NEAT genes of a CPPN as they are written in a creature file, and their soundness."""
+
+from base64 import b64decode, b64encode
+from typing import Annotated, Literal, get_args
+
+import numpy as np
+from pydantic import Field, field_validator
+
+from ..spec.base import Part
+
+Activation = Literal[
+    "identity", "sigmoid", "tanh", "relu", "sin", "cos", "gaussian", "abs", "square"
+]
+ACTIVATIONS: tuple[str, ...] = get_args(Activation)
+"""In the order of the numbers that genomes hold."""
+
+MAX_NODES, MAX_CONNECTIONS = 1024, 8192
+
+Number = Annotated[int, Field(ge=0, lt=2**31)]
+
+
+def encode(values: np.ndarray) -> str:
+    """Little-endian float32 as base64, −0 as 0."""
+    return b64encode((np.asarray(values, "<f4") + np.float32(0)).tobytes()).decode()
+
+
+def decode(text: str) -> np.ndarray:
+    """The float32 values in base64; raises `ValueError` where they are none or not finite."""
+    data = b64decode(text, validate=True)
+    if len(data) % 4:
+        raise ValueError(f"needs whole float32 values, got {len(data)} bytes")
+    values = np.frombuffer(data, "<f4")
+    if not np.all(np.isfinite(values)):
+        raise ValueError("needs finite values, got NaN or infinity")
+    if encode(values) != text:
+        raise ValueError("needs the canonical encoding, got another (−0 is written as 0)")
+    return values
+
+
+class Nodes(Part):
+    """Node genes: numbers, activations and biases."""
+
+    id: tuple[Number, ...] = Field(max_length=MAX_NODES)
+    activation: tuple[Activation, ...] = Field(max_length=MAX_NODES)
+    bias: str = Field(max_length=8 * MAX_NODES)
+
+    @field_validator("bias")
+    @classmethod
+    def check_bias(cls, text: str) -> str:
+        decode(text)
+        return text
+
+
+class Connections(Part):
+    """Connection genes: innovation numbers, ends by node number, flags and weights."""
+
+    innovation: tuple[Number, ...] = Field(max_length=MAX_CONNECTIONS)
+    source: tuple[Number, ...] = Field(max_length=MAX_CONNECTIONS)
+    target: tuple[Number, ...] = Field(max_length=MAX_CONNECTIONS)
+    enabled: tuple[bool, ...] = Field(max_length=MAX_CONNECTIONS)
+    weight: str = Field(max_length=8 * MAX_CONNECTIONS)
+
+    @field_validator("weight")
+    @classmethod
+    def check_weight(cls, text: str) -> str:
+        decode(text)
+        return text
+
+
+def check_genes(
+    inputs: int, outputs: tuple[str, ...], nodes: Nodes, connections: Connections
+) -> None:
+    """Raise `ValueError` where genes do not make a feed-forward network in canonical order."""
+    _same_length("nodes", nodes.id, nodes.activation, decode(nodes.bias))
+    _same_length(
+        "connections",
+        connections.innovation,
+        connections.source,
+        connections.target,
+        connections.enabled,
+        decode(connections.weight),
+    )
+    _increasing("nodes.id", nodes.id)
+    _increasing("connections.innovation", connections.innovation)
+    fixed = inputs + len(outputs)
+    if nodes.id[:fixed] != tuple(range(fixed)):
+        raise ValueError(f"`nodes.id` must begin with 0 to {fixed - 1}, got {nodes.id[:fixed]}")
+    pairs = list(zip(connections.source, connections.target, strict=True))
+    if len(set(pairs)) < len(pairs):
+        raise ValueError("`connections` must join each pair of nodes once, got one twice")
+    if missing := set(connections.source + connections.target) - set(nodes.id):
+        raise ValueError(f"`connections` must join existing nodes, got {sorted(missing)[:5]}")
+    if any(target < inputs for target in connections.target):
+        raise ValueError("`connections.target` must not be an input")
+    _refuse_cycles(nodes.id, pairs)
+
+
+def _same_length(where: str, *columns) -> None:
+    lengths = [len(column) for column in columns]
+    if len(set(lengths)) > 1:
+        raise ValueError(f"`{where}` must have columns of one length, got {lengths}")
+
+
+def _increasing(where: str, numbers: tuple[int, ...]) -> None:
+    if any(a >= b for a, b in zip(numbers, numbers[1:], strict=False)):
+        raise ValueError(f"`{where}` must increase strictly")
+
+
+def _refuse_cycles(ids: tuple[int, ...], pairs: list[tuple[int, int]]) -> None:
+    """Kahn's algorithm; whatever is left over lies on or behind a cycle."""
+    waiting = dict.fromkeys(ids, 0)
+    targets: dict[int, list[int]] = {node: [] for node in ids}
+    for source, target in pairs:
+        waiting[target] += 1
+        targets[source].append(target)
+    ready = [node for node in ids if not waiting[node]]
+    done = 0
+    while ready:
+        done += 1
+        for target in targets[ready.pop()]:
+            waiting[target] -= 1
+            if not waiting[target]:
+                ready.append(target)
+    if done < len(ids):
+        raise ValueError("`connections` must be free of cycles")

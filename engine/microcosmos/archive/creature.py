@@ -1,0 +1,168 @@
+"""Creature files: what a creature is, named by the SHA-256 of its canonical form."""
+
+import json
+from collections.abc import Mapping
+from hashlib import sha256
+from typing import Annotated, Any, Literal, Self
+
+import rfc8785
+from pydantic import Field, ValidationError, model_validator
+
+from ..spec import Body, Control, Coupling, Genome, QualityDiversity, Search, Task, World
+from ..spec.base import Part
+from .cppn_genes import Connections, Nodes, check_genes
+
+FORMAT = "microcosmos-creature/1"
+LICENCE = "CC-BY-4.0"
+
+Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+
+
+class CreatureError(ValueError):
+    """A creature file that cannot be accepted: `field`, what it `needed` and what it `got`."""
+
+    def __init__(self, field: str, needed: str, got: object):
+        super().__init__(f"`{field}` needs {needed}; got {got!r:.120}")
+        self.field, self.needed, self.got = field, needed, got
+
+
+class CPPN(Part):
+    """The genes of a controller, without unused room, in the order of their numbers."""
+
+    encoding: Literal["cppn"]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    control: Control
+    nodes: Nodes
+    connections: Connections
+
+    @model_validator(mode="after")
+    def check(self) -> Self:
+        if self.inputs != self.control.inputs:
+            raise ValueError(
+                f"`inputs` must be {list(self.control.inputs)}, got {list(self.inputs)}"
+            )
+        check_genes(len(self.inputs), self.outputs, self.nodes, self.connections)
+        return self
+
+
+class PlacedWorld(World):
+    """The world with the form of the coupling, both of which a creature's numbers depend on."""
+
+    coupling: Coupling
+
+
+class Identity(Part):
+    """Everything that a creature is."""
+
+    format: Literal["microcosmos-creature/1"]
+    genome: CPPN
+    world: PlacedWorld
+    body: Body
+    task: Task
+
+    @model_validator(mode="after")
+    def check_fit(self) -> Self:
+        _spec(self)
+        return self
+
+
+class Measured(Part):
+    """What was found when the creature was evaluated, and what repeating it exactly needs."""
+
+    fitness: float
+    descriptors: dict[str, float]
+    features: dict[str, float]
+    block: int = Field(ge=1, le=4096)
+    room: tuple[int, int]
+    """`max_nodes` and `max_connections` of the evaluated arrays."""
+    device: str
+
+
+class Provenance(Part):
+    """Where the creature came from."""
+
+    parents: tuple[Digest, ...]
+    operator: str
+    generation: int = Field(ge=0)
+    seed: int = Field(ge=0)
+    version: str
+
+
+class CreatureFile(Part):
+    """The whole document that people share."""
+
+    identity: Identity
+    sha256: Digest
+    measured: Measured | None = None
+    provenance: Provenance | None = None
+    licence: str = LICENCE
+
+
+def canonical(identity: Mapping[str, Any]) -> bytes:
+    """The bytes that the name is computed over: RFC 8785."""
+    return rfc8785.dumps(dict(identity))
+
+
+def name(identity: Mapping[str, Any]) -> str:
+    """The SHA-256 of the canonical form, in hexadecimal."""
+    return sha256(canonical(identity)).hexdigest()
+
+
+def document(
+    identity: Mapping[str, Any],
+    measured: Mapping[str, Any] | None,
+    provenance: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """The creature file around an identity."""
+    return {
+        "identity": dict(identity),
+        "sha256": name(identity),
+        "measured": dict(measured) if measured else None,
+        "provenance": dict(provenance) if provenance else None,
+        "licence": LICENCE,
+    }
+
+
+def parse(data: Any) -> dict[str, Any]:
+    """A creature file from anybody, checked: its genes, its world and its hash.
+
+    Raises `CreatureError`, which names the field, what was needed and what came.
+    """
+    if isinstance(data, str | bytes):
+        data = json.loads(data)
+    try:
+        file = CreatureFile.model_validate(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        field = ".".join(str(part) for part in first["loc"]) or "file"
+        raise CreatureError(field, first["msg"], first["input"]) from error
+    whole = file.model_dump(mode="json")
+    expected = name(whole["identity"])
+    if expected != file.sha256:
+        raise CreatureError("sha256", f"the identity's own hash {expected}", file.sha256)
+    return whole
+
+
+def spec_of(file: Mapping[str, Any]) -> QualityDiversity:
+    """The spec under which one creature of a parsed file is evaluated or replayed."""
+    parsed = CreatureFile.model_validate(file)
+    return _spec(parsed.identity, parsed.measured)
+
+
+def _spec(identity: Identity, measured: Measured | None = None) -> QualityDiversity:
+    """The room is the recorded one, else just enough: sums round differently in another."""
+    genome = identity.genome
+    needed = (max(8, len(genome.nodes.id)), max(8, len(genome.connections.innovation)))
+    nodes, connections = measured.room if measured else needed
+    world = identity.world.model_dump()
+    coupling = world.pop("coupling")
+    return QualityDiversity(
+        world=World(**world),
+        coupling=Coupling(**coupling),
+        body=identity.body,
+        control=genome.control,
+        genome=Genome(max_nodes=nodes, max_connections=max(nodes, connections)),
+        task=identity.task,
+        search=Search(batch=1, block=measured.block if measured else 1, generations=1),
+    )

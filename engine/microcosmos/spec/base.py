@@ -1,0 +1,20 @@
+"""What every part of a spec shares: nothing unknown is accepted and nothing changes."""
+
+from pydantic import BaseModel, ConfigDict
+
+
+class Part(BaseModel):
+    """A frozen part of a spec; unknown fields, NaN and infinities are refused."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
+        validate_default=True,
+    )
+
+
+def unit(name: str) -> dict[str, str]:
+    """The unit of a field, for the forms that people fill in."""
+    return {"unit": name}

@@ -1,0 +1,70 @@
+"""The spec of a quality-diversity run, its presets, and what it will need."""
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from .base import Part
+from .control import Control, Genome
+from .search import Archive, Descriptor, Search, Task
+from .world import SUPPORT, Body, Coupling, World
+
+
+class QualityDiversity(Part):
+    """MAP-Elites over CPPN-controlled swimmers."""
+
+    experiment: Literal["quality-diversity"] = "quality-diversity"
+    seed: int = Field(0, ge=0, lt=2**32)
+    """The one source of randomness."""
+    world: World = World()
+    body: Body = Body()
+    coupling: Coupling = Coupling()
+    control: Control = Control()
+    genome: Genome = Genome()
+    task: Task = Task()
+    archive: Archive = Archive()
+    search: Search = Search()
+
+    @model_validator(mode="after")
+    def refuse_too_large_a_body(self) -> Self:
+        """The stretched body and the delta's support must fit once around the box."""
+        needed = self.body.length * (1 + self.control.length_scale) + SUPPORT
+        if needed > self.world.width:
+            raise ValueError(
+                f"`world.width` must be at least {needed:.0f} cells for `body.nodes` = "
+                f"{self.body.nodes} at `body.spacing` = {self.body.spacing:g}, stretched by "
+                f"`control.length_scale` = {self.control.length_scale:g}; got {self.world.width}"
+            )
+        return self
+
+
+DEMO = QualityDiversity(
+    world=World(width=32, height=32),
+    body=Body(nodes=16),
+    control=Control(period=50),
+    task=Task(steps=100),
+    archive=Archive(
+        descriptors=(
+            Descriptor(name="bending_effort", bins=16),
+            Descriptor(name="stretching_effort", bins=16),
+        )
+    ),
+    search=Search(generations=60, batch=16),
+)
+
+PAPER = QualityDiversity(
+    coupling=Coupling(projection="none", theta_feedback=0),
+    control=Control(timer="linear", position="unit"),
+    archive=Archive(
+        descriptors=(
+            Descriptor(name="bending_effort", low=0, high=0.5, scale="linear"),
+            Descriptor(name="stretching_effort", low=0, high=0.15, scale="linear"),
+        )
+    ),
+)
+
+PRESETS = {
+    "demo": ("A small demonstration, minutes on a laptop", DEMO),
+    "standard": ("32 nodes in 64 × 64 cells, force- and torque-free coupling", QualityDiversity()),
+    "paper": ("The paper's literal form: linear timer, linear efforts, coupling as written", PAPER),
+}

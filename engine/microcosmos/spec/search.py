@@ -1,0 +1,77 @@
+"""The task, the archive and the search that fills it."""
+
+from math import prod
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from .base import Part, unit
+
+
+class Task(Part):
+    """How long a creature is simulated, and what its fitness is."""
+
+    steps: int = Field(500, ge=10, le=1_000_000, json_schema_extra=unit("steps"))
+    """Steps of the simulation."""
+    fitness: Literal["displacement"] = "displacement"
+    """Distance between the mean unwrapped node position at the end and at the start."""
+
+
+class Descriptor(Part):
+    """One axis of the archive."""
+
+    name: Literal["bending_effort", "stretching_effort"]
+    """Sum over time and joints (edges) of the squared change of rest angles (lengths)."""
+    low: float = Field(1e-4, ge=0.0)
+    """Lower end of the axis, in raw units; what is below counts in the first bin."""
+    high: float = Field(1e2, gt=0.0)
+    """Upper end of the axis, in raw units; what is above counts in the last bin."""
+    bins: int = Field(20, ge=1, le=1024)
+    """Cells along the axis."""
+    scale: Literal["log10", "linear"] = "log10"
+    """Whether bins are equally wide in the logarithm or in the raw value."""
+
+    @model_validator(mode="after")
+    def refuse_empty(self) -> Self:
+        if self.high <= self.low:
+            raise ValueError(f"`high` must be above `low` ({self.low:g}), got {self.high:g}")
+        if self.scale == "log10" and self.low <= 0:
+            raise ValueError(f"`low` must be above 0 where `scale` is log10, got {self.low:g}")
+        return self
+
+
+class Archive(Part):
+    """A grid of cells over two descriptors, one elite in each."""
+
+    descriptors: Annotated[tuple[Descriptor, ...], Field(min_length=2, max_length=2)] = (
+        Descriptor(name="bending_effort"),
+        Descriptor(name="stretching_effort"),
+    )
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(d.bins for d in self.descriptors)
+
+    @property
+    def cells(self) -> int:
+        return prod(self.shape)
+
+    @model_validator(mode="after")
+    def refuse_repeated(self) -> Self:
+        names = [d.name for d in self.descriptors]
+        if len(set(names)) < len(names):
+            raise ValueError(f"`descriptors` must differ, got {names}")
+        return self
+
+
+class Search(Part):
+    """MAP-Elites over generations of equal size."""
+
+    generations: int = Field(50, ge=1, le=10_000_000)
+    """Generations of the run, the random first one among them."""
+    batch: int = Field(64, ge=1, le=65_536)
+    """Creatures evaluated in a generation."""
+    block: int = Field(16, ge=1, le=4096)
+    """Creatures evaluated by one call of the compiled program; part of the result's identity."""
+    variation: Literal["neat", "random"] = "neat"
+    """Children of elites by NEAT's mutations, or new random genomes (a baseline)."""
