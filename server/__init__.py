@@ -1,0 +1,1 @@
+"""The application's server: HTTP, database, queue and events; no JAX in here."""

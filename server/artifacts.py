@@ -1,0 +1,101 @@
+"""Files behind fsspec: checkpoints and replays, whole or not there at all."""
+
+import hashlib
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from uuid import UUID, uuid4
+
+import fsspec
+from fsspec.implementations.local import LocalFileSystem
+
+CHUNK = 1 << 20
+KEEP_LAST, KEEP_EVERY = 3, 10
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A file that is completely written."""
+
+    path: str
+    size: int
+    sha256: str
+
+
+class Artifacts:
+    """A place for files, by relative path."""
+
+    def __init__(self, url: str):
+        self.files, self.root = fsspec.core.url_to_fs(url)
+
+    def write(self, path: str, data: bytes) -> Stored:
+        """Write beside, then rename: a failure (`OSError`) leaves what was there before.
+
+        On a local disk both file and folder have reached the disk when this returns.
+        """
+        target = self._full(path)
+        beside = f"{target}.{uuid4().hex}.part"
+        self.files.makedirs(os.path.dirname(target), exist_ok=True)
+        try:
+            with self.files.open(beside, "wb") as file:
+                file.write(data)
+                file.flush()
+                if self._local:
+                    os.fsync(file.fileno())
+            self._rename(beside, target)
+        except BaseException:
+            with suppress(OSError):
+                self.files.rm_file(beside)
+            raise
+        return Stored(path, len(data), hashlib.sha256(data).hexdigest())
+
+    def read(self, path: str) -> bytes:
+        return self.files.cat_file(self._full(path))
+
+    def stream(self, path: str, start: int, stop: int) -> Iterator[bytes]:
+        """The bytes from `start` up to `stop`, in pieces."""
+        with self.files.open(self._full(path), "rb") as file:
+            file.seek(start)
+            while start < stop and (piece := file.read(min(CHUNK, stop - start))):
+                start += len(piece)
+                yield piece
+
+    def delete(self, path: str) -> None:
+        """Remove a file; one that is gone already is no error."""
+        with suppress(FileNotFoundError):
+            self.files.rm_file(self._full(path))
+
+    def _rename(self, beside: str, target: str) -> None:
+        if not self._local:
+            self.files.mv(beside, target)
+            return
+        os.replace(beside, target)
+        folder = os.open(os.path.dirname(target), os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+
+    @property
+    def _local(self) -> bool:
+        return isinstance(self.files, LocalFileSystem)
+
+    def _full(self, path: str) -> str:
+        return f"{self.root}/{path}"
+
+
+def checkpoint_path(run_id: UUID, generation: int, data: bytes) -> str:
+    """Named by content too, so that two attempts never write to one file."""
+    name = hashlib.sha256(data).hexdigest()[:16]
+    return f"runs/{run_id}/{generation:08d}-{name}.h5"
+
+
+def replay_path(creature: str) -> str:
+    return f"replays/{creature[:2]}/{creature}.replay"
+
+
+def superfluous(numbers: list[int]) -> list[int]:
+    """Which of a run's checkpoints can go: all but the last three and every tenth."""
+    last = sorted(numbers)[-KEEP_LAST:]
+    return [n for n in numbers if n not in last and n % KEEP_EVERY]

@@ -1,0 +1,105 @@
+"""The database: an engine with the settings that were measured, sessions, its clock."""
+
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import DateTime, Engine, create_engine, event, make_url, select
+from sqlalchemy.ext.compiler import compiles
+from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy.sql.expression import FunctionElement
+from sqlalchemy.types import TypeDecorator
+
+TIMEOUT_MS = 15_000
+
+
+class Moment(TypeDecorator[datetime]):
+    """A point in time, aware and in UTC on every database."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Any) -> datetime | None:
+        return value.astimezone(UTC) if value else None
+
+    def process_result_value(self, value: datetime | None, dialect: Any) -> datetime | None:
+        if value is None or value.tzinfo:
+            return value
+        return value.replace(tzinfo=UTC)  # SQLite keeps no zone.
+
+
+class clock(FunctionElement[datetime]):
+    """The database's own clock, which all leases go by."""
+
+    type = Moment()
+    inherit_cache = True
+
+
+@compiles(clock, "sqlite")
+def _sqlite_clock(element: clock, compiler: Any, **_: Any) -> str:
+    return "strftime('%Y-%m-%d %H:%M:%f000', 'now')"
+
+
+@compiles(clock, "postgresql")
+def _postgresql_clock(element: clock, compiler: Any, **_: Any) -> str:
+    return "clock_timestamp()"
+
+
+def ago(session: Session, seconds: float) -> datetime:
+    """The moment so many seconds before the database's now."""
+    return session.execute(select(clock())).scalar_one() - timedelta(seconds=seconds)
+
+
+class Sessions:
+    """Sessions that read, and sessions that write: `with sessions.write.begin() as session:`.
+
+    On SQLite a writer takes the lock when it begins, since a reader that turns into a
+    writer can be refused at once where another has written meanwhile.
+    """
+
+    def __init__(self, engine: Engine):
+        self.engine = engine
+        self.read = sessionmaker(engine, expire_on_commit=False)
+        self.write = sessionmaker(engine.execution_options(writer=True), expire_on_commit=False)
+
+
+def connect(url: str) -> Sessions:
+    """Open the database that a URL names; SQLite's folder is made where it is missing."""
+    parsed = make_url(url)
+    if parsed.get_backend_name() == "sqlite":
+        return Sessions(_sqlite(parsed))
+    return Sessions(_postgresql(parsed))
+
+
+def _postgresql(url: Any) -> Engine:
+    limits = f"-c statement_timeout={4 * TIMEOUT_MS} -c lock_timeout={TIMEOUT_MS}"
+    return create_engine(
+        url.set(drivername="postgresql+psycopg"),
+        pool_pre_ping=True,
+        connect_args={"connect_timeout": 10, "options": f"-c timezone=UTC {limits}"},
+    )
+
+
+def _sqlite(url: Any) -> Engine:
+    if url.database:
+        Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+    engine = create_engine(url, connect_args={"timeout": TIMEOUT_MS / 1000})
+    event.listen(engine, "connect", _prepare_sqlite)
+    event.listen(engine, "begin", _begin_sqlite)
+    return engine
+
+
+def _prepare_sqlite(connection: Any, _: Any) -> None:
+    connection.isolation_level = None  # The driver begins nothing by itself.
+    for pragma in (
+        f"busy_timeout={TIMEOUT_MS}",
+        "journal_mode=WAL",
+        "synchronous=NORMAL",
+        "foreign_keys=ON",
+    ):
+        connection.execute(f"PRAGMA {pragma}")
+
+
+def _begin_sqlite(connection: Any) -> None:
+    writer = connection.get_execution_options().get("writer")
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if writer else "BEGIN")

@@ -1,0 +1,200 @@
+"""The tables. Rows are not wire types: those are in `schemas`."""
+
+from datetime import datetime
+from typing import Any, ClassVar
+from uuid import UUID, uuid4
+
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    CheckConstraint,
+    Double,
+    ForeignKey,
+    Index,
+    LargeBinary,
+    MetaData,
+    String,
+    Text,
+    UniqueConstraint,
+)
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy.types import TypeDecorator
+
+from .db import Moment, clock
+
+QUEUED, RUNNING, PAUSED = "queued", "running", "paused"
+FINISHED, FAILED, CANCELLED = "finished", "failed", "cancelled"
+STATUSES = (QUEUED, RUNNING, PAUSED, FINISHED, FAILED, CANCELLED)
+TERMINAL = (FINISHED, FAILED, CANCELLED)
+PAUSE, CANCEL = "pause", "cancel"
+CHECKPOINT, REPLAY = "checkpoint", "replay"
+
+
+class Sha256(TypeDecorator[str]):
+    """A hash: hexadecimal here, 32 bytes in the database."""
+
+    impl = LargeBinary(32)
+    cache_ok = True
+
+    def process_bind_param(self, value: str | None, dialect: Any) -> bytes | None:
+        return bytes.fromhex(value) if value is not None else None
+
+    def process_result_value(self, value: bytes | None, dialect: Any) -> str | None:
+        return value.hex() if value is not None else None
+
+
+class Base(DeclarativeBase):
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "ck": "ck_%(table_name)s_%(constraint_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_N_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map: ClassVar = {
+        datetime: Moment(),
+        float: Double(),
+        dict[str, Any]: JSON(),
+        list[str]: JSON(),
+    }
+
+
+class Run(Base):
+    """One spec being carried out; the truth about its state."""
+
+    __tablename__ = "runs"
+    __table_args__ = (
+        CheckConstraint(f"status IN {STATUSES}", name="status"),
+        CheckConstraint(f"wish IN {(PAUSE, CANCEL)}", name="wish"),
+        Index(None, "created_at", "id"),
+        Index(None, "status", "heartbeat_at"),
+    )
+
+    id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
+    experiment: Mapped[str] = mapped_column(String(64))
+    spec: Mapped[dict[str, Any]]
+    version: Mapped[str] = mapped_column(String(64))
+    demonstration: Mapped[bool] = mapped_column(default=False)
+    status: Mapped[str] = mapped_column(String(16), default=QUEUED)
+    wish: Mapped[str | None] = mapped_column(String(16))
+    wished_at: Mapped[datetime | None]
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+    started_at: Mapped[datetime | None]
+    finished_at: Mapped[datetime | None]
+    attempt: Mapped[int] = mapped_column(default=0)
+    """The fence: whoever writes proves first that this is still their own."""
+    attempts_without_checkpoint: Mapped[int] = mapped_column(default=0)
+    worker: Mapped[str | None] = mapped_column(String(255))
+    device: Mapped[str | None] = mapped_column(Text)
+    heartbeat_at: Mapped[datetime | None]
+    generation: Mapped[int] = mapped_column(default=0)
+    """The last one recorded."""
+    checkpoint_generation: Mapped[int] = mapped_column(default=0)
+    """The one that the last checkpoint holds; 0 without a checkpoint."""
+    evaluations: Mapped[int] = mapped_column(BigInteger, default=0)
+    diverged: Mapped[int] = mapped_column(BigInteger, default=0)
+    seconds: Mapped[float] = mapped_column(default=0.0)
+    """Wall time of the computing that led to the last record."""
+    qd_score: Mapped[float | None]
+    coverage: Mapped[float | None]
+    best: Mapped[float | None]
+    error: Mapped[str | None] = mapped_column(Text)
+    warning: Mapped[str | None] = mapped_column(Text)
+
+
+class Generation(Base):
+    """One narrow row per generation: the curves."""
+
+    __tablename__ = "generations"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    generation: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    qd_score: Mapped[float | None]
+    coverage: Mapped[float | None]
+    best: Mapped[float | None]
+    mean: Mapped[float | None]
+    evaluations: Mapped[int] = mapped_column(BigInteger)
+    diverged: Mapped[int] = mapped_column(BigInteger)
+    seconds: Mapped[float]
+
+
+class Elite(Base):
+    """A cell's new elite; append-only. Now is a cell's last row, the past the last not after."""
+
+    __tablename__ = "elites"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    cell: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    generation: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    fitness: Mapped[float]
+    descriptor_0: Mapped[float]
+    descriptor_1: Mapped[float]
+    creature: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
+
+
+class Creature(Base):
+    """A creature by its name; kept after its cell was taken by another."""
+
+    __tablename__ = "creatures"
+
+    sha256: Mapped[str] = mapped_column(Sha256, primary_key=True)
+    identity: Mapped[bytes]
+    """The canonical bytes, whose hash is the name."""
+    parents: Mapped[list[str]]
+    operator: Mapped[str | None] = mapped_column(String(64))
+    measured: Mapped[dict[str, Any]]
+    provenance: Mapped[dict[str, Any]]
+    """What else is known of its origin: generation, seed, version."""
+    licence: Mapped[str] = mapped_column(String(64))
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+
+
+class Artifact(Base):
+    """A file that is completely written; without a row, a file does not count."""
+
+    __tablename__ = "artifacts"
+    __table_args__ = (
+        UniqueConstraint("run_id", "kind", "number"),
+        UniqueConstraint("creature", "kind"),
+    )
+
+    path: Mapped[str] = mapped_column(String(255), primary_key=True)
+    kind: Mapped[str] = mapped_column(String(16))
+    run_id: Mapped[UUID | None] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    number: Mapped[int | None]
+    """Counts the checkpoints of a run."""
+    generation: Mapped[int | None]
+    creature: Mapped[str | None] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
+    size: Mapped[int] = mapped_column(BigInteger)
+    sha256: Mapped[str] = mapped_column(Sha256)
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+
+
+class Worker(Base):
+    """A worker as it last reported."""
+
+    __tablename__ = "workers"
+
+    name: Mapped[str] = mapped_column(String(255), primary_key=True)
+    device: Mapped[str] = mapped_column(Text)
+    memory_bytes: Mapped[int] = mapped_column(BigInteger)
+    status: Mapped[str] = mapped_column(String(16))
+    run_id: Mapped[UUID | None]
+    heartbeat_at: Mapped[datetime] = mapped_column(default=clock())
+
+
+class Idempotency(Base):
+    """A key that a client chose, so that asking twice gives one run."""
+
+    __tablename__ = "idempotency"
+
+    key: Mapped[str] = mapped_column(String(255), primary_key=True)
+    body_sha256: Mapped[str] = mapped_column(Sha256)
+    run_id: Mapped[UUID] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    created_at: Mapped[datetime] = mapped_column(default=clock())

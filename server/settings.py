@@ -1,0 +1,57 @@
+"""What the environment decides: where things lie, how large, how often."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import AliasChoices, Field, SecretStr
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+class Settings(BaseSettings):
+    """Read from `MICROCOSMOS_*`, and the port from `PORT`."""
+
+    model_config = SettingsConfigDict(
+        env_prefix="MICROCOSMOS_", populate_by_name=True, extra="ignore"
+    )
+
+    data: Path = Path("data")
+    """Folder of database, artifacts, logs and caches."""
+    database_url: str = ""
+    """Empty: SQLite in the data folder."""
+    redis_url: str = "redis://127.0.0.1:6379/0"
+    redis_prefix: str = "microcosmos:"
+    """Begins the names of queues and streams, so that two installations can share a Redis."""
+    artifacts_url: str = ""
+    """Where files are kept, as fsspec understands it. Empty: a folder in the data folder."""
+    max_bytes: Annotated[int, Field(gt=0)] | None = None
+    """Memory that a run may need while no worker has reported its own."""
+    host: str = "127.0.0.1"
+    port: int = Field(
+        8000, ge=0, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
+    )
+    token: SecretStr | None = None
+    checkpoint_interval: float = Field(60.0, ge=0.0)
+    """Seconds between two checkpoints of a run."""
+    lease: float = Field(20.0, gt=0.0)
+    """Seconds without a heartbeat after which a worker counts as dead."""
+    grace: float = Field(15.0, ge=0.0)
+    """Seconds that a worker has to obey a cancellation before its job is killed."""
+    reconcile_interval: float = Field(5.0, gt=0.0)
+
+    @property
+    def database(self) -> str:
+        return self.database_url or f"sqlite:///{self.data.resolve() / 'microcosmos.sqlite'}"
+
+    @property
+    def artifacts(self) -> str:
+        return self.artifacts_url or str(self.data.resolve() / "artifacts")
+
+    def refuse_exposure(self) -> None:
+        """Nobody but this machine may reach a server that asks for no token."""
+        if self.host not in LOOPBACK and not self.token:
+            raise ValueError(
+                "MICROCOSMOS_TOKEN must be set where MICROCOSMOS_HOST is not loopback "
+                f"({', '.join(LOOPBACK)}); got host {self.host} and no token"
+            )
