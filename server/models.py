@@ -56,7 +56,7 @@ class Base(DeclarativeBase):
     type_annotation_map: ClassVar = {
         datetime: Moment(),
         float: Double(),
-        dict[str, Any]: JSON(),
+        dict[str, Any]: JSON(none_as_null=True),
         list[str]: JSON(),
     }
 
@@ -147,11 +147,11 @@ class Creature(Base):
     identity: Mapped[bytes]
     """The canonical bytes, whose hash is the name."""
     parents: Mapped[list[str]]
-    operator: Mapped[str | None] = mapped_column(String(64))
-    measured: Mapped[dict[str, Any]]
-    provenance: Mapped[dict[str, Any]]
+    operator: Mapped[str | None] = mapped_column(Text)
+    measured: Mapped[dict[str, Any] | None]
+    provenance: Mapped[dict[str, Any] | None]
     """What else is known of its origin: generation, seed, version."""
-    licence: Mapped[str] = mapped_column(String(64))
+    licence: Mapped[str] = mapped_column(Text)
     created_at: Mapped[datetime] = mapped_column(default=clock())
 
 

@@ -1,0 +1,44 @@
+"""Which files are a run's checkpoints, and which of them can go."""
+
+from uuid import UUID
+
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
+
+from .artifacts import Stored, superfluous
+from .models import CHECKPOINT, Artifact
+
+
+def last_checkpoint(session: Session, run_id: UUID) -> Artifact | None:
+    """The newest one, which a run goes on from and people download."""
+    mine = (Artifact.run_id == run_id) & (Artifact.kind == CHECKPOINT)
+    return session.scalars(
+        select(Artifact).where(mine).order_by(Artifact.number.desc()).limit(1)
+    ).one_or_none()
+
+
+def point_at(session: Session, run_id: UUID, generation: int, stored: Stored) -> list[str]:
+    """Make a written file the newest checkpoint: paths of the files that nothing needs now."""
+    last = last_checkpoint(session, run_id)
+    if last and last.path == stored.path:
+        return []
+    number = last.number + 1 if last and last.number is not None else 1
+    row = Artifact(
+        path=stored.path,
+        kind=CHECKPOINT,
+        run_id=run_id,
+        number=number,
+        generation=generation,
+        size=stored.size,
+        sha256=stored.sha256,
+    )
+    session.add(row)
+    session.flush()
+    return _prune(session, run_id)
+
+
+def _prune(session: Session, run_id: UUID) -> list[str]:
+    mine = (Artifact.run_id == run_id) & (Artifact.kind == CHECKPOINT)
+    numbers = [n for n in session.scalars(select(Artifact.number).where(mine)) if n is not None]
+    gone = delete(Artifact).where(mine, Artifact.number.in_(superfluous(numbers)))
+    return list(session.scalars(gone.returning(Artifact.path)))

@@ -1,0 +1,213 @@
+"""A worker's claim on a run: the fence behind which everything of an attempt is written.
+
+Each write is one transaction that first proves that the attempt is still the current
+one. `Fenced` says that it is not: the process should end without another word.
+"""
+
+from dataclasses import dataclass, field
+from time import monotonic
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import delete, func, or_
+from sqlalchemy.orm import Session
+
+from . import records
+from .artifacts import Stored, checkpoint_path
+from .checkpoints import last_checkpoint, point_at
+from .db import clock
+from .lifecycle import announce, change, lost, release, yield_up
+from .models import CANCELLED, FINISHED, PAUSED, QUEUED, RUNNING, Elite, Generation, Run
+from .services import Services
+
+ANNOUNCE_EVERY = 1.0
+"""Seconds between two events that tell how a run as a whole stands."""
+
+
+class Fenced(Exception):
+    """The run is another attempt's by now, or was ended."""
+
+
+def claim(services: Services, run_id: UUID, worker: str, device: str = "") -> "Claim | None":
+    """Begin an attempt at a queued run; None where there is nothing to do for this worker.
+
+    A run that this very worker had, or whose worker is silent, counts as queued: its last
+    attempt is over. What was written beyond the checkpoint is deleted.
+    """
+    with services.sessions.write.begin() as session:
+        over = or_(Run.worker == worker, lost(session, services.settings.lease))
+        release(session, run_id, over, error="the worker ended without a word")
+        run = change(session, run_id, Run.status == QUEUED, **_begun(worker, device))
+        rewound = run is not None and _rewind(session, run)
+        begun = _begin(services, session, run) if run else None
+    if rewound and begun:
+        rewind = {"run": str(run_id), "generation": begun.generation}
+        services.events.publish("rewind", run_id, rewind)
+    announce(services, run_id)
+    return begun
+
+
+def _begun(worker: str, device: str) -> dict[str, Any]:
+    return {
+        "status": RUNNING,
+        "attempt": Run.attempt + 1,
+        "attempts_without_checkpoint": Run.attempts_without_checkpoint + 1,
+        "worker": worker,
+        "device": device,
+        "heartbeat_at": clock(),
+        "started_at": func.coalesce(Run.started_at, clock()),
+    }
+
+
+def _rewind(session: Session, run: Run) -> bool:
+    """Forget what was recorded beyond the checkpoint: whether there was anything."""
+    last = run.checkpoint_generation
+    if run.generation <= last:
+        return False
+    for table in (Elite, Generation):
+        session.execute(delete(table).where(table.run_id == run.id, table.generation > last))
+    kept = session.get(Generation, (run.id, last))
+    for column in ("qd_score", "coverage", "best"):
+        setattr(run, column, getattr(kept, column, None))
+    for column in ("generation", "evaluations", "diverged", "seconds"):
+        setattr(run, column, getattr(kept, column, 0))
+    return True
+
+
+def _begin(services: Services, session: Session, run: Run) -> "Claim":
+    row = last_checkpoint(session, run.id)
+    return Claim(
+        services=services,
+        run_id=run.id,
+        attempt=run.attempt,
+        spec=run.spec,
+        version=run.version,
+        device=run.device or "",
+        generation=run.checkpoint_generation,
+        checkpoint=Stored(row.path, row.size, row.sha256) if row else None,
+        seconds=run.seconds,
+    )
+
+
+@dataclass
+class Claim:
+    """One attempt at a run."""
+
+    services: Services
+    run_id: UUID
+    attempt: int
+    spec: dict[str, Any]
+    version: str
+    device: str
+    generation: int
+    """The one that the checkpoint holds; 0 without one."""
+    checkpoint: Stored | None
+    """The file to go on from; None: from the beginning."""
+    seconds: float
+    """Wall time of the computing that led to the last record."""
+    announced: float = field(default=0.0)
+
+    def restore(self) -> bytes | None:
+        """The content of the checkpoint, if there is one."""
+        return self.services.artifacts.read(self.checkpoint.path) if self.checkpoint else None
+
+    def record(self, report: records.Report, seconds: float) -> str | None:
+        """Write down a generation that took so many seconds: the wish, `pause` or `cancel`."""
+        total = self.seconds + seconds
+        curve = records.generation_row(report, total)
+        elites = [records.elite_row(elite) for elite in report.elites]
+        creatures = [
+            records.creature_row(elite, self.spec, self.version, self.device)
+            for elite in report.elites
+        ]
+        with self.services.sessions.write.begin() as session:
+            standing = {**records.standing(report), "seconds": total}
+            wish = self._prove(session, **standing).wish
+            records.write(session, self.run_id, curve, elites, creatures)
+        self.seconds = total
+        self._tell(curve, elites)
+        return wish
+
+    def wish(self) -> str | None:
+        """What people want of the run, `pause` or `cancel`, between two records."""
+        with self.services.sessions.write.begin() as session:
+            return self._prove(session).wish
+
+    def save(self, generation: int, data: bytes) -> None:
+        """Write the file of a recorded generation and make it the checkpoint.
+
+        Raises `OSError` where it cannot be written; the previous one stays.
+        """
+        path = checkpoint_path(self.run_id, generation, data)
+        self.point(generation, self.services.artifacts.write(path, data))
+
+    def point(self, generation: int, stored: Stored) -> None:
+        """Make a written file the checkpoint; files that nothing needs any more are deleted."""
+        with self.services.sessions.write.begin() as session:
+            before = self._prove(session)
+            if generation > before.generation:
+                raise ValueError(
+                    f"`generation` of a checkpoint must be recorded, up to {before.generation}; "
+                    f"got {generation}"
+                )
+            superfluous = point_at(session, self.run_id, generation, stored)
+            if generation > before.checkpoint_generation:
+                self._prove(
+                    session,
+                    checkpoint_generation=generation,
+                    attempts_without_checkpoint=0,
+                    warning=None,
+                )
+        self.checkpoint, self.generation = stored, generation
+        for path in superfluous:
+            self.services.artifacts.delete(path)
+
+    def warn(self, text: str) -> None:
+        """Say something on the run that people should know; the next checkpoint clears it."""
+        self._end(warning=text)
+
+    def finish(self) -> None:
+        self._end(status=FINISHED, finished_at=clock(), error=None, wish=None, wished_at=None)
+
+    def pause(self) -> None:
+        self._end(status=PAUSED, worker=None, wish=None, wished_at=None)
+
+    def cancel(self) -> None:
+        self._end(status=CANCELLED, finished_at=clock(), wish=None, wished_at=None)
+
+    def requeue(self) -> None:
+        """Hand the run back in good order, as on SIGTERM: not one of the three chances."""
+        with self.services.sessions.write.begin() as session:
+            strikes = max(0, self._prove(session).attempts_without_checkpoint - 1)
+            yield_up(session, self.run_id, attempts_without_checkpoint=strikes)
+        announce(self.services, self.run_id)
+
+    def fail(self, error: str) -> None:
+        """Keep the traceback; the run is queued for another attempt unless none is left."""
+        with self.services.sessions.write.begin() as session:
+            if not release(session, self.run_id, Run.attempt == self.attempt, error=error):
+                raise Fenced(f"run {self.run_id}, attempt {self.attempt}")
+        announce(self.services, self.run_id)
+
+    def _end(self, **values: Any) -> None:
+        with self.services.sessions.write.begin() as session:
+            self._prove(session, **values)
+        announce(self.services, self.run_id)
+
+    def _prove(self, session: Session, **values: Any) -> Run:
+        """Change the row if this attempt is the current one, and hold it until the end."""
+        mine = (Run.status == RUNNING, Run.attempt == self.attempt)
+        run = change(session, self.run_id, *mine, **(values or {"attempt": self.attempt}))
+        if run is None:
+            raise Fenced(f"run {self.run_id}, attempt {self.attempt}")
+        return run
+
+    def _tell(self, curve: dict[str, Any], elites: list[dict[str, Any]]) -> None:
+        publish = self.services.events.publish
+        publish("generation", self.run_id, {"run": str(self.run_id), **curve})
+        if elites:
+            changed = records.elites_event(self.run_id, curve["generation"], elites)
+            publish("elites", self.run_id, changed)
+        if monotonic() - self.announced >= ANNOUNCE_EVERY:
+            self.announced = monotonic()
+            announce(self.services, self.run_id)

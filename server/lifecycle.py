@@ -1,0 +1,117 @@
+"""queued → running → finished | failed | cancelled, with paused between: who may do what.
+
+Every change is one guarded UPDATE, so that of two that come at once only one happens.
+"""
+
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import case, or_, update
+from sqlalchemy.orm import Session
+
+from .db import ago, clock
+from .models import CANCEL, CANCELLED, FAILED, PAUSE, PAUSED, QUEUED, RUNNING, Run
+from .progress import read_run
+from .services import Services
+
+ATTEMPTS = 3
+"""So many attempts without a new checkpoint end a run."""
+
+
+class Conflict(Exception):
+    """The state of a run does not allow what was asked."""
+
+    def __init__(self, action: str, run: Run, needed: str):
+        wish = f", asked to {run.wish}" if run.wish else ""
+        super().__init__(f"to {action} a run it must be {needed}; it is {run.status}{wish}")
+
+
+def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | None:
+    """Change a run if it is as `where` says: the changed row, else None."""
+    statement = update(Run).where(Run.id == run_id, *where).values(**values).returning(Run)
+    options = {"populate_existing": True, "synchronize_session": False}
+    return session.scalars(statement, execution_options=options).one_or_none()
+
+
+def pause(session: Session, run: Run) -> Run:
+    """At once where it waits; where it runs, its worker is asked to."""
+    return (
+        change(session, run.id, Run.status == QUEUED, status=PAUSED)
+        or change(
+            session,
+            run.id,
+            Run.status == RUNNING,
+            or_(Run.wish.is_(None), Run.wish == PAUSE),
+            wish=PAUSE,
+            wished_at=clock(),
+        )
+        or _refuse(session, "pause", run, "queued or running, not asked to cancel")
+    )
+
+
+def cancel(session: Session, run: Run) -> Run:
+    """At once where it waits or is paused; where it runs, its worker is asked to."""
+    return (
+        change(
+            session,
+            run.id,
+            Run.status.in_((QUEUED, PAUSED)),
+            status=CANCELLED,
+            finished_at=clock(),
+        )
+        or change(
+            session,
+            run.id,
+            Run.status == RUNNING,
+            wish=CANCEL,
+            wished_at=case((Run.wish == CANCEL, Run.wished_at), else_=clock()),
+        )
+        or _refuse(session, "cancel", run, "queued, running or paused")
+    )
+
+
+def resume(session: Session, run: Run) -> Run:
+    """Back into the queue, its attempts counted anew."""
+    values = {"status": QUEUED, "attempts_without_checkpoint": 0}
+    return change(session, run.id, Run.status == PAUSED, **values) or _refuse(
+        session, "resume", run, "paused"
+    )
+
+
+def _refuse(session: Session, action: str, run: Run, needed: str) -> Run:
+    current = session.get_one(Run, run.id, populate_existing=True)
+    raise Conflict(action, current, needed)
+
+
+def release(session: Session, run_id: UUID, *where: Any, error: str) -> Run | None:
+    """Take a running run from an attempt that ended badly, and do what was wished meanwhile.
+
+    It waits for another attempt, unless it is paused, cancelled, or had its last chance.
+    """
+    run = yield_up(session, run_id, *where, error=error)
+    if run and run.status == QUEUED and run.attempts_without_checkpoint >= ATTEMPTS:
+        text = f"{ATTEMPTS} attempts without a new checkpoint; the last one: {error}"
+        return change(session, run_id, status=FAILED, finished_at=clock(), error=text)
+    return run
+
+
+def yield_up(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | None:
+    """A running run without its worker: queued again, unless paused or cancelled meanwhile."""
+    status = case((Run.wish == CANCEL, CANCELLED), (Run.wish == PAUSE, PAUSED), else_=QUEUED)
+    values |= {"wish": None, "wished_at": None, "worker": None, "status": status}
+    over = case((Run.wish == CANCEL, clock()), else_=None)
+    return change(session, run_id, Run.status == RUNNING, *where, finished_at=over, **values)
+
+
+def lost(session: Session, lease: float) -> Any:
+    """The condition that nobody has spoken for a run as long as a lease."""
+    return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
+
+
+def announce(services: Services, run_id: UUID) -> None:
+    """Tell everybody how a run stands, after what changed it was committed."""
+    with services.sessions.read() as session:
+        run = session.get(Run, run_id)
+        if run:
+            data = read_run(session, run).model_dump(mode="json")
+            services.events.publish("run", run_id, data)
