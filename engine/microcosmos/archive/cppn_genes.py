@@ -1,40 +1,17 @@
 """NEAT genes of a CPPN as they are written in a creature file, and their soundness."""
 
-from base64 import b64decode, b64encode
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field, field_validator
 
 from ..spec.base import Part
+from .encoding import ACTIVATIONS, decode
 
-Activation = Literal[
-    "identity", "sigmoid", "tanh", "relu", "sin", "cos", "gaussian", "abs", "square"
-]
-ACTIVATIONS: tuple[str, ...] = get_args(Activation)
-"""In the order of the numbers that genomes hold."""
+Activation = Literal[ACTIVATIONS]  # pyright: ignore[reportInvalidTypeForm]
 
 MAX_NODES, MAX_CONNECTIONS = 1024, 8192
 
 Number = Annotated[int, Field(ge=0, lt=2**31)]
-
-
-def encode(values: np.ndarray) -> str:
-    """Little-endian float32 as base64, −0 as 0."""
-    return b64encode((np.asarray(values, "<f4") + np.float32(0)).tobytes()).decode()
-
-
-def decode(text: str) -> np.ndarray:
-    """The float32 values in base64; raises `ValueError` where they are none or not finite."""
-    data = b64decode(text, validate=True)
-    if len(data) % 4:
-        raise ValueError(f"needs whole float32 values, got {len(data)} bytes")
-    values = np.frombuffer(data, "<f4")
-    if not np.all(np.isfinite(values)):
-        raise ValueError("needs finite values, got NaN or infinity")
-    if encode(values) != text:
-        raise ValueError("needs the canonical encoding, got another (−0 is written as 0)")
-    return values
 
 
 class Nodes(Part):

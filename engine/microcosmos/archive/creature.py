@@ -2,17 +2,17 @@
 
 import json
 from collections.abc import Mapping
-from hashlib import sha256
 from typing import Annotated, Any, Literal, Self
 
-import rfc8785
 from pydantic import Field, ValidationError, model_validator
 
 from ..spec import Body, Control, Coupling, Genome, QualityDiversity, Search, Task, World
 from ..spec.base import Part
 from .cppn_genes import Connections, Nodes, check_genes
+from .naming import FORMAT, canonical, name
 
-FORMAT = "microcosmos-creature/1"
+__all__ = ["FORMAT", "CreatureError", "canonical", "document", "name", "parse", "spec_of"]
+
 LICENCE = "CC-BY-4.0"
 
 Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
@@ -97,16 +97,6 @@ class CreatureFile(Part):
     measured: Measured | None = None
     provenance: Provenance | None = None
     licence: str = LICENCE
-
-
-def canonical(identity: Mapping[str, Any]) -> bytes:
-    """The bytes that the name is computed over: RFC 8785."""
-    return rfc8785.dumps(dict(identity))
-
-
-def name(identity: Mapping[str, Any]) -> str:
-    """The SHA-256 of the canonical form, in hexadecimal."""
-    return sha256(canonical(identity)).hexdigest()
 
 
 def document(

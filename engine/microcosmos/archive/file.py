@@ -1,0 +1,60 @@
+"""HDF5 files as bytes: nested arrays and attributes, the same content giving the same bytes."""
+
+from collections.abc import Mapping
+from io import BytesIO
+from typing import Any
+
+import h5py
+import numpy as np
+
+FORMAT = "microcosmos-archive/1"
+
+DEVICE_SEPARATOR = " | "
+"""Between the kinds of device in `device`, where a run went on on another one."""
+
+Tree = dict[str, Any]
+
+
+def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
+    """A file with a group for each mapping and a dataset for each array, in sorted order.
+
+    Neither names nor times of a machine are in it.
+    """
+    with h5py.File.in_memory(libver=("v110", "v110"), track_order=False) as file:
+        for name in sorted(attributes):
+            # Fixed-length bytes: variable-length text would live in a heap.
+            file.attrs[name] = np.bytes_(attributes[name].encode())
+        _write(file, tree)
+        file.flush()
+        return file.id.get_file_image()
+
+
+def load(data: bytes) -> tuple[Tree, dict[str, str]]:
+    """The arrays and attributes of a file of ours.
+
+    Raises `ValueError` where it is not one.
+    """
+    try:
+        with h5py.File(BytesIO(data), "r") as file:
+            attributes = {name: bytes(value).decode() for name, value in file.attrs.items()}
+            tree = _read(file)
+    except OSError as error:
+        raise ValueError(f"an archive file must be HDF5: {error}") from error
+    if attributes.get("format") != FORMAT:
+        raise ValueError(f"`format` must be {FORMAT}, got {attributes.get('format')}")
+    return tree, attributes
+
+
+def _write(group: h5py.Group, tree: Mapping[str, Any]) -> None:
+    for name in sorted(tree):
+        if isinstance(tree[name], Mapping):
+            _write(group.create_group(name), tree[name])
+        else:
+            group.create_dataset(name, data=np.asarray(tree[name]), track_times=False)
+
+
+def _read(group: h5py.Group) -> Tree:
+    return {
+        name: _read(item) if isinstance(item, h5py.Group) else item[()]
+        for name, item in group.items()
+    }

@@ -1,0 +1,19 @@
+"""The name of a creature: the SHA-256 of the canonical form of its identity."""
+
+from collections.abc import Mapping
+from hashlib import sha256
+from typing import Any
+
+import rfc8785
+
+FORMAT = "microcosmos-creature/1"
+
+
+def canonical(identity: Mapping[str, Any]) -> bytes:
+    """The bytes that the name is computed over: RFC 8785."""
+    return rfc8785.dumps(dict(identity))
+
+
+def name(identity: Mapping[str, Any]) -> str:
+    """The SHA-256 of the canonical form, in hexadecimal."""
+    return sha256(canonical(identity)).hexdigest()

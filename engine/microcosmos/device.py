@@ -1,0 +1,64 @@
+"""The device that computes: how it is prepared, and what kind it is.
+
+Numbers of one kind of device repeat bit for bit; those of another may round differently.
+"""
+
+import os
+import platform
+from pathlib import Path
+
+import jax
+import jaxlib
+
+GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
+
+
+def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) -> None:
+    """Settings that make results repeatable; to be called before JAX is first used.
+
+    On a CPU, one device a core (or `devices` of them) lets every core have a block of its
+    own; results do not depend on how many. Compiled programs are kept in `cache`, else
+    where JAX_COMPILATION_CACHE_DIR says.
+    """
+    flags = os.environ.get("XLA_FLAGS", "")
+    if "xla_gpu_deterministic_ops" not in flags:
+        os.environ["XLA_FLAGS"] = f"{flags} {GPU_FLAGS}".strip()
+    jax.config.update("jax_default_matmul_precision", "highest")
+    jax.config.update("jax_num_cpu_devices", devices or len(os.sched_getaffinity(0)))
+    if cache:
+        jax.config.update("jax_compilation_cache_dir", os.fspath(cache))
+    # Even small programs are worth keeping: a resumed run then starts within a second.
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+    jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+
+
+def device_kind() -> str:
+    """Platform, model and software, on which the bits of a result depend."""
+    device = jax.local_devices()[0]
+    model = _processor() if device.platform == "cpu" else device.device_kind
+    flags = " ".join(sorted(os.environ.get("XLA_FLAGS", "").replace(GPU_FLAGS, "").split()))
+    parts = [device.platform, model, f"jaxlib {jaxlib.__version__}"]
+    return ", ".join([*parts, flags] if flags else parts)
+
+
+def _processor() -> str:
+    """The processor's model and widest vector instructions, which decide how loops round."""
+    info = Path("/proc/cpuinfo")
+    if not info.exists():
+        return platform.processor() or platform.machine()
+    fields = dict(
+        (part.strip() for part in line.split(":", 1))
+        for line in info.read_text().splitlines()
+        if ":" in line
+    )
+    flags = fields.get("flags", "").split()
+    widest = next((f for f in ("avx512f", "avx2", "avx", "sse2") if f in flags), "no vectors")
+    return f"{fields.get('model name', platform.machine())} {widest}"
+
+
+def compiler_options() -> dict[str, object]:
+    """Options of every simulation program on the present device."""
+    if jax.default_backend() != "cpu":
+        return {}
+    # A block is one thread's work: splitting its small loops costs more than it gives.
+    return {"xla_cpu_multi_thread_eigen": False, "xla_cpu_prefer_vector_width": 512}

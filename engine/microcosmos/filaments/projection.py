@@ -1,0 +1,99 @@
+"""Constraint projection of planar Cosserat rods: stretch, shear and bending.
+
+Position-based dynamics: Mueller et al., J. Vis. Commun. Image R. 18, 109 (2007); rods:
+Umetani, Schmidt and Stam, SCA 2014; the planar form is the one of the Microcosmos paper.
+Constraints of one colour share no node (or edge), so that a sweep over the colours is
+Gauss-Seidel, and every displacement has an equal and opposite one.
+"""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int
+
+Positions = Float[Array, "node 2"]
+Angles = Float[Array, "edge"]
+
+
+class Pairing(eqx.Module):
+    """For one colour and each member (node or edge): its partner and their constraint.
+
+    `sign` is 1 for the first of a pair, −1 for the second and 0 for a member that no
+    constraint of the colour touches.
+    """
+
+    partner: Int[Array, "member"]
+    constraint: Int[Array, "member"]
+    sign: Float[Array, "member"]
+
+
+class Rods(eqx.Module):
+    """The graph of a body and its stiffnesses."""
+
+    edges: Int[Array, "edge 2"]
+    edge_colours: tuple[Pairing, ...]
+    joint_colours: tuple[Pairing, ...]
+    stretch: Float[Array, "edge"]
+    shear: Float[Array, "edge"]
+    bend: Float[Array, "joint"]
+
+
+class Rest(eqx.Module):
+    """The shape that the constraints ask for."""
+
+    angle: Float[Array, "joint"]
+    length: Float[Array, "edge"]
+
+
+def wrap(angle: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
+    """The same angle within ±π; its gradient is 1."""
+    return angle - 2 * jnp.pi * jax.lax.stop_gradient(jnp.round(angle / (2 * jnp.pi)))
+
+
+def edge_angles(positions: Positions, rods: Rods) -> Angles:
+    """The direction of every edge, in radians."""
+    v = positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]
+    return jnp.arctan2(v[:, 1], v[:, 0])
+
+
+def follow_geometry(angles: Angles, positions: Positions, rods: Rods) -> Angles:
+    """Angles as the geometry has them, on the branch nearest to what they were."""
+    return angles + wrap(edge_angles(positions, rods) - angles)
+
+
+def bend(angles: Angles, rods: Rods, rest: Rest) -> Angles:
+    """One sweep over the joints: C = θ₂ − θ₁ − θ_rest is halved on both sides."""
+    for colour in rods.joint_colours:
+        difference = colour.sign * (angles[colour.partner] - angles)
+        error = wrap(difference - rest.angle[colour.constraint])
+        angles = angles + colour.sign * (0.5 * rods.bend[colour.constraint]) * error
+    return angles
+
+
+def stretch(positions: Positions, angles: Angles, rods: Rods, rest: Rest) -> Positions:
+    """One sweep over the edges: length along the tangent, and the director by shear."""
+    directors = jnp.stack([jnp.cos(angles), jnp.sin(angles)], 1) * rest.length[:, None]
+    for colour in rods.edge_colours:
+        sign = colour.sign[:, None]
+        v = sign * (positions[colour.partner] - positions)
+        # The guard also keeps members without a constraint, whose v is 0, differentiable.
+        length = jnp.sqrt(jnp.sum(v * v, 1, keepdims=True) + 1e-12)
+        along = v - v * (rest.length[colour.constraint][:, None] / length)
+        full = v - directors[colour.constraint]
+        shear = rods.shear[colour.constraint][:, None]
+        share = sign * (0.5 * rods.stretch[colour.constraint][:, None])
+        positions = positions + share * (along + shear * (full - along))
+    return positions
+
+
+def project(
+    positions: Positions, angles: Angles, rods: Rods, rest: Rest, *, iterations: int
+) -> tuple[Positions, Angles]:
+    """Positions and angles after `iterations` sweeps of bending, then stretching."""
+
+    def sweep(carry, _):
+        positions, angles = carry
+        angles = bend(angles, rods, rest)
+        return (stretch(positions, angles, rods, rest), angles), None
+
+    return jax.lax.scan(sweep, (positions, angles), None, length=iterations)[0]

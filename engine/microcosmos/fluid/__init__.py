@@ -1,0 +1,19 @@
+"""A viscous fluid: D2Q9 lattice Boltzmann with two relaxation times."""
+
+from .dynamics import Rates, capped_magic, collide, fixed_magic, rates, stream, vorticity
+from .lattice import Populations, Vectors, density, equilibrium, momentum
+
+__all__ = [
+    "Populations",
+    "Rates",
+    "Vectors",
+    "capped_magic",
+    "collide",
+    "density",
+    "equilibrium",
+    "fixed_magic",
+    "momentum",
+    "rates",
+    "stream",
+    "vorticity",
+]

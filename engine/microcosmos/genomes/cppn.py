@@ -1,0 +1,89 @@
+"""Compositional pattern-producing networks as fixed-size masked arrays of NEAT genes.
+
+CPPN: Stanley, Genet. Program. Evolvable Mach. 8, 131 (2007); genes: Stanley and
+Miikkulainen, Evol. Comput. 10, 99 (2002). Used rows come first, in the order in which the
+genes arose, so that their numbers increase along the rows.
+"""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
+
+Points = Float[Array, "_ point"]
+
+BOUND = 1e6
+"""Values are kept within this, so that a chain of squares cannot overflow into NaN."""
+
+# The order is the one of `archive.encoding.ACTIVATIONS`, which a test compares.
+ACTIVATIONS = {
+    "identity": lambda z: z,
+    "sigmoid": jax.nn.sigmoid,
+    "tanh": jnp.tanh,
+    "relu": lambda z: jnp.maximum(z, 0),
+    "sin": jnp.sin,
+    "cos": jnp.cos,
+    "gaussian": lambda z: jnp.exp(-z * z),
+    "abs": jnp.abs,
+    "square": lambda z: z * z,
+}
+
+
+class CPPN(eqx.Module):
+    """A feed-forward network; rows of nodes are inputs, outputs, then hidden ones."""
+
+    node_used: Bool[Array, "node"]
+    node_id: Int[Array, "node"]
+    activation: Int[Array, "node"]
+    bias: Float[Array, "node"]
+    connection_used: Bool[Array, "connection"]
+    innovation: Int[Array, "connection"]
+    source: Int[Array, "connection"]
+    """Row of the node that a connection comes from."""
+    target: Int[Array, "connection"]
+    enabled: Bool[Array, "connection"]
+    weight: Float[Array, "connection"]
+
+
+def depths(network: CPPN) -> Int[Array, "node"]:
+    """The longest way from a node without incoming connections, enabled or not."""
+    nodes = network.node_used.shape[0]
+    target = jnp.where(network.connection_used, network.target, nodes)
+
+    def relax(_, depth):
+        return depth.at[target].max(depth[network.source] + 1, mode="drop")
+
+    return jax.lax.fori_loop(0, nodes, relax, jnp.zeros(nodes, jnp.int32))
+
+
+def evaluate(network: CPPN, inputs: Points, outputs: int) -> Points:
+    """The values of the output nodes, (outputs, point), for inputs (inputs, point)."""
+    nodes, given = network.node_used.shape[0], inputs.shape[0]
+    live = network.connection_used & network.enabled
+    target = jnp.where(live, network.target, nodes)
+    weights = jnp.zeros((nodes, nodes), inputs.dtype)
+    weights = weights.at[target, network.source].set(network.weight, mode="drop")
+    order = jnp.argsort(depths(network), stable=True)
+    # Inputs and unused rows keep what they have; branch 0 does nothing.
+    computed = network.node_used & (np.arange(nodes) >= given)
+    branch = jnp.where(computed, network.activation + 1, 0)
+    functions = [lambda values, _: values] + [_assign(f) for f in ACTIVATIONS.values()]
+
+    def visit(values, node):
+        gathered = (weights[node], network.bias[node], node)
+        return jax.lax.switch(branch[node], functions, values, gathered), None
+
+    values = jnp.zeros((nodes, inputs.shape[1]), inputs.dtype).at[:given].set(inputs)
+    values, _ = jax.lax.scan(visit, values, order)
+    return values[given : given + outputs]
+
+
+def _assign(function):
+    def assign(values, gathered):
+        weights, bias, node = gathered
+        # A written-out sum: a matrix product may be split differently elsewhere.
+        z = bias + jnp.sum(weights[:, None] * values, 0)
+        return values.at[node].set(jnp.clip(function(z), -BOUND, BOUND))
+
+    return assign

@@ -1,0 +1,74 @@
+"""Genes as they stand in a creature file, from and to arrays."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import jax
+import numpy as np
+
+from ..archive.encoding import ACTIVATIONS, decode, encode
+from .cppn import CPPN
+
+
+def to_genes(network: CPPN) -> dict[str, Any]:
+    """The used genes of one network of NumPy arrays."""
+    n, c = int(network.node_used.sum()), int(network.connection_used.sum())
+    ids = network.node_id
+    return {
+        "nodes": {
+            "id": ids[:n].tolist(),
+            "activation": [ACTIVATIONS[a] for a in network.activation[:n].tolist()],
+            "bias": encode(network.bias[:n]),
+        },
+        "connections": {
+            "innovation": network.innovation[:c].tolist(),
+            "source": ids[network.source[:c]].tolist(),
+            "target": ids[network.target[:c]].tolist(),
+            "enabled": network.enabled[:c].tolist(),
+            "weight": encode(network.weight[:c]),
+        },
+    }
+
+
+def from_genes(genes: Mapping[str, Any], max_nodes: int, max_connections: int) -> CPPN:
+    """The network of a parsed creature file, with room for more genes."""
+    nodes, connections = genes["nodes"], genes["connections"]
+    row = {number: row for row, number in enumerate(nodes["id"])}
+    network = empty(max_nodes, max_connections)
+    n, c = len(row), len(connections["innovation"])
+    network.node_used[:n] = True
+    network.node_id[:n] = nodes["id"]
+    network.activation[:n] = [ACTIVATIONS.index(a) for a in nodes["activation"]]
+    network.bias[:n] = decode(nodes["bias"])
+    network.connection_used[:c] = True
+    network.innovation[:c] = connections["innovation"]
+    network.source[:c] = [row[number] for number in connections["source"]]
+    network.target[:c] = [row[number] for number in connections["target"]]
+    network.enabled[:c] = connections["enabled"]
+    network.weight[:c] = decode(connections["weight"])
+    return network
+
+
+def empty(max_nodes: int, max_connections: int, batch: tuple[int, ...] = ()) -> CPPN:
+    """NumPy arrays without any gene."""
+
+    def zeros(size: int, dtype: type) -> Any:
+        return np.zeros((*batch, size), dtype)
+
+    return CPPN(
+        node_used=zeros(max_nodes, bool),
+        node_id=zeros(max_nodes, np.int32),
+        activation=zeros(max_nodes, np.int32),
+        bias=zeros(max_nodes, np.float32),
+        connection_used=zeros(max_connections, bool),
+        innovation=zeros(max_connections, np.int32),
+        source=zeros(max_connections, np.int32),
+        target=zeros(max_connections, np.int32),
+        enabled=zeros(max_connections, bool),
+        weight=zeros(max_connections, np.float32),
+    )
+
+
+def take(networks: CPPN, index: int) -> CPPN:
+    """One network of a batch, as NumPy arrays."""
+    return jax.tree.map(lambda x: np.asarray(x)[index], networks)

@@ -1,0 +1,76 @@
+"""Numbers for new genes: the same for the same mutation within a generation."""
+
+from dataclasses import replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Int
+
+from ..genomes import CPPN
+from .mutation import NONE, Novelty
+
+
+class Counters(eqx.Module):
+    """The next numbers that no gene has yet."""
+
+    innovation: Int[Array, ""]
+    node: Int[Array, ""]
+
+
+def first_counters(inputs: int, outputs: int) -> Counters:
+    """After the genes of minimal networks."""
+    return Counters(jnp.asarray(inputs * outputs), jnp.asarray(inputs + outputs))
+
+
+def number(children: CPPN, novelty: Novelty, counters: Counters) -> tuple[CPPN, Counters]:
+    """Number the new genes of a batch; added connections come before split ones."""
+    take = jax.vmap(lambda values, row: values[row])
+    ends = [
+        jnp.where(
+            novelty.connection_row < 0,
+            NONE,
+            take(children.node_id, take(rows, novelty.connection_row)),
+        )
+        for rows in (children.source, children.target)
+    ]
+    added, many_added = ranks(*ends)
+    split, many_split = ranks(novelty.split_innovation, novelty.split_innovation)
+    node = counters.node + split
+    first = counters.innovation + many_added + 2 * split
+    innovation = _assign(
+        children.innovation, novelty.connection_row, counters.innovation + added
+    )
+    innovation = _assign(innovation, novelty.split_row, first)
+    innovation = _assign(
+        innovation, jnp.where(novelty.split_row < 0, NONE, novelty.split_row + 1), first + 1
+    )
+    children = replace(
+        children,
+        innovation=innovation,
+        node_id=_assign(children.node_id, novelty.node_row, node),
+    )
+    return children, Counters(
+        counters.innovation + many_added + 2 * many_split, counters.node + many_split
+    )
+
+
+def ranks(
+    first: Int[Array, "child"], second: Int[Array, "child"]
+) -> tuple[Int[Array, "child"], Int[Array, ""]]:
+    """Each child's place among the distinct pairs, and how many there are.
+
+    A negative `first` stands for no pair.
+    """
+    order = jnp.lexsort((second, first))
+    a, b = first[order], second[order]
+    changed = (a != jnp.roll(a, 1)) | (b != jnp.roll(b, 1))
+    changed = changed.at[0].set(True) & (a >= 0)
+    place = jnp.cumsum(changed) - 1
+    return jnp.zeros_like(first).at[order].set(jnp.maximum(place, 0)), jnp.sum(changed)
+
+
+def _assign(values: Int[Array, "child gene"], row, value) -> Int[Array, "child gene"]:
+    room = values.shape[1]
+    place = jnp.where(row < 0, room, row)
+    return values.at[jnp.arange(len(row)), place].set(value, mode="drop")

@@ -1,0 +1,30 @@
+"""Search: evaluation by blocks, variation, and insertion into an archive."""
+
+from .blocks import Stopped, evaluate_blocks
+from .evaluation import FEATURES, STATUSES, Evaluation, Task, block_program, evaluate
+from .insertion import Axis, Elites, cells_of, digest, insert, named, no_elites
+from .variation import NO_PARENT, OPERATORS, Children, Genes, newcomers, vary
+
+__all__ = [
+    "FEATURES",
+    "NO_PARENT",
+    "OPERATORS",
+    "STATUSES",
+    "Axis",
+    "Children",
+    "Elites",
+    "Evaluation",
+    "Genes",
+    "Stopped",
+    "Task",
+    "block_program",
+    "cells_of",
+    "digest",
+    "evaluate",
+    "evaluate_blocks",
+    "insert",
+    "named",
+    "newcomers",
+    "no_elites",
+    "vary",
+]

@@ -1,0 +1,48 @@
+"""Evaluation of any number of creatures by blocks, over all local devices."""
+
+from collections import deque
+from collections.abc import Callable
+
+import jax
+import numpy as np
+
+from ..genomes import CPPN
+from .evaluation import Evaluation
+
+
+class Stopped(Exception):
+    """Somebody wished to stop: the unfinished generation is dropped and done again."""
+
+
+def never() -> bool:
+    """No wish to stop."""
+    return False
+
+
+def evaluate_blocks(
+    program: Callable[[CPPN], Evaluation],
+    networks: CPPN,
+    *,
+    block: int,
+    stop: Callable[[], bool] = never,
+) -> Evaluation:
+    """Evaluate networks of NumPy arrays; the last block is padded with its first creature.
+
+    Each device has one block in flight; `stop` is asked before each, and `Stopped` raised
+    where it says so.
+    """
+    devices = jax.local_devices()
+    flying: deque[Evaluation] = deque()
+    landed: list[Evaluation] = []
+    count = len(networks.node_used)
+    for number, start in enumerate(range(0, count, block)):
+        if stop():
+            raise Stopped
+        if len(flying) == len(devices):
+            landed.append(jax.device_get(flying.popleft()))
+        rows = np.arange(start, start + block)
+        rows = np.where(rows < count, rows, start)
+        part = jax.tree.map(lambda x, rows=rows: x[rows], networks)
+        flying.append(program(jax.device_put(part, devices[number % len(devices)])))
+    landed += [jax.device_get(evaluation) for evaluation in flying]
+    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *landed)
