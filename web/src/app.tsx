@@ -1,0 +1,118 @@
+/** The frame around every page: where one can go, how the connection is, notes. */
+
+import { useEffect } from "preact/hooks";
+import { useLive } from "./live/live";
+import { type Toast, dismiss, useToasts } from "./live/toasts";
+import { CreaturePage } from "./pages/Creature";
+import { DropTarget, OpenButton } from "./pages/DropTarget";
+import { NewRunPage } from "./pages/NewRun";
+import { RunPage } from "./pages/Run";
+import { RunsPage } from "./pages/Runs";
+import { type Place, usePlace } from "./router";
+
+const TITLES: Record<string, string> = {
+  runs: "Runs",
+  new: "New run",
+  unknown: "Not found",
+};
+
+export function App() {
+  const place = usePlace();
+  const { page } = place.route;
+  useEffect(() => {
+    if (TITLES[page]) document.title = `${TITLES[page]} · Microcosmos`;
+  }, [page]);
+  return (
+    <>
+      <header class="top">
+        <a class="brand" href="/">
+          <svg viewBox="0 0 32 20" aria-hidden="true">
+            <path d="M2 11c4-9 8-9 12 0s8 9 12 0c1.3-3 2.5-4.5 4-5" />
+          </svg>
+          Microcosmos
+        </a>
+        <nav aria-label="Pages">
+          <a href="/" aria-current={page === "runs" ? "page" : undefined}>
+            Runs
+          </a>
+          <a href="/new" aria-current={page === "new" ? "page" : undefined}>
+            New run
+          </a>
+        </nav>
+        <span class="spring" />
+        <OpenButton />
+        <Connection />
+      </header>
+      <Page {...place} />
+      <DropTarget />
+      <Toasts />
+    </>
+  );
+}
+
+function Page({ route, query }: Place) {
+  switch (route.page) {
+    case "runs":
+      return <RunsPage />;
+    case "new":
+      return <NewRunPage />;
+    case "run":
+      return <RunPage key={route.id} id={route.id} query={query} />;
+    case "creature":
+      return <CreaturePage sha={route.sha} query={query} />;
+    case "unknown":
+      return (
+        <main>
+          <section class="empty card">
+            <h1>Nothing lives here</h1>
+            <p>
+              This address belongs to no run and no creature. <a href="/">See all runs.</a>
+            </p>
+          </section>
+        </main>
+      );
+  }
+}
+
+const CONNECTIONS = {
+  connecting: "Connecting …",
+  live: "Live",
+  lost: "Connection lost, trying again",
+};
+
+function Connection() {
+  const connection = useLive((state) => state.connection);
+  const text = CONNECTIONS[connection];
+  return (
+    <span class={`connection ${connection}`} role="status" title={text}>
+      <span class="dot" aria-hidden="true" />
+      <span class={connection === "lost" ? "" : "wide-only"}>{text}</span>
+    </span>
+  );
+}
+
+function Toasts() {
+  const toasts = useToasts();
+  return (
+    <div class="toasts" role="status" aria-live="polite">
+      {toasts.map((toast) => (
+        <Note key={toast.id} {...toast} />
+      ))}
+    </div>
+  );
+}
+
+function Note({ id, text, kind, action }: Toast) {
+  return (
+    <div class={`toast ${kind}`}>
+      <span>{text}</span>
+      {action ? (
+        <button onClick={action.run}>{action.label}</button>
+      ) : (
+        <button class="plain" aria-label="Dismiss" onClick={() => dismiss(id)}>
+          ✕
+        </button>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,74 @@
+/** A genome's arrays as a graph: nodes with their depth, links with their weights. */
+
+import type { Genome } from "../api/types";
+import { decodeFloats } from "./base64";
+
+export interface Neuron {
+  id: number;
+  role: "input" | "output" | "hidden";
+  label: string;
+  activation: string;
+  bias: number;
+  depth: number;
+}
+
+export interface Link {
+  source: number;
+  target: number;
+  weight: number;
+  enabled: boolean;
+}
+
+export interface Network {
+  neurons: Neuron[];
+  links: Link[];
+  depth: number;
+}
+
+export function networkOf(genome: Genome): Network {
+  const { nodes, connections, inputs, outputs } = genome;
+  const biases = decodeFloats(nodes.bias);
+  const weights = decodeFloats(connections.weight);
+  const links = connections.source.map((source, i) => ({
+    source,
+    target: connections.target[i]!,
+    weight: weights[i]!,
+    enabled: connections.enabled[i]!,
+  }));
+  const depths = depthsOf(nodes.id, links, inputs.length, outputs.length);
+  const names = [...inputs, ...outputs];
+  const neurons = nodes.id.map((id, i) => ({
+    id,
+    role: roleOf(id, inputs.length, outputs.length),
+    label: names[id]?.replaceAll("_", " ") ?? "",
+    activation: nodes.activation[i]!,
+    bias: biases[i]!,
+    depth: depths.get(id)!,
+  }));
+  return { neurons, links, depth: Math.max(...depths.values()) };
+}
+
+function roleOf(id: number, inputs: number, outputs: number): Neuron["role"] {
+  if (id < inputs) return "input";
+  return id < inputs + outputs ? "output" : "hidden";
+}
+
+/** The longest way from an input to each node; outputs share the last layer. */
+function depthsOf(ids: number[], links: Link[], inputs: number, outputs: number) {
+  const depths = new Map(ids.map((id) => [id, id < inputs ? 0 : 1]));
+  for (let round = 0; round < ids.length; round++) {
+    let changed = false;
+    for (const { source, target } of links) {
+      const needed = (depths.get(source) ?? 0) + 1;
+      // A way through all nodes has fewer links than there are nodes: more is a cycle.
+      if (target >= inputs && needed > depths.get(target)! && needed < ids.length) {
+        depths.set(target, needed);
+        changed = true;
+      }
+    }
+    if (!changed) break;
+  }
+  const last = Math.max(1, ...depths.values());
+  for (let id = inputs; id < inputs + outputs; id++) if (depths.has(id)) depths.set(id, last);
+  return depths;
+}

@@ -1,0 +1,38 @@
+/** A run's history as columns, kept short enough to draw. */
+
+import type { GenerationEvent, Generations } from "../api/types";
+
+export const LONGEST = 4000;
+const DRAWN = ["generation", "qd_score", "coverage", "best"] as const;
+
+export type Curves = { readonly [name in (typeof DRAWN)[number]]: readonly number[] };
+
+export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
+  const last = curves.generation.at(-1);
+  if (last !== undefined && event.generation <= last) return curves;
+  const keep = curves.generation.length < LONGEST ? () => true : everySecond;
+  return columns((name) => [...curves[name].filter(keep), event[name]]);
+}
+
+/** A snapshot, and what events told of later generations while it was on its way. */
+export function mergeCurves(generations: Generations, known: Curves | null): Curves {
+  const last = generations.generation.at(-1) ?? -1;
+  const later = (known?.generation ?? []).map((generation) => generation > last);
+  return columns((name) => [
+    ...generations[name],
+    ...(known?.[name] ?? []).filter((_, i) => later[i]),
+  ]);
+}
+
+export function cutCurves(curves: Curves, generation: number): Curves {
+  const kept = curves.generation.map((value) => value <= generation);
+  return columns((name) => curves[name].filter((_, i) => kept[i]));
+}
+
+function everySecond(_: number, i: number): boolean {
+  return i % 2 === 0;
+}
+
+function columns(column: (name: (typeof DRAWN)[number]) => number[]): Curves {
+  return Object.fromEntries(DRAWN.map((name) => [name, column(name)])) as unknown as Curves;
+}

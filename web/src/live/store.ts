@@ -1,0 +1,147 @@
+/** What the page knows of the runs, and how each event of the server changes it. */
+
+import type {
+  Archive,
+  ElitesEvent,
+  GenerationEvent,
+  Generations,
+  RewindEvent,
+  Run,
+  RunPage,
+} from "../api/types";
+import { type Curves, appendCurves, cutCurves, mergeCurves } from "./curves";
+import { type Elites, cutElites, mergeElites, withElites } from "./elites";
+
+export type Connection = "connecting" | "live" | "lost";
+
+/** The opened part of a run; kept up to date by events once it was fetched. */
+export interface Detail {
+  archive: Archive | null;
+  elites: Elites;
+  curves: Curves | null;
+}
+
+export interface State {
+  connection: Connection;
+  runs: ReadonlyMap<string, Run>;
+  details: ReadonlyMap<string, Detail>;
+  /** Ids of the listed runs, newest first, and where the list goes on. */
+  listed: readonly string[];
+  next: string | null;
+  /** Raised when what was fetched before is not to be trusted any more. */
+  epoch: number;
+  /** The same for one run, after a rewind. */
+  epochs: ReadonlyMap<string, number>;
+}
+
+export type Action =
+  | { type: "connection"; connection: Connection }
+  | { type: "run"; run: Run }
+  | { type: "list"; page: RunPage; more: boolean }
+  | { type: "snapshot"; run: string; epoch: number; archive: Archive; generations: Generations }
+  | { type: "generation"; event: GenerationEvent }
+  | { type: "elites"; event: ElitesEvent }
+  | { type: "rewind"; event: RewindEvent }
+  | { type: "reset" };
+
+export const EMPTY: State = {
+  connection: "connecting",
+  runs: new Map(),
+  details: new Map(),
+  listed: [],
+  next: null,
+  epoch: 0,
+  epochs: new Map(),
+};
+
+const NOTHING: Detail = { archive: null, elites: new Map(), curves: null };
+
+export function reduce(state: State, action: Action): State {
+  switch (action.type) {
+    case "connection":
+      return { ...state, connection: action.connection };
+    case "run":
+      return withRun(state, action.run);
+    case "list":
+      return withPage(state, action.page, action.more);
+    case "snapshot":
+      return withSnapshot(state, action);
+    case "generation":
+      return withGeneration(state, action.event);
+    case "elites":
+      return withDetail(state, action.event.run, (detail) => ({
+        ...detail,
+        elites: withElites(detail.elites, action.event),
+      }));
+    case "rewind":
+      return rewound(state, action.event);
+    case "reset":
+      return { ...state, epoch: state.epoch + 1 };
+  }
+}
+
+/** Which fetch of a run's detail still counts: it grows with every reset and rewind. */
+export function epochOf(state: State, run: string): number {
+  return state.epoch + (state.epochs.get(run) ?? 0);
+}
+
+function withRun(state: State, run: Run): State {
+  const known = state.listed.includes(run.id);
+  const listed = known ? state.listed : byAge(state.runs, [run, ...state.listed]);
+  return { ...state, runs: new Map(state.runs).set(run.id, run), listed };
+}
+
+/** Runs that only an event has told of stand in the list too, at their place. */
+function byAge(runs: ReadonlyMap<string, Run>, [run, ...ids]: [Run, ...string[]]): string[] {
+  const later = ids.filter((id) => (runs.get(id)?.created_at ?? "") > run.created_at);
+  return [...later, run.id, ...ids.filter((id) => !later.includes(id))];
+}
+
+function withPage(state: State, page: RunPage, more: boolean): State {
+  const runs = new Map(state.runs);
+  for (const run of page.items) runs.set(run.id, run);
+  const ids = page.items.map((run) => run.id);
+  const kept = more ? state.listed.filter((id) => !ids.includes(id)) : [];
+  return { ...state, runs, listed: [...kept, ...ids], next: page.next };
+}
+
+function withSnapshot(state: State, action: Action & { type: "snapshot" }): State {
+  if (action.epoch !== epochOf(state, action.run)) return state;
+  const old = state.details.get(action.run) ?? NOTHING;
+  const detail = {
+    archive: action.archive,
+    elites: mergeElites(action.archive, old.elites),
+    curves: mergeCurves(action.generations, old.curves),
+  };
+  return { ...state, details: new Map(state.details).set(action.run, detail) };
+}
+
+function withGeneration(state: State, event: GenerationEvent): State {
+  const run = state.runs.get(event.run);
+  const next = withDetail(state, event.run, (detail) => ({
+    ...detail,
+    curves: detail.curves && appendCurves(detail.curves, event),
+  }));
+  if (!run || event.generation < run.generation) return next;
+  const { generation, qd_score, coverage, best, evaluations, diverged } = event;
+  const progress = generation / run.generations;
+  const newer = { ...run, generation, qd_score, coverage, best, evaluations, diverged, progress };
+  return { ...next, runs: new Map(next.runs).set(run.id, newer) };
+}
+
+function rewound(state: State, event: RewindEvent): State {
+  const raised = (state.epochs.get(event.run) ?? 0) + 1;
+  const next = { ...state, epochs: new Map(state.epochs).set(event.run, raised) };
+  return withDetail(next, event.run, (detail) => ({
+    ...detail,
+    elites: cutElites(detail.elites, event.generation),
+    curves: detail.curves && cutCurves(detail.curves, event.generation),
+  }));
+}
+
+/** Changes a detail that is open; events of runs that nobody looks at are not kept. */
+function withDetail(state: State, run: string, change: (detail: Detail) => Detail): State {
+  const detail = state.details.get(run);
+  if (!detail) return state;
+  return { ...state, details: new Map(state.details).set(run, change(detail)) };
+}

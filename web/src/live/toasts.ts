@@ -1,0 +1,42 @@
+/** Short notes at the edge of the page, some with a way back. */
+
+import { useEffect, useState } from "preact/hooks";
+
+export interface Toast {
+  id: number;
+  text: string;
+  kind: "note" | "wrong";
+  action?: { label: string; run: () => void };
+}
+
+const SHOWN_MS = { note: 4000, wrong: 9000 };
+
+let toasts: readonly Toast[] = [];
+let count = 0;
+const listeners = new Set<(toasts: readonly Toast[]) => void>();
+
+function change(next: readonly Toast[]): void {
+  toasts = next;
+  for (const listener of listeners) listener(toasts);
+}
+
+export function dismiss(id: number): void {
+  change(toasts.filter((toast) => toast.id !== id));
+}
+
+/** Shows a note for a while; answers the id under which it can be dismissed. */
+export function tell(toast: Omit<Toast, "id">): number {
+  const id = ++count;
+  change([...toasts, { ...toast, id }]);
+  setTimeout(() => dismiss(id), SHOWN_MS[toast.kind]);
+  return id;
+}
+
+export function useToasts(): readonly Toast[] {
+  const [shown, setShown] = useState(toasts);
+  useEffect(() => {
+    listeners.add(setShown);
+    return () => void listeners.delete(setShown);
+  }, []);
+  return shown;
+}

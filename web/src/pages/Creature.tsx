@@ -1,0 +1,184 @@
+/** One creature: its motion, its network, what was measured, where it comes from. */
+
+import { useEffect, useMemo, useState } from "preact/hooks";
+import * as api from "../api/client";
+import { messageOf } from "../api/problem";
+import type { Creature } from "../api/types";
+import { networkOf } from "../frames/network";
+import { type Replay, decodeReplay } from "../frames/replay";
+import { useFetched } from "../live/fetching";
+import { tell } from "../live/toasts";
+import { number, short, words } from "../view/format";
+import { NetworkGraph } from "../view/network/NetworkGraph";
+import { ReplayPlayer } from "../view/replay/ReplayPlayer";
+
+const POLL_MS = 1000;
+
+interface Props {
+  sha: string;
+  query: URLSearchParams;
+}
+
+export function CreaturePage({ sha, query }: Props) {
+  const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
+  useEffect(() => {
+    document.title = `Creature ${short(sha)} · Microcosmos`;
+  }, [sha]);
+  const run = query.get("run");
+  return (
+    <main>
+      <nav class="crumbs" aria-label="Where you are">
+        <a href="/">Runs</a>
+        {run && <a href={`/runs/${run}`}>{short(run)}</a>}
+      </nav>
+      <header class="page-head">
+        <h1>
+          Creature <code>{short(sha)}</code>
+        </h1>
+        <span class="spring" />
+        {creature && <Sharing sha={sha} />}
+      </header>
+      {error && <p class="banner wrong">{error}</p>}
+      {!creature && !error && <p class="quiet loading">Loading creature …</p>}
+      {creature && (
+        <div class="creature-columns">
+          <Motion key={sha} sha={sha} />
+          <div class="stack">
+            <Brain creature={creature} />
+            <Facts creature={creature} run={run} />
+          </div>
+        </div>
+      )}
+    </main>
+  );
+}
+
+function Sharing({ sha }: { sha: string }) {
+  const copy = async () => {
+    await navigator.clipboard.writeText(`${location.origin}/creatures/${sha}`);
+    tell({ kind: "note", text: "Link copied." });
+  };
+  return (
+    <span class="actions">
+      <button onClick={() => copy().catch((error) => tell({ kind: "wrong", text: messageOf(error) }))}>
+        Copy link
+      </button>
+      <a class="button primary" href={api.creatureFileUrl(sha)} download={`creature-${sha.slice(0, 12)}.json`}>
+        Download file
+      </a>
+    </span>
+  );
+}
+
+function Motion({ sha }: { sha: string }) {
+  const { replay, error } = useReplay(sha);
+  return (
+    <section class="card motion" aria-label="Replay">
+      {error && <p class="banner wrong">{error}</p>}
+      {!replay && !error && (
+        <div class="stage rendering" role="status">
+          <p>
+            <span class="ripple" aria-hidden="true" />
+            Simulating this creature again to record its motion …
+          </p>
+        </div>
+      )}
+      {replay && <ReplayPlayer replay={replay} />}
+      {replay && <Difference replay={replay} />}
+    </section>
+  );
+}
+
+/** The replay, asked for until it has been rendered. */
+function useReplay(sha: string): { replay: Replay | null; error: string | null } {
+  const [replay, setReplay] = useState<Replay | null>(null);
+  const [error, setError] = useState<string | null>(null);
+  useEffect(() => {
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    let wanted = true;
+    const poll = async () => {
+      try {
+        const bytes = await api.readReplay(sha);
+        if (!wanted) return;
+        if (bytes) setReplay(decodeReplay(bytes));
+        else timer = setTimeout(poll, POLL_MS);
+      } catch (reason) {
+        if (wanted) setError(messageOf(reason));
+      }
+    };
+    void poll();
+    return () => {
+      wanted = false;
+      clearTimeout(timer);
+    };
+  }, [sha]);
+  return { replay, error };
+}
+
+function Difference({ replay }: { replay: Replay }) {
+  const { recorded, replayed, difference } = replay.header.fitness;
+  return (
+    <p class="quiet small">
+      In this replay it swims {number(replayed, 4)} cells
+      {recorded !== null && `; its recorded fitness is ${number(recorded, 4)}`}
+      {difference !== null && difference !== 0 && ` (rounding makes ${number(difference, 2)})`}.
+    </p>
+  );
+}
+
+function Brain({ creature }: { creature: Creature }) {
+  const network = useMemo(() => networkOf(creature.identity.genome), [creature]);
+  return (
+    <section class="card" aria-labelledby="network-title">
+      <h2 id="network-title">Network</h2>
+      <NetworkGraph network={network} />
+    </section>
+  );
+}
+
+function Facts({ creature, run }: { creature: Creature; run: string | null }) {
+  const { measured, provenance, identity } = creature;
+  const rows: [string, string][] = [
+    ["Fitness", number(measured.fitness, 6)],
+    ...Object.entries({ ...measured.descriptors, ...measured.features }).map(
+      ([name, value]): [string, string] => [words(name), number(value, 6)],
+    ),
+    ["Generation", String(provenance.generation)],
+    ["Made by", provenance.operator],
+    ["Seed", String(provenance.seed)],
+    ["Body", `${identity.body.nodes} nodes`],
+    ["World", `${identity.world.width} × ${identity.world.height} cells`],
+    ["Device", measured.device],
+    ["Licence", creature.licence],
+  ];
+  return (
+    <section class="card" aria-labelledby="facts-title">
+      <h2 id="facts-title">Measurements</h2>
+      <dl class="rows">
+        {rows.map(([name, value]) => (
+          <div key={name}>
+            <dt>{name}</dt>
+            <dd>{value}</dd>
+          </div>
+        ))}
+        <div>
+          <dt>Parents</dt>
+          <dd>
+            {provenance.parents.length === 0 && "none: random"}
+            {provenance.parents.map((parent) => (
+              <a key={parent} href={`/creatures/${parent}${run ? `?run=${run}` : ""}`}>
+                <code>{short(parent)}</code>
+              </a>
+            ))}
+          </dd>
+        </div>
+        <div>
+          <dt>SHA-256</dt>
+          <dd>
+            <code class="long">{creature.sha256}</code>
+          </dd>
+        </div>
+      </dl>
+    </section>
+  );
+}

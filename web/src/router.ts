@@ -1,0 +1,74 @@
+/** Real paths, the history, and queries that hold the view. */
+
+import { useEffect, useState } from "preact/hooks";
+
+export type Route =
+  | { page: "runs" }
+  | { page: "new" }
+  | { page: "run"; id: string }
+  | { page: "creature"; sha: string }
+  | { page: "unknown" };
+
+export interface Place {
+  route: Route;
+  query: URLSearchParams;
+}
+
+export function routeOf(path: string): Route {
+  const [first, second, ...rest] = path.split("/").filter(Boolean);
+  if (first === undefined) return { page: "runs" };
+  if (first === "new" && second === undefined) return { page: "new" };
+  if (second !== undefined && rest.length === 0) {
+    if (first === "runs") return { page: "run", id: decodeURIComponent(second) };
+    if (first === "creatures") return { page: "creature", sha: decodeURIComponent(second) };
+  }
+  return { page: "unknown" };
+}
+
+const MOVED = "microcosmos:moved";
+
+export function navigate(to: string, replace = false): void {
+  history[replace ? "replaceState" : "pushState"](null, "", to);
+  if (!replace) window.scrollTo(0, 0);
+  window.dispatchEvent(new Event(MOVED));
+}
+
+/** Changes the view that the address holds; null takes a word out. */
+export function setQuery(changes: Record<string, string | null>): void {
+  const query = new URLSearchParams(location.search);
+  for (const [key, value] of Object.entries(changes)) {
+    if (value === null) query.delete(key);
+    else query.set(key, value);
+  }
+  const text = query.toString();
+  navigate(location.pathname + (text ? `?${text}` : ""), true);
+}
+
+export function usePlace(): Place {
+  const [address, setAddress] = useState(location.pathname + location.search);
+  useEffect(() => {
+    const update = () => setAddress(location.pathname + location.search);
+    window.addEventListener("popstate", update);
+    window.addEventListener(MOVED, update);
+    document.addEventListener("click", follow);
+    return () => {
+      window.removeEventListener("popstate", update);
+      window.removeEventListener(MOVED, update);
+      document.removeEventListener("click", follow);
+    };
+  }, []);
+  const { pathname, searchParams } = new URL(address, location.origin);
+  return { route: routeOf(pathname), query: searchParams };
+}
+
+/** Plain clicks on links within the page do not load it anew. */
+function follow(event: MouseEvent): void {
+  if (event.defaultPrevented || event.button !== 0) return;
+  if (event.metaKey || event.ctrlKey || event.shiftKey || event.altKey) return;
+  const link = (event.target as Element).closest?.("a");
+  if (!link || link.target || link.hasAttribute("download")) return;
+  if (link.origin !== location.origin || link.pathname.startsWith("/api/")) return;
+  if (link.hash) return;
+  event.preventDefault();
+  navigate(link.pathname + link.search);
+}

@@ -1,0 +1,67 @@
+/** The small parts that say how a run is doing. */
+
+import type { Run } from "../api/types";
+import { DASH, duration, number } from "./format";
+
+const WISHES = { pause: "pausing", cancel: "cancelling" };
+
+export function Badge({ run }: { run: Run }) {
+  const text = run.wish ? WISHES[run.wish] : run.status;
+  return <span class={`badge ${run.status}`}>{text}</span>;
+}
+
+export function Progress({ run }: { run: Run }) {
+  const share = Math.round(1000 * run.progress) / 10;
+  return (
+    <div
+      class={`progress ${run.status}`}
+      role="progressbar"
+      aria-label="Progress"
+      aria-valuenow={share}
+      aria-valuemin={0}
+      aria-valuemax={100}
+    >
+      <div style={{ width: `${share}%` }} />
+    </div>
+  );
+}
+
+/** How long a run will take, or what it took. */
+export function timeOf(run: Run): string {
+  if (run.status === "running") return run.eta_seconds === null ? DASH : duration(run.eta_seconds);
+  if (!run.started_at || !run.finished_at) return DASH;
+  return duration((Date.parse(run.finished_at) - Date.parse(run.started_at)) / 1000);
+}
+
+export function rateOf(run: Run): string {
+  return run.status === "running" ? number(run.evaluations_per_second) : DASH;
+}
+
+interface Wishes {
+  pause: (run: Run) => void;
+  resume: (run: Run) => void;
+  cancel: (run: Run) => void;
+}
+
+/** Only what the run's state allows. */
+export function Actions({ run, on, name }: { run: Run; on: Wishes; name: string }) {
+  const alive = ["queued", "running", "paused"].includes(run.status);
+  if (!alive || run.wish === "cancel") return null;
+  return (
+    <span class="actions">
+      {run.status === "paused" && (
+        <button onClick={() => on.resume(run)} aria-label={`Resume ${name}`}>
+          Resume
+        </button>
+      )}
+      {run.status !== "paused" && run.wish !== "pause" && (
+        <button onClick={() => on.pause(run)} aria-label={`Pause ${name}`}>
+          Pause
+        </button>
+      )}
+      <button class="danger" onClick={() => on.cancel(run)} aria-label={`Cancel ${name}`}>
+        Cancel
+      </button>
+    </span>
+  );
+}

@@ -1,0 +1,37 @@
+/** Sharp canvases: their pixels follow the size on the page and the screen's density. */
+
+import type { RefObject } from "preact";
+import { useEffect, useState } from "preact/hooks";
+
+export interface Size {
+  width: number;
+  height: number;
+}
+
+/** The size of an element in CSS pixels; zero until it is known. */
+export function useSize(element: RefObject<HTMLElement | null>): Size {
+  const [size, setSize] = useState<Size>({ width: 0, height: 0 });
+  useEffect(() => {
+    const observer = new ResizeObserver(([entry]) => {
+      const { width, height } = entry!.contentRect;
+      setSize({ width, height });
+    });
+    observer.observe(element.current!);
+    return () => observer.disconnect();
+  }, [element]);
+  return size;
+}
+
+/** A context that is drawn on in CSS pixels, cleared. */
+export function prepare(canvas: HTMLCanvasElement, size: Size): CanvasRenderingContext2D {
+  const density = window.devicePixelRatio || 1;
+  const [width, height] = [size.width, size.height].map((side) => Math.round(side * density));
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width!;
+    canvas.height = height!;
+  }
+  const context = canvas.getContext("2d")!;
+  context.setTransform(density, 0, 0, density, 0, 0);
+  context.clearRect(0, 0, size.width, size.height);
+  return context;
+}

@@ -1,0 +1,85 @@
+/** Numbers, times and names as people read them. */
+
+import type { Experiment, Json, Run, Spec } from "../api/types";
+
+export const DASH = "–";
+
+export function number(value: number | null | undefined, digits = 3): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return DASH;
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-3 || size >= 1e6)) return scientific(value, digits - 1);
+  return value.toLocaleString("en", { maximumSignificantDigits: Math.max(digits, whole(size)) });
+}
+
+function whole(size: number): number {
+  return Math.max(1, Math.floor(Math.log10(Math.max(size, 1))) + 1);
+}
+
+const SUPERSCRIPT: Record<string, string> = Object.fromEntries(
+  [..."-0123456789"].map((digit, i) => [digit, [..."⁻⁰¹²³⁴⁵⁶⁷⁸⁹"][i]!]),
+);
+
+export function scientific(value: number, digits = 1): string {
+  const [mantissa, exponent] = value.toExponential(digits).split("e") as [string, string];
+  const power = [...exponent.replace("+", "")].map((digit) => SUPERSCRIPT[digit]).join("");
+  const plain = String(Number(mantissa)).replace("-", "−");
+  return plain === "1" ? `10${power}` : `${plain} × 10${power}`;
+}
+
+export function count(value: number): string {
+  return Math.round(value).toLocaleString("en");
+}
+
+export function bytes(value: number): string {
+  const units = ["B", "kB", "MB", "GB", "TB"];
+  const i = Math.min(units.length - 1, Math.floor(Math.log10(Math.max(1, value)) / 3));
+  return `${number(value / 1000 ** i)} ${units[i]}`;
+}
+
+export function percent(value: number | null): string {
+  return value === null ? DASH : `${number(100 * value)} %`;
+}
+
+export function duration(seconds: number | null): string {
+  if (seconds === null || !Number.isFinite(seconds)) return DASH;
+  if (seconds < 1) return "under 1 s";
+  const s = Math.round(seconds);
+  if (s < 60) return `${s} s`;
+  if (s < 3600) return `${Math.floor(s / 60)} min ${s % 60} s`;
+  if (s < 86400) return `${Math.floor(s / 3600)} h ${Math.floor((s % 3600) / 60)} min`;
+  return `${Math.floor(s / 86400)} d ${Math.floor((s % 86400) / 3600)} h`;
+}
+
+export function moment(iso: string): string {
+  const options = { dateStyle: "medium", timeStyle: "short" } as const;
+  return new Date(iso).toLocaleString(undefined, options);
+}
+
+export function short(id: string): string {
+  return id.slice(0, 8);
+}
+
+/** `bending_effort` as words. */
+export function words(name: string): string {
+  const text = name.replaceAll("_", " ");
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** The preset that a run was started from, its seed aside, else its experiment. */
+export function titleOf(run: Run, experiments: Experiment[]): string {
+  const presets = experiments.find(({ experiment }) => experiment === run.experiment)?.presets;
+  const preset = presets?.find(({ spec }) => seedless(spec) === seedless(run.spec));
+  if (run.demonstration) return "Demonstration";
+  return words(preset?.name ?? run.experiment.replaceAll("-", " "));
+}
+
+function seedless(spec: Spec): string {
+  return JSON.stringify(sorted({ ...spec, seed: 0 }));
+}
+
+function sorted(value: Json): Json {
+  if (Array.isArray(value)) return value.map(sorted);
+  if (value === null || typeof value !== "object") return value;
+  const keys = Object.keys(value).sort();
+  return Object.fromEntries(keys.map((key) => [key, sorted(value[key]!)]));
+}

@@ -1,0 +1,108 @@
+/** A creature's network: inputs at the left, outputs at the right, weights as lines. */
+
+import { useMemo } from "preact/hooks";
+import type { Link, Network } from "../../frames/network";
+import { number } from "../format";
+import { type Spot, layoutOf } from "./layout";
+
+const RADIUS = 13;
+
+export function NetworkGraph({ network }: { network: Network }) {
+  const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
+  const strongest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
+  const enabled = network.links.filter((link) => link.enabled).length;
+  const summary = `${network.neurons.length} nodes, ${enabled} connections in use`;
+  return (
+    <figure class="network">
+      <svg viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`Network: ${summary}`}>
+        {network.links.map((link, i) => (
+          <Wire key={i} link={link} spots={spots} strongest={strongest} />
+        ))}
+        {[...spots.values()].map((spot) => (
+          <Node key={spot.neuron.id} spot={spot} />
+        ))}
+      </svg>
+      <figcaption>
+        <span class="key positive">positive</span>
+        <span class="key negative">negative</span>
+        <span class="key off">switched off</span>
+        <span class="quiet">
+          {summary}; width: weight, up to {number(strongest, 2)}
+        </span>
+      </figcaption>
+    </figure>
+  );
+}
+
+interface WireProps {
+  link: Link;
+  spots: Map<number, Spot>;
+  strongest: number;
+}
+
+function Wire({ link, spots, strongest }: WireProps) {
+  const [from, to] = [spots.get(link.source), spots.get(link.target)];
+  if (!from || !to) return null;
+  const bend = Math.max(30, (to.x - from.x) / 2);
+  const path = `M${from.x},${from.y} C${from.x + bend},${from.y} ${to.x - bend},${to.y} ${to.x},${to.y}`;
+  const sign = link.weight < 0 ? "negative" : "positive";
+  return (
+    <path
+      class={`wire ${sign} ${link.enabled ? "" : "off"}`}
+      d={path}
+      stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / strongest}
+    >
+      <title>
+        weight {number(link.weight)}
+        {link.enabled ? "" : ", switched off"}
+      </title>
+    </path>
+  );
+}
+
+function Node({ spot }: { spot: Spot }) {
+  const { neuron, x, y } = spot;
+  const beside = neuron.role === "input" ? -1 : 1;
+  return (
+    <g class={`neuron ${neuron.role}`} transform={`translate(${x},${y})`}>
+      <title>
+        {neuron.label || `node ${neuron.id}`}: {neuron.activation}, bias {number(neuron.bias)}
+      </title>
+      <circle r={RADIUS} />
+      {neuron.role !== "input" && <Curve activation={neuron.activation} />}
+      {neuron.role !== "hidden" && (
+        <text class="name" x={beside * (RADIUS + 6)} dy="0.32em" data-side={neuron.role}>
+          {neuron.label}
+        </text>
+      )}
+      {neuron.role !== "input" && (
+        <text class="activation" y={RADIUS + 12}>
+          {neuron.activation}
+        </text>
+      )}
+    </g>
+  );
+}
+
+const SHAPES: Record<string, (x: number) => number> = {
+  identity: (x) => x,
+  sigmoid: (x) => 2 / (1 + Math.exp(-4 * x)) - 1,
+  tanh: (x) => Math.tanh(2.5 * x),
+  relu: (x) => 1.6 * Math.max(0, x) - 0.8,
+  sin: (x) => Math.sin(Math.PI * x),
+  cos: (x) => Math.cos(Math.PI * x),
+  gaussian: (x) => 1.8 * Math.exp(-4 * x * x) - 0.9,
+  abs: (x) => 1.6 * Math.abs(x) - 0.8,
+  square: (x) => 1.6 * x * x - 0.8,
+};
+
+/** The shape of a node's function, as a sign inside its circle. */
+function Curve({ activation }: { activation: string }) {
+  const shape = SHAPES[activation];
+  if (!shape) return null;
+  const points = Array.from({ length: 25 }, (_, i) => {
+    const x = i / 12 - 1;
+    return `${(7.5 * x).toFixed(1)},${(-6.5 * shape(x)).toFixed(1)}`;
+  });
+  return <polyline class="shape" points={points.join(" ")} />;
+}

@@ -1,0 +1,83 @@
+/** The vorticity around a camera as an image; the world repeats in both directions. */
+
+import type { Replay } from "../../frames/replay";
+import { diverging, table } from "../colours";
+import type { Point } from "./motion";
+
+/** Cells drawn beyond the view, so that smoothing never sees the image's edge. */
+const MARGIN = 2;
+
+/** The vorticity that only one value in a hundred exceeds, of those that are not zero. */
+export function strongest({ vorticity, header }: Replay): number {
+  const counts = new Array<number>(129).fill(0);
+  for (const value of vorticity) counts[Math.abs(value)]!++;
+  const moving = vorticity.length - counts[0]!;
+  let above = 0;
+  for (let level = 128; level > 1; level--) {
+    above += counts[level]!;
+    if (above > moving / 100) return (level / 127) * header.vorticity.scale;
+  }
+  return header.vorticity.scale / 127;
+}
+
+export class FluidPainter {
+  private readonly image: ImageData;
+  private readonly canvas: OffscreenCanvas;
+  private readonly colours: Uint32Array;
+
+  constructor(
+    private readonly replay: Replay,
+    theme: "light" | "dark",
+    strength: number,
+  ) {
+    const [width, height] = replay.header.size;
+    this.canvas = new OffscreenCanvas(width + 2 * MARGIN, height + 2 * MARGIN);
+    this.image = new ImageData(this.canvas.width, this.canvas.height);
+    const most = replay.header.vorticity.scale / strength;
+    this.colours = table((value) => diverging(value, theme), 255, [-most, most]);
+  }
+
+  /** Fills a context of `scale` pixels a cell with the flow at `time` around `camera`. */
+  paint(context: CanvasRenderingContext2D, time: number, camera: Point, scale: number): void {
+    const [width, height] = this.replay.header.size;
+    const left = camera[0] - width / 2;
+    const bottom = camera[1] - height / 2;
+    const [x0, y0] = [Math.floor(left) - 1, Math.floor(bottom) - 1];
+    this.fill(time, x0, y0);
+    this.canvas.getContext("2d")!.putImageData(this.image, 0, 0);
+    context.imageSmoothingEnabled = true;
+    context.imageSmoothingQuality = "high";
+    const top = bottom + height - (y0 + this.canvas.height - 0.5);
+    context.drawImage(
+      this.canvas,
+      (x0 - 0.5 - left) * scale,
+      top * scale,
+      this.canvas.width * scale,
+      this.canvas.height * scale,
+    );
+  }
+
+  private fill(time: number, x0: number, y0: number): void {
+    const { size, frames } = this.replay.header;
+    const [width, height] = size;
+    const { vorticity } = this.replay;
+    const before = Math.min(frames - 1, Math.floor(time));
+    const after = Math.min(frames - 1, before + 1);
+    const t = time - before;
+    const pixels = new Uint32Array(this.image.data.buffer);
+    const { width: columns, height: rows } = this.canvas;
+    for (let column = 0; column < columns; column++) {
+      const x = wrap(x0 + column, width);
+      const [a, b] = [(before * width + x) * height, (after * width + x) * height];
+      for (let row = 0; row < rows; row++) {
+        const y = wrap(y0 + rows - 1 - row, height);
+        const value = (1 - t) * vorticity[a + y]! + t * vorticity[b + y]!;
+        pixels[row * columns + column] = this.colours[Math.round(value) + 127]!;
+      }
+    }
+  }
+}
+
+function wrap(value: number, size: number): number {
+  return ((value % size) + size) % size;
+}

@@ -1,0 +1,20 @@
+/** Light or dark, as the system has it; canvases ask, everything else is CSS. */
+
+import { useEffect, useState } from "preact/hooks";
+
+const query = () => window.matchMedia("(prefers-color-scheme: dark)");
+
+export function useTheme(): "light" | "dark" {
+  const [dark, setDark] = useState(() => query().matches);
+  useEffect(() => {
+    const media = query();
+    const listener = () => setDark(media.matches);
+    media.addEventListener("change", listener);
+    return () => media.removeEventListener("change", listener);
+  }, []);
+  return dark ? "dark" : "light";
+}
+
+export function prefersStillness(): boolean {
+  return window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
