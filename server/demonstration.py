@@ -1,0 +1,19 @@
+"""The small run that a new data folder begins with, so that there is something to watch."""
+
+from microcosmos.spec import EXPERIMENTS
+from sqlalchemy import exists, select
+
+from .models import Run
+from .services import Services
+from .submission import submit
+
+EXPERIMENT, PRESET = "quality-diversity", "demo"
+
+
+def offer(services: Services) -> None:
+    """Submit it where there has never been a run."""
+    with services.sessions.read() as session:
+        begun = session.scalar(select(exists().select_from(Run)))
+    if not begun:
+        presets = {preset.name: preset.spec for preset in EXPERIMENTS[EXPERIMENT].presets}
+        submit(services, presets[PRESET], demonstration=True)

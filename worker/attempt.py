@@ -1,0 +1,121 @@
+"""One attempt at a run: what is written down when, and when it has to stop."""
+
+import logging
+import os
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, TypeVar
+from uuid import UUID
+
+from sqlalchemy.exc import OperationalError
+
+from server.claims import Claim, Fenced, claim
+from server.models import CANCEL, PAUSE
+from server.records import Report
+from server.services import Services
+
+from . import stop
+
+LOOK_SECONDS = 1.0
+"""At most so often the database is asked between two blocks."""
+DATABASE_SECONDS = 600.0
+"""How long a computed generation waits for a database that does not answer."""
+
+T = TypeVar("T")
+log = logging.getLogger(__name__)
+
+
+@contextmanager
+def claimed(services: Services, run_id: UUID, device: str) -> Iterator["Attempt | None"]:
+    """A run that is ours until the end of the block, or None where it is not to be had.
+
+    What goes wrong inside is kept on the run; whoever lost it ends without a word.
+    """
+    held = claim(services, run_id, os.environ["RQ_WORKER_ID"], device)
+    try:
+        yield Attempt(held) if held else None
+    except Fenced as error:
+        log.warning("Lost %s", error)
+    except Exception:
+        log.exception("Run %s failed", run_id)
+        if held:
+            with suppress(Fenced):
+                held.fail(traceback.format_exc())
+
+
+class Attempt:
+    """Records and checkpoints a run, and knows what the outside wants of it."""
+
+    def __init__(self, held: Claim):
+        self._claim = held
+        self._wish: str | None = None
+        self._looked = time.monotonic()
+        self._saved = time.monotonic()
+
+    @property
+    def spec(self) -> dict[str, Any]:
+        return self._claim.spec
+
+    def restore(self) -> bytes | None:
+        return self._claim.restore()
+
+    def interrupted(self) -> bool:
+        """Whether to stop here; asked between blocks."""
+        now = time.monotonic()
+        if self._wish is None and now - self._looked >= LOOK_SECONDS:
+            self._looked = now
+            self._wish = persist(self._claim.wish)
+        return self._wish is not None or stop.requested()
+
+    def record(self, report: Report, seconds: float, save: Callable[[], bytes]) -> None:
+        """Write down a generation that took so many seconds; checkpoint when it is due."""
+        self._wish = persist(lambda: self._claim.record(report, seconds))
+        if time.monotonic() - self._saved >= self._claim.services.settings.checkpoint_interval:
+            self._checkpoint(report.generation, save)
+
+    def end(self, done: bool, generation: int, save: Callable[[], bytes]) -> None:
+        """Checkpoint the last whole generation and say how the run stands.
+
+        Where the last checkpoint cannot be written the run waits, paused: resuming it does
+        again what was not saved.
+        """
+        saved = generation == self._claim.generation or self._checkpoint(generation, save)
+        if done and saved:
+            persist(self._claim.finish)
+        elif self._wish == CANCEL:
+            persist(self._claim.cancel)
+        elif done or self._wish == PAUSE:
+            persist(self._claim.pause)
+        else:
+            persist(self._claim.requeue)
+
+    def _checkpoint(self, generation: int, save: Callable[[], bytes]) -> bool:
+        """Whether it was written; if not the previous one stays and the run says why."""
+        self._saved = time.monotonic()
+        data = save()
+        try:
+            persist(lambda: self._claim.save(generation, data))
+        except OSError as error:
+            log.warning("No checkpoint of generation %s: %s", generation, error)
+            text = (
+                f"The checkpoint of generation {generation} could not be written ({error}); "
+                f"the one of generation {self._claim.generation} stays, and it is tried again."
+            )
+            persist(lambda: self._claim.warn(text))
+            return False
+        return True
+
+
+def persist(write: Callable[[], T]) -> T:
+    """Write, waiting for a database that is away for a while; unless we are to stop."""
+    deadline = time.monotonic() + DATABASE_SECONDS
+    while True:
+        try:
+            return write()
+        except OperationalError as error:
+            if time.monotonic() > deadline or stop.requested():
+                raise
+            log.warning("Waiting for the database: %s", error)
+            time.sleep(LOOK_SECONDS)

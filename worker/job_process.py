@@ -1,0 +1,45 @@
+"""The process of one job: `python -m worker.job_process WORKER QUEUE JOB EXECUTION PARENT`."""
+
+import logging
+import signal
+import sys
+
+from rq.executions import Execution
+from rq.job import Job
+from rq.queue import Queue
+from rq.serializers import JSONSerializer
+from rq.worker import Worker
+
+from server.processes import die_with_parent
+from server.queue import open_redis
+from server.settings import Settings
+
+from . import stop
+
+
+class JobProcess(Worker):
+    """The side of RQ's worker that performs the job."""
+
+    def setup_work_horse_signals(self) -> None:
+        stop.listen()
+
+
+def main(worker: str, queue: str, job: str, execution: str, parent: str) -> None:
+    """Perform the job and exit; if the supervisor dies, so do we, wherever we are."""
+    die_with_parent(int(parent), signal.SIGKILL)
+    stop.listen()
+    connection = open_redis(Settings().redis_url)
+    key = JobProcess.redis_worker_namespace_prefix + worker
+    process = JobProcess.find_by_key(key, connection, serializer=JSONSerializer)
+    if process is None:
+        sys.exit(f"Worker {worker} is not in Redis any more.")
+    process.execution = Execution.fetch(execution, job, connection)
+    process.main_work_horse(
+        Job.fetch(job, connection, serializer=JSONSerializer),
+        Queue(queue, connection, serializer=JSONSerializer),
+    )
+
+
+if __name__ == "__main__":
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
+    main(*sys.argv[1:])

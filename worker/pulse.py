@@ -1,0 +1,87 @@
+"""The heartbeat of a worker and of the run that it carries out, in a thread of its own."""
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from uuid import UUID
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from server import workers
+from server.db import Sessions
+from server.workers import Lease
+
+from .device import Device
+
+BEATS = 4
+"""Heartbeats in a lease."""
+PATIENCE = 2
+"""Beats that a job has to end by itself after its run is over, before it is killed."""
+
+log = logging.getLogger(__name__)
+
+
+@dataclass
+class Watch:
+    """A run in the hands of a job process."""
+
+    run: UUID
+    kill: Callable[[], None]
+    held: bool = False
+    over: int = 0
+
+
+class Pulse(threading.Thread):
+    """Writes heartbeats by SQL alone, so that a lost Redis cannot make a live run look dead."""
+
+    def __init__(self, sessions: Sessions, worker: str, device: Device, lease: float):
+        super().__init__(name="pulse", daemon=True)
+        self._sessions, self._worker, self._device = sessions, worker, device
+        self._interval = lease / BEATS
+        self._ended = threading.Event()
+        self._watch: Watch | None = None
+
+    def run(self) -> None:
+        while not self._ended.is_set():
+            try:
+                self.beat()
+            except SQLAlchemyError as error:
+                log.warning("No heartbeat: the database does not answer: %s", error)
+            self._ended.wait(self._interval)
+
+    def watch(self, run: UUID, kill: Callable[[], None]) -> None:
+        """From now on this run's heartbeat too; `kill` ends its job should the run be lost."""
+        self._watch = Watch(run, kill)
+
+    def let_go(self) -> None:
+        self._watch = None
+
+    def end(self) -> None:
+        """Stop, and take the worker off the list."""
+        self._ended.set()
+        self.join()
+        workers.retire(self._sessions, self._worker)
+
+    def beat(self) -> None:
+        watch = self._watch
+        lease: Lease | None = None
+        if watch:
+            lease = workers.heartbeat(self._sessions, watch.run, self._worker)
+            self._judge(watch, lease)
+        workers.report(
+            self._sessions,
+            self._worker,
+            self._device.name,
+            self._device.memory_bytes,
+            "busy" if watch else "idle",
+            watch.run if watch and lease == "held" else None,
+        )
+
+    def _judge(self, watch: Watch, lease: Lease) -> None:
+        """Kill the job whose run is another's by now, or ended some time ago."""
+        watch.held |= lease == "held"
+        watch.over = watch.over + 1 if lease == "over" and watch.held else 0
+        if (lease == "lost" or watch.over > PATIENCE) and watch is self._watch:
+            log.warning("Run %s is not ours any more: killing its job", watch.run)
+            watch.kill()

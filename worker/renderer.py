@@ -1,0 +1,60 @@
+"""Makes replays, in one long-lived process: its compiled programs stay warm."""
+
+import logging
+import os
+import socket
+from uuid import uuid4
+
+from microcosmos.device import prepare
+from rq.job import Job
+from rq.serializers import JSONSerializer
+from rq.worker import SimpleWorker
+
+from server.queue import Jobs
+from server.services import connect
+from server.settings import Settings
+
+from . import loop, stop
+
+NICE = 10
+"""Watching must not slow down evolving."""
+SILENCE = 120
+"""Seconds after which a replay's maker counts as dead."""
+
+
+class Renderer(SimpleWorker):
+    """RQ's worker without processes of its own, which says nothing while it renders."""
+
+    def get_heartbeat_ttl(self, job: Job) -> int:
+        return SILENCE
+
+
+def take_up(jobs: Jobs) -> None:
+    """Ask again for the replays that a renderer was making when it died."""
+    registry = jobs.replays.started_job_registry
+    for job_id in registry.get_job_ids(cleanup=False):
+        if job := jobs.find(job_id):
+            registry.remove_executions(job)
+            jobs.render(*job.args)
+
+
+def main() -> None:
+    """Render until told to stop."""
+    os.nice(NICE)
+    # Its few arrays need little of a GPU that belongs to a worker.
+    os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
+    stop.listen(interrupt=True)
+    prepare()
+    services = connect(Settings())
+    name = f"renderer-{socket.gethostname()}-{uuid4().hex[:8]}"
+    with loop.surviving():
+        take_up(services.jobs)
+    loop.serve(
+        Renderer([services.jobs.replays], name, serializer=JSONSerializer, worker_ttl=SILENCE)
+    )
+    services.close()
+
+
+if __name__ == "__main__":
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
+    main()

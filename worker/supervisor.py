@@ -1,0 +1,120 @@
+"""A worker: takes runs from the queue and carries out each in a process of its own; no JAX."""
+
+import logging
+import os
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import suppress
+from typing import Any
+from uuid import UUID
+
+from rq.job import Job
+from rq.queue import Queue
+from rq.serializers import JSONSerializer
+from rq.worker import SpawnWorker
+from sqlalchemy.exc import SQLAlchemyError
+
+from server import services
+from server.reconcile import job_died
+from server.services import Services
+from server.settings import Settings
+
+from . import device, loop, stop
+from .pulse import BEATS, Pulse
+
+SHORTEST_LEASE = 2
+"""Redis counts in seconds."""
+
+log = logging.getLogger(__name__)
+
+
+class Supervisor(SpawnWorker):
+    """RQ's worker with short leases, whose job nothing orphans."""
+
+    services: Services
+    pulse: Pulse
+    lease: int
+    environment: dict[str, str]
+
+    def execute_job(self, job: Job, queue: Queue) -> None:
+        """Carry out a run, and see to it that it goes on when its process died."""
+        run = UUID(job.id)
+        try:
+            if not stop.requested():
+                self.prepare_execution(job)
+                self.fork_work_horse(job, queue)
+                self.pulse.watch(run, self.kill_horse)
+                self.monitor_work_horse(job, queue)
+        finally:
+            self.pulse.let_go()
+            with loop.surviving():
+                job_died(self.services, run, self.name, "the job's process died without a word")
+
+    def fork_work_horse(self, job: Job, queue: Queue) -> None:
+        """Start the job's process; nothing secret is among its arguments."""
+        assert self.execution is not None
+        arguments = (self.name, queue.name, job.id, self.execution.id, str(os.getpid()))
+        self._horse = subprocess.Popen(
+            [sys.executable, "-m", "worker.job_process", *arguments],
+            env=os.environ | self.environment,
+            stdin=subprocess.DEVNULL,
+            process_group=0,
+        )
+        self._horse_pid = self._horse.pid
+        if stop.requested():  # In between, when there was nobody to pass it on to.
+            self.pass_on()
+
+    def monitor_work_horse(self, job: Job, queue: Queue) -> None:
+        """Wait for the job's process, keeping its lease in Redis alive."""
+        while (code := self._ended()) is None:
+            with loop.surviving():
+                self.maintain_heartbeats(job)
+        self._horse_pid = 0
+        if code:
+            log.warning("Run %s: its process ended with %s", job.id, code)
+            with loop.surviving():
+                self.handle_job_failure(job, queue, exc_string=f"ended with {code}")
+
+    def _ended(self) -> int | None:
+        with suppress(subprocess.TimeoutExpired):
+            return self._horse.wait(self.lease / BEATS)
+        return None
+
+    def kill_horse(self, sig: signal.Signals = signal.SIGKILL) -> None:
+        self._horse.send_signal(sig)
+
+    def pass_on(self) -> None:
+        """Ask the job to stop: between blocks, with a checkpoint."""
+        if self.horse_pid:
+            self.kill_horse(signal.SIGTERM)
+
+    def heartbeat(self, timeout: int | None = None, pipeline: Any = None) -> None:
+        super().heartbeat(self.lease, pipeline)
+
+    def get_heartbeat_ttl(self, job: Job) -> int:
+        return self.lease
+
+
+def supervise(settings: Settings, index: int) -> None:
+    """Be the worker with this number on this machine, until told to stop."""
+    shared = services.connect(settings)
+    name = f"{socket.gethostname()}-{os.getpid()}"
+    found = device.find(index)
+    lease = max(SHORTEST_LEASE, round(settings.lease))
+    worker = Supervisor([shared.jobs.runs], name, worker_ttl=lease, serializer=JSONSerializer)
+    worker.services, worker.lease, worker.environment = shared, lease, found.environment
+    worker.pulse = Pulse(shared.sessions, name, found, settings.lease)
+    stop.listen(worker.pass_on, interrupt=True)
+    log.info("Worker %s on %s", name, found.name)
+    worker.pulse.start()
+    loop.serve(worker)
+    with suppress(SQLAlchemyError):
+        worker.pulse.end()
+    shared.close()
+
+
+if __name__ == "__main__":
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
+    supervise(Settings(), int(sys.argv[1]) if len(sys.argv) > 1 else 0)
