@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from uuid import UUID, uuid4
 
 import fsspec
@@ -36,7 +37,7 @@ class Artifacts:
         """
         target = self._full(path)
         beside = f"{target}.{uuid4().hex}.part"
-        self.files.makedirs(os.path.dirname(target), exist_ok=True)
+        self.files.makedirs(self.files._parent(target), exist_ok=True)
         try:
             with self.files.open(beside, "wb") as file:
                 file.write(data)
@@ -70,8 +71,8 @@ class Artifacts:
         if not self._local:
             self.files.mv(beside, target)
             return
-        os.replace(beside, target)
-        folder = os.open(os.path.dirname(target), os.O_RDONLY)
+        Path(beside).replace(target)
+        folder = os.open(Path(target).parent, os.O_RDONLY)
         try:
             os.fsync(folder)
         finally:

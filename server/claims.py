@@ -147,8 +147,8 @@ class Claim:
             before = self._prove(session)
             if generation > before.generation:
                 raise ValueError(
-                    f"`generation` of a checkpoint must be recorded, up to {before.generation}; "
-                    f"got {generation}"
+                    "`generation` of a checkpoint must be recorded, that is at most "
+                    f"{before.generation}; got {generation}"
                 )
             superfluous = point_at(session, self.run_id, generation, stored)
             if generation > before.checkpoint_generation:

@@ -123,7 +123,7 @@ class Generation(Base):
 
 
 class Elite(Base):
-    """A cell's new elite; append-only. Now is a cell's last row, the past the last not after."""
+    """A cell's new elite; append-only. Now is the last row of a cell, the past one before."""
 
     __tablename__ = "elites"
 

@@ -85,7 +85,9 @@ def elite_row(elite: NewElite) -> dict[str, Any]:
     }
 
 
-def creature_row(elite: NewElite, spec: dict[str, Any], version: str, device: str) -> dict[str, Any]:
+def creature_row(
+    elite: NewElite, spec: dict[str, Any], version: str, device: str
+) -> dict[str, Any]:
     """With what repeating the measurement exactly needs."""
     names = [axis["name"] for axis in spec["archive"]["descriptors"]]
     genome = spec["genome"]

@@ -26,7 +26,10 @@ class ExperimentRead(Wire):
     presets: list[PresetRead]
 
     model_config = ConfigDict(
-        serialize_by_alias=True, alias_generator=lambda name: name.rstrip("_")
+        extra="forbid",
+        populate_by_name=True,
+        serialize_by_alias=True,
+        alias_generator=lambda name: name.rstrip("_"),
     )
 
 

@@ -32,6 +32,10 @@ class Settings(BaseSettings):
         8000, ge=0, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
     )
     token: SecretStr | None = None
+    workers: int = Field(
+        1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
+    )
+    """How many workers `make run` starts."""
     checkpoint_interval: float = Field(60.0, ge=0.0)
     """Seconds between two checkpoints of a run."""
     lease: float = Field(20.0, gt=0.0)

@@ -1,0 +1,48 @@
+"""What routes ask for: the services, a session to read with, and the row that a path names."""
+
+from collections.abc import Iterator
+from typing import Annotated
+from uuid import UUID
+
+from fastapi import Depends, Path, Request
+from sqlalchemy.orm import Session
+
+from .models import Creature, Run
+from .problems import Refused
+from .services import Services
+
+
+def services(request: Request) -> Services:
+    return request.app.state.services
+
+
+ServicesDep = Annotated[Services, Depends(services)]
+
+
+def session(services: ServicesDep) -> Iterator[Session]:
+    with services.sessions.read() as session:
+        yield session
+
+
+# Closed before the answer is sent: a long download must not hold a connection.
+SessionDep = Annotated[Session, Depends(session, scope="function")]
+
+
+def run(run_id: UUID, session: SessionDep) -> Run:
+    found = session.get(Run, run_id)
+    if found is None:
+        raise Refused(404, "Not found", f"No run has the id {run_id}.")
+    return found
+
+
+def creature(
+    sha: Annotated[str, Path(pattern="^[0-9a-f]{64}$")], session: SessionDep
+) -> Creature:
+    found = session.get(Creature, sha)
+    if found is None:
+        raise Refused(404, "Not found", f"No creature has the name {sha}.")
+    return found
+
+
+RunDep = Annotated[Run, Depends(run)]
+CreatureDep = Annotated[Creature, Depends(creature)]

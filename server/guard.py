@@ -1,0 +1,64 @@
+"""Who may speak to the server: this machine's pages, or whoever has the token."""
+
+from hmac import compare_digest
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers
+from starlette.requests import HTTPConnection
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from .problems import answer
+from .schemas import Problem
+from .settings import LOOPBACK
+
+COOKIE = "microcosmos_token"
+"""For pages: an event stream cannot be asked for with an Authorization header."""
+
+
+class Guard:
+    """With a token, `/api` needs it. Without one, Host and Origin must be this machine's own.
+
+    The latter keeps out pages of other sites, also those that have their name resolve to us.
+    """
+
+    def __init__(self, app: ASGIApp, token: str | None):
+        self.app, self.token = app, token
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        problem = None
+        if scope["type"] == "http":
+            request = HTTPConnection(scope)
+            problem = (
+                self._foreign(request.headers) if not self.token else self._unknown(request)
+            )
+        if problem:
+            await answer(problem)(scope, receive, send)
+        else:
+            await self.app(scope, receive, send)
+
+    def _foreign(self, headers: Headers) -> Problem | None:
+        host, origin = headers.get("host", ""), headers.get("origin")
+        if _name(f"//{host}") not in LOOPBACK:
+            needed = f"Host must be one of {', '.join(LOOPBACK)}; got {host!r}."
+            return Problem(title="Forbidden", status=403, detail=needed)
+        if origin is not None and urlsplit(origin).netloc != host:
+            needed = f"Origin must be this server's own page; got {origin!r}."
+            return Problem(title="Forbidden", status=403, detail=needed)
+        return None
+
+    def _unknown(self, request: HTTPConnection) -> Problem | None:
+        if not request.url.path.startswith("/api/"):
+            return None
+        scheme, _, sent = request.headers.get("authorization", "").partition(" ")
+        given = sent if scheme.lower() == "bearer" else request.cookies.get(COOKIE, "")
+        if compare_digest(given.encode(), (self.token or "").encode()):
+            return None
+        needed = f"A token is needed, as `Authorization: Bearer` or cookie `{COOKIE}`."
+        return Problem(title="Unauthorized", status=401, detail=needed)
+
+
+def _name(address: str) -> str | None:
+    try:
+        return urlsplit(address).hostname
+    except ValueError:
+        return None

@@ -1,0 +1,108 @@
+"""Every error as a problem (RFC 9457): which field, what was needed, what came."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from microcosmos.archive.creature import CreatureError
+from pydantic import ValidationError
+from starlette.exceptions import HTTPException
+
+from .lifecycle import Conflict
+from .schemas import FieldError, Problem
+
+MEDIA_TYPE = "application/problem+json"
+NAMED = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
+
+
+class Refused(Exception):
+    """Something that cannot be done, and why."""
+
+    def __init__(
+        self,
+        status: int,
+        title: str,
+        detail: str,
+        errors: list[FieldError] | None = None,
+        headers: Mapping[str, str] | None = None,
+    ):
+        super().__init__(detail)
+        self.problem = Problem(title=title, status=status, detail=detail, errors=errors)
+        self.headers = headers
+
+
+def answer(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
+    content = problem.model_dump(mode="json", exclude_none=True)
+    return JSONResponse(content, problem.status, headers, media_type=MEDIA_TYPE)
+
+
+def install(app: FastAPI) -> None:
+    """Have the application answer every error as a problem."""
+
+    @app.exception_handler(Refused)
+    def refused(_: Request, error: Refused) -> JSONResponse:
+        return answer(error.problem, error.headers)
+
+    @app.exception_handler(Conflict)
+    def conflict(_: Request, error: Conflict) -> JSONResponse:
+        return answer(Problem(title="Conflict", status=409, detail=str(error)))
+
+    @app.exception_handler(ValidationError)
+    def invalid(_: Request, error: ValidationError) -> JSONResponse:
+        return answer(invalid_input([_field_error(found) for found in error.errors()]))
+
+    @app.exception_handler(RequestValidationError)
+    def invalid_request(_: Request, error: RequestValidationError) -> JSONResponse:
+        found = [{**e, "loc": e["loc"][1:]} for e in error.errors()]  # Without "query", "path".
+        return answer(invalid_input([_field_error(e) for e in found]))
+
+    @app.exception_handler(CreatureError)
+    def bad_creature(_: Request, error: CreatureError) -> JSONResponse:
+        found = FieldError(
+            field=error.field, message=str(error), needed=error.needed, got=brief(error.got)
+        )
+        return answer(invalid_input([found]))
+
+    @app.exception_handler(HTTPException)
+    def http(_: Request, error: HTTPException) -> JSONResponse:
+        problem = Problem(title=error.detail, status=error.status_code, detail=error.detail)
+        return answer(problem, error.headers)
+
+    @app.exception_handler(Exception)
+    def unforeseen(_: Request, error: Exception) -> JSONResponse:
+        detail = "The server failed; its log says why."
+        return answer(Problem(title="Internal server error", status=500, detail=detail))
+
+
+def invalid_input(errors: list[FieldError]) -> Problem:
+    detail = "; ".join(f"{error.field}: {error.message}" for error in errors)
+    return Problem(title="Invalid input", status=422, detail=detail, errors=errors)
+
+
+def _field_error(error: Mapping[str, Any]) -> FieldError:
+    path = [str(part) for part in error["loc"]]
+    message = str(error["msg"]).removeprefix("Value error, ")
+    if error["type"] == "value_error":  # Our own words: they name the field and what came.
+        named = NAMED.search(message)
+        field = ".".join([*path, *([named[1]] if named else [])])
+        return FieldError(field=field, message=message)
+    needed = message.removeprefix("Input should be ")
+    if error["type"] == "extra_forbidden":
+        needed = "no field of this name"
+    got = brief(error["input"])
+    if error["type"] == "missing":
+        needed, got = "a value", "nothing"
+    return FieldError(
+        field=".".join(path), message=f"needs {needed}; got {got!r}", needed=needed, got=got
+    )
+
+
+def brief(value: Any) -> Any:
+    """What came, unless it is long."""
+    if value is None or isinstance(value, bool | int | float):
+        return value if abs(value or 0) < 1e308 else str(value)
+    text = value if isinstance(value, str) else repr(value)
+    return text if len(text) <= 120 else f"{text[:117]}..."

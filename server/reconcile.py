@@ -1,0 +1,132 @@
+"""Mends what deaths and outages leave: runs without a worker, runs without a job.
+
+The server does it every few seconds; Redis may be emptied at any time without losing a run.
+"""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Event, Thread
+from uuid import UUID
+
+from redis import RedisError
+from sqlalchemy import delete, select
+from sqlalchemy.exc import SQLAlchemyError
+
+from .db import ago
+from .lifecycle import announce, lost, release, yield_up
+from .models import CANCEL, QUEUED, RUNNING, Run, Worker
+from .services import Services
+
+FORGOTTEN_AFTER = 3600.0
+"""Seconds after which a silent worker is no longer remembered."""
+
+log = logging.getLogger(__name__)
+
+
+@contextmanager
+def reconciling(services: Services) -> Iterator[None]:
+    """Reconcile now and every few seconds, in a thread, until the end of the block."""
+    ended = Event()
+
+    def repeat() -> None:
+        while True:
+            try:
+                reconcile(services)
+            except (RedisError, SQLAlchemyError) as error:
+                log.warning("will reconcile again: %s", error)  # An outage ends by itself.
+            if ended.wait(services.settings.reconcile_interval):
+                return
+
+    thread = Thread(target=repeat, name="reconciler", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+def reconcile(services: Services) -> None:
+    """One pass."""
+    end_disobedient(services)
+    take_back_lost(services)
+    services.jobs.clean()
+    enqueue_missing(services)
+    forget_workers(services)
+
+
+def end_disobedient(services: Services) -> None:
+    """Cancel runs whose workers were asked to and did not, and kill their jobs."""
+    grace = services.settings.grace
+    with services.sessions.read() as session:
+        overdue = (
+            Run.status == RUNNING,
+            Run.wish == CANCEL,
+            Run.wished_at < ago(session, grace),
+        )
+        found = list(session.scalars(select(Run.id).where(*overdue)))
+    for run_id in found:
+        with services.sessions.write.begin() as session:
+            ended = yield_up(session, run_id, *overdue)
+        if ended:
+            services.jobs.stop(run_id)
+            announce(services, run_id)
+
+
+def take_back_lost(services: Services) -> None:
+    """Queue runs again whose worker has been silent for as long as a lease."""
+    lease = services.settings.lease
+    with services.sessions.read() as session:
+        silent = (Run.status == RUNNING, lost(session, lease))
+        found = session.execute(select(Run.id, Run.worker).where(*silent)).all()
+    for run_id, worker in found:
+        with services.sessions.write.begin() as session:
+            error = f"no word from worker {worker} for {lease:g} s"
+            run = release(session, run_id, *silent, error=error)
+        if run:
+            announce(services, run_id)
+            _enqueue(services, run)
+
+
+def enqueue_missing(services: Services) -> None:
+    """Enqueue runs that wait and have no job, in the order in which they came."""
+    with services.sessions.read() as session:
+        waiting = select(Run).where(Run.status == QUEUED).order_by(Run.created_at, Run.id)
+        runs = list(session.scalars(waiting))
+    at_hand = services.jobs.runs_at_hand() if runs else set()
+    for run in runs:
+        if str(run.id) not in at_hand:
+            services.jobs.evolve(run.id)
+
+
+def forget_workers(services: Services) -> None:
+    with services.sessions.write.begin() as session:
+        old = Worker.heartbeat_at < ago(session, FORGOTTEN_AFTER)
+        session.execute(delete(Worker).where(old))
+
+
+def job_died(services: Services, run_id: UUID, worker: str, error: str) -> None:
+    """A job process ended without a word: its run waits for another attempt at once."""
+    with services.sessions.write.begin() as session:
+        run = release(session, run_id, Run.worker == worker, error=error)
+    if run:
+        announce(services, run_id)
+    requeue(services, run_id)
+
+
+def requeue(services: Services, run_id: UUID) -> None:
+    """Enqueue a run if it waits; where Redis does not answer, the next pass does it."""
+    with services.sessions.read() as session:
+        run = session.get(Run, run_id)
+    if run:
+        _enqueue(services, run)
+
+
+def _enqueue(services: Services, run: Run) -> None:
+    if run.status != QUEUED:
+        return
+    try:
+        services.jobs.evolve(run.id)
+    except RedisError as error:
+        log.warning("run %s stays queued until Redis answers: %s", run.id, error)

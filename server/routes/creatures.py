@@ -1,0 +1,51 @@
+"""Creatures: read one by its name, bring one."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Request
+from fastapi.responses import JSONResponse, Response
+from microcosmos.archive import creature
+
+from .. import creatures
+from ..deps import CreatureDep, ServicesDep
+from ..schemas import CreatureName
+from ..uploads import json_object
+
+FILE_BYTES = 8 << 20
+FOR_EVER = "public, max-age=31536000, immutable"
+
+router = APIRouter(prefix="/creatures", tags=["creatures"])
+body: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/json": {"schema": {"type": "object"}}},
+    }
+}
+
+
+@router.get("/{sha}", responses={200: {"model": dict[str, Any]}})
+def read_creature(request: Request, row: CreatureDep, download: bool = False) -> Response:
+    """The creature file."""
+    etag = f'"{row.sha256}"'
+    headers = {"Cache-Control": FOR_EVER, "ETag": etag}
+    if request.headers.get("if-none-match") == etag:
+        return Response(status_code=304, headers=headers)
+    if download:
+        name = f"creature-{row.sha256[:12]}.json"
+        headers["Content-Disposition"] = f'attachment; filename="{name}"'
+    return JSONResponse(creatures.document(row), headers=headers)
+
+
+@router.post("", status_code=201, responses={200: {"model": CreatureName}}, openapi_extra=body)
+def import_creature(
+    document: Annotated[dict[str, Any], Depends(json_object(FILE_BYTES))],
+    services: ServicesDep,
+    response: Response,
+) -> CreatureName:
+    """Keep a creature file; its hash is verified. 200 where it is known already."""
+    file = creature.parse(document)
+    with services.sessions.write.begin() as session:
+        new = creatures.add(session, file)
+    response.status_code = 201 if new else 200
+    response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
+    return CreatureName(creature=file["sha256"])

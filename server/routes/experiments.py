@@ -1,0 +1,26 @@
+"""What can be run: the page's forms come from here."""
+
+from fastapi import APIRouter
+from microcosmos.spec import EXPERIMENTS, Experiment
+
+from ..schemas import ExperimentRead, PresetRead
+
+router = APIRouter(prefix="/experiments", tags=["experiments"])
+
+
+@router.get("")
+def list_experiments() -> list[ExperimentRead]:
+    return [_read(experiment) for experiment in EXPERIMENTS.values()]
+
+
+def _read(experiment: Experiment) -> ExperimentRead:
+    presets = [
+        PresetRead(name=p.name, title=p.title, spec=p.spec.model_dump(mode="json"))
+        for p in experiment.presets
+    ]
+    return ExperimentRead(
+        experiment=experiment.name,
+        title=experiment.title,
+        schema_=experiment.spec.model_json_schema(),
+        presets=presets,
+    )

@@ -1,0 +1,82 @@
+"""From a spec to a queued run."""
+
+import os
+from hashlib import sha256
+
+import rfc8785
+from microcosmos.spec import Spec, estimate
+from microcosmos.version import VERSION
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from . import workers
+from .lifecycle import announce
+from .models import Idempotency, Run
+from .problems import FieldError, Refused
+from .reconcile import requeue
+from .services import Services
+
+
+def memory_limit(services: Services, session: Session) -> int:
+    """Bytes that a run may need: the largest worker's, else as set, else this machine's."""
+    live = workers.live(session, services.settings.lease)
+    if live:
+        return max(worker.memory_bytes for worker in live)
+    return services.settings.max_bytes or os.sysconf("SC_PAGE_SIZE") * os.sysconf(
+        "SC_PHYS_PAGES"
+    )
+
+
+def refuse_too_large(services: Services, spec: Spec) -> None:
+    """Raise `Refused` where no worker has the memory."""
+    with services.sessions.read() as session:
+        limit = memory_limit(services, session)
+    needed = estimate(spec).memory_bytes
+    if needed > limit:
+        detail = f"The run needs {needed:,} bytes of memory; {limit:,} bytes are available."
+        error = FieldError(
+            field="search.block", message=detail, needed=f"at most {limit} bytes", got=needed
+        )
+        raise Refused(422, "More memory than there is", detail, [error])
+
+
+def submit(
+    services: Services, spec: Spec, key: str | None = None, demonstration: bool = False
+) -> tuple[Run, bool]:
+    """The run of a spec and whether it is new; the same key with the same spec is one run."""
+    run = Run(
+        experiment=spec.experiment,
+        spec=spec.model_dump(mode="json"),
+        version=VERSION,
+        demonstration=demonstration,
+    )
+    try:
+        with services.sessions.write.begin() as session:
+            session.add(run)
+            session.flush()
+            if key is not None:
+                session.add(Idempotency(key=key, body_sha256=_digest(run), run_id=run.id))
+    except IntegrityError:
+        if key is None:
+            raise
+        return _earlier(services, key, run), False
+    # Committed before it is enqueued: the worker must find the row.
+    requeue(services, run.id)
+    announce(services, run.id)
+    return run, True
+
+
+def _digest(run: Run) -> str:
+    return sha256(rfc8785.dumps(run.spec)).hexdigest()
+
+
+def _earlier(services: Services, key: str, run: Run) -> Run:
+    """The run that a key stands for already; `Refused` where its spec was another."""
+    with services.sessions.read() as session:
+        known = session.get_one(Idempotency, key)
+        if known.body_sha256 != _digest(run):
+            detail = (
+                f"Idempotency-Key {key!r} was used with another spec, for run {known.run_id}."
+            )
+            raise Refused(422, "Idempotency key reused", detail)
+        return session.get_one(Run, known.run_id)
