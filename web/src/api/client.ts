@@ -1,67 +1,92 @@
 /** Every request of the page. Answers other than success are thrown as `Problem`. */
 
+import createClient from "openapi-fetch";
 import { problemOf } from "./problem";
-import type {
-  Archive,
-  Creature,
-  Estimate,
-  Experiment,
-  Generations,
-  Run,
-  RunPage,
-  Spec,
-} from "./types";
+import type { paths } from "./schema";
+import type { Creature, Experiment, Run, RunPage, Spec } from "./types";
 
 const ROOT = "/api/v1";
 export const EVENTS_URL = `${ROOT}/events`;
 
 export type Wish = "pause" | "resume" | "cancel";
 
-async function request(path: string, init?: RequestInit): Promise<Response> {
-  const response = await fetch(ROOT + path, init);
-  if (response.ok) return response;
-  throw problemOf(response.status, await response.json().catch(() => null));
+const client = createClient<paths>({ baseUrl: "" });
+
+interface Answer<T> {
+  data?: T;
+  error?: unknown;
+  response: Response;
 }
 
-async function read<T>(path: string): Promise<T> {
-  return (await request(path)).json();
+async function success<T>(asked: Promise<Answer<T>>): Promise<T> {
+  const { data, error, response } = await asked;
+  if (!response.ok) throw problemOf(response.status, error);
+  return data as T;
 }
 
-async function post<T>(path: string, body?: unknown, headers: HeadersInit = {}): Promise<T> {
-  const text = typeof body === "string" ? body : JSON.stringify(body);
-  const response = await request(path, {
-    method: "POST",
-    ...(body === undefined
-      ? { headers }
-      : { body: text, headers: { "Content-Type": "application/json", ...headers } }),
-  });
-  return response.json();
+const run = (id: string) => ({ params: { path: { run_id: id } } });
+
+export async function readExperiments(): Promise<Experiment[]> {
+  return (await success(client.GET(`${ROOT}/experiments`))) as Experiment[];
 }
 
-export const readExperiments = () => read<Experiment[]>("/experiments");
-export const readRun = (id: string) => read<Run>(`/runs/${id}`);
-export const readArchive = (id: string) => read<Archive>(`/runs/${id}/archive`);
-export const readCreature = (sha: string) => read<Creature>(`/creatures/${sha}`);
-export const readGenerations = (id: string, points: number) =>
-  read<Generations>(`/runs/${id}/generations?points=${points}`);
-
-export function readRuns(cursor: string | null, limit: number): Promise<RunPage> {
-  const query = new URLSearchParams({ limit: String(limit), ...(cursor ? { cursor } : {}) });
-  return read<RunPage>(`/runs?${query}`);
+export async function readRuns(cursor: string | null, limit: number): Promise<RunPage> {
+  const query = { limit, ...(cursor ? { cursor } : {}) };
+  return (await success(client.GET(`${ROOT}/runs`, { params: { query } }))) as RunPage;
 }
 
-export const estimateRun = (spec: Spec) => post<Estimate>("/runs/estimate", spec);
-export const createRun = (spec: Spec, key: string) =>
-  post<Run>("/runs", spec, { "Idempotency-Key": key });
-export const wish = (id: string, verb: Wish) => post<Run>(`/runs/${id}/${verb}`);
+export async function readRun(id: string): Promise<Run> {
+  return (await success(client.GET(`${ROOT}/runs/{run_id}`, run(id)))) as Run;
+}
+
+export function readArchive(id: string) {
+  return success(client.GET(`${ROOT}/runs/{run_id}/archive`, run(id)));
+}
+
+export function readGenerations(id: string, points: number) {
+  const params = { path: { run_id: id }, query: { points } };
+  return success(client.GET(`${ROOT}/runs/{run_id}/generations`, { params }));
+}
+
+export function estimateRun(spec: Spec) {
+  return success(client.POST(`${ROOT}/runs/estimate`, { body: spec as never }));
+}
+
+export async function createRun(spec: Spec, key: string): Promise<Run> {
+  const params = { header: { "Idempotency-Key": key } };
+  return (await success(client.POST(`${ROOT}/runs`, { params, body: spec as never }))) as Run;
+}
+
+export async function wish(id: string, verb: Wish): Promise<Run> {
+  return (await success(client.POST(`${ROOT}/runs/{run_id}/${verb}`, run(id)))) as Run;
+}
+
+export async function readCreature(sha: string): Promise<Creature> {
+  const asked = client.GET(`${ROOT}/creatures/{sha}`, { params: { path: { sha } } });
+  return (await success(asked)) as unknown as Creature;
+}
 
 /** Sends a creature file as it is, byte for byte; answers its name. */
-export const importCreature = (text: string) => post<{ creature: string }>("/creatures", text);
+export function importCreature(text: string) {
+  const body = { body: text as never, bodySerializer: () => text };
+  const headers = { "Content-Type": "application/json" };
+  return success(client.POST(`${ROOT}/creatures`, { ...body, headers }));
+}
 
 /** The replay's bytes, or null while the renderer is still at work on it. */
 export async function readReplay(sha: string): Promise<ArrayBuffer | null> {
-  const response = await request(`/creatures/${sha}/replay`);
-  return response.status === 202 ? null : response.arrayBuffer();
+  const params = { path: { sha } };
+  const asked = client.GET(`${ROOT}/creatures/{sha}/replay`, { params, parseAs: "arrayBuffer" });
+  const bytes = (await success(asked as Promise<Answer<unknown>>)) as ArrayBuffer;
+  return (await asked).response.status === 202 ? null : bytes;
+}
+
+/** Throws the reason where a file cannot be had; nothing of it is read. */
+export async function proveFile(url: string): Promise<void> {
+  const stop = new AbortController();
+  const response = await fetch(url, { signal: stop.signal });
+  if (!response.ok) throw problemOf(response.status, await response.json().catch(() => null));
+  stop.abort();
 }
 
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;

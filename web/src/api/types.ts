@@ -1,98 +1,24 @@
 /** The words of the wire, under the names that the page uses. */
 
-export type Status = "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+import type { components } from "./schema";
+
+type Wire = components["schemas"];
+/** A type of the server, with parts that OpenAPI can only call objects. */
+type With<T, Parts> = Omit<T, keyof Parts> & Parts;
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 export type Spec = { [key: string]: Json };
+export type Schema = { [keyword: string]: Json };
 
-export interface Run {
-  id: string;
-  experiment: string;
-  status: Status;
-  wish: null | "pause" | "cancel";
-  spec: Spec;
-  created_at: string;
-  started_at: string | null;
-  finished_at: string | null;
-  attempt: number;
-  generation: number;
-  generations: number;
-  progress: number;
-  eta_seconds: number | null;
-  evaluations: number;
-  evaluations_per_second: number | null;
-  qd_score: number | null;
-  coverage: number | null;
-  best: number | null;
-  diverged: number;
-  sparkline: number[];
-  error: string | null;
-  warning: string | null;
-  device: string | null;
-  version: string;
-  demonstration: boolean;
-}
-
-export interface RunPage {
-  items: Run[];
-  next: string | null;
-}
-
-export interface Schema {
-  [keyword: string]: Json;
-}
-
-export interface Preset {
-  name: string;
-  title: string;
-  spec: Spec;
-}
-
-export interface Experiment {
-  experiment: string;
-  title: string;
-  schema: Schema;
-  presets: Preset[];
-}
-
-export interface Estimate {
-  memory_bytes: number;
-  memory_limit_bytes: number;
-  evaluations: number;
-  cell_steps: number;
-}
-
-export interface Axis {
-  name: string;
-  low: number;
-  high: number;
-  bins: number;
-  scale: "log10" | "linear";
-}
-
-export interface ArchiveColumns {
-  cell: number[];
-  fitness: number[];
-  descriptors: number[][];
-  elite_generation: number[];
-  creature: string[];
-}
-
-export interface Archive extends ArchiveColumns {
-  generation: number;
-  axes: Axis[];
-}
-
-export interface Generations {
-  generation: number[];
-  qd_score: number[];
-  coverage: number[];
-  best: number[];
-  mean: number[];
-  evaluations: number[];
-  diverged: number[];
-  seconds: number[];
-}
+export type Run = With<Wire["RunRead"], { spec: Spec }>;
+export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
+export type Preset = With<Wire["PresetRead"], { spec: Spec }>;
+export type Experiment = With<Wire["ExperimentRead"], { schema: Schema; presets: Preset[] }>;
+export type Estimate = Wire["EstimateRead"];
+export type Axis = Wire["Axis"];
+export type Archive = Wire["ArchiveRead"];
+export type ArchiveColumns = Omit<Archive, "generation" | "axes">;
+export type Generations = Wire["Curves"];
 
 export interface Genome {
   encoding: string;
@@ -108,6 +34,7 @@ export interface Genome {
   };
 }
 
+/** A creature file. */
 export interface Creature {
   identity: {
     format: string;
@@ -134,11 +61,7 @@ export interface Creature {
   licence: string;
 }
 
-export interface FieldError {
-  field: string;
-  message: string;
-}
-
+/** Problem details; the server's own handlers write them, so OpenAPI does not know them all. */
 export interface ProblemDocument {
   title?: string;
   status?: number;
@@ -146,22 +69,17 @@ export interface ProblemDocument {
   errors?: FieldError[];
 }
 
-export interface GenerationEvent {
-  run: string;
-  generation: number;
-  qd_score: number;
-  coverage: number;
-  best: number;
-  mean: number;
-  evaluations: number;
-  diverged: number;
-  seconds: number;
+export interface FieldError {
+  field: string;
+  message: string;
 }
 
-export interface ElitesEvent extends ArchiveColumns {
-  run: string;
-  generation: number;
-}
+/** The last entry of each column of `Generations`. */
+export type GenerationEvent = { run: string } & {
+  [name in keyof Generations]: Generations[name][number];
+};
+
+export type ElitesEvent = ArchiveColumns & { run: string; generation: number };
 
 export interface RewindEvent {
   run: string;

@@ -3,9 +3,16 @@
 import type { GenerationEvent, Generations } from "../api/types";
 
 export const LONGEST = 4000;
-const DRAWN = ["generation", "qd_score", "coverage", "best"] as const;
+const DRAWN: (keyof Curves)[] = ["generation", "qd_score", "coverage", "best"];
 
-export type Curves = { readonly [name in (typeof DRAWN)[number]]: readonly number[] };
+type Column = readonly (number | null)[];
+
+export interface Curves {
+  readonly generation: readonly number[];
+  readonly qd_score: Column;
+  readonly coverage: Column;
+  readonly best: Column;
+}
 
 export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
   const last = curves.generation.at(-1);
@@ -29,10 +36,10 @@ export function cutCurves(curves: Curves, generation: number): Curves {
   return columns((name) => curves[name].filter((_, i) => kept[i]));
 }
 
-function everySecond(_: number, i: number): boolean {
+function everySecond(_: unknown, i: number): boolean {
   return i % 2 === 0;
 }
 
-function columns(column: (name: (typeof DRAWN)[number]) => number[]): Curves {
+function columns(column: (name: keyof Curves) => Column): Curves {
   return Object.fromEntries(DRAWN.map((name) => [name, column(name)])) as unknown as Curves;
 }

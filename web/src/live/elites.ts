@@ -7,34 +7,43 @@ export interface Elite {
   descriptors: number[];
   generation: number;
   creature: string;
+  /** The generation that told of it. */
+  told: number;
 }
 
 export type Elites = ReadonlyMap<number, Elite>;
 
-export function withElites(elites: Elites, columns: ArchiveColumns): Elites {
+/** The elites after an event: columns of changed cells, and the generation it tells of. */
+export function withElites(elites: Elites, { generation, ...columns }: Changes): Elites {
   const next = new Map(elites);
-  columns.cell.forEach((cell, i) => next.set(cell, eliteAt(columns, i)));
+  columns.cell.forEach((cell, i) => next.set(cell, eliteAt(columns, i, generation)));
   return next;
 }
 
+type Changes = ArchiveColumns & { generation: number };
+
 /** A snapshot, and what events told of later generations while it was on its way. */
 export function mergeElites(archive: Archive, known: Elites): Elites {
-  const next = new Map(withElites(new Map(), archive));
+  const next = new Map<number, Elite>();
+  archive.cell.forEach((cell, i) => {
+    next.set(cell, eliteAt(archive, i, archive.elite_generation[i]!));
+  });
   for (const [cell, elite] of known) {
-    if (elite.generation > archive.generation) next.set(cell, elite);
+    if (elite.told > archive.generation) next.set(cell, elite);
   }
   return next;
 }
 
 export function cutElites(elites: Elites, generation: number): Elites {
-  return new Map([...elites].filter(([, elite]) => elite.generation <= generation));
+  return new Map([...elites].filter(([, elite]) => elite.told <= generation));
 }
 
-function eliteAt(columns: ArchiveColumns, i: number): Elite {
+function eliteAt(columns: ArchiveColumns, i: number, told: number): Elite {
   return {
     fitness: columns.fitness[i]!,
     descriptors: columns.descriptors[i]!,
     generation: columns.elite_generation[i]!,
     creature: columns.creature[i]!,
+    told,
   };
 }

@@ -11,6 +11,7 @@ import type {
 } from "../api/types";
 import { type Curves, appendCurves, cutCurves, mergeCurves } from "./curves";
 import { type Elites, cutElites, mergeElites, withElites } from "./elites";
+import { type Pace, rateOf, withEvent, withPoint } from "./pace";
 
 export type Connection = "connecting" | "live" | "lost";
 
@@ -24,6 +25,7 @@ export interface Detail {
 export interface State {
   connection: Connection;
   runs: ReadonlyMap<string, Run>;
+  paces: ReadonlyMap<string, Pace>;
   details: ReadonlyMap<string, Detail>;
   /** Ids of the listed runs, newest first, and where the list goes on. */
   listed: readonly string[];
@@ -47,6 +49,7 @@ export type Action =
 export const EMPTY: State = {
   connection: "connecting",
   runs: new Map(),
+  paces: new Map(),
   details: new Map(),
   listed: [],
   next: null,
@@ -117,16 +120,26 @@ function withSnapshot(state: State, action: Action & { type: "snapshot" }): Stat
 }
 
 function withGeneration(state: State, event: GenerationEvent): State {
-  const run = state.runs.get(event.run);
   const next = withDetail(state, event.run, (detail) => ({
     ...detail,
     curves: detail.curves && appendCurves(detail.curves, event),
   }));
-  if (!run || event.generation < run.generation) return next;
+  const run = state.runs.get(event.run);
+  if (!run || event.generation <= run.generation) return next;
+  const pace = withEvent(state.paces.get(run.id) ?? [], event);
+  return {
+    ...next,
+    paces: new Map(next.paces).set(run.id, pace),
+    runs: new Map(next.runs).set(run.id, advanced(run, event, pace)),
+  };
+}
+
+function advanced(run: Run, event: GenerationEvent, pace: Pace): Run {
   const { generation, qd_score, coverage, best, evaluations, diverged } = event;
-  const progress = generation / run.generations;
-  const newer = { ...run, generation, qd_score, coverage, best, evaluations, diverged, progress };
-  return { ...next, runs: new Map(next.runs).set(run.id, newer) };
+  const newer = { generation, qd_score, coverage, best, evaluations, diverged };
+  const progress = Math.min(1, generation / run.generations);
+  const sparkline = withPoint(run.sparkline, run.generation, qd_score, generation);
+  return { ...run, ...newer, progress, sparkline, ...rateOf(pace, run) };
 }
 
 function rewound(state: State, event: RewindEvent): State {

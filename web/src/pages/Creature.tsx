@@ -121,7 +121,7 @@ function Difference({ replay }: { replay: Replay }) {
     <p class="quiet small">
       In this replay it swims {number(replayed, 4)} cells
       {recorded !== null && `; its recorded fitness is ${number(recorded, 4)}`}
-      {difference !== null && difference !== 0 && ` (rounding makes ${number(difference, 2)})`}.
+      {difference !== null && difference !== 0 && ` (rounding: ${number(difference, 2)})`}.
     </p>
   );
 }

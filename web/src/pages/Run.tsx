@@ -1,11 +1,13 @@
 /** One run: its archive, its curves, how it is doing, and its files. */
 
 import { useEffect } from "preact/hooks";
-import { archiveUrl } from "../api/client";
+import { archiveUrl, proveFile } from "../api/client";
+import { messageOf } from "../api/problem";
 import type { Axis, Run } from "../api/types";
 import { useExperiments, useRunDetail } from "../live/fetching";
 import { useLive } from "../live/live";
-import { type Detail } from "../live/store";
+import type { Detail } from "../live/store";
+import { tell } from "../live/toasts";
 import { navigate, setQuery } from "../router";
 import { ArchiveMap } from "../view/archive/ArchiveMap";
 import type { ColourBy } from "../view/archive/draw";
@@ -52,7 +54,7 @@ export function RunPage({ id, query }: Props) {
       <Standing run={run} />
       <div class="run-columns">
         <ArchiveCard run={run} detail={detail} query={query} />
-        <section class="card" aria-labelledby="curves-title">
+        <section class="card curves-card" aria-labelledby="curves-title">
           <h2 id="curves-title">Curves</h2>
           {detail?.curves && detail.curves.generation.length > 0 ? (
             <Curves curves={detail.curves} />
@@ -171,12 +173,8 @@ function Files({ run }: { run: Run }) {
     <section class="card files" aria-labelledby="files-title">
       <h2 id="files-title">Files</h2>
       <p class="links">
-        <a class="button" href={archiveUrl(run.id, "h5")} download={`${short(run.id)}.h5`}>
-          archive.h5
-        </a>
-        <a class="button" href={archiveUrl(run.id, "csv")} download={`${short(run.id)}.csv`}>
-          archive.csv
-        </a>
+        <ArchiveLink url={archiveUrl(run.id, "h5")} name="archive.h5" />
+        <ArchiveLink url={archiveUrl(run.id, "csv")} name="archive.csv" />
         <a class="button" href={href} download={`${short(run.id)}-spec.json`}>
           spec.json
         </a>
@@ -191,5 +189,20 @@ function Files({ run }: { run: Run }) {
         <pre>{spec}</pre>
       </details>
     </section>
+  );
+}
+
+/** A download that says why where there is no file yet. */
+function ArchiveLink({ url, name }: { url: string; name: string }) {
+  const download = (event: MouseEvent) => {
+    event.preventDefault();
+    proveFile(url)
+      .then(() => location.assign(url))
+      .catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
+  };
+  return (
+    <a class="button" href={url} onClick={download}>
+      {name}
+    </a>
   );
 }

@@ -14,7 +14,6 @@ const CURVES = [
 ] as const;
 
 const SYNC = "generations";
-const HEIGHT = 128;
 
 export function Curves({ curves }: { curves: Columns }) {
   return (
@@ -26,12 +25,12 @@ export function Curves({ curves }: { curves: Columns }) {
   );
 }
 
-type Props = (typeof CURVES)[number] & { x: readonly number[]; y: readonly number[] };
+type Props = (typeof CURVES)[number] & { x: readonly number[]; y: readonly (number | null)[] };
 
 function Curve({ title, colour, write, x, y }: Props) {
   const host = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
-  const { width } = useSize(host);
+  const { width, height } = useSize(host);
   const theme = useTheme();
   const drawn = width > 0;
 
@@ -39,17 +38,17 @@ function Curve({ title, colour, write, x, y }: Props) {
     if (!drawn) return;
     const style = getComputedStyle(host.current!);
     const ink = (name: string) => style.getPropertyValue(name).trim();
-    const options = optionsOf(title, write, ink, colour, host.current!.clientWidth);
+    const options = optionsOf(title, write, ink, colour);
     plot.current = new uPlot(options, [[], []], host.current!);
     return () => plot.current?.destroy();
   }, [drawn, theme, title, write, colour]);
 
   useEffect(() => {
-    if (drawn) plot.current?.setSize({ width, height: HEIGHT });
-  }, [drawn, width]);
+    if (drawn) plot.current?.setSize({ width, height });
+  }, [drawn, width, height, theme]);
 
   useEffect(() => {
-    plot.current?.setData([x as number[], y as number[]]);
+    plot.current?.setData([x as number[], y as (number | null)[]]);
   }, [x, y, drawn, theme]);
 
   const last = y.at(-1);
@@ -60,17 +59,16 @@ function Curve({ title, colour, write, x, y }: Props) {
         <span>{title}</span>
         <b>{text}</b>
       </figcaption>
-      <div ref={host} role="img" aria-label={`${title} over generations: now ${text}`} />
+      <div ref={host} class="plot" role="img" aria-label={`${title} over generations: now ${text}`} />
     </figure>
   );
 }
 
 function optionsOf(
   title: string,
-  write: (value: number) => string,
+  write: (value: number | null) => string,
   ink: (name: string) => string,
   colour: string,
-  width: number,
 ): uPlot.Options {
   const axis: uPlot.Axis = {
     stroke: ink("--quiet"),
@@ -79,11 +77,11 @@ function optionsOf(
     font: "11px system-ui, sans-serif",
   };
   return {
-    width,
-    height: HEIGHT,
+    width: 1, // Both follow at once, from the element's own size.
+    height: 1,
     legend: { show: false },
     cursor: { sync: { key: SYNC }, y: false, drag: { x: false, y: false } },
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, y: { range: fromZero } },
     axes: [
       { ...axis, size: 24, gap: 4 },
       { ...axis, size: 52, gap: 6, values: (_, values) => values.map((v) => write(v)) },
@@ -102,8 +100,13 @@ function optionsOf(
   };
 }
 
+/** From zero, so that curves can be compared by eye. */
+function fromZero(_: uPlot, low: number | null, high: number | null): [number, number] {
+  return [Math.min(0, low ?? 0), Math.max(0, high ?? 1) * 1.06 || 1];
+}
+
 /** The value under the pointer, and under the pointer's place on the other curves. */
-function tooltip(write: (value: number) => string): uPlot.Plugin {
+function tooltip(write: (value: number | null) => string): uPlot.Plugin {
   const box = document.createElement("div");
   box.className = "curve-tip";
   return {

@@ -36,8 +36,8 @@ export function bytes(value: number): string {
   return `${number(value / 1000 ** i)} ${units[i]}`;
 }
 
-export function percent(value: number | null): string {
-  return value === null ? DASH : `${number(100 * value)} %`;
+export function percent(value: number | null | undefined): string {
+  return value == null ? DASH : `${number(100 * value)} %`;
 }
 
 export function duration(seconds: number | null): string {

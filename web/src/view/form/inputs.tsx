@@ -26,7 +26,7 @@ export function NumberInput({ id, value, invalid, onChange, field }: Common & { 
         autoComplete="off"
         spellcheck={false}
         value={text}
-        placeholder={field.nullable ? "automatic" : ""}
+        placeholder={field.nullable ? "auto" : ""}
         title={rangeText(field.range)}
         aria-invalid={invalid}
         aria-describedby={`${id}-about`}

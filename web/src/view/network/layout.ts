@@ -32,7 +32,7 @@ export function layoutOf({ neurons, links, depth }: Network): Layout {
   const columns = Array.from({ length: depth + 1 }, (_, layer) =>
     neurons.filter((neuron) => neuron.depth === layer),
   );
-  const height = Math.max(180, ROW * Math.max(...columns.map((column) => column.length)));
+  const height = Math.max(2 * ROW, ROW * Math.max(...columns.map((column) => column.length)));
   const spots = columns.flatMap((column) =>
     column.map((neuron, i): Spot => {
       const y = (height * (i + 1)) / (column.length + 1);

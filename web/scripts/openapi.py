@@ -1,0 +1,16 @@
+"""Print the server's OpenAPI document: `.venv/bin/python web/scripts/openapi.py`."""
+
+import json
+
+from server.app import create_app
+from server.services import connect
+from server.settings import Settings
+
+
+def main() -> None:
+    app = create_app(connect(Settings()))
+    print(json.dumps(app.openapi(), indent=1, sort_keys=True))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,162 @@
+import { describe, expect, it } from "vitest";
+import type { Archive, GenerationEvent, Generations, Run } from "../src/api/types";
+import { type Action, EMPTY, type State, epochOf, reduce } from "../src/live/store";
+import { LONGEST, appendCurves } from "../src/live/curves";
+import { withPoint } from "../src/live/pace";
+
+const RUN = {
+  id: "a",
+  created_at: "2026-01-02T00:00:00Z",
+  generation: 2,
+  generations: 10,
+  evaluations: 32,
+  sparkline: [1, 2],
+} as Run;
+
+const ARCHIVE: Archive = {
+  generation: 2,
+  axes: [],
+  cell: [0, 5],
+  fitness: [1, 2],
+  descriptors: [[0, 0], [1, 1]],
+  elite_generation: [1, 2],
+  creature: ["aa", "bb"],
+};
+
+const column = [1, 2];
+const GENERATIONS: Generations = {
+  generation: column,
+  qd_score: column,
+  coverage: column,
+  best: column,
+  mean: column,
+  evaluations: [16, 32],
+  diverged: [0, 0],
+  seconds: [1, 2],
+};
+
+function generation(number: number): GenerationEvent {
+  const [evaluations, seconds] = [16 * number, 2 * number];
+  const values = { qd_score: number, coverage: number, best: number, mean: number, diverged: 0 };
+  return { run: "a", generation: number, evaluations, seconds, ...values };
+}
+
+function elites(told: number, cell: number, creature: string): Action {
+  const columns = { cell: [cell], fitness: [9], descriptors: [[0, 0]], creature: [creature] };
+  const event = { run: "a", generation: told, elite_generation: [told], ...columns };
+  return { type: "elites", event };
+}
+
+const snapshot = (state: State): Action => ({
+  type: "snapshot",
+  run: "a",
+  epoch: epochOf(state, "a"),
+  archive: ARCHIVE,
+  generations: GENERATIONS,
+});
+
+function after(...actions: (Action | ((state: State) => Action))[]): State {
+  return actions.reduce<State>((state, action) => {
+    return reduce(state, typeof action === "function" ? action(state) : action);
+  }, EMPTY);
+}
+
+const opened = after({ type: "run", run: RUN }, snapshot);
+const creatures = (state: State) =>
+  [...state.details.get("a")!.elites].map(([cell, { creature }]) => [cell, creature]);
+
+describe("events", () => {
+  it("change the cells that they name and no others", () => {
+    const next = reduce(opened, elites(3, 5, "cc"));
+    expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
+    expect(creatures(opened)).toEqual([[0, "aa"], [5, "bb"]]);
+  });
+
+  it("make a run's numbers and curves longer, each generation once", () => {
+    const event = { type: "generation", event: generation(3) } as const;
+    const next = reduce(reduce(opened, event), event);
+    expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
+    expect(next.runs.get("a")).toMatchObject({ generation: 3, progress: 0.3, qd_score: 3 });
+  });
+
+  it("tell the rate and the time left from two generations on", () => {
+    const next = [3, 4].reduce<State>(
+      (state, number) => reduce(state, { type: "generation", event: generation(number) }),
+      opened,
+    );
+    // 16 evaluations in 2 seconds, and 6 of 10 generations of 16 to come.
+    expect(next.runs.get("a")).toMatchObject({ evaluations_per_second: 8, eta_seconds: 12 });
+  });
+
+  it("of runs that are not open leave no trace", () => {
+    expect(after(elites(1, 0, "x")).details.size).toBe(0);
+  });
+
+  it("put a new run at the head of the list", () => {
+    const newer = { ...RUN, id: "b", created_at: "2026-01-03T00:00:00Z" };
+    const older = { ...RUN, id: "c", created_at: "2026-01-01T00:00:00Z" };
+    const runs = [RUN, newer, older].map((run): Action => ({ type: "run", run }));
+    expect(after(...runs).listed).toEqual(["b", "a", "c"]);
+  });
+});
+
+describe("a snapshot", () => {
+  it("keeps what events told of later generations while it was on its way", () => {
+    const later = reduce(reduce(opened, elites(3, 5, "cc")), elites(2, 0, "old"));
+    const next = reduce(later, snapshot(later));
+    expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
+  });
+
+  it("asked for before a reset is not taken", () => {
+    const late = snapshot(EMPTY);
+    expect(after({ type: "reset" }, late).details.size).toBe(0);
+  });
+});
+
+describe("a rewind", () => {
+  const rewind = { type: "rewind", event: { run: "a", generation: 1 } } as const;
+
+  it("drops cells and curves of later generations", () => {
+    const next = reduce(reduce(opened, elites(3, 7, "cc")), rewind);
+    expect(creatures(next)).toEqual([[0, "aa"]]);
+    expect(next.details.get("a")!.curves!.generation).toEqual([1]);
+  });
+
+  it("asks for that run to be fetched again, and for no other", () => {
+    const next = reduce(opened, rewind);
+    expect(epochOf(next, "a")).toBe(epochOf(opened, "a") + 1);
+    expect(epochOf(next, "b")).toBe(epochOf(opened, "b"));
+  });
+
+  it("makes a snapshot that was asked for before it worthless", () => {
+    const late = snapshot(opened);
+    const next = reduce(reduce(opened, rewind), late);
+    expect(creatures(next)).toEqual([[0, "aa"]]);
+  });
+});
+
+describe("a reset", () => {
+  it("asks for everything to be fetched again and forgets nothing meanwhile", () => {
+    const next = reduce(opened, { type: "reset" });
+    expect(epochOf(next, "a")).toBe(epochOf(opened, "a") + 1);
+    expect(epochOf(next, "b")).toBe(epochOf(opened, "b") + 1);
+    expect(creatures(next)).toEqual(creatures(opened));
+  });
+});
+
+describe("long runs", () => {
+  it("are thinned out instead of growing for ever", () => {
+    const full = Array.from({ length: LONGEST }, (_, i) => i);
+    const curves = { generation: full, qd_score: full, coverage: full, best: full };
+    const next = appendCurves(curves, generation(LONGEST));
+    expect(next.generation.length).toBe(LONGEST / 2 + 1);
+    expect(next.generation.at(-1)).toBe(LONGEST);
+  });
+
+  it("keep a straight sparkline straight", () => {
+    let line: number[] = [];
+    for (let g = 1; g <= 200; g++) line = withPoint(line, g - 1, 3 * g, g);
+    expect(line.length).toBe(32);
+    line.forEach((value, k) => expect(value).toBeCloseTo(3 + (k * 597) / 31, 6));
+  });
+});
