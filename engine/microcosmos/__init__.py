@@ -1,1 +1,33 @@
-"""Evolve swimming creatures: filaments in a viscous fluid, NEAT inside quality-diversity."""
+"""Evolve swimming creatures: filaments in a viscous fluid, NEAT inside quality-diversity.
+
+Names are loaded when they are first used (PEP 562), so that importing the library, or its
+JAX-free parts, does not load JAX.
+"""
+
+from importlib import import_module
+from typing import Any
+
+from .version import VERSION as __version__
+
+_HOME = {
+    "EXPERIMENTS": "spec",
+    "QualityDiversity": "spec",
+    "parse": "spec",
+    "build": "build",
+    "evolve": "local",
+    "prepare": "device",
+    "record": "render",
+    "check": "render",
+}
+
+__all__ = [*_HOME, "__version__"]  # pyright: ignore[reportUnsupportedDunderAll]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_HOME[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -9,7 +9,8 @@ import numpy as np
 
 from . import bodies, coupling, device, filaments, fluid, genomes, neat, search, world
 from .archive import naming
-from .experiments.quality_diversity import Plan, Programs, QualityDiversity
+from .experiments.quality_diversity import Programs, QualityDiversity
+from .experiments.state import Plan
 from .spec import OUTPUTS, Body, Control, Coupling, Genome, Spec
 from .spec import World as WorldSpec
 
@@ -24,7 +25,8 @@ TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
 
 def build(spec: Spec) -> QualityDiversity:
     """The experiment that a spec describes, its programs ready to be compiled."""
-    genes, axes, batch = build_genes(spec), build_axes(spec), spec.search.batch
+    plan = build_plan(spec)
+    genes, axes, batch = plan.genes, plan.axes, plan.batch
     key = jax.random.key(spec.seed)
     # Bound one by one: a program is compiled for this run's sizes and seed.
     programs = Programs(
@@ -33,7 +35,7 @@ def build(spec: Spec) -> QualityDiversity:
         evaluate_block=build_block(spec),
         insert=jax.jit(lambda a, c: search.insert(a, search.named(c), axes)),
     )
-    return QualityDiversity(build_plan(spec), axes, genes, programs, device.device_kind())
+    return QualityDiversity(plan, programs)
 
 
 def build_block(spec: Spec):
@@ -53,6 +55,9 @@ def build_plan(spec: Spec) -> Plan:
         variation=spec.search.variation,
         cells=spec.archive.cells,
         descriptors=tuple(axis.name for axis in spec.archive.descriptors),
+        axes=build_axes(spec),
+        genes=build_genes(spec),
+        device=device.device_kind(),
     )
 
 

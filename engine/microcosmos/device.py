@@ -8,7 +8,7 @@ import platform
 from pathlib import Path
 
 import jax
-import jaxlib
+from jaxlib.version import __version__ as jaxlib_version
 
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
 
@@ -37,7 +37,7 @@ def device_kind() -> str:
     device = jax.local_devices()[0]
     model = _processor() if device.platform == "cpu" else device.device_kind
     flags = " ".join(sorted(os.environ.get("XLA_FLAGS", "").replace(GPU_FLAGS, "").split()))
-    parts = [device.platform, model, f"jaxlib {jaxlib.__version__}"]
+    parts = [device.platform, model, f"jaxlib {jaxlib_version}"]
     return ", ".join([*parts, flags] if flags else parts)
 
 
@@ -46,11 +46,8 @@ def _processor() -> str:
     info = Path("/proc/cpuinfo")
     if not info.exists():
         return platform.processor() or platform.machine()
-    fields = dict(
-        (part.strip() for part in line.split(":", 1))
-        for line in info.read_text().splitlines()
-        if ":" in line
-    )
+    lines = [line.partition(":") for line in info.read_text().splitlines()]
+    fields = {name.strip(): value.strip() for name, _, value in lines}
     flags = fields.get("flags", "").split()
     widest = next((f for f in ("avx512f", "avx2", "avx", "sse2") if f in flags), "no vectors")
     return f"{fields.get('model name', platform.machine())} {widest}"

@@ -1,13 +1,16 @@
 """NEAT genes of a CPPN as they are written in a creature file, and their soundness."""
 
+from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
 from ..spec.base import Part
-from .encoding import ACTIVATIONS, decode
+from .encoding import decode
 
-Activation = Literal[ACTIVATIONS]  # pyright: ignore[reportInvalidTypeForm]
+Activation = Literal[
+    "identity", "sigmoid", "tanh", "relu", "sin", "cos", "gaussian", "abs", "square"
+]
 
 MAX_NODES, MAX_CONNECTIONS = 1024, 8192
 
@@ -79,7 +82,7 @@ def _same_length(where: str, *columns) -> None:
 
 
 def _increasing(where: str, numbers: tuple[int, ...]) -> None:
-    if any(a >= b for a, b in zip(numbers, numbers[1:], strict=False)):
+    if any(a >= b for a, b in pairwise(numbers)):
         raise ValueError(f"`{where}` must increase strictly")
 
 

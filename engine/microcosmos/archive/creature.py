@@ -9,11 +9,10 @@ from pydantic import Field, ValidationError, model_validator
 from ..spec import Body, Control, Coupling, Genome, QualityDiversity, Search, Task, World
 from ..spec.base import Part
 from .cppn_genes import Connections, Nodes, check_genes
-from .naming import FORMAT, canonical, name
+from .naming import FORMAT, LICENCE, canonical, name
 
 __all__ = ["FORMAT", "CreatureError", "canonical", "document", "name", "parse", "spec_of"]
 
-LICENCE = "CC-BY-4.0"
 
 Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 

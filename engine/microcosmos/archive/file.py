@@ -9,9 +9,6 @@ import numpy as np
 
 FORMAT = "microcosmos-archive/1"
 
-DEVICE_SEPARATOR = " | "
-"""Between the kinds of device in `device`, where a run went on on another one."""
-
 Tree = dict[str, Any]
 
 

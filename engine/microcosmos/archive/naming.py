@@ -7,6 +7,7 @@ from typing import Any
 import rfc8785
 
 FORMAT = "microcosmos-creature/1"
+LICENCE = "CC-BY-4.0"
 
 
 def canonical(identity: Mapping[str, Any]) -> bytes:

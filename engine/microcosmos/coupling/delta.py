@@ -53,7 +53,7 @@ def read(plane: Plane, at: Windows) -> Float[Array, "node 4 4"]:
     return plane.reshape(-1)[at.cells]
 
 
-def spread(values: Vectors, at: Windows, size: tuple[int, int]) -> Float[Array, "2 x y"]:
+def spread(values: Vectors, at: Windows, size: tuple[int, ...]) -> Float[Array, "2 x y"]:
     """S: the density that values at nodes make in the cells."""
     amounts = values.T[:, :, None, None] * at.weights[None]
     plane = jnp.zeros((2, size[0] * size[1]), values.dtype)

@@ -1,46 +1,21 @@
-"""Who descends from whom: every elite there ever was, with its parent and operator."""
+"""Naming the creatures that enter the archive, and writing down where they come from."""
 
-from __future__ import annotations
-
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import equinox as eqx
 import jax
 import numpy as np
-from jaxtyping import Array, Float, Int, UInt8
 
 from .. import search
 from ..archive import naming
 from ..genomes import CPPN, take, to_genes
 from ..version import VERSION
 from .report import Elite
-
-if TYPE_CHECKING:
-    from .quality_diversity import QualityDiversity, State
+from .state import Lineage, Plan, State
 
 NOBODY = np.zeros(32, np.uint8)
-
-
-class Lineage(eqx.Module):
-    """One row for each entry into the archive, in order."""
-
-    creature: UInt8[Array, "entry 32"]
-    parent: UInt8[Array, "entry 32"]
-    """Zeros where there is none."""
-    operator: Int[Array, "entry"]
-    generation: Int[Array, "entry"]
-    cell: Int[Array, "entry"]
-    fitness: Float[Array, "entry"]
-    descriptors: Float[Array, "entry axis"]
-
-    @staticmethod
-    def empty(axes: int) -> Lineage:
-        """Nobody yet."""
-        names, numbers = np.zeros((0, 32), np.uint8), np.zeros(0, np.int32)
-        values = np.zeros((0, axes), np.float32)
-        return Lineage(names, names, numbers, numbers, numbers, np.zeros(0, np.float32), values)
 
 
 @dataclass(frozen=True)
@@ -53,78 +28,115 @@ class News:
     lineage: Lineage
 
 
-def identity(frame: Mapping[str, Any], network: CPPN) -> dict[str, Any]:
-    """What a network is in the world, body and task of `frame`."""
-    return {**frame, "genome": {**frame["genome"], **to_genes(network)}}
-
-
 def record(
-    experiment: QualityDiversity,
+    plan: Plan,
     state: State,
     children: search.Children,
     evaluation: search.Evaluation,
     cells: np.ndarray,
     slots: np.ndarray,
 ) -> News:
-    """Name the creatures that entered and write down where they come from."""
-    names = state.creatures.copy()
-    operators = state.operators.copy()
-    parents = [
-        state.creatures[cell] if cell != search.NO_PARENT else NOBODY
-        for cell in children.parent[slots].tolist()
-    ]
-    elites = []
-    for cell, slot, parent in zip(cells.tolist(), slots.tolist(), parents, strict=True):
-        elite = _elite(experiment, state.generation, children, evaluation, cell, slot, parent)
-        elites.append(elite)
-        names[cell] = np.frombuffer(bytes.fromhex(elite.creature), np.uint8)
-        operators[cell] = children.operator[slot]
-    columns = [evaluation.features[slots, axis.feature] for axis in experiment.axes]
-    new = Lineage(
-        creature=names[cells],
-        parent=np.array(parents, np.uint8).reshape(-1, 32),
-        operator=children.operator[slots].astype(np.int32),
-        generation=np.full(len(slots), state.generation, np.int32),
-        cell=cells.astype(np.int32),
-        fitness=evaluation.fitness[slots],
-        descriptors=np.stack(columns, 1),
+    """The elites of the slots that entered, and the records with them added."""
+    generation = state.generation + 1
+    operator, origin = np.asarray(children.operator)[slots], np.asarray(children.parent)[slots]
+    fitness, features = np.asarray(evaluation.fitness)[slots], np.asarray(evaluation.features)
+    features = features[slots]
+    parents = np.where((origin != search.NO_PARENT)[:, None], state.creatures[origin], NOBODY)
+    elites = tuple(
+        _elite(
+            plan,
+            take(children.networks, slot),
+            features[i],
+            cell=int(cells[i]),
+            generation=generation,
+            operator=int(operator[i]),
+            parent=parents[i],
+        )
+        for i, slot in enumerate(slots.tolist())
     )
+    names = [np.frombuffer(bytes.fromhex(elite.creature), np.uint8) for elite in elites]
+    creatures, operators = state.creatures.copy(), state.operators.copy()
+    operators[cells] = operator
+    new = Lineage(
+        creature=np.array(names, np.uint8).reshape(-1, 32),
+        parent=parents,
+        operator=operator.astype(np.int32),
+        generation=np.full(len(slots), generation, np.int32),
+        cell=cells.astype(np.int32),
+        fitness=fitness,
+        descriptors=features[:, [axis.feature for axis in plan.axes]],
+    )
+    creatures[cells] = new.creature
     lineage = jax.tree.map(lambda a, b: np.concatenate([a, b]), state.lineage, new)
-    return News(tuple(elites), names, operators, lineage)
+    return News(elites, creatures, operators, lineage)
 
 
-def _elite(experiment, generation, children, evaluation, cell, slot, parent) -> Elite:
-    plan, genes = experiment.plan, experiment.genes
-    whole = identity(plan.frame, take(children.networks, slot))
-    values = evaluation.features[slot].tolist()
-    features = dict(zip(search.FEATURES, values, strict=True))
+def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
+    """The creature file of a cell's elite."""
+    elites = jax.tree.map(lambda x: np.asarray(x)[cell], state.elites)
+    entry = np.flatnonzero(state.lineage.cell == cell)[-1]
+    elite = _elite(
+        plan,
+        elites.networks,
+        elites.features,
+        cell=cell,
+        generation=int(elites.generation),
+        operator=int(state.operators[cell]),
+        parent=state.lineage.parent[entry],
+    )
+    return {
+        "identity": json.loads(elite.identity),
+        "sha256": elite.creature,
+        "measured": elite.measured,
+        "provenance": elite.provenance,
+        "licence": naming.LICENCE,
+    }
+
+
+def identity(frame: Mapping[str, Any], network: CPPN) -> dict[str, Any]:
+    """What a network is in the world, body and task of `frame`."""
+    return {**frame, "genome": {**frame["genome"], **to_genes(network)}}
+
+
+def _elite(
+    plan: Plan,
+    network: CPPN,
+    values: np.ndarray,
+    *,
+    cell: int,
+    generation: int,
+    operator: int,
+    parent: np.ndarray,
+) -> Elite:
+    whole = identity(plan.frame, network)
+    features: dict[str, float] = dict(zip(search.FEATURES, values.tolist(), strict=True))
     descriptors = {name: features[name] for name in plan.descriptors}
-    fitness = float(evaluation.fitness[slot])
     parents = (bytes(parent).hex(),) if parent.any() else ()
-    operator = search.OPERATORS[int(children.operator[slot])]
+    measured = {
+        "fitness": features["displacement"],
+        "descriptors": descriptors,
+        "features": features,
+        "block": plan.block,
+        "room": list(plan.room),
+        "device": plan.device,
+    }
+    provenance = {
+        "parents": list(parents),
+        "operator": search.OPERATORS[operator],
+        "generation": generation,
+        "seed": plan.seed,
+        "version": VERSION,
+    }
     return Elite(
         cell=cell,
-        fitness=fitness,
+        fitness=features["displacement"],
         descriptors=tuple(descriptors.values()),
         features=features,
         creature=naming.name(whole),
         identity=naming.canonical(whole),
         parents=parents,
-        operator=operator,
+        operator=search.OPERATORS[operator],
         generation=generation,
-        measured={
-            "fitness": fitness,
-            "descriptors": descriptors,
-            "features": features,
-            "block": plan.block,
-            "room": [genes.max_nodes, genes.max_connections],
-            "device": experiment.device,
-        },
-        provenance={
-            "parents": list(parents),
-            "operator": operator,
-            "generation": generation,
-            "seed": plan.seed,
-            "version": VERSION,
-        },
+        measured=measured,
+        provenance=provenance,
     )

@@ -1,12 +1,13 @@
 """What is inherited and varied, and how it becomes a controller."""
 
 from .cppn import ACTIVATIONS, CPPN, depths, evaluate
-from .development import Controls, develop, linear, network_inputs, sine_cosine
+from .development import OUTPUTS, Controls, develop, linear, network_inputs, sine_cosine
 from .identity import empty, from_genes, take, to_genes
 
 __all__ = [
     "ACTIVATIONS",
     "CPPN",
+    "OUTPUTS",
     "Controls",
     "depths",
     "develop",

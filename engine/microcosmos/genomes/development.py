@@ -9,6 +9,9 @@ from jaxtyping import Array, Float
 from ..filaments import Rest
 from .cppn import CPPN, evaluate
 
+OUTPUTS = 2
+"""Rest angle and rest length."""
+
 
 @dataclass(frozen=True)
 class Controls:
@@ -53,7 +56,7 @@ def develop(network: CPPN, controls: Controls) -> Rest:
     """
     dtype = network.bias.dtype
     steps = len(controls.ramp)
-    outputs = evaluate(network, jnp.asarray(controls.inputs, dtype), outputs=2)
+    outputs = evaluate(network, jnp.asarray(controls.inputs, dtype), OUTPUTS)
     angle, length = (jnp.tanh(row).reshape(steps, -1) for row in outputs)
     ramp = jnp.asarray(controls.ramp, dtype)[:, None]
     length = 0.5 * (length[:, controls.edges[:, 0]] + length[:, controls.edges[:, 1]])

@@ -18,14 +18,14 @@ def to_genes(network: CPPN) -> dict[str, Any]:
         "nodes": {
             "id": ids[:n].tolist(),
             "activation": [ACTIVATIONS[a] for a in network.activation[:n].tolist()],
-            "bias": encode(network.bias[:n]),
+            "bias": encode(np.asarray(network.bias[:n])),
         },
         "connections": {
             "innovation": network.innovation[:c].tolist(),
             "source": ids[network.source[:c]].tolist(),
             "target": ids[network.target[:c]].tolist(),
             "enabled": network.enabled[:c].tolist(),
-            "weight": encode(network.weight[:c]),
+            "weight": encode(np.asarray(network.weight[:c])),
         },
     }
 

@@ -1,7 +1,16 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
-from .blocks import Stopped, evaluate_blocks
-from .evaluation import FEATURES, STATUSES, Evaluation, Task, block_program, evaluate
+from .blocks import Stopped, evaluate_blocks, never
+from .evaluation import (
+    FEATURES,
+    STATUSES,
+    Evaluation,
+    Task,
+    block_program,
+    centre,
+    evaluate,
+    measure,
+)
 from .insertion import Axis, Elites, cells_of, digest, insert, named, no_elites
 from .variation import NO_PARENT, OPERATORS, Children, Genes, newcomers, vary
 
@@ -19,11 +28,14 @@ __all__ = [
     "Task",
     "block_program",
     "cells_of",
+    "centre",
     "digest",
     "evaluate",
     "evaluate_blocks",
     "insert",
+    "measure",
     "named",
+    "never",
     "newcomers",
     "no_elites",
     "vary",

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..filaments import Rest
-from ..genomes import CPPN, Controls, develop
+from ..genomes import CPPN, OUTPUTS, Controls, develop
 from ..world import State, World, flow, rollout
 
 FEATURES = (
@@ -53,12 +53,25 @@ class Task(eqx.Module):
 def evaluate(task: Task, network: CPPN) -> Evaluation:
     """Simulate one creature; fitness is the displacement of its mean node, in cells."""
     rest = develop(network, task.controls)
-    end, centres = rollout(task.world, task.start, rest, lambda s: jnp.mean(s.positions, 0))
-    start = jnp.mean(task.start.positions, 0)
+    end, centres = rollout(task.world, task.start, rest, centre)
+    features = measure(task, network, rest, end, centres)
+    fitness = features[FEATURES.index("displacement")]
+    return Evaluation(fitness, features, status(task.world, end, features))
+
+
+def centre(state: State) -> Float[Array, "2"]:
+    """The mean unwrapped node position, in cells."""
+    return jnp.mean(state.positions, 0)
+
+
+def measure(
+    task: Task, network: CPPN, rest: Rest, end: State, centres: Float[Array, "time 2"]
+) -> Float[Array, "feature"]:
+    """The features of a simulated creature, in the order of `FEATURES`."""
+    start = centre(task.start)
     moved = jnp.diff(jnp.concatenate([start[None], centres]), axis=0)
-    displacement = _norm(centres[-1] - start)
-    path = jnp.sum(_norm(moved))
-    hidden = jnp.sum(network.node_used) - len(task.controls.inputs) - 2
+    displacement, path = _norm(centres[-1] - start), jnp.sum(_norm(moved))
+    fixed = task.controls.inputs.shape[0] + OUTPUTS
     values = {
         "displacement": displacement,
         "bending_effort": effort(rest.angle),
@@ -66,11 +79,10 @@ def evaluate(task: Task, network: CPPN) -> Evaluation:
         "path_length": path,
         "straightness": displacement / jnp.maximum(path, 1e-12),
         "rotation": jnp.mean(end.angles - task.start.angles),
-        "hidden_nodes": hidden,
+        "hidden_nodes": jnp.sum(network.node_used) - fixed,
         "connections": jnp.sum(network.connection_used & network.enabled),
     }
-    features = jnp.stack([values[name].astype(displacement.dtype) for name in FEATURES])
-    return Evaluation(displacement, features, status(task.world, end, features))
+    return jnp.stack([values[name].astype(displacement.dtype) for name in FEATURES])
 
 
 def effort(rest: Float[Array, "time item"]) -> Float[Array, ""]:

@@ -45,16 +45,15 @@ class Elites(eqx.Module):
 
 def no_elites(cells: int, features: int, max_nodes: int, max_connections: int) -> Elites:
     """An archive without any elite."""
-    arrays = Elites(
-        occupied=np.zeros(cells, bool),
-        fitness=np.zeros(cells, np.float32),
-        features=np.zeros((cells, features), np.float32),
-        generation=np.zeros(cells, np.int32),
-        slot=np.zeros(cells, np.int32),
-        digest=np.zeros((cells, 2), np.uint32),
-        networks=empty(max_nodes, max_connections, (cells,)),
+    return Elites(
+        occupied=jnp.zeros(cells, bool),
+        fitness=jnp.zeros(cells, jnp.float32),
+        features=jnp.zeros((cells, features), jnp.float32),
+        generation=jnp.zeros(cells, jnp.int32),
+        slot=jnp.zeros(cells, jnp.int32),
+        digest=jnp.zeros((cells, 2), jnp.uint32),
+        networks=jax.tree.map(jnp.asarray, empty(max_nodes, max_connections, (cells,))),
     )
-    return jax.tree.map(jnp.asarray, arrays)
 
 
 def cells_of(

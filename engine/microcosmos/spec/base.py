@@ -1,6 +1,7 @@
 """What every part of a spec shares: nothing unknown is accepted and nothing changes."""
 
 from pydantic import BaseModel, ConfigDict
+from pydantic.config import JsonDict
 
 
 class Part(BaseModel):
@@ -15,6 +16,6 @@ class Part(BaseModel):
     )
 
 
-def unit(name: str) -> dict[str, str]:
+def unit(name: str) -> JsonDict:
     """The unit of a field, for the forms that people fill in."""
     return {"unit": name}

@@ -17,13 +17,13 @@ class Control(Part):
     """Time as sine and cosine of the phase, or rising linearly from 0 to 1."""
     position: Literal["signed", "unit"] = "signed"
     """Position along the filament from −1 to 1, or from 0 to 1."""
-    period: float = Field(100.0, ge=4.0, le=1e6, json_schema_extra=unit("steps"))
+    period: float = Field(default=100.0, ge=4.0, le=1e6, json_schema_extra=unit("steps"))
     """Period of the sine and cosine."""
-    ramp: float = Field(1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
+    ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
     """Over how many periods the actuation grows from nothing to its full size."""
-    angle_scale: float = Field(0.5, gt=0.0, le=1.5, json_schema_extra=unit("rad"))
+    angle_scale: float = Field(default=0.5, gt=0.0, le=1.5, json_schema_extra=unit("rad"))
     """Rest angles are this times tanh of the output, added to the body's own."""
-    length_scale: float = Field(0.3, ge=0.0, le=0.8)
+    length_scale: float = Field(default=0.3, ge=0.0, le=0.8)
     """Rest lengths are the body's own times 1 + this times tanh of the output."""
 
     @property
@@ -34,23 +34,23 @@ class Control(Part):
 class Genome(Part):
     """Room for a CPPN, and how often each kind of mutation happens to a child."""
 
-    max_nodes: int = Field(24, ge=8, le=1024)
+    max_nodes: int = Field(default=24, ge=8, le=1024)
     """Room for nodes, inputs and outputs among them."""
-    max_connections: int = Field(64, ge=8, le=8192)
+    max_connections: int = Field(default=64, ge=8, le=8192)
     """Room for connections, disabled ones among them."""
-    weight_rate: float = Field(0.6, ge=0.0, le=1.0)
+    weight_rate: float = Field(default=0.6, ge=0.0, le=1.0)
     """Probability, for each weight and bias, to be perturbed."""
-    weight_step: float = Field(0.5, gt=0.0, le=10.0)
+    weight_step: float = Field(default=0.5, gt=0.0, le=10.0)
     """Standard deviation of a perturbation."""
-    replace_rate: float = Field(0.05, ge=0.0, le=1.0)
+    replace_rate: float = Field(default=0.05, ge=0.0, le=1.0)
     """Probability, for each weight and bias, to be drawn anew."""
-    activation_rate: float = Field(0.1, ge=0.0, le=1.0)
+    activation_rate: float = Field(default=0.1, ge=0.0, le=1.0)
     """Probability, for each node, to get another activation."""
-    toggle_rate: float = Field(0.02, ge=0.0, le=1.0)
+    toggle_rate: float = Field(default=0.02, ge=0.0, le=1.0)
     """Probability, for each connection, to be switched on or off."""
-    add_node_rate: float = Field(0.15, ge=0.0, le=1.0)
+    add_node_rate: float = Field(default=0.15, ge=0.0, le=1.0)
     """Probability that a connection is split by a new node."""
-    add_connection_rate: float = Field(0.25, ge=0.0, le=1.0)
+    add_connection_rate: float = Field(default=0.25, ge=0.0, le=1.0)
     """Probability that two nodes are newly connected."""
 
     @model_validator(mode="after")

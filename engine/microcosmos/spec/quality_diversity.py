@@ -14,7 +14,7 @@ class QualityDiversity(Part):
     """MAP-Elites over CPPN-controlled swimmers."""
 
     experiment: Literal["quality-diversity"] = "quality-diversity"
-    seed: int = Field(0, ge=0, lt=2**32)
+    seed: int = Field(default=0, ge=0, lt=2**32)
     """The one source of randomness."""
     world: World = World()
     body: Body = Body()
@@ -33,7 +33,8 @@ class QualityDiversity(Part):
             raise ValueError(
                 f"`world.width` must be at least {needed:.0f} cells for `body.nodes` = "
                 f"{self.body.nodes} at `body.spacing` = {self.body.spacing:g}, stretched by "
-                f"`control.length_scale` = {self.control.length_scale:g}; got {self.world.width}"
+                f"`control.length_scale` = {self.control.length_scale:g}; "
+                f"got {self.world.width}"
             )
         return self
 

