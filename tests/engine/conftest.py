@@ -1,0 +1,136 @@
+"""Precision, strict broadcasting, checked shapes and creatures for tests of the engine."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jaxtyping import install_import_hook
+
+PHYSICS = ("bodies", "coupling", "filaments", "fluid", "world")
+
+install_import_hook([f"microcosmos.{name}" for name in PHYSICS], "beartype.beartype")
+jax.config.update("jax_numpy_rank_promotion", "raise")
+
+from microcosmos import bodies, filaments, spec, world  # noqa: E402
+from microcosmos.build import build_world  # noqa: E402
+
+
+@pytest.fixture
+def float64():
+    """JAX computes in float64."""
+    with jax.enable_x64(True):
+        yield jnp.dtype("float64")
+
+
+@pytest.fixture(params=["float32", "float64"])
+def dtype(request):
+    """The test runs in both precisions, each with JAX set up for it."""
+    with jax.enable_x64(request.param == "float64"):
+        yield jnp.dtype(request.param)
+
+
+@pytest.fixture
+def immerse():
+    """A function that puts a body at rest in the middle of a fluid at rest."""
+
+    def put(body, dtype, *, viscosity, size=(64, 64), magic="capped", **coupling):
+        place = spec.World(width=size[0], height=size[1], viscosity=viscosity, magic=magic)
+        box = build_world(place, spec.Coupling(**coupling), body, dtype)
+        positions = body.positions - body.positions.mean(0) + np.array(size) / 2
+        return box, world.at_rest(box, jnp.asarray(positions, dtype))
+
+    return put
+
+
+@pytest.fixture
+def chain():
+    """A function that makes a straight filament with nodes one cell apart."""
+
+    def straight(nodes):
+        return bodies.chain(nodes, 1.0, stretch=1.0, shear=1.0, bend=1.0)
+
+    return straight
+
+
+@pytest.fixture
+def ring():
+    """A function that makes a closed filament with nodes one cell apart."""
+
+    def closed(nodes):
+        number, turn = np.arange(nodes), 2 * np.pi / nodes
+        radius = 0.5 / np.sin(turn / 2)
+        circle = np.stack([np.cos(number * turn), np.sin(number * turn)], 1)
+        edges = np.stack([number, (number + 1) % nodes], 1)
+        ones = np.ones(nodes)
+        return bodies.Body(
+            positions=radius * circle,
+            edges=edges,
+            joints=edges,
+            rest_length=ones,
+            rest_angle=turn * ones,
+            stretch=ones,
+            shear=ones,
+            bend=ones,
+            arc=number / nodes,
+        )
+
+    return closed
+
+
+@pytest.fixture
+def hold():
+    """A function that asks a body to keep its rest shape for a number of steps."""
+
+    def rest(body, steps, dtype):
+        return _rest(body, np.zeros((steps, len(body.joints))), dtype)
+
+    return rest
+
+
+@pytest.fixture
+def worm():
+    """A function that makes one wave travel along a filament, growing over one period."""
+
+    def gait(body, dtype, *, period, periods, amplitude=0.15):
+        t = np.arange(period * periods)[:, None] / period
+        joint = np.arange(len(body.joints))[None] / len(body.joints)
+        wave = np.sin(2 * np.pi * (joint - t))
+        return _rest(body, amplitude * np.minimum(t, 1) * wave, dtype)
+
+    return gait
+
+
+@pytest.fixture
+def reciprocal():
+    """A function that opens and closes one joint in the middle of a filament."""
+
+    def gait(body, dtype, *, period, periods):
+        t = np.arange(period * periods) / period
+        turn = np.zeros((len(t), len(body.joints)))
+        turn[:, len(body.joints) // 2] = np.minimum(t, 1) * (0.5 + 0.8 * np.sin(2 * np.pi * t))
+        return _rest(body, turn, dtype)
+
+    return gait
+
+
+@pytest.fixture
+def erratic():
+    """A function that draws large rest angles and lengths anew every 20 steps."""
+
+    def gait(body, steps, dtype, seed=0):
+        random = np.random.default_rng(seed)
+        draws = -(-steps // 20)
+        turn = random.uniform(-1, 1, (draws, len(body.joints)))
+        change = random.uniform(-0.3, 0.3, (draws, len(body.edges)))
+        rest = _rest(body, turn, dtype, change)
+        return jax.tree.map(lambda x: jnp.repeat(x, 20, 0)[:steps], rest)
+
+    return gait
+
+
+def _rest(body, turn, dtype, change=0.0):
+    """Rest shapes over time: `turn` added to angles, lengths stretched by `change`."""
+    length = body.rest_length[None] * (1 + change * np.ones((len(turn), len(body.edges))))
+    return filaments.Rest(
+        jnp.asarray(body.rest_angle[None] + turn, dtype), jnp.asarray(length, dtype)
+    )
