@@ -39,10 +39,10 @@ class Rods(eqx.Module):
 
 
 class Rest(eqx.Module):
-    """The shape that the constraints ask for."""
+    """The shape that the constraints ask for, now or at all times."""
 
-    angle: Float[Array, "joint"]
-    length: Float[Array, "edge"]
+    angle: Float[Array, "*time joint"]
+    length: Float[Array, "*time edge"]
 
 
 def wrap(angle: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
