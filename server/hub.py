@@ -56,7 +56,7 @@ class Hub:
 
     def __init__(self, url: str, stream: str):
         # Reading blocks, so that a timeout of the socket must not end it.
-        self.redis = Redis.from_url(url, socket_timeout=None, socket_connect_timeout=2)
+        self.redis: Any = Redis.from_url(url, socket_timeout=None, socket_connect_timeout=2)
         self.stream = stream
         self.read_up_to = "0-0"
         self.listeners: set[Listener] = set()

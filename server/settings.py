@@ -29,20 +29,22 @@ class Settings(BaseSettings):
     """Memory that a run may need while no worker has reported its own."""
     host: str = "127.0.0.1"
     port: int = Field(
-        8000, ge=0, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
+        default=8000, ge=0, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
     )
     token: SecretStr | None = None
     workers: int = Field(
-        1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
+        default=1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
     )
     """How many workers `make run` starts."""
-    checkpoint_interval: float = Field(60.0, ge=0.0)
+    demonstration: bool = True
+    """Whether a new data folder begins with a small run."""
+    checkpoint_interval: float = Field(default=60.0, ge=0.0)
     """Seconds between two checkpoints of a run."""
-    lease: float = Field(20.0, gt=0.0)
+    lease: float = Field(default=20.0, gt=0.0)
     """Seconds without a heartbeat after which a worker counts as dead."""
-    grace: float = Field(15.0, ge=0.0)
+    grace: float = Field(default=15.0, ge=0.0)
     """Seconds that a worker has to obey a cancellation before its job is killed."""
-    reconcile_interval: float = Field(5.0, gt=0.0)
+    reconcile_interval: float = Field(default=5.0, gt=0.0)
 
     @property
     def database(self) -> str:

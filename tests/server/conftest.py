@@ -1,0 +1,252 @@
+"""A real server on a free port, over each database, with a real Redis under its own prefix."""
+
+import base64
+import os
+import socket
+import struct
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import SimpleNamespace
+from typing import Any
+from uuid import UUID, uuid4
+
+import httpx
+import psycopg
+import pytest
+import uvicorn
+from microcosmos.archive import creature
+from microcosmos.spec import EXPERIMENTS
+from psycopg import sql
+from sqlalchemy import make_url
+
+from server import migrations
+from server.app import create_app
+from server.models import Base, Run
+from server.redis_embedded import prepare
+from server.services import Services, connect
+from server.settings import Settings
+from server.submission import submit
+
+POSTGRESQL = "postgresql://127.0.0.1:5432/postgres"
+
+
+@pytest.fixture(scope="session")
+def postgresql() -> Iterator[str | None]:
+    """A database that is ours alone, dropped at the end; None where no PostgreSQL answers."""
+    if given := os.environ.get("MICROCOSMOS_TEST_DATABASE_URL"):
+        yield given
+        return
+    name = f"microcosmos_test_{uuid4().hex[:12]}"
+    try:
+        connection = psycopg.connect(POSTGRESQL, autocommit=True, connect_timeout=2)
+    except psycopg.OperationalError:
+        yield None
+        return
+    with connection:
+        connection.execute(sql.SQL("CREATE DATABASE {}").format(sql.Identifier(name)))
+        yield str(make_url(POSTGRESQL).set(database=name))
+        drop = sql.SQL("DROP DATABASE {} WITH (FORCE)").format(sql.Identifier(name))
+        connection.execute(drop)
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url(request, tmp_path, postgresql) -> str:
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path / 'test.sqlite'}"
+    if postgresql is None:
+        pytest.skip("no PostgreSQL answers on 127.0.0.1:5432")
+    return postgresql
+
+
+@pytest.fixture(scope="session")
+def redis_url(tmp_path_factory) -> Iterator[str]:
+    """The Redis of this machine, else one of our own."""
+    with socket.socket() as probe:
+        found = probe.connect_ex(("127.0.0.1", 6379)) == 0
+    if found:
+        yield "redis://127.0.0.1:6379/0"
+        return
+    folder = tmp_path_factory.mktemp("redis")
+    redis = prepare(folder / "files")
+    process = redis.start(folder / "log")
+    redis.wait(process, folder / "log")
+    yield redis.url
+    process.terminate()
+    process.wait()
+
+
+@pytest.fixture
+def settings(tmp_path, database_url, redis_url) -> Settings:
+    """Reconciling is left to the tests, but for the pass with which a server begins."""
+    return Settings(
+        data=tmp_path,
+        database_url=database_url,
+        redis_url=redis_url,
+        redis_prefix=f"test-{uuid4().hex[:12]}:",
+        artifacts_url="",
+        max_bytes=1 << 30,
+        host="127.0.0.1",
+        token=None,
+        lease=20.0,
+        grace=15.0,
+        reconcile_interval=3600.0,
+    )
+
+
+@pytest.fixture
+def services(settings) -> Iterator[Services]:
+    """What a worker would have: the same database, Redis and files as the server."""
+    services = connect(settings)
+    migrations.upgrade(services.sessions)
+    yield services
+    with services.sessions.write.begin() as session:
+        for table in reversed(Base.metadata.sorted_tables):
+            session.execute(table.delete())
+    empty_redis(services)
+    services.close()
+
+
+def empty_redis(services: Services) -> None:
+    """Remove everything that is ours, as FLUSHALL would."""
+    for queue in (services.jobs.runs, services.jobs.replays):
+        queue.delete(delete_jobs=True)
+    for key in services.redis.scan_iter(f"*{services.settings.redis_prefix}*"):
+        services.redis.delete(key)
+
+
+@pytest.fixture
+def flush(services) -> Callable[[], None]:
+    return lambda: empty_redis(services)
+
+
+@contextmanager
+def running(settings: Settings) -> Iterator[str]:
+    """A server in a thread: its address."""
+    app = create_app(connect(settings))
+    config = uvicorn.Config(app, port=0, log_level="warning", timeout_graceful_shutdown=5)
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    while not server.started:
+        assert thread.is_alive(), "the server did not start"
+        time.sleep(0.01)
+    port = server.servers[0].sockets[0].getsockname()[1]
+    yield f"http://127.0.0.1:{port}"
+    app.state.hub.close()  # As a signal would: here it comes to another thread.
+    server.should_exit = True
+    thread.join()
+
+
+@pytest.fixture
+def serve(services) -> Callable[[], Any]:
+    """Starts servers over the same database and Redis, one after another."""
+    return lambda **changes: running(services.settings.model_copy(update=changes))
+
+
+@pytest.fixture
+def address(serve) -> Iterator[str]:
+    with serve() as address:
+        yield address
+
+
+@pytest.fixture
+def api(address) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=f"{address}/api/v1/", timeout=20) as client:
+        yield client
+
+
+@pytest.fixture
+def spec() -> dict[str, Any]:
+    return EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump(mode="json")
+
+
+@pytest.fixture
+def run_id(services, spec) -> UUID:
+    """A queued run."""
+    demo = EXPERIMENTS["quality-diversity"].presets[0].spec
+    return submit(services, demo)[0].id
+
+
+@pytest.fixture
+def row(services, run_id) -> Callable[[], Run]:
+    """The run as the database has it now."""
+
+    def read() -> Run:
+        with services.sessions.read() as session:
+            return session.get_one(Run, run_id)
+
+    return read
+
+
+def little_endian(*values: float) -> str:
+    return base64.b64encode(struct.pack(f"<{len(values)}f", *values)).decode()
+
+
+@pytest.fixture
+def identity(spec) -> Callable[[int], dict[str, Any]]:
+    """The identity of a swimmer whose one weight is a number."""
+
+    def make(number: int = 1) -> dict[str, Any]:
+        control = spec["control"]
+        genome = {
+            "encoding": "cppn",
+            "inputs": ["position", "sine", "cosine"],
+            "outputs": ["rest_angle", "rest_length"],
+            "control": control,
+            "nodes": {
+                "id": [0, 1, 2, 3, 4],
+                "activation": ["identity"] * 5,
+                "bias": little_endian(0, 0, 0, 0, 0),
+            },
+            "connections": {
+                "innovation": [0],
+                "source": [1],
+                "target": [3],
+                "enabled": [True],
+                "weight": little_endian(number),
+            },
+        }
+        return {
+            "format": "microcosmos-creature/1",
+            "genome": genome,
+            "world": {**spec["world"], "coupling": spec["coupling"]},
+            "body": spec["body"],
+            "task": spec["task"],
+        }
+
+    return make
+
+
+@pytest.fixture
+def report(identity) -> Callable[..., Any]:
+    """What an experiment reports of a generation: new elites by cell, with their fitness."""
+
+    def make(generation: int, elites: dict[int, float] | None = None) -> Any:
+        return SimpleNamespace(
+            generation=generation,
+            qd_score=10.0 * generation,
+            coverage=generation / 256,
+            best=float(generation),
+            mean=0.5 * generation,
+            evaluations=16 * generation,
+            diverged=generation,
+            elites=tuple(elite(generation, *item) for item in (elites or {}).items()),
+        )
+
+    def elite(generation: int, cell: int, fitness: float) -> Any:
+        found = identity(1000 * generation + cell)
+        return SimpleNamespace(
+            cell=cell,
+            fitness=fitness,
+            descriptors=(0.25, 0.5),
+            features={"bending_effort": 0.25, "stretching_effort": 0.5},
+            creature=creature.name(found),
+            identity=creature.canonical(found),
+            parents=(),
+            operator="random",
+            generation=generation,
+        )
+
+    return make

@@ -1,0 +1,227 @@
+"""Submitting, listing, reading and steering runs, over HTTP."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from server import workers
+from server.claims import claim
+
+PROBLEM = "application/problem+json"
+
+
+def changed(spec, path, value):
+    *parts, last = path.split(".")
+    part = spec
+    for name in parts:
+        part = part[name]
+    part[last] = value
+    return spec
+
+
+def test_experiments_carry_schema_and_presets_that_can_be_submitted(api):
+    (found,) = api.get("experiments").json()
+    assert set(found) == {"experiment", "title", "schema", "presets"}
+    assert found["schema"]["properties"]["world"]
+    names = [preset["name"] for preset in found["presets"]]
+    assert {"demo", "paper"} <= set(names)
+    for preset in found["presets"]:
+        assert api.post("runs/estimate", json=preset["spec"]).status_code == 200
+
+
+def test_a_submitted_run_is_queued_and_enqueued(api, services, spec):
+    answer = api.post("runs", json=spec)
+    assert answer.status_code == 202
+    run = answer.json()
+    assert run["status"] == "queued"
+    assert run["generations"] == spec["search"]["generations"]
+    assert run["spec"] == spec
+    assert answer.headers["location"] == f"/api/v1/runs/{run['id']}"
+    assert services.jobs.runs.get_job_ids() == [run["id"]]
+    assert api.get(f"runs/{run['id']}").json() == run
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "field", "words"),
+    [
+        ("surprise", 1, "surprise", "no field of this name"),
+        ("world.colour", "red", "world.colour", "no field of this name"),
+        ("world.viscosity", -1, "world.viscosity", "greater than or equal to 0.001"),
+        ("body.nodes", 10**9, "body.nodes", "less than or equal to 4096"),
+        ("body.nodes", 32, "world.width", "at least 44 cells"),
+        ("search.block", 4096, "search.block", "bytes of memory"),
+        ("experiment", "x", "experiment", "quality-diversity"),
+        ("seed", "one", "seed", "valid integer"),
+    ],
+)
+def test_bad_input_is_refused_with_field_and_reason(
+    api, services, spec, path, value, field, words
+):
+    if path == "search.block":
+        spec["world"] |= {"width": 1024, "height": 1024}
+    answer = api.post("runs", json=changed(spec, path, value))
+    assert answer.status_code == 422
+    assert answer.headers["content-type"] == PROBLEM
+    (error,) = answer.json()["errors"]
+    assert error["field"] == field
+    assert words in error["message"]
+    if "got" in error and path != "search.block":
+        assert error["got"] == value
+    assert api.get("runs").json()["items"] == []
+    assert services.jobs.runs.count == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "words"),
+    [
+        (b"{", 422, "JSON is needed"),
+        (b"[]", 422, "object is needed"),
+        (b'{"seed": NaN}', 422, "finite"),
+        (b'{"seed": 1e999}', 422, "finite"),
+        (b'{"a":' + b"[" * 50 + b"]" * 50 + b"}", 422, "At most 32 levels"),
+        (b'{"a":' + b"[" * 100_000, 422, "At most 32 levels"),
+        (b"\xff\xfe", 422, "JSON is needed"),
+        (b'"' + b"a" * (1 << 21) + b'"', 413, "At most 1,048,576 bytes"),
+    ],
+)
+def test_what_is_not_a_plain_json_object_is_refused(api, body, status, words):
+    answer = api.post("runs", content=body)
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == PROBLEM
+    assert words in answer.json()["detail"]
+
+
+def test_a_run_must_fit_the_largest_live_worker(api, services, spec):
+    needed = api.post("runs/estimate", json=spec).json()
+    assert needed["memory_limit_bytes"] == services.settings.max_bytes
+    workers.report(services.sessions, "small", "cpu", 1000, "idle")
+    answer = api.post("runs", json=spec)
+    assert answer.status_code == 422
+    assert f"{needed['memory_bytes']:,}" in answer.json()["detail"]
+    assert "1,000 bytes are available" in answer.json()["detail"]
+    workers.report(services.sessions, "large", "cpu", needed["memory_bytes"], "idle")
+    assert api.post("runs", json=spec).status_code == 202
+
+
+def test_the_same_key_at_once_gives_one_run(api, services, spec):
+    headers = {"Idempotency-Key": "a key"}
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(
+            pool.map(lambda _: api.post("runs", json=spec, headers=headers), range(8))
+        )
+    assert sorted(answer.status_code for answer in answers) == [200] * 7 + [202]
+    assert len({answer.json()["id"] for answer in answers}) == 1
+    assert len(api.get("runs").json()["items"]) == 1
+    assert services.jobs.runs.count == 1
+
+
+def test_a_key_cannot_be_used_for_another_spec(api, spec):
+    headers = {"Idempotency-Key": "a key"}
+    run = api.post("runs", json=spec, headers=headers).json()
+    answer = api.post("runs", json={**spec, "seed": 1}, headers=headers)
+    assert answer.status_code == 422
+    assert run["id"] in answer.json()["detail"]
+
+
+def test_runs_are_listed_newest_first_in_pages(api, spec):
+    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(5)]
+    seen, cursor = [], None
+    while True:
+        query = {"limit": 2, **({"cursor": cursor} if cursor else {})}
+        page = api.get("runs", params=query).json()
+        seen += [run["id"] for run in page["items"]]
+        cursor = page["next"]
+        if cursor is None:
+            break
+    assert seen == ids[::-1]
+    api.post(f"runs/{ids[2]}/cancel")
+    found = api.get("runs", params={"status": "cancelled"}).json()["items"]
+    assert [run["id"] for run in found] == [ids[2]]
+
+
+def test_queries_are_checked(api):
+    assert api.get("runs", params={"cursor": "nonsense"}).status_code == 422
+    answer = api.get("runs", params={"limit": 0})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == "limit"
+
+
+@pytest.mark.parametrize("path", ["runs/00000000-0000-0000-0000-000000000000", "nothing"])
+def test_what_is_not_there_is_a_problem(api, path):
+    answer = api.get(path)
+    assert answer.status_code == 404
+    assert answer.headers["content-type"] == PROBLEM
+
+
+def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, run_id, flush):
+    assert api.post(f"runs/{run_id}/pause").json()["status"] == "paused"
+    assert claim(services, run_id, "worker") is None
+    flush()
+    assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
+    assert services.jobs.runs.get_job_ids() == [str(run_id)]
+    cancelled = api.post(f"runs/{run_id}/cancel").json()
+    assert cancelled["status"] == "cancelled"
+    assert cancelled["finished_at"]
+    assert claim(services, run_id, "worker") is None
+
+
+def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    paused = api.post(f"runs/{run_id}/pause").json()
+    assert (paused["status"], paused["wish"]) == ("running", "pause")
+    assert attempt.record(report(1), 1.0) == "pause"
+    attempt.pause()
+    run = api.get(f"runs/{run_id}").json()
+    assert (run["status"], run["wish"]) == ("paused", None)
+    api.post(f"runs/{run_id}/resume")
+    attempt = claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/cancel")
+    assert attempt.wish() == "cancel"
+    attempt.cancel()
+    assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"
+
+
+def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run_id):
+    claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/pause")
+    assert api.post(f"runs/{run_id}/cancel").json()["wish"] == "cancel"
+    assert api.post(f"runs/{run_id}/pause").status_code == 409
+
+
+def test_what_the_state_forbids_is_a_conflict_that_says_why(api, services, run_id):
+    answer = api.post(f"runs/{run_id}/resume")
+    assert answer.status_code == 409
+    assert answer.json()["detail"] == "to resume a run it must be paused; it is queued"
+    claim(services, run_id, "worker").finish()
+    for action in ("pause", "resume", "cancel"):
+        answer = api.post(f"runs/{run_id}/{action}")
+        assert answer.status_code == 409
+        assert "it is finished" in answer.json()["detail"]
+
+
+def test_progress_is_what_was_recorded(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker", "a device")
+    for generation in range(1, 4):
+        attempt.record(report(generation), 2.0)
+    run = api.get(f"runs/{run_id}").json()
+    assert run["generation"] == 3
+    assert run["progress"] == 3 / run["generations"]
+    assert run["evaluations"] == 48
+    assert run["evaluations_per_second"] == 8.0
+    assert run["eta_seconds"] == (run["generations"] - 3) * 16 / 8
+    assert run["sparkline"] == [10, 20, 30]
+    assert run["device"] == "a device"
+
+
+def test_curves_are_columns_of_all_or_some_generations(api, services, run_id, report):
+    empty = api.get(f"runs/{run_id}/generations").json()
+    assert empty["generation"] == []
+    attempt = claim(services, run_id, "worker")
+    for generation in range(1, 41):
+        attempt.record(report(generation), 0.5)
+    curves = api.get(f"runs/{run_id}/generations").json()
+    assert curves["generation"] == list(range(1, 41))
+    assert curves["seconds"][-1] == 20.0
+    assert curves["mean"][3] == 2.0
+    some = api.get(f"runs/{run_id}/generations", params={"points": 5}).json()
+    assert some["generation"] == [1, 11, 21, 30, 40]
