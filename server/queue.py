@@ -1,5 +1,6 @@
 """The queues: messages that a run or a replay is to be made. The truth is in SQL."""
 
+import re
 from contextlib import suppress
 from uuid import UUID
 
@@ -30,6 +31,7 @@ class Jobs:
 
     def __init__(self, redis: Redis, prefix: str):
         self.redis = redis
+        self.slug = re.sub(r"[^\w-]", "-", prefix)
         self.runs = Queue(f"{prefix}runs", connection=redis, serializer=JSONSerializer)
         self.replays = Queue(f"{prefix}replays", connection=redis, serializer=JSONSerializer)
 
@@ -47,7 +49,7 @@ class Jobs:
 
     def render(self, creature: str) -> None:
         """Ask for a replay to be made."""
-        job_id = replay_job(creature)
+        job_id = self.replay_id(creature)
         self.forget(job_id)
         self.replays.enqueue(
             RENDER,
@@ -57,6 +59,10 @@ class Jobs:
             result_ttl=0,
             failure_ttl=FAILURE_KEPT,
         )
+
+    def replay_id(self, creature: str) -> str:
+        """All installations know the same creatures, but each has its own jobs."""
+        return f"{self.slug}replay-{creature}"
 
     def find(self, job_id: str) -> Job | None:
         with suppress(NoSuchJobError):
@@ -82,7 +88,3 @@ class Jobs:
         """Drop jobs whose worker has died; idle workers do it too, but none may be idle."""
         for queue in (self.runs, self.replays):
             clean_registries(queue)
-
-
-def replay_job(creature: str) -> str:
-    return f"replay-{creature}"

@@ -9,7 +9,6 @@ from sqlalchemy.orm import Session
 from . import creatures
 from .artifacts import replay_path
 from .models import REPLAY, Artifact, Creature
-from .queue import replay_job
 from .records import insert_missing
 from .services import Services
 
@@ -27,7 +26,7 @@ def find(session: Session, creature: str) -> Artifact | None:
 
 def order(services: Services, creature: str) -> None:
     """Have a replay made, once; `RenderingFailed` says why the last try gave none."""
-    job = services.jobs.find(replay_job(creature))
+    job = services.jobs.find(services.jobs.replay_id(creature))
     status = job.get_status() if job else None
     if status in UNDERWAY:
         return

@@ -112,7 +112,7 @@ def empty_redis(services: Services) -> None:
     """Remove everything that is ours, as FLUSHALL would."""
     for queue in (services.jobs.runs, services.jobs.replays):
         queue.delete(delete_jobs=True)
-    for key in services.redis.scan_iter(f"*{services.settings.redis_prefix}*"):
+    for key in services.redis.scan_iter(f"*{services.settings.redis_prefix[:-1]}*"):
         services.redis.delete(key)
 
 
