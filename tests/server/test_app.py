@@ -1,0 +1,106 @@
+"""The whole: health, the page, the description of the API, and no JAX."""
+
+import os
+import socket
+import subprocess
+import sys
+import time
+
+import httpx
+import pytest
+from server.routes import page
+
+
+def test_a_server_that_can_work_says_so(address):
+    assert httpx.get(f"{address}/healthz").json() == {"status": "ok"}
+    ready = httpx.get(f"{address}/readyz")
+    assert (ready.status_code, ready.json()) == (200, {"database": "ok", "redis": "ok"})
+
+
+def test_without_redis_a_server_lives_and_is_not_ready(serve):
+    with serve(redis_url="redis://127.0.0.1:1/0") as address:
+        assert httpx.get(f"{address}/healthz").status_code == 200
+        ready = httpx.get(f"{address}/readyz", timeout=20)
+    assert (ready.status_code, ready.json()["redis"]) == (503, "unreachable")
+
+
+def test_the_api_describes_itself(api):
+    description = api.get("openapi.json").json()
+    assert description["openapi"].startswith("3.1")
+    paths = description["paths"]
+    assert "/api/v1/runs/{run_id}/archive.h5" in paths
+    assert "/healthz" in paths
+
+
+@pytest.fixture
+def built(tmp_path, monkeypatch):
+    folder = tmp_path / "dist"
+    (folder / "assets").mkdir(parents=True)
+    (folder / "index.html").write_text("<title>the page</title>")
+    (folder / "assets" / "a1b2.js").write_text("script")
+    (tmp_path / "secret").write_text("secret")
+    monkeypatch.setattr(page, "BUILT", folder)
+
+
+@pytest.mark.parametrize(
+    "path", ["/", "/runs/1", "/creatures/ab?view=network", "/%2e%2e/secret"]
+)
+def test_paths_outside_the_api_are_the_page(built, address, path):
+    answer = httpx.get(f"{address}{path}")
+    assert answer.text == "<title>the page</title>"
+    assert answer.headers["cache-control"] == "no-cache"
+
+
+def test_assets_are_cached_for_ever(built, address):
+    answer = httpx.get(f"{address}/assets/a1b2.js")
+    assert answer.text == "script"
+    assert "immutable" in answer.headers["cache-control"]
+    assert httpx.get(f"{address}/assets/gone.js").status_code == 404
+
+
+def test_a_page_that_is_not_built_says_how(address, tmp_path, monkeypatch):
+    monkeypatch.setattr(page, "BUILT", tmp_path / "nowhere")
+    answer = httpx.get(f"{address}/")
+    assert answer.status_code == 503
+    assert "<code>make</code>" in answer.text
+
+
+def test_the_server_loads_no_jax():
+    code = "import server.app, sys; print(any(m.split('.')[0] == 'jax' for m in sys.modules))"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert found.stdout.strip() == "False", found.stderr
+
+
+def test_sigterm_ends_a_server_with_open_streams_at_once(services, tmp_path):
+    settings = services.settings
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    environment = {
+        **os.environ,
+        "PORT": str(port),
+        "MICROCOSMOS_DATA": str(tmp_path),
+        "MICROCOSMOS_DATABASE_URL": settings.database_url,
+        "MICROCOSMOS_REDIS_URL": settings.redis_url,
+        "MICROCOSMOS_REDIS_PREFIX": settings.redis_prefix,
+    }
+    address = f"http://127.0.0.1:{port}"
+    with subprocess.Popen([sys.executable, "-m", "server"], env=environment) as process:
+        while not answers(f"{address}/healthz"):
+            assert process.poll() is None
+            time.sleep(0.05)
+        with httpx.stream("GET", f"{address}/api/v1/events") as stream:
+            lines = stream.iter_lines()
+            next(lines)
+            begun = time.monotonic()
+            process.terminate()
+            list(lines)
+        process.wait()
+    assert time.monotonic() - begun < 4, "uvicorn alone would wait for 5 s"
+
+
+def answers(url: str) -> bool:
+    try:
+        return httpx.get(url).status_code == 200
+    except httpx.ConnectError:
+        return False

@@ -1,0 +1,133 @@
+"""The archive as columns, now and in the past, and as files."""
+
+import hashlib
+import json
+
+import numpy as np
+import pytest
+from microcosmos.archive import file
+from server.claims import claim
+
+
+@pytest.fixture
+def h5(spec) -> bytes:
+    """The file of an archive with one elite."""
+    archive = {
+        "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
+        "features": np.array([[0.01, 1.0]]),
+        "fitness": np.array([2.5]),
+        "generation": np.array([3]),
+        "creature": np.zeros((1, 32), np.uint8),
+        "cell": np.array([17]),
+    }
+    attributes = {
+        "format": file.FORMAT,
+        "spec": json.dumps(spec),
+        "features": json.dumps(["bending_effort", "stretching_effort"]),
+    }
+    return file.dump({"archive": archive}, attributes)
+
+
+@pytest.fixture
+def saved(services, run_id, report, h5) -> bytes:
+    """A run has this checkpoint."""
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1), 1.0)
+    attempt.save(1, h5)
+    return h5
+
+
+def test_the_archive_is_the_last_elite_of_each_cell(api, services, run_id, report, spec):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
+    attempt.record(report(2, {5: 1.5}), 1.0)
+    attempt.record(report(3, {255: 0.5, 5: 4.0}), 1.0)
+    now = api.get(f"runs/{run_id}/archive").json()
+    assert now["generation"] == 3
+    assert now["axes"] == spec["archive"]["descriptors"]
+    assert now["cell"] == [3, 5, 255]
+    assert now["fitness"] == [2.0, 4.0, 0.5]
+    assert now["elite_generation"] == [1, 3, 3]
+    assert now["descriptors"] == [[0.25, 0.5]] * 3
+    assert all(api.get(f"creatures/{sha}").status_code == 200 for sha in now["creature"])
+
+
+@pytest.mark.parametrize(
+    ("generation", "cells", "fitness"),
+    [(0, [], []), (1, [3, 5], [2.0, 1.0]), (2, [3, 5], [2.0, 1.5]), (99, [3, 5], [2.0, 1.5])],
+)
+def test_the_archive_in_the_past_is_as_it_was(
+    api, services, run_id, report, generation, cells, fitness
+):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
+    attempt.record(report(2, {5: 1.5}), 1.0)
+    then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
+    assert (then["cell"], then["fitness"]) == (cells, fitness)
+    assert then["generation"] == min(generation, 2)
+
+
+@pytest.mark.parametrize("ending", ["h5", "csv"])
+def test_without_a_checkpoint_there_is_no_file_yet(api, run_id, ending):
+    answer = api.get(f"runs/{run_id}/archive.{ending}")
+    assert answer.status_code == 404
+    assert answer.json()["detail"] == f"Run {run_id} has no checkpoint yet; it is queued."
+
+
+def test_the_file_is_the_checkpoint_with_its_hash_as_etag(api, run_id, saved):
+    answer = api.get(f"runs/{run_id}/archive.h5")
+    assert answer.content == saved
+    assert answer.headers["etag"] == f'"{hashlib.sha256(saved).hexdigest()}"'
+    assert answer.headers["content-length"] == str(len(saved))
+    assert "attachment" in answer.headers["content-disposition"]
+
+
+def test_who_has_the_file_gets_it_once(api, run_id, saved):
+    etag = api.get(f"runs/{run_id}/archive.h5").headers["etag"]
+    again = api.get(f"runs/{run_id}/archive.h5", headers={"If-None-Match": f'"other", {etag}'})
+    assert (again.status_code, again.content) == (304, b"")
+    other = api.get(f"runs/{run_id}/archive.h5", headers={"If-None-Match": '"other"'})
+    assert other.status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("wanted", "start", "stop"),
+    [
+        ("bytes=0-9", 0, 10),
+        ("bytes=100-", 100, None),
+        ("bytes=-7", -7, None),
+        ("bytes=5-5", 5, 6),
+    ],
+)
+def test_a_part_of_the_file_can_be_asked_for(api, run_id, saved, wanted, start, stop):
+    answer = api.get(f"runs/{run_id}/archive.h5", headers={"Range": wanted})
+    assert answer.status_code == 206
+    assert answer.content == saved[start:stop]
+    first = start % len(saved)
+    last = first + len(answer.content) - 1
+    assert answer.headers["content-range"] == f"bytes {first}-{last}/{len(saved)}"
+
+
+def test_parts_that_cannot_be_are_refused_or_ignored(api, run_id, saved):
+    def ask(**headers):
+        return api.get(f"runs/{run_id}/archive.h5", headers=headers)
+
+    beyond = ask(Range=f"bytes={len(saved)}-")
+    assert beyond.status_code == 416
+    assert beyond.headers["content-range"] == f"bytes */{len(saved)}"
+    assert ask(Range="bytes=0-1,4-5").content == saved
+    assert ask(Range="lines=0-1").content == saved
+    assert ask(**{"Range": "bytes=0-1", "If-Range": '"an older one"'}).content == saved
+
+
+def test_the_table_has_the_columns_of_pyribs(api, run_id, saved):
+    answer = api.get(f"runs/{run_id}/archive.csv")
+    assert answer.headers["content-type"].startswith("text/csv")
+    header, row = (line.split(",") for line in answer.text.splitlines())
+    table = dict(zip(header, row, strict=True))
+    assert [name for name in table if name.startswith("solution_")] == [
+        f"solution_{i}" for i in range(5)
+    ]
+    assert float(table["objective"]) == 2.5
+    assert [float(table["measures_0"]), float(table["measures_1"])] == [-2.0, 0.0]
+    assert table["index"] == "17"

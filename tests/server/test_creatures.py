@@ -1,0 +1,160 @@
+"""Creatures by their name, brought by anybody, and their replays."""
+
+import json
+
+import pytest
+from microcosmos.archive import creature
+from rq import SimpleWorker
+from rq.serializers import JSONSerializer
+from server import queue, replays
+from server.claims import claim
+
+
+@pytest.fixture
+def file(identity):
+    return creature.document(identity(3), None, None)
+
+
+@pytest.fixture
+def known(api, file) -> str:
+    return api.post("creatures", json=file).json()["creature"]
+
+
+def test_an_elite_is_read_as_a_creature_file(api, services, run_id, report, spec):
+    found = report(2, {7: 1.25})
+    attempt = claim(services, run_id, "worker", "a device")
+    attempt.record(report(1), 1.0)
+    attempt.record(found, 1.0)
+    (elite,) = found.elites
+    answer = api.get(f"creatures/{elite.creature}")
+    document = answer.json()
+    assert document["identity"] == json.loads(elite.identity)
+    assert document["measured"]["fitness"] == 1.25
+    assert document["measured"]["device"] == "a device"
+    assert document["measured"]["block"] == spec["search"]["block"]
+    assert document["provenance"]["operator"] == "random"
+    assert document["provenance"]["generation"] == 2
+    assert creature.parse(document)["sha256"] == elite.creature
+    assert "immutable" in answer.headers["cache-control"]
+
+
+def test_a_creature_is_downloaded_under_its_name_and_can_be_brought_back(api, known):
+    answer = api.get(f"creatures/{known}", params={"download": 1})
+    assert f'filename="creature-{known[:12]}.json"' in answer.headers["content-disposition"]
+    again = api.post("creatures", content=answer.content)
+    assert (again.status_code, again.json()) == (200, {"creature": known})
+
+
+def test_who_has_a_creature_gets_it_once(api, known):
+    etag = api.get(f"creatures/{known}").headers["etag"]
+    answer = api.get(f"creatures/{known}", headers={"If-None-Match": etag})
+    assert (answer.status_code, answer.content) == (304, b"")
+
+
+def test_a_new_creature_is_kept_whole(api, file):
+    file["measured"] = {
+        "fitness": 1.5,
+        "descriptors": {"bending_effort": 0.25},
+        "features": {"bending_effort": 0.25},
+        "block": 16,
+        "room": [24, 64],
+        "device": "elsewhere",
+    }
+    file["provenance"] = {
+        "parents": ["ab" * 32],
+        "operator": "neat",
+        "generation": 4,
+        "seed": 1,
+        "version": "0.1.0",
+    }
+    answer = api.post("creatures", json=file)
+    assert (answer.status_code, answer.json()) == (201, {"creature": file["sha256"]})
+    assert answer.headers["location"] == f"/api/v1/creatures/{file['sha256']}"
+    assert api.get(f"creatures/{file['sha256']}").json() == file
+
+
+def test_a_wrong_hash_is_refused_with_the_right_one(api, file):
+    right, wrong = file["sha256"], "00" * 32
+    answer = api.post("creatures", json={**file, "sha256": wrong})
+    assert answer.status_code == 422
+    (error,) = answer.json()["errors"]
+    assert (error["field"], error["got"]) == ("sha256", wrong)
+    assert right in error["needed"]
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        (lambda file: file.update(surprise=1), "surprise"),
+        (lambda file: file["identity"]["world"].update(viscosity=-1), "viscosity"),
+        (lambda file: file["identity"]["genome"]["nodes"].update(bias="???"), "bias"),
+        (lambda file: file.pop("identity"), "identity"),
+    ],
+)
+def test_an_unsound_creature_is_refused_with_its_field(api, file, change, field):
+    change(file)
+    answer = api.post("creatures", json=file)
+    assert answer.status_code == 422
+    assert field in answer.json()["errors"][0]["field"]
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [(b" " * (9 << 20), 413), (b'{"identity": NaN}', 422), (b"[" * 10_000, 422)],
+)
+def test_an_upload_that_is_too_large_or_no_json_is_refused(api, body, status):
+    assert api.post("creatures", content=body).status_code == status
+
+
+def test_an_upload_without_a_length_is_limited_while_it_streams(api):
+    sent = 0
+
+    def endless():
+        nonlocal sent
+        for _ in range(1000):
+            sent += 1 << 16
+            yield b" " * (1 << 16)
+
+    assert api.post("creatures", content=endless()).status_code == 413
+
+
+@pytest.mark.parametrize("name", ["00" * 32, "not-a-hash"])
+def test_an_unknown_creature_is_a_problem(api, name):
+    answer = api.get(f"creatures/{name}")
+    assert answer.status_code in (404, 422)
+    assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_a_replay_is_ordered_once_and_served_when_it_is_made(api, services, known):
+    for _ in range(3):
+        answer = api.get(f"creatures/{known}/replay")
+        assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
+        assert answer.headers["retry-after"] == "1"
+    (job_id,) = services.jobs.replays.get_job_ids()
+    job = services.jobs.find(job_id)
+    assert (job.func_name, job.args) == ("worker.jobs.render", [known])
+    replays.save(services, known, b"the replay")
+    answer = api.get(f"creatures/{known}/replay")
+    assert (answer.status_code, answer.content) == (200, b"the replay")
+    assert answer.headers["content-type"] == "application/octet-stream"
+    assert replays.creature(services, known)["sha256"] == known
+
+
+def test_a_rendering_that_failed_says_why(api, services, known, monkeypatch):
+    monkeypatch.setattr(queue, "RENDER", "math.sqrt")
+    assert api.get(f"creatures/{known}/replay").status_code == 202
+    worker = SimpleWorker(
+        [services.jobs.replays], connection=services.redis, serializer=JSONSerializer
+    )
+    worker.work(burst=True)
+    answer = api.get(f"creatures/{known}/replay")
+    assert answer.status_code == 500
+    assert "must be real number, not str" in answer.json()["detail"]
+    assert answer.headers["retry-after"]
+
+
+def test_a_lost_order_is_given_again(api, services, known, flush):
+    api.get(f"creatures/{known}/replay")
+    flush()
+    assert api.get(f"creatures/{known}/replay").status_code == 202
+    assert services.jobs.replays.count == 1

@@ -1,0 +1,50 @@
+"""Who may speak to the server, and where it may listen."""
+
+import httpx
+import pytest
+from pydantic import SecretStr
+from server.settings import Settings
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "192.0.2.1", "::"])
+def test_a_server_for_others_needs_a_token(host):
+    with pytest.raises(ValueError, match="MICROCOSMOS_TOKEN must be set"):
+        Settings(host=host, token=None).refuse_exposure()
+    Settings(host=host, token=SecretStr("secret")).refuse_exposure()
+
+
+def test_on_loopback_no_token_is_needed():
+    Settings(host="127.0.0.1", token=None).refuse_exposure()
+
+
+@pytest.mark.parametrize("name", ["evil.example", "127.0.0.1.evil.example", "", "["])
+def test_other_host_names_are_refused(api, name):
+    answer = api.get("runs", headers={"Host": name})
+    assert answer.status_code in (400, 403)
+
+
+@pytest.mark.parametrize("name", ["localhost:8000", "127.0.0.1", "[::1]:8000"])
+def test_the_names_of_this_machine_are_taken(api, name):
+    assert api.get("runs", headers={"Host": name}).status_code == 200
+
+
+def test_pages_of_other_sites_are_refused(api, address, spec):
+    assert (
+        api.post("runs", json=spec, headers={"Origin": "http://evil.example"}).status_code
+        == 403
+    )
+    other_port = api.post("runs", json=spec, headers={"Origin": "http://127.0.0.1:1"})
+    assert other_port.status_code == 403
+    assert api.post("runs", json=spec, headers={"Origin": address}).status_code == 202
+
+
+def test_with_a_token_the_api_needs_it_from_any_host(serve):
+    with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
+        url = f"{address}/api/v1/runs"
+        assert client.get(url).status_code == 401
+        assert client.get(url, headers={"Authorization": "Bearer wrong"}).status_code == 401
+        sent = {"Authorization": "Bearer secret", "Host": "microcosmos.example"}
+        assert client.get(url, headers=sent).status_code == 200
+        cookie = {"Cookie": "microcosmos_token=secret"}
+        assert client.get(url, headers=cookie).status_code == 200
+        assert client.get(f"{address}/healthz").status_code == 200
