@@ -15,8 +15,6 @@ from .process_tree import Child, Tree, say
 from .processes import spawn
 from .settings import Settings
 
-SERVER_GRACE = 5
-
 
 class Cannot(RuntimeError):
     """Why it cannot start, for a person to read."""
@@ -72,15 +70,9 @@ def refuse_taken(host: str, port: int) -> None:
 def start(place: Place, tree: Tree) -> None:
     """Start everything, what others stand on first."""
     settings = start_redis(place, tree)
+    # The server brings the database up to date too; beside it, we need not wait for it.
+    tree.children.append(Child("server", place.module("server", "server")))
     prepare_database(settings)
-    server = ("uvicorn", "--factory", "server.app:create", "--host", settings.host)
-    limits = (
-        "--port",
-        str(settings.port),
-        "--timeout-graceful-shutdown",
-        str(SERVER_GRACE),
-    )
-    tree.children.append(Child("server", place.module("server", *server, *limits)))
     for index in range(settings.workers):
         name = f"worker-{index}"
         tree.children.append(Child(name, place.module(name, "worker.supervisor", str(index))))

@@ -1,7 +1,6 @@
 """One attempt at a run: what is written down when, and when it has to stop."""
 
 import logging
-import os
 import time
 import traceback
 from collections.abc import Callable, Iterator
@@ -28,12 +27,12 @@ log = logging.getLogger(__name__)
 
 
 @contextmanager
-def claimed(services: Services, run_id: UUID, device: str) -> Iterator["Attempt | None"]:
+def claimed(services: Services, run_id: UUID, worker: str) -> Iterator["Attempt | None"]:
     """A run that is ours until the end of the block, or None where it is not to be had.
 
     What goes wrong inside is kept on the run; whoever lost it ends without a word.
     """
-    held = claim(services, run_id, os.environ["RQ_WORKER_ID"], device)
+    held = claim(services, run_id, worker)
     try:
         yield Attempt(held) if held else None
     except Fenced as error:
@@ -57,6 +56,10 @@ class Attempt:
     @property
     def spec(self) -> dict[str, Any]:
         return self._claim.spec
+
+    def use(self, device: str) -> None:
+        """Say on which kind of device it is computed."""
+        persist(lambda: self._claim.use(device))
 
     def restore(self) -> bytes | None:
         return self._claim.restore()

@@ -1,6 +1,6 @@
 """The process of one job: `python -m worker.job_process WORKER QUEUE JOB EXECUTION PARENT`."""
 
-import logging
+import os
 import signal
 import sys
 
@@ -14,7 +14,8 @@ from server.processes import die_with_parent
 from server.queue import open_redis
 from server.settings import Settings
 
-from . import stop
+from . import log, stop
+from .jobs import WORKER
 
 
 class JobProcess(Worker):
@@ -28,6 +29,7 @@ def main(worker: str, queue: str, job: str, execution: str, parent: str) -> None
     """Perform the job and exit; if the supervisor dies, so do we, wherever we are."""
     die_with_parent(int(parent), signal.SIGKILL)
     stop.listen()
+    os.environ[WORKER] = worker
     connection = open_redis(Settings().redis_url)
     key = JobProcess.redis_worker_namespace_prefix + worker
     process = JobProcess.find_by_key(key, connection, serializer=JSONSerializer)
@@ -41,5 +43,5 @@ def main(worker: str, queue: str, job: str, execution: str, parent: str) -> None
 
 
 if __name__ == "__main__":
-    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
+    log.begin()
     main(*sys.argv[1:])

@@ -1,6 +1,5 @@
 """Makes replays, in one long-lived process: its compiled programs stay warm."""
 
-import logging
 import os
 import socket
 from uuid import uuid4
@@ -14,7 +13,7 @@ from server.queue import Jobs
 from server.services import connect
 from server.settings import Settings
 
-from . import loop, stop
+from . import log, loop, stop
 
 NICE = 10
 """Watching must not slow down evolving."""
@@ -56,5 +55,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
+    log.begin()
     main()

@@ -21,13 +21,13 @@ from server.reconcile import job_died
 from server.services import Services
 from server.settings import Settings
 
-from . import device, loop, stop
+from . import device, log, loop, stop
 from .pulse import BEATS, Pulse
 
 SHORTEST_LEASE = 2
 """Redis counts in seconds."""
 
-log = logging.getLogger(__name__)
+journal = logging.getLogger(__name__)
 
 
 class Supervisor(SpawnWorker):
@@ -73,7 +73,7 @@ class Supervisor(SpawnWorker):
                 self.maintain_heartbeats(job)
         self._horse_pid = 0
         if code:
-            log.warning("Run %s: its process ended with %s", job.id, code)
+            journal.warning("Run %s: its process ended with %s", job.id, code)
             with loop.surviving():
                 self.handle_job_failure(job, queue, exc_string=f"ended with {code}")
 
@@ -107,7 +107,7 @@ def supervise(settings: Settings, index: int) -> None:
     worker.services, worker.lease, worker.environment = shared, lease, found.environment
     worker.pulse = Pulse(shared.sessions, name, found, settings.lease)
     stop.listen(worker.pass_on, interrupt=True)
-    log.info("Worker %s on %s", name, found.name)
+    journal.info("Worker %s on %s", name, found.name)
     worker.pulse.start()
     loop.serve(worker)
     with suppress(SQLAlchemyError):
@@ -116,5 +116,5 @@ def supervise(settings: Settings, index: int) -> None:
 
 
 if __name__ == "__main__":
-    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
+    log.begin()
     supervise(Settings(), int(sys.argv[1]) if len(sys.argv) > 1 else 0)

@@ -1,0 +1,200 @@
+"""A Microcosmos of its own, driven as people drive it: over HTTP, and by signals."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx
+import psutil
+
+ROOT = Path(__file__).parents[2]
+TERMINAL = ("finished", "failed", "cancelled")
+
+
+def wait_until(condition: Callable[[], Any], seconds: float, what: str) -> Any:
+    """What the condition gives as soon as it gives anything."""
+    deadline = time.monotonic() + seconds
+    while not (found := condition()):
+        if time.monotonic() > deadline:
+            raise TimeoutError(f"waited {seconds:g} s in vain until {what}")
+        time.sleep(0.02)
+    return found
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@dataclass
+class Installation:
+    """`python -m server.local` in a data folder; `environment` holds its settings."""
+
+    folder: Path
+    environment: dict[str, str] = field(default_factory=dict)
+    python: str = sys.executable
+    port: int = field(default_factory=free_port)
+
+    def __post_init__(self) -> None:
+        self.http = httpx.Client(base_url=f"http://127.0.0.1:{self.port}", timeout=30)
+
+    def start(self, seconds: float = 60) -> None:
+        """Start it and return when its server answers."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        settings = {"MICROCOSMOS_DATA": str(self.folder), "PORT": str(self.port)}
+        with self.output.open("ab") as output:
+            self.process = subprocess.Popen(
+                [self.python, "-m", "server.local"],
+                cwd=ROOT,
+                env=os.environ | self.environment | settings,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=output,
+                start_new_session=True,
+            )
+        wait_until(self._answers, seconds, f"the server answers; {self.output.read_text()}")
+
+    @property
+    def output(self) -> Path:
+        return self.folder / "output.txt"
+
+    def _answers(self) -> bool:
+        if self.process.poll() is not None:
+            raise RuntimeError(f"it ended: {self.output.read_text()}")
+        try:
+            return self.http.get("/healthz").status_code == 200
+        except httpx.TransportError:
+            return False
+
+    def end(self, sent: signal.Signals = signal.SIGINT, seconds: float = 60) -> int:
+        """Ask it to end, as Ctrl-C does, and return its exit status when it has."""
+        self.process.send_signal(sent)
+        return self.process.wait(seconds)
+
+    def close(self) -> None:
+        """End it for good, whatever state it is in."""
+        for process in self.processes():
+            process.kill()
+        if hasattr(self, "process"):
+            self.process.wait()
+        self.http.close()
+
+    # Runs, over HTTP.
+
+    def submit(self, spec: dict[str, Any]) -> str:
+        answer = self.http.post("/api/v1/runs", json=spec)
+        answer.raise_for_status()
+        return answer.json()["id"]
+
+    def read(self, run: str) -> dict[str, Any]:
+        """The run as the API tells it; patient while the server is restarted."""
+        for _ in range(100):
+            try:
+                return self.http.get(f"/api/v1/runs/{run}").raise_for_status().json()
+            except httpx.TransportError:
+                time.sleep(0.1)
+        raise TimeoutError("the server does not answer")
+
+    def ask(self, run: str, action: str) -> None:
+        """Pause, resume or cancel."""
+        self.http.post(f"/api/v1/runs/{run}/{action}").raise_for_status()
+
+    def wait(self, run: str, *statuses: str, seconds: float = 120) -> dict[str, Any]:
+        """The run as soon as it has one of the statuses."""
+
+        def there() -> dict[str, Any] | None:
+            found = self.read(run)
+            if found["status"] in TERMINAL and found["status"] not in statuses:
+                raise RuntimeError(f"the run {found['status']}: {found['error']}")
+            return found if found["status"] in statuses else None
+
+        return wait_until(there, seconds, f"run {run} is {' or '.join(statuses)}")
+
+    def reach(self, run: str, generation: int, after: int = 0, seconds: float = 120) -> int:
+        """The attempt, beyond `after`, that computes and has recorded a generation."""
+
+        def there() -> int:
+            found = self.read(run)
+            if found["status"] in TERMINAL:
+                raise RuntimeError(f"the run {found['status']} too soon: {found['error']}")
+            there = found["status"] == "running" and found["generation"] >= generation
+            return found["attempt"] if there and found["attempt"] > after else 0
+
+        return wait_until(there, seconds, f"run {run} reaches generation {generation}")
+
+    def archive(self, run: str) -> bytes:
+        """The file that people download."""
+        return self.http.get(f"/api/v1/runs/{run}/archive.h5").raise_for_status().content
+
+    def told(self, run: str) -> dict[str, Any]:
+        """All that the API tells about a run's course, but for wall times."""
+        curves = self.http.get(f"/api/v1/runs/{run}/generations").raise_for_status().json()
+        archive = self.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
+        return {"curves": {**curves, "seconds": None}, "archive": archive}
+
+    # Processes.
+
+    def processes(self) -> Iterator[psutil.Process]:
+        """Every process of this installation, however it came to be."""
+        for process in psutil.process_iter():
+            try:
+                if process.environ().get("MICROCOSMOS_DATA") == str(self.folder):
+                    yield process
+            except psutil.Error:
+                continue
+
+    def named(self, module: str) -> list[psutil.Process]:
+        """Living processes that run a Python module."""
+        found = []
+        for process in self.processes():
+            try:
+                if module in process.cmdline() and process.status() != psutil.STATUS_ZOMBIE:
+                    found.append(process)
+            except psutil.Error:
+                continue
+        return found
+
+    def signal(self, module: str, sent: signal.Signals) -> None:
+        """Send a signal to each process that runs a module, of which there has to be one."""
+        wait_until(lambda: self.named(module), 60, f"a process runs {module}")
+        for process in self.named(module):
+            process.send_signal(sent)
+
+
+JOB, SUPERVISOR = "worker.job_process", "worker.supervisor"
+
+
+def kill_job(place: Installation, run: str) -> None:
+    """The process that computes is killed, as the kernel does when memory runs out."""
+    place.signal(JOB, signal.SIGKILL)
+
+
+def kill_supervisor(place: Installation, run: str) -> None:
+    place.signal(SUPERVISOR, signal.SIGKILL)
+
+
+def stop_worker(place: Installation, run: str) -> None:
+    """The whole worker is told to stop; what started it starts it again."""
+    place.signal(SUPERVISOR, signal.SIGTERM)
+
+
+def pause_and_resume(place: Installation, run: str) -> None:
+    place.ask(run, "pause")
+    place.wait(run, "paused")
+    place.ask(run, "resume")
+
+
+def interrupt(place: Installation, run: str, faults: list, moments: list[int]) -> None:
+    """Cause the faults, each to an attempt of its own that has reached a generation."""
+    attempt = 0
+    for fault, generation in zip(faults, moments, strict=True):
+        attempt = place.reach(run, generation, after=attempt)
+        fault(place, run)
