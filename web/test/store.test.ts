@@ -122,6 +122,13 @@ describe("a rewind", () => {
     expect(next.details.get("a")!.curves!.generation).toEqual([1]);
   });
 
+  it("lets the run's own figures begin again from there", () => {
+    const back = reduce(opened, rewind);
+    expect(back.runs.get("a")).toMatchObject({ generation: 1, progress: 0.1, sparkline: [1] });
+    const next = reduce(back, { type: "generation", event: generation(2) });
+    expect(next.runs.get("a")).toMatchObject({ generation: 2, evaluations: 32 });
+  });
+
   it("asks for that run to be fetched again, and for no other", () => {
     const next = reduce(opened, rewind);
     expect(epochOf(next, "a")).toBe(epochOf(opened, "a") + 1);

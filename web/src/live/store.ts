@@ -145,11 +145,21 @@ function advanced(run: Run, event: GenerationEvent, pace: Pace): Run {
 function rewound(state: State, event: RewindEvent): State {
   const raised = (state.epochs.get(event.run) ?? 0) + 1;
   const next = { ...state, epochs: new Map(state.epochs).set(event.run, raised) };
+  const run = state.runs.get(event.run);
+  if (run) next.runs = new Map(state.runs).set(run.id, cutRun(run, event.generation));
   return withDetail(next, event.run, (detail) => ({
     ...detail,
     elites: cutElites(detail.elites, event.generation),
     curves: detail.curves && cutCurves(detail.curves, event.generation),
   }));
+}
+
+/** A run that goes on from an earlier generation; its figures follow with the next one. */
+function cutRun(run: Run, generation: number): Run {
+  if (run.generation <= generation) return run;
+  const kept = Math.ceil((run.sparkline.length * generation) / run.generation);
+  const progress = generation / run.generations;
+  return { ...run, generation, progress, sparkline: run.sparkline.slice(0, kept) };
 }
 
 /** Changes a detail that is open; events of runs that nobody looks at are not kept. */

@@ -39,10 +39,11 @@ function Editor({ experiments, first }: EditorProps) {
   const [preset, setPreset] = useState(first.presets[0]!);
   const [spec, setSpec] = useState<Spec>(preset.spec);
   const form = useMemo(() => formOf(experiment.schema), [experiment]);
-  const check = useEstimate(spec);
+  const slips = useMemo(() => complaints(form, spec), [form, spec]);
+  const check = useEstimate(spec, slips);
   const { start, busy, refusal } = useSubmission(spec);
   const errors = [...(refusal?.errors ?? []), ...check.errors];
-  const messages = messagesByPath([...complaints(form, spec), ...errors]);
+  const messages = messagesByPath([...slips, ...errors]);
   const choose = (chosen: Preset, of: Experiment) => {
     setExperiment(of);
     setPreset(chosen);
@@ -99,10 +100,13 @@ interface Check {
   problem: string | null;
 }
 
-/** What the spec will cost, or what is wrong with it, once typing has settled. */
-function useEstimate(spec: Spec): Check {
+const SLIPPED = "Some values cannot be used; see beside them.";
+
+/** What the spec will cost, or what the server finds wrong, once typing has settled. */
+function useEstimate(spec: Spec, slips: FieldError[]): Check {
   const [check, setCheck] = useState<Check>({ estimate: null, errors: [], problem: null });
   useEffect(() => {
+    if (slips.length > 0) return setCheck({ estimate: null, errors: [], problem: SLIPPED });
     let wanted = true;
     const show = (next: Check) => wanted && setCheck(next);
     const timer = setTimeout(() => {
@@ -118,7 +122,7 @@ function useEstimate(spec: Spec): Check {
       wanted = false;
       clearTimeout(timer);
     };
-  }, [spec]);
+  }, [spec, slips]);
   return check;
 }
 
@@ -144,10 +148,15 @@ function useSubmission(spec: Spec) {
       const errors = error instanceof Problem ? error.errors : [];
       setRefusal({ spec, message: messageOf(error), errors });
       setBusy(false);
-      requestAnimationFrame(() => document.querySelector<HTMLElement>("[aria-invalid=true]")?.focus());
+      requestAnimationFrame(showFirstError);
     }
   };
   return { start, busy, refusal: refusal?.spec === spec ? refusal : null };
+}
+
+function showFirstError(): void {
+  document.querySelector<HTMLElement>("[aria-invalid=true]")?.focus();
+  document.querySelector(".spec-form .wrong-text")?.scrollIntoView({ block: "center" });
 }
 
 /** Random enough for a key, on plain HTTP too, where `randomUUID` does not exist. */

@@ -13,6 +13,8 @@ const CURVES = [
   { name: "best", title: "Best fitness", colour: "--curve-3", write: number },
 ] as const;
 
+/** Steps between ticks of generations, which are whole. */
+const WHOLE = [1, 10, 100, 1e3, 1e4, 1e5, 1e6].flatMap((power) => [power, 2 * power, 5 * power]);
 const SYNC = "generations";
 
 export function Curves({ curves }: { curves: Columns }) {
@@ -83,7 +85,7 @@ function optionsOf(
     cursor: { sync: { key: SYNC }, y: false, drag: { x: false, y: false } },
     scales: { x: { time: false }, y: { range: fromZero } },
     axes: [
-      { ...axis, size: 24, gap: 4 },
+      { ...axis, size: 24, gap: 4, incrs: WHOLE },
       { ...axis, size: 52, gap: 6, values: (_, values) => values.map((v) => write(v)) },
     ],
     series: [
@@ -93,7 +95,7 @@ function optionsOf(
         stroke: ink(colour),
         fill: `${ink(colour)}1f`,
         width: 1.75,
-        points: { show: false },
+        points: { show: (plot) => plot.data[0].length === 1 },
       },
     ],
     plugins: [tooltip(write)],

@@ -35,7 +35,8 @@ export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: P
   const looked = hovered ?? marked;
 
   useEffect(() => {
-    if (size.width === 0) return;
+    const element = canvas.current;
+    if (!element || size.width === 0) return;
     const picture = {
       shape,
       elites,
@@ -47,7 +48,7 @@ export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: P
       empty: EMPTY[theme],
     };
     return animate((now) => {
-      drawCells(canvas.current!, size, picture, now);
+      drawCells(element, size, picture, now);
       return [...changed.values()].some((time) => now - time < FLASH_MS);
     });
   }, [size, shape, elites, colourBy, range, changed, looked, theme]);

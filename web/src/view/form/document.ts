@@ -53,7 +53,8 @@ export function messagesByPath(errors: FieldError[]): Map<string, string[]> {
   const messages = new Map<string, string[]>();
   for (const { field, message } of errors) {
     const path = field.replace(/\[(\d+)\]/g, ".$1").replace(/^(body\.|\.)/, "");
-    messages.set(path, [...(messages.get(path) ?? []), message]);
+    const known = messages.get(path) ?? [];
+    if (!known.includes(message)) messages.set(path, [...known, message]);
   }
   return messages;
 }

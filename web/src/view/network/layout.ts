@@ -35,7 +35,7 @@ export function layoutOf({ neurons, links, depth }: Network): Layout {
   const height = Math.max(2 * ROW, ROW * Math.max(...columns.map((column) => column.length)));
   const spots = columns.flatMap((column) =>
     column.map((neuron, i): Spot => {
-      const y = (height * (i + 1)) / (column.length + 1);
+      const y = (height * (i + 0.5)) / column.length;
       // Inputs and outputs keep their order; what is between finds its own.
       const fixed = neuron.role === "hidden" ? null : y;
       return { neuron, x: COLUMN * neuron.depth, y, fx: COLUMN * neuron.depth, fy: fixed };

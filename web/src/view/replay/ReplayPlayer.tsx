@@ -42,7 +42,14 @@ export function ReplayPlayer({ replay }: { replay: Replay }) {
   const step = Math.min(steps, Math.round(time * every));
   return (
     <div class="player">
-      <div ref={stage} class="stage" style={{ aspectRatio: `${world[0]} / ${world[1]}` }}>
+      <div
+        ref={stage}
+        class="stage"
+        style={{
+          aspectRatio: `${world[0]} / ${world[1]}`,
+          maxWidth: `calc(76vh * ${world[0] / world[1]})`,
+        }}
+      >
         <canvas
           ref={canvas}
           role="img"

@@ -1,0 +1,116 @@
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+FAST, SLOW = 10_000, 120_000
+
+
+@pytest.mark.e2e
+def test_a_run_is_submitted_watched_opened_and_its_creature_swims_and_travels(
+    page: Page, address: str, tmp_path: Path
+):
+    run = submit_a_short_run(page, address)
+    watch_it_live(page)
+    sha = open_an_elite(page, address, run)
+    see_it_move(page)
+    file = download_it(page, sha, tmp_path)
+    drop_it_back_in(page, file, sha)
+
+
+def submit_a_short_run(page: Page, address: str) -> str:
+    page.goto(address)
+    page.get_by_role("link", name="Start the first run").click()
+    demo = page.get_by_role("button", name=re.compile("^Demo"))
+    demo.click()
+    expect(demo).to_have_attribute("aria-pressed", "true", timeout=FAST)
+    generations = page.get_by_label("Generations", exact=False)
+    generations.fill("-1")
+    expect(page.get_by_text("Needs at least 1.")).to_be_visible(timeout=FAST)
+    generations.fill("30")
+    expect(page.get_by_label("Estimate")).to_contain_text("480", timeout=FAST)
+    page.get_by_role("button", name="Start the run").click()
+    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    return page.url.rpartition("/")[2]
+
+
+def watch_it_live(page: Page) -> None:
+    page.evaluate("window.neverReloaded = true")
+    elites = page.get_by_text(re.compile(r"^\d+ elites$"))
+    expect(elites).not_to_have_text("0 elites", timeout=SLOW)
+    expect(page.get_by_text(re.compile(r"^\d+ / 30$"))).not_to_have_text("0 / 30", timeout=SLOW)
+    expect(page.get_by_text("30 / 30")).to_be_visible(timeout=SLOW)
+    expect(
+        page.get_by_role("img", name=re.compile("QD score over generations"))
+    ).to_be_visible()
+    assert page.evaluate("window.neverReloaded")
+
+
+def open_an_elite(page: Page, address: str, run: str) -> str:
+    archive: dict[str, Any] = page.request.get(f"{address}/api/v1/runs/{run}/archive").json()
+    k = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
+    columns, rows = (axis["bins"] for axis in archive["axes"])
+    i, j = divmod(archive["cell"][k], rows)
+    plot = page.get_by_role("application", name=re.compile("Archive map"))
+    plot.scroll_into_view_if_needed()
+    box = plot.bounding_box()
+    assert box
+    x = box["x"] + (i + 0.5) * box["width"] / columns
+    y = box["y"] + (rows - j - 0.5) * box["height"] / rows
+    sha = archive["creature"][k]
+    page.mouse.move(x, y)
+    expect(page.locator("#map-reading")).to_contain_text(sha[:8], timeout=FAST)
+    page.mouse.click(x, y)
+    page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
+    return sha
+
+
+def see_it_move(page: Page) -> None:
+    canvas = page.get_by_role("img", name=re.compile("The creature swimming"))
+    expect(canvas).to_be_visible(timeout=SLOW)
+    page.wait_for_timeout(300)
+    before = pixels(page)
+    page.wait_for_timeout(600)
+    assert pixels(page) != before
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Play")).to_be_visible(timeout=FAST)
+    page.wait_for_timeout(200)  # What was about to be drawn is drawn.
+    still = pixels(page)
+    page.wait_for_timeout(300)
+    assert pixels(page) == still
+    expect(page.get_by_role("img", name=re.compile("^Network"))).to_be_visible(timeout=FAST)
+
+
+def pixels(page: Page) -> str:
+    return page.evaluate("document.querySelector('.stage canvas').toDataURL()")
+
+
+def download_it(page: Page, sha: str, folder: Path) -> Path:
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Download file").click()
+    assert download.value.suggested_filename == f"creature-{sha[:12]}.json"
+    file = folder / download.value.suggested_filename
+    download.value.save_as(file)
+    assert json.loads(file.read_text())["sha256"] == sha
+    return file
+
+
+def drop_it_back_in(page: Page, file: Path, sha: str) -> None:
+    page.get_by_role("link", name="Microcosmos").click()
+    expect(page.get_by_role("heading", name="Runs")).to_be_visible(timeout=FAST)
+    transfer = page.evaluate_handle(
+        """([text, name]) => {
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([text], name, { type: "application/json" }));
+            return transfer;
+        }""",
+        [file.read_text(), file.name],
+    )
+    page.dispatch_event("body", "dragover", {"dataTransfer": transfer})
+    expect(page.get_by_text("Drop a creature file to open it")).to_be_visible(timeout=FAST)
+    page.dispatch_event("body", "drop", {"dataTransfer": transfer})
+    page.wait_for_url(re.compile(f"/creatures/{sha}$"), timeout=FAST)
+    expect(page.get_by_role("heading", name=f"Creature {sha[:8]}")).to_be_visible(timeout=FAST)
