@@ -9,7 +9,6 @@ from microcosmos import coupling, filaments, world
 LIMIT = 0.1
 
 
-
 @pytest.fixture
 def wild(immerse, chain, float64):
     """A filament that is asked to fold up at once."""
@@ -48,7 +47,9 @@ def test_no_forcing_exceeds_the_limit_and_sums_stay_zero(wild):
 
 def test_without_limits_the_same_body_moves_further(wild, immerse, chain):
     _, start, rest = wild
-    free, _ = immerse(chain(24), start.positions.dtype, viscosity=0.1, size=(48, 48), limits=False)
+    free, _ = immerse(
+        chain(24), start.positions.dtype, viscosity=0.1, size=(48, 48), limits=False
+    )
     motion = world.move(free, start, rest, jnp.zeros_like(start.positions))
     assert np.max(np.sum(np.asarray(motion.target) ** 2, 1)) > (2 * LIMIT) ** 2
 

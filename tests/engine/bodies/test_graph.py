@@ -57,7 +57,9 @@ def test_both_members_of_a_pair_know_each_other(name):
     pairs, members = GRAPHS[name]
     for colour in bodies.colour(pairs, members):
         first, second = np.flatnonzero(colour.sign == 1), colour.partner[colour.sign == 1]
-        np.testing.assert_array_equal(pairs[colour.constraint[first]], np.stack([first, second], 1))
+        np.testing.assert_array_equal(
+            pairs[colour.constraint[first]], np.stack([first, second], 1)
+        )
         np.testing.assert_array_equal(colour.partner[second], first)
         np.testing.assert_array_equal(colour.sign[second], -1)
         alone = colour.sign == 0
@@ -78,5 +80,7 @@ def test_a_chain_at_rest_satisfies_its_own_constraints(spacing):
     v = np.diff(body.positions, axis=0)
     np.testing.assert_allclose(np.hypot(v[:, 0], v[:, 1]), body.rest_length)
     np.testing.assert_allclose(np.diff(np.arctan2(v[:, 1], v[:, 0])), body.rest_angle)
-    np.testing.assert_array_equal(body.edges[body.joints[:, 0], 1], body.edges[body.joints[:, 1], 0])
+    np.testing.assert_array_equal(
+        body.edges[body.joints[:, 0], 1], body.edges[body.joints[:, 1], 0]
+    )
     assert (body.arc[0], body.arc[-1]) == (0, 1)

@@ -76,7 +76,9 @@ def test_interpolation_is_the_transpose_of_spreading(nodes):
     values = jnp.asarray(random.normal(size=nodes.shape))
     interpolated = jnp.stack([interpolate(plane, at) for plane in field], 1)
     spread = coupling.spread(values, at, SIZE)
-    np.testing.assert_allclose(jnp.sum(spread * field), jnp.sum(values * interpolated), rtol=1e-12)
+    np.testing.assert_allclose(
+        jnp.sum(spread * field), jnp.sum(values * interpolated), rtol=1e-12
+    )
 
 
 def test_spreading_keeps_the_sum(nodes):

@@ -1,8 +1,8 @@
 """What a step of the fluid keeps and what it adds."""
 
 import jax
-import jax.test_util
 import jax.numpy as jnp
+import jax.test_util
 import numpy as np
 import pytest
 from microcosmos import fluid
@@ -28,7 +28,9 @@ def total_momentum(f):
 def test_mass_is_kept_for_ten_thousand_steps(viscosity, dtype):
     f, rates = random_populations(dtype), fluid.rates(jnp.asarray(viscosity, dtype))
     force = jnp.asarray(1e-5 * np.random.default_rng(1).normal(size=(2, *SIZE)), dtype)
-    end = jax.jit(lambda f: jax.lax.fori_loop(0, 10_000, lambda _, f: step(f, force, rates), f))(f)
+    end = jax.jit(
+        lambda f: jax.lax.fori_loop(0, 10_000, lambda _, f: step(f, force, rates), f)
+    )(f)
     before, after = (float(np.sum(np.asarray(fluid.density(g), float))) for g in (f, end))
     assert abs(after - before) <= 1e-6 * before
 
@@ -36,7 +38,9 @@ def test_mass_is_kept_for_ten_thousand_steps(viscosity, dtype):
 def test_momentum_is_kept_without_a_force(dtype):
     f, rates = random_populations(dtype), fluid.rates(jnp.asarray(0.02, dtype))
     force = jnp.zeros((2, *SIZE), dtype)
-    end = jax.jit(lambda f: jax.lax.fori_loop(0, 1000, lambda _, f: step(f, force, rates), f))(f)
+    end = jax.jit(lambda f: jax.lax.fori_loop(0, 1000, lambda _, f: step(f, force, rates), f))(
+        f
+    )
     scale = 0.01 * SIZE[0] * SIZE[1]
     tolerance = {"float32": 1e-5, "float64": 1e-12}[dtype.name]
     np.testing.assert_allclose(total_momentum(end), total_momentum(f), atol=tolerance * scale)

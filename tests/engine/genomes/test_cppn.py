@@ -1,0 +1,104 @@
+"""Networks compute what a plain recursion over their genes computes."""
+
+import math
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import genomes, neat
+from microcosmos.archive import encoding
+
+INPUTS, OUTPUTS = 3, 2
+
+RATES = neat.Rates(0.5, 0.5, 0.1, 0.3, toggle=0.2, add_node=0.6, add_connection=0.8)
+
+FUNCTIONS = {
+    "identity": lambda z: z,
+    "sigmoid": lambda z: 1 / (1 + math.exp(-z)),
+    "tanh": math.tanh,
+    "relu": lambda z: max(z, 0.0),
+    "sin": math.sin,
+    "cos": math.cos,
+    "gaussian": lambda z: math.exp(-z * z),
+    "abs": abs,
+    "square": lambda z: z * z,
+}
+
+
+@pytest.fixture(scope="module")
+def networks():
+    """Forty networks, each grown by ten mutations."""
+
+    @jax.jit
+    @jax.vmap
+    def grow(key):
+        network = neat.minimal(key, INPUTS, OUTPUTS, 16, 40)
+        for step in range(10):
+            network, _ = neat.mutate(network, RATES, INPUTS, key=jax.random.fold_in(key, step))
+        return network
+
+    grown = jax.device_get(grow(jax.random.split(jax.random.key(1), 40)))
+    return [genomes.take(grown, i) for i in range(40)]
+
+
+def by_recursion(network, inputs):
+    """The outputs for one point, from the definition, in double precision."""
+    names = list(FUNCTIONS)
+
+    def value(node):
+        if node < INPUTS:
+            return float(inputs[node])
+        z = float(network.bias[node])
+        for row in np.flatnonzero(network.connection_used & network.enabled):
+            if network.target[row] == node:
+                z += float(network.weight[row]) * value(network.source[row])
+        return FUNCTIONS[names[network.activation[node]]](z)
+
+    return [value(INPUTS + output) for output in range(OUTPUTS)]
+
+
+def test_a_network_equals_the_recursion_over_its_genes(networks):
+    inputs = np.random.default_rng(0).uniform(-1, 1, (INPUTS, 5)).astype(np.float32)
+    program = jax.jit(lambda network, x: genomes.evaluate(network, x, OUTPUTS))
+    for network in networks:
+        expected = np.transpose([by_recursion(network, point) for point in inputs.T])
+        np.testing.assert_allclose(program(network, inputs), expected, rtol=2e-4, atol=2e-4)
+
+
+def test_activations_have_the_same_order_in_files_and_in_the_engine():
+    assert tuple(genomes.ACTIVATIONS) == encoding.ACTIVATIONS == tuple(FUNCTIONS)
+
+
+def test_growing_squares_stay_finite():
+    network = genomes.empty(16, 40)
+    network.node_used[:15] = True
+    network.activation[3:15] = list(FUNCTIONS).index("square")
+    chain = [0, *range(5, 15), 3]
+    for row, (source, target) in enumerate(zip(chain, chain[1:], strict=False)):
+        network.source[row], network.target[row] = source, target
+        network.weight[row] = 10
+        network.connection_used[row] = network.enabled[row] = True
+    out = genomes.evaluate(network, jnp.full((INPUTS, 1), 100.0), OUTPUTS)
+    assert np.isfinite(out).all()
+
+
+def test_genes_survive_the_file(networks):
+    for network in networks:
+        numbered = genomes.CPPN(
+            **{
+                **vars(network),
+                "node_id": np.where(network.node_used, np.arange(16) * 3, 0).astype(np.int32),
+                "innovation": np.where(network.connection_used, np.arange(40) * 2, 0).astype(
+                    np.int32
+                ),
+            }
+        )
+        back = genomes.from_genes(genomes.to_genes(numbered), 16, 40)
+        for name, values in vars(numbered).items():
+            np.testing.assert_array_equal(getattr(back, name), values, err_msg=name)
+
+
+def test_minus_zero_is_written_as_zero():
+    assert encoding.encode(np.array([-0.0])) == encoding.encode(np.array([0.0]))

@@ -1,0 +1,147 @@
+"""Networks grow by NEAT's mutations and stay sound."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import genomes, neat
+
+INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 32
+
+RATES = neat.Rates(
+    weight=0.5,
+    weight_step=0.5,
+    replace=0.1,
+    activation=0.2,
+    toggle=0.1,
+    add_node=0.6,
+    add_connection=0.8,
+)
+
+
+@jax.jit
+def first_generation(key):
+    keys = jax.random.split(key, BATCH)
+    return jax.vmap(lambda k: neat.minimal(k, INPUTS, OUTPUTS, NODES, CONNECTIONS))(keys)
+
+
+@jax.jit
+def next_generation(networks, counters, key):
+    mutate = jax.vmap(lambda n, k: neat.mutate(n, RATES, INPUTS, key=k))
+    children, novelty = mutate(networks, jax.random.split(key, BATCH))
+    return neat.number(children, novelty, counters)
+
+
+@pytest.fixture(scope="module")
+def lineages():
+    """Networks after each of fifteen generations of unselected mutation."""
+    counters = neat.first_counters(INPUTS, OUTPUTS)
+    generations = [first_generation(jax.random.key(0))]
+    for number in range(15):
+        networks, counters = next_generation(generations[-1], counters, jax.random.key(number + 1))
+        generations.append(networks)
+    return [jax.device_get(networks) for networks in generations]
+
+
+def each(networks):
+    return [genomes.take(networks, i) for i in range(BATCH)]
+
+
+def test_minimal_networks_join_every_input_to_every_output(lineages):
+    for network in each(lineages[0]):
+        ends = list(zip(network.source[:6], network.target[:6], strict=True))
+        assert sorted(ends) == [(i, o) for i in range(3) for o in (3, 4)]
+        assert network.connection_used.sum() == 6
+
+
+def test_initial_weights_have_standard_deviation_one():
+    keys = jax.random.split(jax.random.key(0), 2000)
+    minimal = jax.vmap(lambda k: neat.minimal(k, INPUTS, OUTPUTS, NODES, CONNECTIONS))(keys)
+    weights = np.asarray(minimal.weight[:, :6])
+    assert weights.std() == pytest.approx(1, abs=0.02)
+    assert weights.mean() == pytest.approx(0, abs=0.03)
+
+
+def test_networks_grow_to_fill_their_room_and_no_further(lineages):
+    last = lineages[-1]
+    assert last.node_used.sum(1).max() == NODES
+    assert last.connection_used.sum(1).max() == CONNECTIONS
+
+
+def test_networks_stay_free_of_cycles(lineages):
+    for network in each(lineages[-1]):
+        n, c = network.node_used.sum(), network.connection_used.sum()
+        joined = np.zeros((n, n), int)
+        joined[network.target[:c], network.source[:c]] = 1
+        assert not np.linalg.matrix_power(joined, n).any()  # Nilpotent: no way is endless.
+
+
+def test_two_nodes_are_joined_at_most_once_and_inputs_never_targets(lineages):
+    for network in each(lineages[-1]):
+        c = network.connection_used.sum()
+        ends = list(zip(network.source[:c], network.target[:c], strict=True))
+        assert len(set(ends)) == c
+        assert network.target[:c].min() >= INPUTS
+
+
+def test_numbers_increase_along_the_rows(lineages):
+    for network in each(lineages[-1]):
+        n, c = network.node_used.sum(), network.connection_used.sum()
+        assert (np.diff(network.node_id[:n]) > 0).all()
+        assert (np.diff(network.innovation[:c]) > 0).all()
+
+
+def test_a_number_means_the_same_genes_in_every_network_of_every_generation(lineages):
+    ends = {}
+    for networks in lineages:
+        for network in each(networks):
+            c = network.connection_used.sum()
+            names = network.node_id[network.source[:c]], network.node_id[network.target[:c]]
+            for number, source, target in zip(network.innovation[:c], *names, strict=True):
+                assert ends.setdefault(int(number), (source, target)) == (source, target)
+
+
+def test_genes_are_never_lost(lineages):
+    for before, after in zip(lineages, lineages[1:], strict=False):
+        kept = before.connection_used
+        assert (after.innovation[kept] == before.innovation[kept]).all()
+        assert (after.connection_used | ~kept).all()
+
+
+def test_the_same_mutation_in_one_generation_gets_the_same_numbers():
+    parent = neat.minimal(jax.random.key(3), INPUTS, OUTPUTS, NODES, CONNECTIONS)
+    parents = jax.tree.map(lambda x: jnp.broadcast_to(x, (BATCH, *x.shape)), parent)
+    children, counters = next_generation(
+        parents, neat.first_counters(INPUTS, OUTPUTS), jax.random.key(4)
+    )
+    arose = np.asarray(children.node_id[:, INPUTS + OUTPUTS])
+    arose = arose[arose > 0]
+    # Thirty-two children of one parent can split six connections in six ways only.
+    assert len(arose) > 6
+    assert len(set(arose)) <= 6
+    assert counters.node == arose.max() + 1
+
+
+def test_a_split_by_the_identity_changes_nothing():
+    rates = neat.Rates(0, 1, 0, 0, 0, add_node=1, add_connection=0)
+    parent = neat.minimal(jax.random.key(5), INPUTS, OUTPUTS, NODES, CONNECTIONS)
+    child, novelty = neat.mutate(parent, rates, INPUTS, key=jax.random.key(6))
+    identity = child.activation.at[novelty.node_row].set(0)
+    child = genomes.CPPN(**{**vars(child), "activation": identity})
+    inputs = jax.random.normal(jax.random.key(7), (INPUTS, 50))
+    assert child.node_used.sum() == parent.node_used.sum() + 1
+    np.testing.assert_allclose(
+        genomes.evaluate(child, inputs, OUTPUTS),
+        genomes.evaluate(parent, inputs, OUTPUTS),
+        rtol=1e-5,
+        atol=1e-6,
+    )
+
+
+def test_ranks_number_distinct_pairs_and_skip_what_did_not_arise():
+    first, second = jnp.array([4, -1, 2, 4, 2, -1]), jnp.array([1, -1, 5, 1, 6, -1])
+    place, many = neat.numbering.ranks(first, second)
+    assert many == 3
+    assert place[0] == place[3] == 2
+    assert {int(place[2]), int(place[4])} == {0, 1}
