@@ -62,8 +62,8 @@ def address(chromium: str, tmp_path: Path) -> Iterator[str]:
 
 
 @pytest.fixture
-def page(chromium: str) -> Iterator[Page]:
-    """A browser page; whatever it complains about fails the test."""
+def page(chromium: str, address: str) -> Iterator[Page]:
+    """A page that is closed before the server ends; any complaint of it fails the test."""
     complaints: list[str] = []
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
