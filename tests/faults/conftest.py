@@ -2,12 +2,13 @@
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))  # For `drive`, which acceptance uses too.
 
-from drive import Installation  # noqa: E402
+from drive import Installation
 
 SHORT = {
     "MICROCOSMOS_DEMONSTRATION": "0",
@@ -18,38 +19,50 @@ SHORT = {
 }
 """Settings under which what takes a minute takes a second."""
 
+SPEC = {
+    "experiment": "quality-diversity",
+    "seed": 7,
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 12},
+    "control": {"period": 30},
+    "task": {"steps": 60},
+    "search": {"generations": 12, "batch": 16, "block": 8},
+}
+"""The smallest run that is still a run."""
+
 
 @pytest.fixture(scope="session")
-def compiled(tmp_path_factory):
-    """A folder for compiled programs that all installations share."""
-    return tmp_path_factory.mktemp("compiled")
-
-
-@pytest.fixture
-def installation(tmp_path, compiled):
+def installation(tmp_path_factory):
     """Makes installations, each in a data folder of its own; they are gone afterwards."""
-    made = []
+    made, compiled = [], tmp_path_factory.mktemp("compiled")
 
-    def make(name="data", **environment):
-        caches = {"JAX_COMPILATION_CACHE_DIR": str(compiled)}
-        place = Installation(tmp_path / name, SHORT | caches | environment)
-        made.append(place)
-        return place
+    def make(**environment):
+        cache = {"JAX_COMPILATION_CACHE_DIR": str(compiled)}
+        folder = tmp_path_factory.mktemp("data")
+        made.append(Installation(folder, SHORT | cache | environment))
+        return made[-1]
 
     yield make
     for place in made:
         place.close()
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
+def place(installation):
+    """A running installation with two workers, which all tests may disturb."""
+    place = installation(WORKERS="2")
+    place.start()
+    return place
+
+
+@pytest.fixture(scope="session")
 def spec():
-    """The smallest run that is still a run: 12 generations of 16 creatures."""
-    return {
-        "experiment": "quality-diversity",
-        "seed": 7,
-        "world": {"width": 32, "height": 32},
-        "body": {"nodes": 12},
-        "control": {"period": 30},
-        "task": {"steps": 60},
-        "search": {"generations": 12, "batch": 16, "block": 8},
-    }
+    return SPEC
+
+
+@pytest.fixture(scope="session")
+def undisturbed(place, spec):
+    """What a run comes to that nothing disturbs: its archive, and what the API tells of it."""
+    run = place.submit(spec)
+    place.wait(run, "finished", seconds=300)  # It has to compile.
+    return SimpleNamespace(archive=place.archive(run), told=place.told(run))

@@ -146,17 +146,31 @@ class Installation:
         """Every process of this installation, however it came to be."""
         for process in psutil.process_iter():
             try:
-                if process.environ().get("MICROCOSMOS_DATA") == str(self.folder):
+                ours = process.environ().get("MICROCOSMOS_DATA") == str(self.folder)
+                # Redis writes over its environment, but it works inside of our folder.
+                if ours or self.folder in Path(process.cwd()).parents:
                     yield process
             except psutil.Error:
                 continue
 
+    def owner(self, run: str) -> psutil.Process:
+        """The supervisor whose job computes a run."""
+
+        def there() -> psutil.Process | None:
+            for worker in self.http.get("/api/v1/workers").raise_for_status().json():
+                if worker["run"] == run:
+                    return psutil.Process(int(worker["name"].rpartition("-")[2]))
+            return None
+
+        return wait_until(there, 10, f"a worker tells that it computes {run}")
+
     def named(self, module: str) -> list[psutil.Process]:
-        """Living processes that run a Python module."""
+        """Living processes that run a Python module or a program."""
         found = []
         for process in self.processes():
             try:
-                if module in process.cmdline() and process.status() != psutil.STATUS_ZOMBIE:
+                runs = any(module in part for part in process.cmdline())
+                if runs and process.status() != psutil.STATUS_ZOMBIE:
                     found.append(process)
             except psutil.Error:
                 continue
@@ -169,7 +183,7 @@ class Installation:
             process.send_signal(sent)
 
 
-JOB, SUPERVISOR = "worker.job_process", "worker.supervisor"
+JOB, SUPERVISOR, REDIS = "worker.job_process", "worker.supervisor", "redis-server"
 
 
 def kill_job(place: Installation, run: str) -> None:
