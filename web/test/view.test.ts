@@ -58,6 +58,7 @@ describe("words for people", () => {
     [1234.5, "1,235"],
     [98300000, "9.83 × 10⁷"],
     [0.0001, "10⁻⁴"],
+    [-0.0343574, "−0.0344"],
     [null, "–"],
   ])("write %j as %s", (value, text) => {
     expect(number(value)).toBe(text);

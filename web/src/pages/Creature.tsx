@@ -79,7 +79,8 @@ function Motion({ sha }: { sha: string }) {
         <div class="stage rendering" role="status">
           <p>
             <span class="ripple" aria-hidden="true" />
-            Simulating this creature again to record its motion …
+            <span>Simulating this creature again to record its motion …</span>
+            <span class="small">The first one takes longest.</span>
           </p>
         </div>
       )}

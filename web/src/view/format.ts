@@ -8,7 +8,8 @@ export function number(value: number | null | undefined, digits = 3): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return DASH;
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-3 || size >= 1e6)) return scientific(value, digits - 1);
-  return value.toLocaleString("en", { maximumSignificantDigits: Math.max(digits, whole(size)) });
+  const maximumSignificantDigits = Math.max(digits, whole(size));
+  return value.toLocaleString("en", { maximumSignificantDigits }).replace("-", "−");
 }
 
 function whole(size: number): number {

@@ -6,6 +6,8 @@ import { number } from "../format";
 import { type Spot, layoutOf } from "./layout";
 
 const RADIUS = 13;
+/** A small network is not blown up beyond this. */
+const LARGEST = 1.2;
 
 export function NetworkGraph({ network }: { network: Network }) {
   const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
@@ -14,7 +16,12 @@ export function NetworkGraph({ network }: { network: Network }) {
   const summary = `${network.neurons.length} nodes, ${enabled} connections in use`;
   return (
     <figure class="network">
-      <svg viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`Network: ${summary}`}>
+      <svg
+        viewBox={`0 0 ${width} ${height}`}
+        style={{ maxWidth: LARGEST * width }}
+        role="img"
+        aria-label={`Network: ${summary}`}
+      >
         {network.links.map((link, i) => (
           <Wire key={i} link={link} spots={spots} strongest={strongest} />
         ))}
@@ -43,8 +50,10 @@ interface WireProps {
 function Wire({ link, spots, strongest }: WireProps) {
   const [from, to] = [spots.get(link.source), spots.get(link.target)];
   if (!from || !to) return null;
-  const bend = Math.max(30, (to.x - from.x) / 2);
-  const path = `M${from.x},${from.y} C${from.x + bend},${from.y} ${to.x - bend},${to.y} ${to.x},${to.y}`;
+  // Where both stand in the same column, the wire leaves and arrives at the left.
+  const bend = to.x > from.x ? (to.x - from.x) / 2 : -4 * RADIUS;
+  const [a, b] = [from.x + bend, to.x - Math.abs(bend)];
+  const path = `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
   const sign = link.weight < 0 ? "negative" : "positive";
   return (
     <path

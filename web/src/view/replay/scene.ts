@@ -45,7 +45,7 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
     const moved = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
     drawWay(context, [...scene.way.slice(0, Math.floor(time) + 1), mean].map(moved), scene.theme);
     const lines = scene.chains.map((chain) => chain.map((node) => moved(points[node]!)));
-    drawBody(context, lines, Math.max(3, 0.8 * scale), scene.theme);
+    drawBody(context, lines, Math.min(11, Math.max(3, 0.6 * scale)), scene.theme);
   }
 }
 
