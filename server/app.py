@@ -48,6 +48,7 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
     services: Services = app.state.services
     await asyncio.to_thread(migrations.upgrade, services.sessions)
     app.state.hub = hub = Hub(services.settings.redis_url, services.events.stream)
+    await hub.begin()
     reading = asyncio.create_task(hub.run())
     with reconciling(services), told_to_stop(hub.close):
         yield

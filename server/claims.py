@@ -28,7 +28,7 @@ class Fenced(Exception):
     """The run is another attempt's by now, or was ended."""
 
 
-def claim(services: Services, run_id: UUID, worker: str, device: str = "") -> "Claim | None":
+def claim(services: Services, run_id: UUID, worker: str) -> "Claim | None":
     """Begin an attempt at a queued run; None where there is nothing to do for this worker.
 
     A run that this very worker had, or whose worker is silent, counts as queued: its last
@@ -37,7 +37,7 @@ def claim(services: Services, run_id: UUID, worker: str, device: str = "") -> "C
     with services.sessions.write.begin() as session:
         over = or_(Run.worker == worker, lost(session, services.settings.lease))
         release(session, run_id, over, error="the worker ended without a word")
-        run = change(session, run_id, Run.status == QUEUED, **_begun(worker, device))
+        run = change(session, run_id, Run.status == QUEUED, **_begun(worker))
         rewound = run is not None and _rewind(session, run)
         begun = _begin(services, session, run) if run else None
     if rewound and begun:
@@ -47,13 +47,12 @@ def claim(services: Services, run_id: UUID, worker: str, device: str = "") -> "C
     return begun
 
 
-def _begun(worker: str, device: str) -> dict[str, Any]:
+def _begun(worker: str) -> dict[str, Any]:
     return {
         "status": RUNNING,
         "attempt": Run.attempt + 1,
         "attempts_without_checkpoint": Run.attempts_without_checkpoint + 1,
         "worker": worker,
-        "device": device,
         "heartbeat_at": clock(),
         "started_at": func.coalesce(Run.started_at, clock()),
     }
@@ -81,8 +80,6 @@ def _begin(services: Services, session: Session, run: Run) -> "Claim":
         run_id=run.id,
         attempt=run.attempt,
         spec=run.spec,
-        version=run.version,
-        device=run.device or "",
         generation=run.checkpoint_generation,
         checkpoint=Stored(row.path, row.size, row.sha256) if row else None,
         seconds=run.seconds,
@@ -97,8 +94,6 @@ class Claim:
     run_id: UUID
     attempt: int
     spec: dict[str, Any]
-    version: str
-    device: str
     generation: int
     """The one that the checkpoint holds; 0 without one."""
     checkpoint: Stored | None
@@ -106,6 +101,10 @@ class Claim:
     seconds: float
     """Wall time of the computing that led to the last record."""
     announced: float = field(default=0.0)
+
+    def use(self, device: str) -> None:
+        """Say which kind of device computes."""
+        self._end(device=device)
 
     def restore(self) -> bytes | None:
         """The content of the checkpoint, if there is one."""
@@ -116,10 +115,7 @@ class Claim:
         total = self.seconds + seconds
         curve = records.generation_row(report, total)
         elites = [records.elite_row(elite) for elite in report.elites]
-        creatures = [
-            records.creature_row(elite, self.spec, self.version, self.device)
-            for elite in report.elites
-        ]
+        creatures = [records.creature_row(elite) for elite in report.elites]
         with self.services.sessions.write.begin() as session:
             standing = {**records.standing(report), "seconds": total}
             wish = self._prove(session, **standing).wish

@@ -7,9 +7,7 @@ from microcosmos.archive import creature
 from sqlalchemy.orm import Session
 
 from .models import Creature
-from .records import insert_missing
-
-WHERE_FROM = ("parents", "operator")
+from .records import creature_columns, insert_missing
 
 
 def document(row: Creature) -> dict[str, Any]:
@@ -32,16 +30,12 @@ def add(session: Session, file: dict[str, Any]) -> bool:
     """Keep a creature file that was checked: whether it is new. What is known stays."""
     if session.get(Creature, file["sha256"]):
         return False
-    provenance = file["provenance"]
-    row = {
-        "sha256": file["sha256"],
-        "identity": creature.canonical(file["identity"]),
-        "parents": list(provenance["parents"]) if provenance else [],
-        "operator": provenance["operator"] if provenance else None,
-        "measured": file["measured"],
-        "provenance": provenance
-        and {key: value for key, value in provenance.items() if key not in WHERE_FROM},
-        "licence": file["licence"],
-    }
+    row = creature_columns(
+        file["sha256"],
+        creature.canonical(file["identity"]),
+        file["measured"],
+        file["provenance"],
+        file["licence"],
+    )
     insert_missing(session, Creature, [row])
     return True

@@ -5,6 +5,7 @@ from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection
+from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from .problems import answer
@@ -31,6 +32,9 @@ class Guard:
             problem = (
                 self._foreign(request.headers) if not self.token else self._unknown(request)
             )
+            if self.token and self._shown(request):
+                await _remember(request)(scope, receive, send)
+                return
         if problem:
             await answer(problem)(scope, receive, send)
         else:
@@ -51,10 +55,28 @@ class Guard:
             return None
         scheme, _, sent = request.headers.get("authorization", "").partition(" ")
         given = sent if scheme.lower() == "bearer" else request.cookies.get(COOKIE, "")
-        if compare_digest(given.encode(), (self.token or "").encode()):
+        if self._right(given):
             return None
         needed = f"A token is needed, as `Authorization: Bearer` or cookie `{COOKIE}`."
         return Problem(title="Unauthorized", status=401, detail=needed)
+
+    def _shown(self, request: HTTPConnection) -> bool:
+        """Whether the token is in the address, with which a person opens the page first."""
+        page = not request.url.path.startswith("/api/")
+        return page and self._right(request.query_params.get("token", ""))
+
+    def _right(self, given: str) -> bool:
+        return compare_digest(given.encode(), (self.token or "").encode())
+
+
+def _remember(request: HTTPConnection) -> Response:
+    """Keep the token in a cookie of this site, and take it out of the address."""
+    clean = request.url.remove_query_params("token")
+    answer = RedirectResponse(clean, 303)
+    token = request.query_params["token"]
+    secure = request.url.scheme == "https"
+    answer.set_cookie(COOKIE, token, httponly=True, samesite="strict", secure=secure)
+    return answer
 
 
 def _name(address: str) -> str | None:

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from collections.abc import AsyncIterator, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -60,23 +60,29 @@ class Hub:
         self.stream = stream
         self.read_up_to = "0-0"
         self.listeners: set[Listener] = set()
+        self.reached = False
         self.closed = False
+
+    async def begin(self) -> None:
+        """Find the end of the stream, from where it is read."""
+        with suppress(RedisError):  # Then `run` finds it when Redis answers.
+            self.read_up_to = await self._newest()
+            self.reached = True
 
     async def run(self) -> None:
         """Hand on what is published. After an outage everybody is told to fetch anew."""
-        reached = False
         while not self.closed:
             try:
-                if not reached:
+                if not self.reached:
                     self.read_up_to = await self._newest()
                     self._hand_on(Entry(self.read_up_to, "reset"))
-                    reached = True
+                    self.reached = True
                 for entry in await self._next():
                     self.read_up_to = entry.id
                     self._hand_on(entry)
             except RedisError as error:
                 log.warning("no events until Redis answers: %s", error)
-                reached = False
+                self.reached = False
                 await asyncio.sleep(1)
 
     @contextmanager

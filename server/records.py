@@ -1,17 +1,16 @@
 """What an experiment reports, as rows and as events."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 from uuid import UUID
 
+from microcosmos.archive.creature import LICENCE
 from sqlalchemy import insert
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from .events import finite
 from .models import Base, Creature, Elite, Generation
-
-LICENCE = "CC-BY-4.0"
 
 
 class NewElite(Protocol):
@@ -24,17 +23,15 @@ class NewElite(Protocol):
     @property
     def descriptors(self) -> Sequence[float]: ...
     @property
-    def features(self) -> dict[str, float]: ...
-    @property
     def creature(self) -> str: ...
     @property
     def identity(self) -> bytes: ...
     @property
-    def parents(self) -> Sequence[str]: ...
-    @property
-    def operator(self) -> str: ...
-    @property
     def generation(self) -> int: ...
+    @property
+    def measured(self) -> Mapping[str, Any]: ...
+    @property
+    def provenance(self) -> Mapping[str, Any]: ...
 
 
 class Report(Protocol):
@@ -85,31 +82,29 @@ def elite_row(elite: NewElite) -> dict[str, Any]:
     }
 
 
-def creature_row(
-    elite: NewElite, spec: dict[str, Any], version: str, device: str
+def creature_row(elite: NewElite) -> dict[str, Any]:
+    return creature_columns(
+        elite.creature, elite.identity, elite.measured, elite.provenance, LICENCE
+    )
+
+
+def creature_columns(
+    sha256: str,
+    identity: bytes,
+    measured: Mapping[str, Any] | None,
+    provenance: Mapping[str, Any] | None,
+    licence: str,
 ) -> dict[str, Any]:
-    """With what repeating the measurement exactly needs."""
-    names = [axis["name"] for axis in spec["archive"]["descriptors"]]
-    genome = spec["genome"]
+    """A creature's row; lineage has columns of its own."""
+    origin = dict(provenance) if provenance else {}
     return {
-        "sha256": elite.creature,
-        "identity": elite.identity,
-        "parents": list(elite.parents),
-        "operator": elite.operator,
-        "measured": {
-            "fitness": float(elite.fitness),
-            "descriptors": {n: float(d) for n, d in zip(names, elite.descriptors, strict=True)},
-            "features": {name: float(value) for name, value in elite.features.items()},
-            "block": spec["search"]["block"],
-            "room": [genome["max_nodes"], genome["max_connections"]],
-            "device": device,
-        },
-        "provenance": {
-            "generation": int(elite.generation),
-            "seed": spec["seed"],
-            "version": version,
-        },
-        "licence": LICENCE,
+        "sha256": sha256,
+        "identity": identity,
+        "parents": list(origin.pop("parents", ())),
+        "operator": origin.pop("operator", None),
+        "measured": dict(measured) if measured else None,
+        "provenance": origin or None,
+        "licence": licence,
     }
 
 

@@ -19,6 +19,8 @@ def upgrade(sessions: Sessions) -> None:
         _prepare(connection)
         with connection.begin():
             if connection.dialect.name == "postgresql":
+                for limit in ("statement_timeout", "lock_timeout"):  # Those of requests.
+                    connection.execute(text(f"SET LOCAL {limit} = 0"))
                 connection.execute(text(f"SELECT pg_advisory_xact_lock({LOCK})"))
             command.upgrade(config(connection), "head")
 

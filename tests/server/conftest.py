@@ -133,10 +133,12 @@ def running(settings: Settings) -> Iterator[str]:
         assert thread.is_alive(), "the server did not start"
         time.sleep(0.01)
     port = server.servers[0].sockets[0].getsockname()[1]
-    yield f"http://127.0.0.1:{port}"
-    app.state.hub.close()  # As a signal would: here it comes to another thread.
-    server.should_exit = True
-    thread.join()
+    try:
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        app.state.hub.close()  # As a signal would: here it comes to another thread.
+        server.should_exit = True
+        thread.join()
 
 
 @pytest.fixture
@@ -241,12 +243,24 @@ def report(identity) -> Callable[..., Any]:
             cell=cell,
             fitness=fitness,
             descriptors=(0.25, 0.5),
-            features={"bending_effort": 0.25, "stretching_effort": 0.5},
             creature=creature.name(found),
             identity=creature.canonical(found),
-            parents=(),
-            operator="random",
             generation=generation,
+            measured={
+                "fitness": fitness,
+                "descriptors": {"bending_effort": 0.25, "stretching_effort": 0.5},
+                "features": {"bending_effort": 0.25, "stretching_effort": 0.5},
+                "block": 16,
+                "room": [24, 64],
+                "device": "a device",
+            },
+            provenance={
+                "parents": ["ab" * 32],
+                "operator": "neat",
+                "generation": generation,
+                "seed": 0,
+                "version": "0.1.0",
+            },
         )
 
     return make

@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 from microcosmos.archive import file
+
 from server.claims import claim
 
 

@@ -1,6 +1,7 @@
 """The fence: what one attempt writes, no other attempt can."""
 
 import errno
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from sqlalchemy import func, select, update
@@ -25,6 +26,13 @@ def silence(services, run_id):
 def test_only_one_worker_gets_a_run(services, run_id):
     assert claim(services, run_id, "first").attempt == 1
     assert claim(services, run_id, "second") is None
+
+
+def test_of_many_that_claim_at_once_one_gets_it(services, run_id):
+    with ThreadPoolExecutor(8) as pool:
+        names = [f"worker {number}" for number in range(8)]
+        claims = list(pool.map(lambda name: claim(services, run_id, name), names))
+    assert len([found for found in claims if found]) == 1
 
 
 def test_a_silent_workers_run_is_taken_and_the_woken_one_is_fenced(services, run_id, report):

@@ -3,6 +3,7 @@
 import httpx
 import pytest
 from pydantic import SecretStr
+
 from server.settings import Settings
 
 
@@ -48,3 +49,15 @@ def test_with_a_token_the_api_needs_it_from_any_host(serve):
         cookie = {"Cookie": "microcosmos_token=secret"}
         assert client.get(url, headers=cookie).status_code == 200
         assert client.get(f"{address}/healthz").status_code == 200
+
+
+def test_a_page_opened_with_the_token_keeps_it_in_a_cookie(serve):
+    with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
+        client.get(f"{address}/runs?token=wrong")
+        assert client.get(f"{address}/api/v1/runs").status_code == 401
+        answer = client.get(f"{address}/runs?token=secret&view=map")
+        assert answer.status_code == 303
+        assert answer.headers["location"] == f"{address}/runs?view=map"
+        for word in ("HttpOnly", "SameSite=strict"):
+            assert word in answer.headers["set-cookie"]
+        assert client.get(f"{address}/api/v1/runs").status_code == 200

@@ -200,7 +200,8 @@ def test_what_the_state_forbids_is_a_conflict_that_says_why(api, services, run_i
 
 
 def test_progress_is_what_was_recorded(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker", "a device")
+    attempt = claim(services, run_id, "worker")
+    attempt.use("a device")
     for generation in range(1, 4):
         attempt.record(report(generation), 2.0)
     run = api.get(f"runs/{run_id}").json()
