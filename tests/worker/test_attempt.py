@@ -1,0 +1,157 @@
+"""What an attempt at a run writes down, and when it stops."""
+
+import errno
+from dataclasses import replace
+
+import pytest
+from fsspec.implementations.local import LocalFileSystem
+from sqlalchemy import update
+from sqlalchemy.exc import OperationalError
+
+from server import lifecycle
+from server.artifacts import Artifacts
+from server.models import Run
+from worker import attempt, stop
+from worker.attempt import claimed
+
+
+class Disk(LocalFileSystem):
+    """A disk that can be full."""
+
+    cachable = False
+    full = False
+
+    def open(self, path, mode="rb", **options):
+        if self.full and "w" in mode:
+            raise OSError(errno.ENOSPC, "No space left on device", path)
+        return super().open(path, mode, **options)
+
+
+@pytest.fixture
+def disk():
+    return Disk()
+
+
+@pytest.fixture
+def services(services, disk):
+    """The common ones, their files on a disk that can be full."""
+    artifacts = Artifacts(services.settings.artifacts)
+    artifacts.files = disk
+    return replace(services, artifacts=artifacts)
+
+
+def wish(services, run_id, action):
+    with services.sessions.write.begin() as session:
+        action(session, session.get_one(Run, run_id))
+
+
+def test_a_full_disk_keeps_the_last_checkpoint_until_there_is_room(
+    services, run_id, row, report, disk
+):
+    with claimed(services, run_id, "worker") as held:
+        held.record(report(1), 1.0, lambda: b"first")
+        disk.full = True
+        held.record(report(2), 1.0, lambda: b"second")
+        assert "No space left on device" in row().warning
+        assert row().checkpoint_generation == 1
+        assert held.restore() == b"first"
+        disk.full = False
+        held.record(report(3), 1.0, lambda: b"third")
+    assert row().warning is None
+    assert row().checkpoint_generation == 3
+    assert held.restore() == b"third"
+
+
+def test_a_run_whose_end_cannot_be_saved_waits_paused_with_the_reason(
+    services, run_id, row, report, disk
+):
+    with claimed(services, run_id, "worker") as held:
+        disk.full = True
+        held.record(report(1), 1.0, lambda: b"data")
+        held.end(done=True, generation=1, save=lambda: b"data")
+    assert row().status == "paused"
+    assert "No space left on device" in row().warning
+
+
+def test_a_run_that_is_done_is_saved_before_it_is_finished(services, run_id, row, report):
+    with claimed(services, run_id, "worker") as held:
+        held.record(report(1), 1.0, lambda: b"data")
+        held.end(done=True, generation=1, save=lambda: pytest.fail("it was saved already"))
+    assert row().status == "finished"
+    assert held.restore() == b"data"
+
+
+@pytest.mark.parametrize(
+    ("action", "status"), [(lifecycle.pause, "paused"), (lifecycle.cancel, "cancelled")]
+)
+def test_a_wish_is_seen_between_blocks_and_obeyed_with_a_checkpoint(
+    services, run_id, row, report, monkeypatch, action, status
+):
+    monkeypatch.setattr(attempt, "LOOK_SECONDS", 0)
+    with claimed(services, run_id, "worker") as held:
+        held.record(report(1), 1.0, lambda: b"1")
+        assert not held.interrupted()
+        wish(services, run_id, action)
+        assert held.interrupted()
+        held.end(done=False, generation=1, save=lambda: b"1")
+    assert row().status == status
+    assert row().checkpoint_generation == 1
+
+
+def test_told_to_stop_it_hands_the_run_back_without_a_mark(
+    services, run_id, row, report, monkeypatch
+):
+    with claimed(services, run_id, "worker") as held:
+        held.record(report(1), 1.0, lambda: b"1")
+        monkeypatch.setattr(stop, "_requested", True)
+        assert held.interrupted()
+        held.end(done=False, generation=1, save=lambda: b"1")
+    assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
+
+
+def test_a_failure_is_kept_and_the_third_without_a_checkpoint_is_the_last(
+    services, run_id, row
+):
+    for status in ("queued", "queued", "failed"):
+        with claimed(services, run_id, "worker"):
+            raise ArithmeticError("the engine broke")
+        assert row().status == status
+    assert "ArithmeticError: the engine broke" in row().error
+
+
+def test_who_has_lost_a_run_ends_without_a_word(services, run_id, row, report):
+    with claimed(services, run_id, "first") as held:
+        with services.sessions.write.begin() as session:
+            session.execute(update(Run).values(heartbeat_at=None))
+        with claimed(services, run_id, "second"):
+            held.record(report(1), 1.0, lambda: b"1")
+            pytest.fail("it was let through")
+    assert (row().worker, row().attempt, row().generation) == ("second", 2, 0)
+
+
+def test_a_run_that_another_computes_is_not_to_be_had(services, run_id):
+    with claimed(services, run_id, "first"), claimed(services, run_id, "second") as held:
+        assert held is None
+
+
+def test_a_generation_waits_for_a_database_that_is_away(monkeypatch):
+    monkeypatch.setattr(attempt, "LOOK_SECONDS", 0)
+    answers = [OperationalError("", {}, Exception("away")), "written"]
+
+    def write():
+        answer = answers.pop(0)
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    assert attempt.persist(write) == "written"
+
+
+def test_told_to_stop_it_does_not_wait_for_the_database(monkeypatch):
+    monkeypatch.setattr(stop, "_requested", True)
+
+    def write():
+        raise OperationalError("", {}, Exception("away"))
+
+    with pytest.raises(OperationalError):
+        attempt.persist(write)

@@ -1,0 +1,67 @@
+"""The loop that takes jobs from a queue."""
+
+import pytest
+import redis
+from rq.job import Job
+from rq.serializers import JSONSerializer
+
+from worker import loop, renderer, stop
+from worker.renderer import Renderer
+
+
+@pytest.fixture
+def worker(services):
+    """A worker whose jobs run in this process."""
+    return Renderer([services.jobs.replays], "renderer", serializer=JSONSerializer)
+
+
+@pytest.fixture
+def ask(services):
+    """Enqueue a call, and what it calls is recorded."""
+
+    def enqueue(name):
+        return services.jobs.replays.enqueue("builtins.len", name, job_id=name, result_ttl=60)
+
+    return enqueue
+
+
+def test_a_job_is_taken_and_carried_out(worker, ask):
+    job = ask("abc")
+    loop.take_one(worker)
+    assert job.is_finished
+
+
+def test_it_registers_anew_when_redis_was_emptied(services, worker, ask):
+    loop.take_one(worker)
+    services.redis.flushdb()
+    job = ask("abc")
+    loop.take_one(worker)
+    assert job.is_finished
+    assert services.redis.exists(worker.key)
+
+
+def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
+    monkeypatch.setattr(loop, "PAUSE_SECONDS", 0)
+    turns = []
+
+    def turn(worker):
+        turns.append(worker)
+        monkeypatch.setattr(stop, "_requested", len(turns) > 2)
+        raise redis.ResponseError("MISCONF Errors writing to the AOF file")
+
+    monkeypatch.setattr(loop, "take_one", turn)
+    loop.serve(worker)
+    assert len(turns) == 3
+
+
+def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
+    services.jobs.render("ab" * 32)
+    job_id = services.jobs.replays.job_ids[0]
+    services.jobs.replays.pop_job_id()
+    job = Job.fetch(job_id, connection=services.redis, serializer=JSONSerializer)
+    worker.register_birth()
+    worker.prepare_execution(job)
+    assert services.jobs.replays.started_job_registry.get_job_ids() == [job_id]
+    renderer.take_up(services.jobs)
+    assert services.jobs.replays.job_ids == [job_id]
+    assert not services.jobs.replays.started_job_registry.get_job_ids()
