@@ -70,8 +70,16 @@ class Jobs:
         return None
 
     def forget(self, job_id: str) -> None:
+        """Remove a job with every trace of its executions.
+
+        RQ's own way raises where a worker died: what it knows of an execution expires
+        before the entry that leads there.
+        """
         if job := self.find(job_id):
-            self.runs.started_job_registry.remove_executions(job)
+            executions = job.execution_registry
+            for execution in executions.get_execution_ids():
+                self.redis.zrem(job.started_job_registry.key, f"{job_id}:{execution}")
+            self.redis.delete(executions.key)
             job.delete()
 
     def runs_at_hand(self) -> set[str]:

@@ -35,6 +35,8 @@ def reconciling(services: Services) -> Iterator[None]:
                 reconcile(services)
             except (RedisError, SQLAlchemyError) as error:
                 log.warning("will reconcile again: %s", error)  # An outage ends by itself.
+            except Exception:  # Without this thread a lost run would be lost for good.
+                log.exception("will reconcile again")
             if ended.wait(services.settings.reconcile_interval):
                 return
 

