@@ -3,11 +3,13 @@
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
+from functools import partial
 
 from fastapi import FastAPI
 from microcosmos.version import VERSION
 
 from . import migrations, problems
+from .description import describe
 from .guard import Guard
 from .hub import Hub
 from .reconcile import reconciling
@@ -36,6 +38,7 @@ def create_app(services: Services) -> FastAPI:
     )
     app.state.services = services
     problems.install(app)
+    describe(app)
     token = services.settings.token
     app.add_middleware(Guard, token=token.get_secret_value() if token else None)
     for router in (api, health.router, page.router):
@@ -50,7 +53,8 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
     app.state.hub = hub = Hub(services.settings.redis_url, services.events.stream)
     await hub.begin()
     reading = asyncio.create_task(hub.run())
-    with reconciling(services), told_to_stop(hub.close):
+    app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
+    with reconciling(services), told_to_stop(app.state.end_streams):
         yield
     hub.close()
     reading.cancel()

@@ -2,8 +2,9 @@
 
 from fastapi import APIRouter
 
+from ..description import PROBLEMS
 from . import archives, creatures, events, experiments, generations, replays, runs, workers
 
-api = APIRouter(prefix="/api/v1")
+api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
 for noun in (experiments, runs, generations, archives, creatures, replays, events, workers):
     api.include_router(noun.router)

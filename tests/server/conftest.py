@@ -136,7 +136,7 @@ def running(settings: Settings) -> Iterator[str]:
     try:
         yield f"http://127.0.0.1:{port}"
     finally:
-        app.state.hub.close()  # As a signal would: here it comes to another thread.
+        app.state.end_streams()  # As a signal would in the main thread.
         server.should_exit = True
         thread.join()
 

@@ -31,6 +31,11 @@ def test_the_api_describes_itself(api):
     paths = description["paths"]
     assert "/api/v1/runs/{run_id}/archive.h5" in paths
     assert "/healthz" in paths
+    for path in ("runs", "runs/{run_id}/archive.h5", "creatures/{sha}/replay"):
+        operation = next(iter(paths[f"/api/v1/{path}"].values()))
+        (media,) = operation["responses"]["default"]["content"]
+        assert media == "application/problem+json"
+    assert "HTTPValidationError" not in description["components"]["schemas"]
 
 
 @pytest.fixture
