@@ -3,8 +3,12 @@ import "uplot/dist/uPlot.min.css";
 import { App } from "./app";
 import { connect } from "./live/live";
 import "./styles/base.css";
+import "./styles/frame.css";
 import "./styles/parts.css";
-import "./styles/pages.css";
+import "./styles/runs.css";
+import "./styles/new-run.css";
+import "./styles/run.css";
+import "./styles/creature.css";
 
 connect();
 render(<App />, document.getElementById("app")!);

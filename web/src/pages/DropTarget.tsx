@@ -2,7 +2,7 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { importCreature } from "../api/client";
-import { messageOf, Problem } from "../api/problem";
+import { messageOf } from "../api/problem";
 import { tell } from "../live/toasts";
 import { navigate } from "../router";
 
@@ -11,9 +11,7 @@ async function open(file: File): Promise<void> {
     const { creature } = await importCreature(await file.text());
     navigate(`/creatures/${creature}`);
   } catch (error) {
-    const details = error instanceof Problem ? error.errors : [];
-    const reasons = details.map(({ field, message }) => `${field}: ${message}`);
-    tell({ kind: "wrong", text: `${file.name}: ${reasons.join("; ") || messageOf(error)}` });
+    tell({ kind: "wrong", text: `${file.name}: ${messageOf(error)}` });
   }
 }
 

@@ -115,7 +115,7 @@ function useEstimate(spec: Spec, slips: FieldError[]): Check {
         .then((estimate) => show({ estimate, errors: [], problem: null }))
         .catch((error) => {
           const errors = error instanceof Problem ? error.errors : [];
-          show({ estimate: null, errors, problem: messageOf(error) });
+          show({ estimate: null, errors, problem: errors.length ? SLIPPED : messageOf(error) });
         });
     }, SETTLED_MS);
     return () => {
@@ -146,7 +146,7 @@ function useSubmission(spec: Spec) {
       navigate(`/runs/${run.id}`);
     } catch (error) {
       const errors = error instanceof Problem ? error.errors : [];
-      setRefusal({ spec, message: messageOf(error), errors });
+      setRefusal({ spec, message: errors.length ? SLIPPED : messageOf(error), errors });
       setBusy(false);
       requestAnimationFrame(showFirstError);
     }

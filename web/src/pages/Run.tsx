@@ -92,9 +92,10 @@ function Banners({ run }: { run: Run }) {
 }
 
 function Standing({ run }: { run: Run }) {
+  const time = timeOf(run);
   const facts: [string, string][] = [
     ["Generation", `${count(run.generation)} / ${count(run.generations)}`],
-    [run.status === "running" ? "Time left" : "Took", timeOf(run)],
+    [time.label, time.text],
     ["Evaluations", count(run.evaluations)],
     ["Evaluations/s", rateOf(run)],
     ["QD score", number(run.qd_score)],

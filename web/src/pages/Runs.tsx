@@ -6,7 +6,7 @@ import type { Experiment, Run } from "../api/types";
 import { moreRuns, useExperiments, useRunList } from "../live/fetching";
 import { useLive } from "../live/live";
 import { tell } from "../live/toasts";
-import { number, percent, short, titleOf } from "../view/format";
+import { DASH, number, percent, short, titleOf } from "../view/format";
 import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
 import { Sparkline } from "../view/Sparkline";
 import { ON } from "./wishes";
@@ -59,6 +59,7 @@ export function RunsPage() {
 function Row({ run, experiments }: { run: Run; experiments: Experiment[] }) {
   const title = titleOf(run, experiments);
   const name = `${title} ${short(run.id)}`;
+  const time = timeOf(run);
   return (
     <tr>
       <th scope="row">
@@ -77,9 +78,9 @@ function Row({ run, experiments }: { run: Run; experiments: Experiment[] }) {
           {run.generation} / {run.generations}
         </span>
       </td>
-      <td data-label={run.status === "running" ? "Left" : "Took"}>
-        {timeOf(run)}
-        {run.status === "running" && run.eta_seconds !== null && <span class="quiet"> left</span>}
+      <td data-label={time.label}>
+        {time.text}
+        {run.status === "running" && time.text !== DASH && <span class="quiet"> left</span>}
       </td>
       <td data-label="Evaluations/s">{rateOf(run)}</td>
       <td data-label="QD score" class="with-spark">

@@ -26,11 +26,18 @@ export function Progress({ run }: { run: Run }) {
   );
 }
 
-/** How long a run will take, or what it took. */
-export function timeOf(run: Run): string {
-  if (run.status === "running") return run.eta_seconds === null ? DASH : duration(run.eta_seconds);
-  if (!run.started_at || !run.finished_at) return DASH;
-  return duration((Date.parse(run.finished_at) - Date.parse(run.started_at)) / 1000);
+/** Generations after which a rate is worth telling: the first ones compile. */
+const SETTLED = 3;
+
+/** How long a run will take, or what it took, and which of both. */
+export function timeOf(run: Run): { label: string; text: string } {
+  if (run.status === "running") {
+    const left = run.generation < SETTLED ? null : run.eta_seconds;
+    return { label: "Time left", text: duration(left) };
+  }
+  if (!run.started_at || !run.finished_at) return { label: "Time", text: DASH };
+  const seconds = (Date.parse(run.finished_at) - Date.parse(run.started_at)) / 1000;
+  return { label: "Took", text: duration(seconds) };
 }
 
 export function rateOf(run: Run): string {

@@ -1,5 +1,6 @@
 /** The archive as a map: one cell an elite, to be looked at, pointed at and opened. */
 
+import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Axis } from "../../api/types";
 import type { Elite, Elites } from "../../live/elites";
@@ -7,7 +8,7 @@ import { useSize } from "../canvas";
 import { number, short, words } from "../format";
 import { prefersStillness, useTheme } from "../theme";
 import { Horizontal, Vertical } from "./Axes";
-import { type ColourBy, FLASH_MS, drawCells, rangeOf } from "./draw";
+import { type ColourBy, FLASH_MS, type Picture, drawCells, rangeOf } from "./draw";
 import { type Direction, type Shape, cellAt, nextCell } from "./geometry";
 import { Legend } from "./Legend";
 
@@ -20,58 +21,30 @@ interface Props {
   onOpen: (cell: number) => void;
 }
 
-const INK = { light: "#0b1216", dark: "#f4f8fa" };
-const EMPTY = { light: "rgb(20 50 70 / 0.055)", dark: "rgb(180 215 235 / 0.055)" };
+const INKS = {
+  light: { ink: "#0b1216", ground: "#ffffff", empty: "rgb(20 50 70 / 0.055)" },
+  dark: { ink: "#f4f8fa", ground: "#0b1216", empty: "rgb(180 215 235 / 0.055)" },
+};
 
 export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: Props) {
   const plot = useRef<HTMLDivElement>(null);
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const size = useSize(plot);
-  const theme = useTheme();
   const [hovered, setHovered] = useState<number | null>(null);
   const shape = useMemo<Shape>(() => [axes[0].bins, axes[1].bins], [axes]);
   const range = useMemo(() => rangeOf(elites, colourBy), [elites, colourBy]);
-  const changed = useChanges(elites);
   const looked = hovered ?? marked;
+  const elite = looked === null ? undefined : elites.get(looked);
+  const canvas = useDrawing(plot, { shape, elites, colourBy, range, marked: looked });
 
-  useEffect(() => {
-    const element = canvas.current;
-    if (!element || size.width === 0) return;
-    const picture = {
-      shape,
-      elites,
-      colourBy,
-      range,
-      changed,
-      marked: looked,
-      ink: INK[theme],
-      empty: EMPTY[theme],
-    };
-    return animate((now) => {
-      drawCells(element, size, picture, now);
-      return [...changed.values()].some((time) => now - time < FLASH_MS);
-    });
-  }, [size, shape, elites, colourBy, range, changed, looked, theme]);
-
-  const filledCellAt = (event: MouseEvent) => {
-    const box = plot.current!.getBoundingClientRect();
-    const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-    const cell = cellAt(x / box.width, y / box.height, shape);
-    return cell !== null && elites.has(cell) ? cell : null;
-  };
   const press = (event: KeyboardEvent) => {
     if (event.key === "Enter" && marked !== null && elites.has(marked)) return onOpen(marked);
     if (!event.key.startsWith("Arrow")) return;
     event.preventDefault();
-    const start = marked ?? best(elites);
-    const direction = event.key as Direction;
-    const next =
-      marked === null || start === null ? start : nextCell(start, direction, elites.keys(), shape);
     setHovered(null);
+    const next = cellByKey(event.key as Direction, marked, elites, shape);
     if (next !== null) onMark(next);
   };
   const open = (event: MouseEvent) => {
-    const cell = filledCellAt(event);
+    const cell = eliteUnder(event, shape, elites);
     if (cell !== null) onOpen(cell);
   };
 
@@ -85,7 +58,7 @@ export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: P
         role="application"
         aria-label="Archive map. Arrow keys move between elites, Enter opens one."
         aria-describedby="map-reading"
-        onPointerMove={(event) => setHovered(filledCellAt(event))}
+        onPointerMove={(event) => setHovered(eliteUnder(event, shape, elites))}
         onPointerLeave={() => setHovered(null)}
         onClick={open}
         onKeyDown={press}
@@ -94,9 +67,44 @@ export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: P
       </div>
       <Horizontal axis={axes[0]} />
       <Legend label={words(colourBy)} range={range} whole={colourBy === "generation"} />
-      <Reading elite={looked === null ? undefined : elites.get(looked)} axes={axes} />
+      <Reading elite={elite} axes={axes} />
     </div>
   );
+}
+
+/** The cell under the pointer, where it holds an elite. */
+function eliteUnder(event: MouseEvent, shape: Shape, elites: Elites): number | null {
+  const box = (event.currentTarget as Element).getBoundingClientRect();
+  const [x, y] = [event.clientX - box.left, event.clientY - box.top];
+  const cell = cellAt(x / box.width, y / box.height, shape);
+  return cell !== null && elites.has(cell) ? cell : null;
+}
+
+/** Where an arrow key leads; from nowhere, to the best elite. */
+function cellByKey(key: Direction, from: number | null, elites: Elites, shape: Shape) {
+  if (from !== null) return nextCell(from, key, elites.keys(), shape);
+  const ranked = [...elites].sort(([, a], [, b]) => b.fitness - a.fitness);
+  return ranked[0]?.[0] ?? null;
+}
+
+type Drawn = Pick<Picture, "shape" | "elites" | "colourBy" | "range" | "marked">;
+
+/** A canvas that always shows the picture, and flashes where it changed. */
+function useDrawing(plot: RefObject<HTMLElement | null>, drawn: Drawn) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const size = useSize(plot);
+  const theme = useTheme();
+  const changed = useChanges(drawn.elites);
+  useEffect(() => {
+    const element = canvas.current;
+    if (!element || size.width === 0) return;
+    const picture = { ...drawn, ...INKS[theme], changed };
+    return animate((now) => {
+      drawCells(element, size, picture, now);
+      return [...changed.values()].some((time) => now - time < FLASH_MS);
+    });
+  }, [size, theme, changed, ...Object.values(drawn)]);
+  return canvas;
 }
 
 function Reading({ elite, axes }: { elite: Elite | undefined; axes: [Axis, Axis] }) {
@@ -149,9 +157,4 @@ function animate(draw: (now: number) => boolean): () => void {
   };
   step();
   return () => cancelAnimationFrame(frame);
-}
-
-function best(elites: Elites): number | null {
-  const ranked = [...elites].sort(([, a], [, b]) => b.fitness - a.fitness);
-  return ranked[0]?.[0] ?? null;
 }

@@ -20,6 +20,7 @@ export interface Picture {
   changed: ReadonlyMap<number, number>;
   marked: number | null;
   ink: string;
+  ground: string;
   empty: string;
 }
 
@@ -50,7 +51,7 @@ export function drawCells(canvas: HTMLCanvasElement, size: Size, picture: Pictur
     context.fillRect(...box(cell, gap));
   }
   drawFlashes(context, picture, box, now);
-  if (picture.marked !== null) drawMark(context, box(picture.marked, 0), picture.ink);
+  if (picture.marked !== null) drawMark(context, box(picture.marked, 0), picture);
 }
 
 function drawFlashes(
@@ -73,9 +74,11 @@ function drawFlashes(
 function drawMark(
   context: CanvasRenderingContext2D,
   [x, y, w, h]: readonly [number, number, number, number],
-  ink: string,
+  { ink, ground }: Picture,
 ) {
-  context.lineWidth = 2;
-  context.strokeStyle = ink;
-  context.strokeRect(x - 1, y - 1, w + 2, h + 2);
+  for (const [colour, width] of [[ground, 5], [ink, 2]] as const) {
+    context.strokeStyle = colour;
+    context.lineWidth = width;
+    context.strokeRect(x - 1, y - 1, w + 2, h + 2);
+  }
 }

@@ -124,7 +124,12 @@ function Entry({ field, state }: { field: Leaf; state: FormState }) {
 function Messages({ path, messages }: { path: string; messages: FormState["messages"] }) {
   return (messages.get(path) ?? []).map((message) => (
     <p key={message} class="wrong-text" role="alert">
-      {message}
+      {sentence(message)}
     </p>
   ));
+}
+
+function sentence(message: string): string {
+  const plain = message.replaceAll("`", "");
+  return plain.charAt(0).toUpperCase() + plain.slice(1);
 }
