@@ -183,7 +183,8 @@ class Installation:
             process.send_signal(sent)
 
 
-JOB, SUPERVISOR, REDIS = "worker.job_process", "worker.supervisor", "redis-server"
+JOB, SUPERVISOR = "worker.job_process", "worker.supervisor"
+RENDERER, REDIS = "worker.renderer", "redis-server"
 
 
 def kill_job(place: Installation, run: str) -> None:
