@@ -53,8 +53,11 @@ def read(plane: Plane, at: Windows) -> Float[Array, "node 4 4"]:
     return plane.reshape(-1)[at.cells]
 
 
-def spread(values: Vectors, at: Windows, size: tuple[int, ...]) -> Float[Array, "2 x y"]:
+def spread(
+    values: Float[Array, "node channel"], at: Windows, size: tuple[int, ...]
+) -> Float[Array, "channel x y"]:
     """S: the density that values at nodes make in the cells."""
     amounts = values.T[:, :, None, None] * at.weights[None]
-    plane = jnp.zeros((2, size[0] * size[1]), values.dtype)
-    return plane.at[:, at.cells].add(amounts, mode="promise_in_bounds").reshape(2, *size)
+    planes = jnp.zeros((values.shape[1], size[0] * size[1]), values.dtype)
+    planes = planes.at[:, at.cells].add(amounts, mode="promise_in_bounds")
+    return planes.reshape(-1, *size)

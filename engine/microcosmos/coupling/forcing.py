@@ -9,6 +9,7 @@ itself: the displacements that constraints make sum to zero, but (J S)⁻¹ of t
 from collections.abc import Callable
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
@@ -66,7 +67,7 @@ def multi_direct_forcing(
     factor for all nodes, so that sums stay zero.
     """
     weights_by_density = at.weights / read(rho, at)
-    coverage = spread(jnp.ones_like(target), at, rho.shape)[0]
+    coverage = spread(jnp.ones_like(target[:, :1]), at, rho.shape)[0]
     beta = 1.0 / jnp.sum(at.weights * read(coverage, at), (1, 2))
 
     def response(q: Vectors) -> Vectors:
@@ -79,9 +80,13 @@ def multi_direct_forcing(
         rigid = projection(error, beta, positions)
         return q + beta[:, None] * (error - rigid), target - rigid
 
-    q, target = improve(jnp.zeros_like(target), target, jnp.zeros_like(target))
-    for _ in range(iterations - 1):
-        q, target = improve(q, target, response(q))
+    def iterate(carry, _):
+        q, target = carry
+        return improve(q, target, response(q)), None
+
+    first = improve(jnp.zeros_like(target), target, jnp.zeros_like(target))
+    # A loop, though a short one: written out, XLA forms the weights anew in every iteration.
+    (q, target), _ = jax.lax.scan(iterate, first, None, length=iterations - 1)
     if limit is not None:
         largest = jnp.sqrt(jnp.max(jnp.sum(q * q, 1)) + 1e-24)
         q = q * jnp.minimum(1.0, limit / largest)
