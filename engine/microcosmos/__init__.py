@@ -13,7 +13,6 @@ _HOME = {
     "EXPERIMENTS": "spec",
     "QualityDiversity": "spec",
     "parse": "spec",
-    "build": "build",
     "evolve": "local",
     "prepare": "device",
     "record": "render",

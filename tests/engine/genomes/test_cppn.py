@@ -1,12 +1,12 @@
 """Networks compute what a plain recursion over their genes computes."""
 
 import math
+from itertools import pairwise
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-
 from microcosmos import genomes, neat
 from microcosmos.archive import encoding
 
@@ -76,10 +76,11 @@ def test_growing_squares_stay_finite():
     network.node_used[:15] = True
     network.activation[3:15] = list(FUNCTIONS).index("square")
     chain = [0, *range(5, 15), 3]
-    for row, (source, target) in enumerate(zip(chain, chain[1:], strict=False)):
+    for row, (source, target) in enumerate(pairwise(chain)):
         network.source[row], network.target[row] = source, target
         network.weight[row] = 10
         network.connection_used[row] = network.enabled[row] = True
+    network = jax.tree.map(jnp.asarray, network)
     out = genomes.evaluate(network, jnp.full((INPUTS, 1), 100.0), OUTPUTS)
     assert np.isfinite(out).all()
 

@@ -1,10 +1,11 @@
 """Networks grow by NEAT's mutations and stay sound."""
 
+from itertools import pairwise
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-
 from microcosmos import genomes, neat
 
 INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 32
@@ -39,7 +40,9 @@ def lineages():
     counters = neat.first_counters(INPUTS, OUTPUTS)
     generations = [first_generation(jax.random.key(0))]
     for number in range(15):
-        networks, counters = next_generation(generations[-1], counters, jax.random.key(number + 1))
+        networks, counters = next_generation(
+            generations[-1], counters, jax.random.key(number + 1)
+        )
         generations.append(networks)
     return [jax.device_get(networks) for networks in generations]
 
@@ -103,7 +106,7 @@ def test_a_number_means_the_same_genes_in_every_network_of_every_generation(line
 
 
 def test_genes_are_never_lost(lineages):
-    for before, after in zip(lineages, lineages[1:], strict=False):
+    for before, after in pairwise(lineages):
         kept = before.connection_used
         assert (after.innovation[kept] == before.innovation[kept]).all()
         assert (after.connection_used | ~kept).all()
@@ -124,7 +127,7 @@ def test_the_same_mutation_in_one_generation_gets_the_same_numbers():
 
 
 def test_a_split_by_the_identity_changes_nothing():
-    rates = neat.Rates(0, 1, 0, 0, 0, add_node=1, add_connection=0)
+    rates = neat.Rates(0.0, 1.0, 0.0, 0.0, 0.0, add_node=1.0, add_connection=0.0)
     parent = neat.minimal(jax.random.key(5), INPUTS, OUTPUTS, NODES, CONNECTIONS)
     child, novelty = neat.mutate(parent, rates, INPUTS, key=jax.random.key(6))
     identity = child.activation.at[novelty.node_row].set(0)

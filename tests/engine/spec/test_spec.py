@@ -4,9 +4,8 @@ import subprocess
 import sys
 
 import pytest
-from pydantic import ValidationError
-
 from microcosmos.spec import EXPERIMENTS, QualityDiversity, estimate, parse
+from pydantic import ValidationError
 
 pytestmark = pytest.mark.fast
 
@@ -17,7 +16,9 @@ def refusal(**changes) -> str:
     return str(caught.value)
 
 
-@pytest.mark.parametrize("preset", EXPERIMENTS["quality-diversity"].presets, ids=lambda p: p.name)
+@pytest.mark.parametrize(
+    "preset", EXPERIMENTS["quality-diversity"].presets, ids=lambda p: p.name
+)
 def test_a_preset_survives_json(preset):
     assert parse(preset.spec.model_dump(mode="json")) == preset.spec
 
@@ -93,7 +94,9 @@ def test_memory_grows_with_the_block_and_work_with_the_steps():
     assert estimate(longer).cell_steps == 2 * estimate(small).cell_steps
 
 
-@pytest.mark.parametrize("module", ["spec", "bodies", "archive.creature", "archive.export", "cli"])
+@pytest.mark.parametrize(
+    "module", ["spec", "bodies", "archive.creature", "archive.export", "cli"]
+)
 def test_importing_it_loads_no_jax(module):
     code = f"import sys, microcosmos.{module}; sys.exit('jax' in sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)

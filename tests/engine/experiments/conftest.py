@@ -1,0 +1,41 @@
+"""A run small enough to be carried out many times."""
+
+import pytest
+from microcosmos.build import build
+from microcosmos.spec import parse
+
+SMALL = {
+    "experiment": "quality-diversity",
+    "seed": 3,
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 12},
+    "control": {"period": 30},
+    "task": {"steps": 60},
+    "search": {"generations": 4, "batch": 16, "block": 8},
+}
+
+
+@pytest.fixture(scope="session")
+def small():
+    """A function that makes the small spec, parts of it changed."""
+
+    def make(**changes):
+        return parse(SMALL | {k: {**SMALL.get(k, {}), **v} for k, v in changes.items()})
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def experiment(small):
+    return build(small())
+
+
+@pytest.fixture(scope="session")
+def course(experiment):
+    """States and reports of the whole run, the initial state first."""
+    states, reports = [experiment.init()], []
+    while not experiment.done(states[-1]):
+        state, report = experiment.advance(states[-1])
+        states.append(state)
+        reports.append(report)
+    return states, reports

@@ -1,0 +1,148 @@
+"""A run repeats bit for bit, whatever interrupts it, and forgets nobody."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from microcosmos.archive import creature, naming
+from microcosmos.build import build
+from microcosmos.experiments import Stopped
+from microcosmos.experiments.archive_file import OtherDevice
+from microcosmos.search import FEATURES
+
+
+def finish(experiment, state):
+    while not experiment.done(state):
+        state, _ = experiment.advance(state)
+    return experiment.save(state)
+
+
+def test_a_run_taken_up_from_any_generation_ends_with_the_same_bytes(experiment, course):
+    states, _ = course
+    whole = experiment.save(states[-1])
+    for state in states[:-1]:
+        assert finish(experiment, experiment.restore(experiment.save(state))) == whole
+
+
+def test_a_new_build_of_the_same_spec_gives_the_same_bytes(small, course, experiment):
+    again = build(small())
+    assert finish(again, again.init()) == experiment.save(course[0][-1])
+
+
+def test_another_seed_gives_another_archive(small, course, experiment):
+    other = build(small().model_copy(update={"seed": 4}))
+    assert finish(other, other.init()) != experiment.save(course[0][-1])
+
+
+def test_a_wish_to_stop_between_blocks_leaves_the_state_as_it_was(experiment, course):
+    state = course[0][1]
+    before = experiment.save(state)
+    asked = iter([False, True])
+    with pytest.raises(Stopped):
+        experiment.advance(state, stop=lambda: next(asked))
+    assert experiment.save(state) == before
+    assert experiment.save(experiment.advance(state)[0]) == experiment.save(course[0][2])
+
+
+def test_the_archive_only_improves(course):
+    _, reports = course
+    assert [r.generation for r in reports] == [1, 2, 3, 4]
+    assert [r.evaluations for r in reports] == [16, 32, 48, 64]
+    for name in ("qd_score", "coverage", "best"):
+        values = [getattr(report, name) for report in reports]
+        assert values == sorted(values)
+
+
+def test_reported_elites_are_what_the_archive_holds(experiment, course):
+    states, reports = course
+    latest = {elite.cell: elite for report in reports for elite in report.elites}
+    elites = states[-1].elites
+    assert set(latest) == set(np.flatnonzero(elites.occupied))
+    for cell, elite in latest.items():
+        assert elite.fitness == float(elites.fitness[cell])
+        assert elite.generation == int(elites.generation[cell])
+        assert elite.creature == bytes(states[-1].creatures[cell]).hex()
+        document = experiment.creature(states[-1], cell)
+        assert naming.canonical(document["identity"]) == elite.identity
+        assert creature.parse(document)["provenance"]["parents"] == list(elite.parents)
+
+
+def test_every_parent_was_an_elite_before_its_child(course):
+    born = {}
+    for report in course[1]:
+        for elite in report.elites:
+            for parent in elite.parents:
+                assert born[parent] < report.generation
+            assert elite.operator == ("neat" if elite.parents else "random")
+        for elite in report.elites:
+            born.setdefault(elite.creature, report.generation)
+    assert any(elite.parents for report in course[1] for elite in report.elites)
+
+
+def test_the_best_creature_is_the_fittest(experiment, course):
+    best = experiment.best(course[0][-1])
+    assert best["measured"]["fitness"] == course[1][-1].best
+
+
+def test_nobody_is_best_in_an_empty_archive(experiment):
+    assert experiment.best(experiment.init()) is None
+
+
+def test_random_variation_has_no_parents(small):
+    experiment = build(small(search={"variation": "random", "generations": 2}))
+    state = experiment.init()
+    while not experiment.done(state):
+        state, report = experiment.advance(state)
+        assert all(not elite.parents for elite in report.elites)
+        assert report.elites
+
+
+def test_another_spec_is_refused(small, experiment, course):
+    other = build(small(task={"steps": 61}))
+    with pytest.raises(ValueError, match="`spec`"):
+        other.restore(experiment.save(course[0][1]))
+
+
+def test_another_device_needs_leave_and_is_marked(experiment, course):
+    elsewhere = replace(experiment, plan=replace(experiment.plan, device="abacus"))
+    data = elsewhere.save(course[0][1])
+    with pytest.raises(OtherDevice, match="abacus"):
+        experiment.restore(data)
+    allowed = experiment.restore(data, other_device=True)
+    assert allowed.devices == ("abacus",)
+    again = experiment.restore(experiment.save(allowed))
+    assert again.devices == ("abacus", experiment.plan.device)
+
+
+def test_diverged_creatures_are_kept_apart_with_their_reason(small):
+    unlimited = {"limits": False, "projection": "none", "theta_feedback": 0}
+    spec = small(
+        world={"width": 32, "height": 32, "viscosity": 0.001},
+        control={"period": 8, "angle_scale": 1.5, "length_scale": 0.8, "ramp": 0},
+        body={"nodes": 8},
+        coupling=unlimited,
+        task={"steps": 400},
+        search={"generations": 2},
+    )
+    experiment = build(spec)
+    state, first = experiment.advance(experiment.init())
+    state, second = experiment.advance(state)
+    assert first.diverged > 0
+    assert second.diverged == len(state.quarantine.status)
+    assert set(np.unique(state.quarantine.status)) <= {1, 2}
+    assert np.isfinite(np.asarray(state.elites.fitness)).all()
+    restored = experiment.restore(experiment.save(state))
+    assert experiment.save(restored) == experiment.save(state)
+
+
+def test_the_file_names_what_it_holds(experiment, course):
+    from microcosmos.archive import file
+
+    tree, attributes = file.load(experiment.save(course[0][-1]))
+    assert json.loads(attributes["features"]) == list(FEATURES)
+    assert json.loads(attributes["device"]) == [experiment.plan.device]
+    count = len(tree["archive"]["cell"])
+    assert all(len(v) == count for v in tree["archive"].values() if not isinstance(v, dict))
+    assert len(tree["curves"]["qd_score"]) == 4
+    assert len(tree["lineage"]["creature"]) >= count

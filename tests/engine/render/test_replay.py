@@ -1,0 +1,89 @@
+"""A replay shows the creature that was measured, and a check repeats its numbers."""
+
+import copy
+import json
+import struct
+
+import jax
+import numpy as np
+import pytest
+from microcosmos import search
+from microcosmos.archive import creature
+from microcosmos.build import build
+from microcosmos.render import check, record
+from microcosmos.spec import parse
+
+SPEC = parse(
+    {
+        "experiment": "quality-diversity",
+        "world": {"width": 40, "height": 32},
+        "body": {"nodes": 12},
+        "control": {"period": 30},
+        "task": {"steps": 601},
+        "search": {"generations": 1, "batch": 4, "block": 4},
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def best():
+    """The creature file of the best of four random creatures."""
+    with jax.numpy_rank_promotion("raise"):
+        experiment = build(SPEC)
+        return experiment.best(experiment.advance(experiment.init())[0])
+
+
+@pytest.fixture(scope="module")
+def replay(best):
+    data = record(best)
+    (size,) = struct.unpack("<I", data[:4])
+    header = json.loads(data[4 : 4 + size])
+    start = 4 + size
+    shape = header["frames"], header["nodes"], 2
+    positions = np.frombuffer(data, "<f4", np.prod(shape), start).reshape(shape)
+    curl = np.frombuffer(data, np.int8, offset=start + positions.nbytes)
+    return header, positions, curl.reshape(header["frames"], *header["size"])
+
+
+def test_the_layout_is_what_the_header_says(replay, best):
+    header, _, curl = replay
+    assert header["creature"] == best["sha256"]
+    assert header["every"] == 2
+    assert header["frames"] == 301
+    assert header["size"] == [40, 32]
+    assert np.abs(curl).max() == 127
+    assert not curl[0].any()
+
+
+def test_the_body_begins_straight_in_the_middle(replay):
+    _, positions, _ = replay
+    np.testing.assert_allclose(positions[0].mean(0), [20, 16], atol=1e-5)
+    np.testing.assert_allclose(np.diff(positions[0], axis=0), [[1, 0]] * 11, atol=1e-5)
+
+
+def test_the_motion_ends_where_the_fitness_says(replay, best):
+    header, positions, _ = replay
+    moved = np.linalg.norm(positions[-1].mean(0) - positions[0].mean(0))
+    replayed = header["fitness"]["replayed"]
+    # The last frame is one step before the end: 601 steps, every second kept.
+    assert moved == pytest.approx(replayed, abs=0.1)
+    assert replayed == pytest.approx(best["measured"]["fitness"], rel=1e-3)
+    assert header["fitness"]["difference"] == replayed - header["fitness"]["recorded"]
+
+
+def test_a_check_repeats_every_recorded_number_exactly(best):
+    result = check(best)
+    assert result.same_device
+    assert result.exact
+    assert set(result.repeated) == set(search.FEATURES)
+
+
+def test_a_check_notices_a_wrong_record(best):
+    changed = copy.deepcopy(best)
+    changed["measured"]["features"]["displacement"] *= 1.001
+    assert not check(changed).exact
+
+
+def test_a_check_needs_a_measurement(best):
+    with pytest.raises(creature.CreatureError, match="`measured`"):
+        check({**best, "measured": None})

@@ -1,0 +1,38 @@
+"""The same creature gives the same bits in any slot, beside anybody, on any devices."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROGRAM = Path(__file__).with_name("block_bits.py")
+
+
+def bits(devices: int, tmp_path: Path) -> dict[str, str]:
+    environment = os.environ | {"JAX_PLATFORMS": "cpu", "MICROCOSMOS_TEST_CACHE": str(tmp_path)}
+    command = [sys.executable, str(PROGRAM), str(devices)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """What one, two and four host devices found, then again after a restart."""
+    cache = tmp_path_factory.mktemp("cache")
+    return [bits(devices, cache) for devices in (1, 2, 4, 1)]
+
+
+def test_slots_and_neighbours_make_no_difference(runs):
+    for run in runs:
+        assert run["slot 0"] == run["slot 15"] == run["among others"] == run["alone"]
+
+
+def test_the_number_of_devices_and_a_restart_make_no_difference(runs):
+    assert runs[0] == runs[1] == runs[2] == runs[3]
+
+
+def test_all_devices_take_part(runs):
+    assert all(len(set(run["batch"])) == len(run["batch"]) for run in runs)

@@ -1,0 +1,79 @@
+"""The command line carries a run out, takes it up again and repeats a creature."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+SPEC = {
+    "experiment": "quality-diversity",
+    "seed": 5,
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 12},
+    "control": {"period": 30},
+    "task": {"steps": 60},
+    "search": {"generations": 12, "batch": 16},
+}
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A function that starts the command in a folder of its own."""
+    environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": str(tmp_path / "cache")}
+
+    def start(*arguments, **options):
+        command = [sys.executable, "-m", "microcosmos.cli", *arguments]
+        return subprocess.Popen(
+            command,
+            cwd=tmp_path,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            **options,
+        )
+
+    return start
+
+
+def finished(process, code=0) -> str:
+    text, _ = process.communicate(timeout=300)
+    assert process.returncode == code, text
+    return text
+
+
+def test_a_run_stopped_by_a_signal_goes_on_and_ends_with_the_same_bytes(run, tmp_path):
+    (tmp_path / "spec.json").write_text(json.dumps(SPEC))
+    finished(run("evolve", "spec.json", "--out", "whole.h5"))
+    stopped = run("evolve", "spec.json", "--checkpoint-seconds", "0")
+    archive = tmp_path / "spec.h5"
+    while not archive.exists() and stopped.poll() is None:
+        time.sleep(0.02)
+    stopped.send_signal(signal.SIGTERM)
+    assert "goes on from" in finished(stopped, code=130)
+    assert archive.read_bytes() != (tmp_path / "whole.h5").read_bytes()
+    assert "Done" in finished(run("evolve", "spec.json"))
+    assert archive.read_bytes() == (tmp_path / "whole.h5").read_bytes()
+    text = finished(run("replay", "spec.best.json", "--check"))
+    assert "The same, bit for bit." in text
+
+
+def test_a_wrong_spec_is_refused_with_its_field(run, tmp_path):
+    (tmp_path / "spec.json").write_text(json.dumps(SPEC | {"world": {"viscosity": -1}}))
+    text = finished(run("evolve", "spec.json"), code=2)
+    assert "world.viscosity" in text
+
+
+def test_a_name_that_is_no_file_is_refused_with_the_presets(run):
+    text = finished(run("evolve", "nonsense"), code=2)
+    assert "demo" in text
+    assert "nonsense" in text
+
+
+def test_a_creature_that_is_not_sound_is_refused(run, tmp_path):
+    (tmp_path / "creature.json").write_text("{}")
+    assert "identity" in finished(run("replay", "creature.json", "--check"), code=2)
