@@ -73,8 +73,10 @@ class Tree:
 
     def listen(self) -> None:
         """Take SIGINT, SIGTERM and the terminal's end as the wish to end; twice means now."""
-        for sent in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(sent, self._ask)
+        signal.signal(signal.SIGINT, self._ask)
+        signal.signal(signal.SIGTERM, self._ask)
+        if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:  # nohup means what it says.
+            signal.signal(signal.SIGHUP, self._ask)
 
     def _ask(self, signum: int, frame: FrameType | None) -> None:
         self._asked += 1

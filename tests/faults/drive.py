@@ -60,13 +60,13 @@ class Installation:
                 stderr=output,
                 start_new_session=True,
             )
-        wait_until(self._answers, seconds, f"the server answers; {self.output.read_text()}")
+        wait_until(self.answers, seconds, f"the server answers; {self.output.read_text()}")
 
     @property
     def output(self) -> Path:
         return self.folder / "output.txt"
 
-    def _answers(self) -> bool:
+    def answers(self) -> bool:
         if self.process.poll() is not None:
             raise RuntimeError(f"it ended: {self.output.read_text()}")
         try:

