@@ -65,11 +65,13 @@ def disturb(place: Installation, undisturbed: bytes) -> bool:
     """Whether a run disturbed at random moments ends with the same bytes."""
     run = place.submit(spec(SEEDS[0], "neat"))
     moments = sorted(random.choices(range(1, 45), k=len(FAULTS)))
-    interrupt(place, run, list(FAULTS), moments)
+    interrupt(place, run, FAULTS, moments, seconds=2 * HOURS)
     attempts = place.wait(run, "finished", seconds=2 * HOURS)["attempt"]
     same = place.archive(run) == undisturbed
     names = ", ".join(f"{f.__name__} at {m}" for f, m in zip(FAULTS, moments, strict=True))
-    console.print(f"{names}: {attempts} attempts, archive {'identical' if same else 'DIFFERENT'}")
+    console.print(
+        f"{names}: {attempts} attempts, archive {'identical' if same else 'DIFFERENT'}"
+    )
     return same
 
 

@@ -6,7 +6,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -207,9 +207,21 @@ def pause_and_resume(place: Installation, run: str) -> None:
     place.ask(run, "resume")
 
 
-def interrupt(place: Installation, run: str, faults: list, moments: list[int]) -> None:
-    """Cause the faults, each to an attempt of its own that has reached a generation."""
+Fault = Callable[[Installation, str], None]
+
+
+def interrupt(
+    place: Installation,
+    run: str,
+    faults: Sequence[Fault],
+    moments: Sequence[int],
+    seconds: float = 120,
+) -> None:
+    """Cause the faults, each to an attempt of its own that has reached a generation.
+
+    `seconds` is how long that may take.
+    """
     attempt = 0
     for fault, generation in zip(faults, moments, strict=True):
-        attempt = place.reach(run, generation, after=attempt)
+        attempt = place.reach(run, generation, after=attempt, seconds=seconds)
         fault(place, run)
