@@ -4,7 +4,7 @@ Each write is one transaction that first proves that the attempt is still the cu
 one. `Fenced` says that it is not: the process should end without another word.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import monotonic
 from typing import Any
 from uuid import UUID
@@ -100,7 +100,8 @@ class Claim:
     """The file to go on from; None: from the beginning."""
     seconds: float
     """Wall time of the computing that led to the last record."""
-    announced: float = field(default=0.0)
+    announced: float = 0.0
+    """When everybody was last told how the run as a whole stands."""
 
     def use(self, device: str) -> None:
         """Say which kind of device computes."""

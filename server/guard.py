@@ -26,19 +26,15 @@ class Guard:
         self.app, self.token = app, token
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        problem = None
-        if scope["type"] == "http":
-            request = HTTPConnection(scope)
-            problem = (
-                self._foreign(request.headers) if not self.token else self._unknown(request)
-            )
-            if self.token and self._shown(request):
-                await _remember(request)(scope, receive, send)
-                return
-        if problem:
-            await answer(problem)(scope, receive, send)
-        else:
-            await self.app(scope, receive, send)
+        instead = self._instead(HTTPConnection(scope)) if scope["type"] == "http" else None
+        await (instead or self.app)(scope, receive, send)
+
+    def _instead(self, request: HTTPConnection) -> Response | None:
+        """What is answered in place of the application, if anything."""
+        if self.token and self._shown(request):
+            return _remember(request)
+        problem = self._unknown(request) if self.token else self._foreign(request.headers)
+        return answer(problem) if problem else None
 
     def _foreign(self, headers: Headers) -> Problem | None:
         host, origin = headers.get("host", ""), headers.get("origin")

@@ -3,7 +3,7 @@
 Every change is one guarded UPDATE, so that of two that come at once only one happens.
 """
 
-from typing import Any
+from typing import Any, NoReturn
 from uuid import UUID
 
 from sqlalchemy import case, or_, update
@@ -78,7 +78,7 @@ def resume(session: Session, run: Run) -> Run:
     )
 
 
-def _refuse(session: Session, action: str, run: Run, needed: str) -> Run:
+def _refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
     current = session.get_one(Run, run.id, populate_existing=True)
     raise Conflict(action, current, needed)
 

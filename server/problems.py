@@ -1,5 +1,6 @@
 """Every error as a problem (RFC 9457): which field, what was needed, what came."""
 
+import logging
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -9,11 +10,15 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from microcosmos.archive.creature import CreatureError
 from pydantic import ValidationError
+from redis import RedisError
+from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 
 from .lifecycle import Conflict
 from .schemas import FieldError, Problem
 
+log = logging.getLogger(__name__)
+RETRY = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
 NAMED = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
 
@@ -70,6 +75,14 @@ def install(app: FastAPI) -> None:
     def http(_: Request, error: HTTPException) -> JSONResponse:
         problem = Problem(title=error.detail, status=error.status_code, detail=error.detail)
         return answer(problem, error.headers)
+
+    @app.exception_handler(OperationalError)
+    @app.exception_handler(RedisError)
+    def away(_: Request, error: OperationalError | RedisError) -> JSONResponse:
+        name = "Redis" if isinstance(error, RedisError) else "The database"
+        log.error("%s did not answer: %s", name, error)
+        detail = f"{name} does not answer; try again."
+        return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY)
 
     @app.exception_handler(Exception)
     def unforeseen(_: Request, error: Exception) -> JSONResponse:

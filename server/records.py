@@ -1,6 +1,7 @@
 """What an experiment reports, as rows and as events."""
 
 from collections.abc import Mapping, Sequence
+from operator import itemgetter
 from typing import Any, Protocol
 from uuid import UUID
 
@@ -124,7 +125,8 @@ def write(
     creatures: list[dict[str, Any]],
 ) -> None:
     session.execute(insert(Generation), [{"run_id": run_id, **curve}])
-    insert_missing(session, Creature, creatures)
+    # In one order, so that two runs with the same creatures cannot wait for each other.
+    insert_missing(session, Creature, sorted(creatures, key=itemgetter("sha256")))
     if elites:
         session.execute(insert(Elite), [{"run_id": run_id, **row} for row in elites])
 

@@ -1,5 +1,6 @@
 """The archive of a run: as columns, now or as it was, and as files."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -20,6 +21,15 @@ binary: dict[int | str, dict[str, Any]] = {
     200: {"content": {"application/octet-stream": {}}},
     404: {},
 }
+
+COLUMNS = (
+    Elite.cell,
+    Elite.generation,
+    Elite.fitness,
+    Elite.descriptor_0,
+    Elite.descriptor_1,
+    Elite.creature,
+)
 
 
 @router.get("/archive")
@@ -42,7 +52,7 @@ def read_archive(
     )
 
 
-def _elites(session: Session, run: Run, as_of: int) -> list[Elite]:
+def _elites(session: Session, run: Run, as_of: int) -> Sequence[Any]:
     """The last of each cell that is not after a generation."""
     last = (
         select(Elite.cell, func.max(Elite.generation).label("generation"))
@@ -51,8 +61,8 @@ def _elites(session: Session, run: Run, as_of: int) -> list[Elite]:
         .subquery()
     )
     same = (Elite.cell == last.c.cell) & (Elite.generation == last.c.generation)
-    statement = select(Elite).join(last, same).where(Elite.run_id == run.id)
-    return list(session.scalars(statement.order_by(Elite.cell)))
+    statement = select(*COLUMNS).join(last, same).where(Elite.run_id == run.id)
+    return session.execute(statement.order_by(Elite.cell)).all()
 
 
 @router.get("/archive.h5", response_class=Response, responses=binary)

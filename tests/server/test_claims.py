@@ -9,6 +9,7 @@ from sqlalchemy import func, select, update
 from server import workers
 from server.artifacts import Artifacts
 from server.claims import Fenced, claim
+from server.db import ago
 from server.models import Creature, Elite, Generation, Run
 
 
@@ -18,9 +19,10 @@ def count(services, table):
 
 
 def silence(services, run_id):
-    """Put the last heartbeat far back, as if the worker had been frozen."""
+    """The last heartbeat was a lease ago, and a little more, as if the worker were frozen."""
     with services.sessions.write.begin() as session:
-        session.execute(update(Run).values(heartbeat_at=None).where(Run.id == run_id))
+        then = ago(session, services.settings.lease + 0.1)
+        session.execute(update(Run).values(heartbeat_at=then).where(Run.id == run_id))
 
 
 def test_only_one_worker_gets_a_run(services, run_id):

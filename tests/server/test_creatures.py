@@ -2,6 +2,7 @@
 
 import json
 
+import httpx
 import pytest
 from microcosmos.archive import creature
 from rq import SimpleWorker
@@ -149,6 +150,14 @@ def test_a_rendering_that_failed_says_why(api, services, known, monkeypatch):
     answer = api.get(f"creatures/{known}/replay")
     assert answer.status_code == 500
     assert "must be real number, not str" in answer.json()["detail"]
+    assert answer.headers["retry-after"]
+
+
+def test_while_redis_is_away_a_replay_cannot_be_ordered(serve, known):
+    with serve(redis_url="redis://127.0.0.1:1/0") as address:
+        answer = httpx.get(f"{address}/api/v1/creatures/{known}/replay", timeout=20)
+    assert answer.status_code == 503
+    assert answer.json()["detail"] == "Redis does not answer; try again."
     assert answer.headers["retry-after"]
 
 

@@ -6,6 +6,7 @@ from rq.registry import StartedJobRegistry
 from sqlalchemy import update
 
 from server.claims import Fenced, claim
+from server.db import ago
 from server.models import Run, Worker
 from server.reconcile import job_died, reconcile
 
@@ -13,6 +14,13 @@ from server.reconcile import job_died, reconcile
 def put(services, table, **values):
     with services.sessions.write.begin() as session:
         session.execute(update(table).values(**values))
+
+
+def silence(services):
+    """Every worker's last heartbeat is a lease ago, and a little more."""
+    with services.sessions.read() as session:
+        then = ago(session, services.settings.lease + 0.1)
+    put(services, Run, heartbeat_at=then)
 
 
 def enqueued(services):
@@ -61,7 +69,7 @@ def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, repo
     flush()
     reconcile(services)
     assert (row().status, enqueued(services)) == ("running", [])
-    put(services, Run, heartbeat_at=None)
+    silence(services)
     reconcile(services)
     assert (row().status, enqueued(services)) == ("queued", [str(run_id)])
     with pytest.raises(Fenced):
@@ -71,7 +79,7 @@ def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, repo
 def test_three_silent_workers_end_a_run(services, run_id, row):
     for _ in range(3):
         claim(services, run_id, "worker")
-        put(services, Run, heartbeat_at=None)
+        silence(services)
         reconcile(services)
     assert row().status == "failed"
     assert "no word from worker worker for 20 s" in row().error
@@ -81,7 +89,7 @@ def test_three_silent_workers_end_a_run(services, run_id, row):
 def test_a_wish_to_a_dead_worker_is_granted(services, api, run_id, row, action, status):
     claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/{action}")
-    put(services, Run, heartbeat_at=None)
+    silence(services)
     reconcile(services)
     assert (row().status, row().wish) == (status, None)
     assert (row().finished_at is None) == (status == "paused")
