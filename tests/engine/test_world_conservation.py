@@ -11,9 +11,20 @@ def momentum(state):
     return jnp.stack([jnp.sum(m) for m in fluid.momentum(state.populations)])
 
 
+def lengths(state):
+    v = jnp.diff(state.positions, axis=0)
+    return jnp.sqrt(jnp.sum(v * v, 1))
+
+
+@jax.jit
+def swim(box, start, rest):
+    """The end, and the fluid's momentum and the lengths of edges after every step."""
+    return world.rollout(box, start, rest, lambda state: (momentum(state), lengths(state)))
+
+
 def largest_impulse(box, start, rest):
     """The largest sum of forces, accumulated over time, that the body gave the fluid."""
-    end, given = jax.jit(lambda: world.rollout(box, start, rest, momentum))()
+    end, (given, _) = swim(box, start, rest)
     assert np.all(np.isfinite(end.positions))
     return float(np.sqrt(np.max(np.sum(np.asarray(given, float) ** 2, 1))))
 
@@ -45,7 +56,7 @@ def test_mass_is_kept_for_ten_thousand_steps_of_a_swimmer(immerse, chain, worm, 
     body = chain(16)
     box, start = immerse(body, dtype, viscosity=0.05, size=(32, 32))
     rest = worm(body, dtype, period=250, periods=40)
-    end, _ = jax.jit(lambda: world.rollout(box, start, rest))()
+    end, _ = swim(box, start, rest)
     drift = sum(np.sum(np.asarray(plane, float)) for plane in end.populations)
     assert np.all(np.isfinite(end.positions))
     assert abs(drift) <= 1e-6 * 32 * 32
@@ -54,7 +65,7 @@ def test_mass_is_kept_for_ten_thousand_steps_of_a_swimmer(immerse, chain, worm, 
 def test_an_untouched_body_stays_exactly_at_rest(immerse, chain, hold, dtype):
     body = chain(16)
     box, start = immerse(body, dtype, viscosity=0.05, size=(32, 32))
-    end, _ = jax.jit(lambda: world.rollout(box, start, hold(body, 200, dtype)))()
+    end, _ = swim(box, start, hold(body, 200, dtype))
     jax.tree.map(np.testing.assert_array_equal, end, start)
 
 
@@ -62,12 +73,7 @@ def test_edges_keep_their_length_while_a_worm_swims(immerse, chain, worm, float6
     body = chain(32)
     box, start = immerse(body, float64, viscosity=0.5, limits=False)
     rest = worm(body, float64, period=250, periods=2)
-
-    def lengths(state):
-        v = jnp.diff(state.positions, axis=0)
-        return jnp.sqrt(jnp.sum(v * v, 1))
-
-    _, seen = jax.jit(lambda: world.rollout(box, start, rest, lengths))()
+    _, (_, seen) = swim(box, start, rest)
     np.testing.assert_allclose(seen, 1.0, atol=0.01)
 
 
@@ -77,8 +83,8 @@ def test_a_creature_swims_alike_wherever_it_starts(immerse, chain, worm, float64
     rest = worm(body, float64, period=200, periods=1)
     shift = jnp.asarray([[37.0, -11.0]])
     moved = world.at_rest(box, start.positions + shift)
-    run = jax.jit(lambda state: world.rollout(box, state, rest)[0].positions)
-    np.testing.assert_allclose(run(moved) - shift, run(start), atol=1e-9)
+    here, there = (swim(box, state, rest)[0].positions for state in (start, moved))
+    np.testing.assert_allclose(there - shift, here, atol=1e-9)
 
 
 def test_a_mirrored_gait_swims_the_mirrored_way(immerse, chain, worm, float64):
@@ -86,6 +92,5 @@ def test_a_mirrored_gait_swims_the_mirrored_way(immerse, chain, worm, float64):
     box, start = immerse(body, float64, viscosity=0.1, size=(32, 32))
     rest = worm(body, float64, period=200, periods=1)
     mirrored = filaments.Rest(-rest.angle, rest.length)
-    run = jax.jit(lambda rest: world.rollout(box, start, rest)[0].positions)
-    reflected = 32 - run(mirrored)[:, 1]
-    np.testing.assert_allclose(reflected, run(rest)[:, 1], atol=1e-9)
+    one, other = (swim(box, start, gait)[0].positions for gait in (rest, mirrored))
+    np.testing.assert_allclose(32 - other[:, 1], one[:, 1], atol=1e-9)

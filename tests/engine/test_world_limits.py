@@ -9,6 +9,11 @@ from microcosmos import coupling, filaments, world
 LIMIT = 0.1
 
 
+@jax.jit
+def swim(box, start, rest):
+    return world.rollout(box, start, rest)[0]
+
+
 @pytest.fixture
 def wild(immerse, chain, float64):
     """A filament that is asked to fold up at once."""
@@ -58,9 +63,8 @@ def test_without_limits_the_same_body_moves_further(wild, immerse, chain):
 def test_random_control_stays_finite_and_slower_than_sound(immerse, chain, erratic, viscosity):
     dtype, body = jnp.dtype("float32"), chain(32)
     box, start = immerse(body, dtype, viscosity=viscosity)
-    run = jax.jit(lambda rest: world.rollout(box, start, rest)[0])
     for seed in (0, 1):
-        end = run(erratic(body, 1500, dtype, seed))
+        end = swim(box, start, erratic(body, 1500, dtype, seed))
         assert all(np.all(np.isfinite(leaf)) for leaf in jax.tree.leaves(end))
         u = world.flow(box, end)
         assert np.sqrt(np.max(np.sum(np.asarray(u) ** 2, 0))) < 3**-0.5

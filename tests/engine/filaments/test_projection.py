@@ -18,6 +18,9 @@ def disturbed(request, float64, chain, ring):
     return body, rods, positions, filaments.edge_angles(positions, rods)
 
 
+project = jax.jit(filaments.project, static_argnames="iterations")
+
+
 def rest_of(body):
     return filaments.Rest(jnp.asarray(body.rest_angle), jnp.asarray(body.rest_length))
 
@@ -35,7 +38,7 @@ def joint_error(angles, body, rest):
 
 def test_displacements_sum_to_zero(disturbed):
     body, rods, positions, angles = disturbed
-    moved, _ = filaments.project(positions, angles, rods, rest_of(body), iterations=50)
+    moved, _ = project(positions, angles, rods, rest_of(body), iterations=50)
     np.testing.assert_allclose(jnp.sum(moved - positions, 0), 0, atol=1e-13)
 
 
@@ -46,14 +49,14 @@ def test_displacements_sum_to_zero_in_float32(chain):
     positions = jnp.asarray(body.positions + noise, jnp.float32)
     angles = filaments.edge_angles(positions, rods)
     rest = filaments.Rest(jnp.zeros(len(body.joints)), jnp.ones(len(body.edges)))
-    moved, _ = filaments.project(positions, angles, rods, rest, iterations=50)
+    moved, _ = project(positions, angles, rods, rest, iterations=50)
     total = np.sum(np.asarray(moved, float) - np.asarray(positions, float), 0)
     np.testing.assert_allclose(total, 0, atol=1e-4)
 
 
 def test_bending_keeps_the_mean_angle(disturbed):
     body, rods, positions, angles = disturbed
-    _, turned = filaments.project(positions, angles, rods, rest_of(body), iterations=50)
+    _, turned = project(positions, angles, rods, rest_of(body), iterations=50)
     np.testing.assert_allclose(jnp.mean(turned), jnp.mean(angles), atol=1e-13)
 
 
@@ -62,7 +65,7 @@ def test_errors_of_length_and_angle_fall(disturbed):
     rest = rest_of(body)
     lengths, joints = [], []
     for iterations in (0, 10, 100, 1000):
-        x, theta = filaments.project(positions, angles, rods, rest, iterations=iterations)
+        x, theta = project(positions, angles, rods, rest, iterations=iterations)
         lengths.append(length_error(x, rods, rest))
         joints.append(joint_error(theta, body, rest))
     assert np.all(np.diff(lengths) < 0), lengths
@@ -77,7 +80,7 @@ def test_a_straight_chain_becomes_the_circle_it_is_asked_for(float64, chain):
     rest = filaments.Rest(jnp.full(30, 2 * np.pi / 31), jnp.ones(31))
     positions = jnp.asarray(body.positions)
     angles = filaments.edge_angles(positions, rods)
-    positions, _ = filaments.project(positions, angles, rods, rest, iterations=10_000)
+    positions, _ = project(positions, angles, rods, rest, iterations=10_000)
     centre = jnp.mean(positions[1:], 0)
     radius = jnp.sqrt(jnp.sum((positions - centre[None]) ** 2, 1))
     np.testing.assert_allclose(radius, 0.5 / np.sin(np.pi / 31), rtol=1e-5)
@@ -89,7 +92,7 @@ def test_a_satisfied_body_is_not_moved_at_all(dtype, chain):
     positions = jnp.asarray(body.positions, dtype)
     angles = filaments.edge_angles(positions, rods)
     rest = filaments.Rest(jnp.zeros(10, dtype), jnp.ones(11, dtype))
-    moved, turned = filaments.project(positions, angles, rods, rest, iterations=10)
+    moved, turned = project(positions, angles, rods, rest, iterations=10)
     np.testing.assert_array_equal(moved, positions)
     np.testing.assert_array_equal(turned, angles)
 
@@ -104,7 +107,7 @@ def test_a_stiffness_of_zero_leaves_its_error(disturbed):
         shear=rods.shear,
         bend=0 * rods.bend,
     )
-    moved, turned = filaments.project(positions, angles, soft, rest_of(body), iterations=10)
+    moved, turned = project(positions, angles, soft, rest_of(body), iterations=10)
     np.testing.assert_array_equal(moved, positions)
     np.testing.assert_array_equal(turned, angles)
 
@@ -140,7 +143,7 @@ def test_projection_can_be_differentiated(disturbed):
             rods.edges, rods.edge_colours, rods.joint_colours, stretch, rods.shear, bend
         )
         rest = filaments.Rest(angle, length)
-        x, theta = filaments.project(positions, angles, soft, rest, iterations=5)
+        x, theta = project(positions, angles, soft, rest, iterations=5)
         return jnp.sum(jnp.sin(x)) + jnp.sum(theta**2)
 
     direction = [jnp.asarray(random.normal(size=x.shape)) for x in inputs]
@@ -161,6 +164,6 @@ def test_the_gradient_is_finite_where_two_nodes_coincide(float64, chain):
 
     def total(positions):
         rest = filaments.Rest(jnp.zeros(2), jnp.ones(3))
-        return jnp.sum(filaments.project(positions, angles, rods, rest, iterations=3)[0] ** 2)
+        return jnp.sum(project(positions, angles, rods, rest, iterations=3)[0] ** 2)
 
     assert np.all(np.isfinite(jax.grad(total)(positions)))
