@@ -61,18 +61,9 @@ export interface Creature {
   licence: string;
 }
 
-/** Problem details; the server's own handlers write them, so OpenAPI does not know them all. */
-export interface ProblemDocument {
-  title?: string;
-  status?: number;
-  detail?: string;
-  errors?: FieldError[];
-}
-
-export interface FieldError {
-  field: string;
-  message: string;
-}
+/** What an error's body should be; something between page and server may answer otherwise. */
+export type ProblemDocument = Partial<Wire["Problem"]>;
+export type FieldError = Pick<Wire["FieldError"], "field" | "message">;
 
 /** The last entry of each column of `Generations`. */
 export type GenerationEvent = { run: string } & {

@@ -6,8 +6,8 @@ import { number } from "../format";
 import { type Spot, layoutOf } from "./layout";
 
 const RADIUS = 13;
-/** A small network is not blown up beyond this. */
-const LARGEST = 1.2;
+/** A small network is not blown up beyond this, a large one scrolls rather than shrink. */
+const [LARGEST, SMALLEST] = [1.2, 0.72];
 
 export function NetworkGraph({ network }: { network: Network }) {
   const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
@@ -16,19 +16,21 @@ export function NetworkGraph({ network }: { network: Network }) {
   const summary = `${network.neurons.length} nodes, ${enabled} connections in use`;
   return (
     <figure class="network">
-      <svg
-        viewBox={`0 0 ${width} ${height}`}
-        style={{ maxWidth: LARGEST * width }}
-        role="img"
-        aria-label={`Network: ${summary}`}
-      >
-        {network.links.map((link, i) => (
-          <Wire key={i} link={link} spots={spots} strongest={strongest} />
-        ))}
-        {[...spots.values()].map((spot) => (
-          <Node key={spot.neuron.id} spot={spot} />
-        ))}
-      </svg>
+      <div class="scroll">
+        <svg
+          viewBox={`0 0 ${width} ${height}`}
+          style={{ maxWidth: LARGEST * width, minWidth: SMALLEST * width }}
+          role="img"
+          aria-label={`Network: ${summary}`}
+        >
+          {network.links.map((link, i) => (
+            <Wire key={i} link={link} spots={spots} strongest={strongest} />
+          ))}
+          {[...spots.values()].map((spot) => (
+            <Node key={spot.neuron.id} spot={spot} />
+          ))}
+        </svg>
+      </div>
       <figcaption>
         <span class="key positive">positive</span>
         <span class="key negative">negative</span>

@@ -23,12 +23,14 @@ export interface Layout {
   spots: Map<number, Spot>;
 }
 
-const COLUMN = 130;
+const WIDEST = 130;
+const NARROWEST = 84;
 const ROW = 58;
 const MARGIN = { x: 92, y: 36 };
 const TICKS = 240;
 
 export function layoutOf({ neurons, links, depth }: Network): Layout {
+  const pitch = Math.max(NARROWEST, Math.min(WIDEST, (3.5 * WIDEST) / depth));
   const columns = Array.from({ length: depth + 1 }, (_, layer) =>
     neurons.filter((neuron) => neuron.depth === layer),
   );
@@ -38,7 +40,7 @@ export function layoutOf({ neurons, links, depth }: Network): Layout {
       const y = (height * (i + 0.5)) / column.length;
       // Inputs and outputs keep their order; what is between finds its own.
       const fixed = neuron.role === "hidden" ? null : y;
-      return { neuron, x: COLUMN * neuron.depth, y, fx: COLUMN * neuron.depth, fy: fixed };
+      return { neuron, x: pitch * neuron.depth, y, fx: pitch * neuron.depth, fy: fixed };
     }),
   );
   const byId = new Map(spots.map((spot) => [spot.neuron.id, spot]));
@@ -46,8 +48,8 @@ export function layoutOf({ neurons, links, depth }: Network): Layout {
     .filter(({ source, target }) => byId.has(source) && byId.has(target))
     .map(({ source, target }) => ({ source: byId.get(source)!, target: byId.get(target)! }));
   forceSimulation(spots)
-    .force("link", forceLink(springs).distance(COLUMN).strength(0.05))
-    .force("column", forceX<Spot>((spot) => COLUMN * spot.neuron.depth))
+    .force("link", forceLink(springs).distance(pitch).strength(0.05))
+    .force("column", forceX<Spot>((spot) => pitch * spot.neuron.depth))
     .force("middle", forceY<Spot>(height / 2).strength(0.02))
     .force("apart", forceCollide(ROW / 2))
     .stop()
@@ -56,5 +58,5 @@ export function layoutOf({ neurons, links, depth }: Network): Layout {
     spot.x += MARGIN.x;
     spot.y = Math.min(height, Math.max(0, spot.y)) + MARGIN.y;
   }
-  return { width: COLUMN * depth + 2 * MARGIN.x, height: height + 2 * MARGIN.y, spots: byId };
+  return { width: pitch * depth + 2 * MARGIN.x, height: height + 2 * MARGIN.y, spots: byId };
 }

@@ -4,14 +4,15 @@ import { useEffect, useRef } from "preact/hooks";
 
 /** Calls back with the seconds since the last frame of the screen, while it runs. */
 export function useClock(running: boolean, tick: (seconds: number) => void): void {
-  const latest = useRef(tick);
-  latest.current = tick;
+  const latest = useRef<typeof tick | null>(tick);
+  // Effects are cleaned up after the next frame: a clock that was stopped must not tick in it.
+  latest.current = running ? tick : null;
   useEffect(() => {
     if (!running) return;
     let last = performance.now();
     let frame = requestAnimationFrame(function step(now) {
       // A tab that was hidden goes on where it was.
-      latest.current(Math.min(0.1, Math.max(0, now - last) / 1000));
+      latest.current?.(Math.min(0.1, Math.max(0, now - last) / 1000));
       last = now;
       frame = requestAnimationFrame(step);
     });
