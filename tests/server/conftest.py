@@ -34,18 +34,18 @@ POSTGRESQL = "postgresql://127.0.0.1:5432/postgres"
 
 @pytest.fixture(scope="session")
 def postgresql() -> Iterator[str | None]:
-    """A database that is ours alone, dropped at the end; None where no PostgreSQL answers."""
+    """A database that is ours alone, dropped at the end; None where there can be none."""
     if given := os.environ.get("MICROCOSMOS_TEST_DATABASE_URL"):
         yield given
         return
     name = f"microcosmos_test_{uuid4().hex[:12]}"
     try:
         connection = psycopg.connect(POSTGRESQL, autocommit=True, connect_timeout=2)
-    except psycopg.OperationalError:
+        connection.execute(sql.SQL("CREATE DATABASE {}").format(sql.Identifier(name)))
+    except psycopg.Error:
         yield None
         return
     with connection:
-        connection.execute(sql.SQL("CREATE DATABASE {}").format(sql.Identifier(name)))
         yield str(make_url(POSTGRESQL).set(database=name))
         drop = sql.SQL("DROP DATABASE {} WITH (FORCE)").format(sql.Identifier(name))
         connection.execute(drop)
@@ -56,7 +56,7 @@ def database_url(request, tmp_path, postgresql) -> str:
     if request.param == "sqlite":
         return f"sqlite:///{tmp_path / 'test.sqlite'}"
     if postgresql is None:
-        pytest.skip("no PostgreSQL answers on 127.0.0.1:5432")
+        pytest.skip("no PostgreSQL on 127.0.0.1:5432 where we may create a database")
     return postgresql
 
 
@@ -119,6 +119,19 @@ def empty_redis(services: Services) -> None:
 @pytest.fixture
 def flush(services) -> Callable[[], None]:
     return lambda: empty_redis(services)
+
+
+@pytest.fixture
+def eventually() -> Callable[[Callable[[], Any]], None]:
+    """Waits until something is so, and fails where it does not come."""
+
+    def wait(condition: Callable[[], Any]) -> None:
+        deadline = time.monotonic() + 20
+        while not condition():
+            assert time.monotonic() < deadline, "it never came to be"
+            time.sleep(0.01)
+
+    return wait
 
 
 @contextmanager

@@ -77,7 +77,7 @@ def test_the_server_loads_no_jax():
     assert found.stdout.strip() == "False", found.stderr
 
 
-def test_sigterm_ends_a_server_with_open_streams_at_once(services, tmp_path):
+def test_sigterm_ends_a_server_with_open_streams_at_once(services, tmp_path, eventually):
     settings = services.settings
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -92,9 +92,7 @@ def test_sigterm_ends_a_server_with_open_streams_at_once(services, tmp_path):
     }
     address = f"http://127.0.0.1:{port}"
     with subprocess.Popen([sys.executable, "-m", "server"], env=environment) as process:
-        while not answers(f"{address}/healthz"):
-            assert process.poll() is None
-            time.sleep(0.05)
+        eventually(lambda: answers(f"{address}/healthz"))
         with httpx.stream("GET", f"{address}/api/v1/events") as stream:
             lines = stream.iter_lines()
             next(lines)

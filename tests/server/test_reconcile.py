@@ -35,11 +35,10 @@ def test_redis_may_be_emptied_without_losing_a_run(services, run_id, flush):
     assert enqueued(services) == [str(run_id)]
 
 
-def test_a_server_reconciles_when_it_starts(services, run_id, flush, serve):
+def test_a_server_reconciles_when_it_starts(services, run_id, flush, serve, eventually):
     flush()
     with serve(reconcile_interval=0.05):
-        while not enqueued(services):
-            pass
+        eventually(lambda: enqueued(services))
     assert enqueued(services) == [str(run_id)]
 
 
@@ -134,7 +133,7 @@ def test_a_run_can_be_submitted_while_redis_is_away(api, services, spec, serve, 
     assert run_id in enqueued(services)
 
 
-def test_an_outage_of_redis_does_not_end_the_reconciler(services, run_id, serve, monkeypatch):
+def test_an_outage_of_redis_does_not_end_the_reconciler(serve, monkeypatch, eventually):
     from server import reconcile as module
 
     calls = []
@@ -146,8 +145,7 @@ def test_an_outage_of_redis_does_not_end_the_reconciler(services, run_id, serve,
 
     monkeypatch.setattr(module, "reconcile", sometimes)
     with serve(reconcile_interval=0.01):
-        while len(calls) < 5:
-            pass
+        eventually(lambda: len(calls) >= 5)
 
 
 def test_workers_that_were_silent_for_long_are_forgotten(services, api):
