@@ -150,3 +150,7 @@ def _record(document: dict, out: Path) -> None:
 def _fail(message: str) -> NoReturn:
     console.print(message, style="red", markup=False)
     sys.exit(2)
+
+
+if __name__ == "__main__":
+    app()
