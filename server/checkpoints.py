@@ -1,4 +1,4 @@
-"""Which files are a run's checkpoints, and which of them can go."""
+"""Which files are a run's checkpoints, which of them can go, and how a run returns to one."""
 
 from uuid import UUID
 
@@ -6,7 +6,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from .artifacts import Stored, superfluous
-from .models import CHECKPOINT, Artifact
+from .models import CHECKPOINT, Artifact, Elite, Generation, Run
 
 
 def last_checkpoint(session: Session, run_id: UUID) -> Artifact | None:
@@ -42,3 +42,18 @@ def _prune(session: Session, run_id: UUID) -> list[str]:
     numbers = [n for n in session.scalars(select(Artifact.number).where(mine)) if n is not None]
     gone = delete(Artifact).where(mine, Artifact.number.in_(superfluous(numbers)))
     return list(session.scalars(gone.returning(Artifact.path)))
+
+
+def rewind(session: Session, run: Run) -> bool:
+    """Forget what was recorded beyond the checkpoint: whether there was anything."""
+    last = run.checkpoint_generation
+    if run.generation <= last:
+        return False
+    for table in (Elite, Generation):
+        session.execute(delete(table).where(table.run_id == run.id, table.generation > last))
+    kept = session.get(Generation, (run.id, last))
+    for column in ("qd_score", "coverage", "best"):
+        setattr(run, column, getattr(kept, column, None))
+    for column in ("generation", "evaluations", "diverged", "seconds"):
+        setattr(run, column, getattr(kept, column, 0))
+    return True

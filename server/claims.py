@@ -9,15 +9,15 @@ from time import monotonic
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import delete, func, or_
+from sqlalchemy import func, or_
 from sqlalchemy.orm import Session
 
 from . import records
 from .artifacts import Stored, checkpoint_path
-from .checkpoints import last_checkpoint, point_at
+from .checkpoints import last_checkpoint, point_at, rewind
 from .db import clock
 from .lifecycle import announce, change, lost, release, yield_up
-from .models import CANCELLED, FINISHED, PAUSED, QUEUED, RUNNING, Elite, Generation, Run
+from .models import CANCELLED, FINISHED, PAUSED, QUEUED, RUNNING, Run
 from .services import Services
 
 ANNOUNCE_EVERY = 1.0
@@ -38,11 +38,11 @@ def claim(services: Services, run_id: UUID, worker: str) -> "Claim | None":
         over = or_(Run.worker == worker, lost(session, services.settings.lease))
         release(session, run_id, over, error="the worker ended without a word")
         run = change(session, run_id, Run.status == QUEUED, **_begun(worker))
-        rewound = run is not None and _rewind(session, run)
+        rewound = run is not None and rewind(session, run)
         begun = _begin(services, session, run) if run else None
     if rewound and begun:
-        rewind = {"run": str(run_id), "generation": begun.generation}
-        services.events.publish("rewind", run_id, rewind)
+        place = {"run": str(run_id), "generation": begun.generation}
+        services.events.publish("rewind", run_id, place)
     announce(services, run_id)
     return begun
 
@@ -56,21 +56,6 @@ def _begun(worker: str) -> dict[str, Any]:
         "heartbeat_at": clock(),
         "started_at": func.coalesce(Run.started_at, clock()),
     }
-
-
-def _rewind(session: Session, run: Run) -> bool:
-    """Forget what was recorded beyond the checkpoint: whether there was anything."""
-    last = run.checkpoint_generation
-    if run.generation <= last:
-        return False
-    for table in (Elite, Generation):
-        session.execute(delete(table).where(table.run_id == run.id, table.generation > last))
-    kept = session.get(Generation, (run.id, last))
-    for column in ("qd_score", "coverage", "best"):
-        setattr(run, column, getattr(kept, column, None))
-    for column in ("generation", "evaluations", "diverged", "seconds"):
-        setattr(run, column, getattr(kept, column, 0))
-    return True
 
 
 def _begin(services: Services, session: Session, run: Run) -> "Claim":
