@@ -19,7 +19,7 @@ import uvicorn
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS
 from psycopg import sql
-from sqlalchemy import make_url
+from sqlalchemy import make_url, select
 
 from server import migrations
 from server.app import create_app
@@ -102,6 +102,8 @@ def services(settings) -> Iterator[Services]:
     migrations.upgrade(services.sessions)
     yield services
     with services.sessions.write.begin() as session:
+        for left in session.scalars(select(Run.id)):
+            services.jobs.forget(str(left))
         for table in reversed(Base.metadata.sorted_tables):
             session.execute(table.delete())
     empty_redis(services)
