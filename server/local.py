@@ -10,6 +10,8 @@ from pathlib import Path
 from socket import AF_INET, AF_INET6, SO_REUSEADDR, SOL_SOCKET, socket
 from subprocess import Popen
 
+from sqlalchemy.exc import OperationalError
+
 from . import demonstration, locks, migrations, redis_embedded, services
 from .process_tree import Child, Tree, say
 from .processes import spawn
@@ -85,7 +87,12 @@ def prepare_database(settings: Settings) -> None:
     """Bring its tables up to date; a new one gets something to look at."""
     say("database", settings.database.rpartition("@")[2])  # Without a password.
     shared = services.connect(settings)
-    migrations.upgrade(shared.sessions)
+    try:
+        migrations.upgrade(shared.sessions)
+    except OperationalError as error:
+        raise Cannot(
+            f"The database {shared.sessions.engine.url!r} fails: {error.orig}"
+        ) from None
     if settings.demonstration:
         demonstration.offer(shared)
     shared.close()
@@ -116,7 +123,11 @@ def answers(settings: Settings) -> bool:
 
 def main() -> None:
     """Run until Ctrl-C; what was started ends with us and nothing is lost."""
-    settings = Settings()
+    try:
+        settings = Settings()
+        settings.refuse_exposure()
+    except ValueError as error:
+        sys.exit(str(error))
     address = f"http://{settings.host}:{settings.port}"
     tree = Tree()
     tree.listen()
