@@ -30,10 +30,8 @@ class Renderer(SimpleWorker):
 
 def take_up(jobs: Jobs) -> None:
     """Ask again for the replays that a renderer was making when it died."""
-    registry = jobs.replays.started_job_registry
-    for job_id in registry.get_job_ids(cleanup=False):
+    for job_id in jobs.replays.started_job_registry.get_job_ids(cleanup=False):
         if job := jobs.find(job_id):
-            registry.remove_executions(job)
             jobs.render(*job.args)
 
 
