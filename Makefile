@@ -34,7 +34,8 @@ web/dist/index.html: $(WEB_SOURCES) | install
 
 STYLE = $(BIN)/ruff format --check . && $(BIN)/ruff check . \
 	&& PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright && $(BIN)/lint-imports \
-	&& $(NPM) run --silent check && $(NPM) test --silent
+	&& $(BIN)/python web/scripts/openapi.py | diff - web/openapi.json \
+	&& $(NPM) run --silent generated && $(NPM) run --silent check && $(NPM) test --silent
 
 check: install web
 	$(STYLE)

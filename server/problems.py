@@ -2,7 +2,7 @@
 
 import logging
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -57,7 +57,8 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(ValidationError)
     def invalid(_: Request, error: ValidationError) -> JSONResponse:
-        return answer(invalid_input([_field_error(found) for found in error.errors()]))
+        found = _without_echoes(error.errors())
+        return answer(invalid_input([_field_error(one) for one in found]))
 
     @app.exception_handler(RequestValidationError)
     def invalid_request(_: Request, error: RequestValidationError) -> JSONResponse:
@@ -93,6 +94,17 @@ def install(app: FastAPI) -> None:
 def invalid_input(errors: list[FieldError]) -> Problem:
     detail = "; ".join(f"{error.field}: {error.message}" for error in errors)
     return Problem(title="Invalid input", status=422, detail=detail, errors=errors)
+
+
+def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Errors without those that only say that an item, whose own error is there, is lacking."""
+
+    def echoes(error: Mapping[str, Any]) -> bool:
+        place = error["loc"]
+        inside = [e for e in errors if e is not error and e["loc"][: len(place)] == place]
+        return error["type"] == "too_short" and bool(inside)
+
+    return [error for error in errors if not echoes(error)]
 
 
 def _field_error(error: Mapping[str, Any]) -> FieldError:

@@ -42,7 +42,7 @@ def spawn(
             stderr=output,
             pass_fds=keep,
             process_group=0,
-            preexec_fn=lambda: die_with_parent(parent, signal.SIGTERM),  # noqa: PLW1509
+            preexec_fn=lambda: die_with_parent(parent, signal.SIGTERM),
         )
 
 

@@ -1,0 +1,28 @@
+"""What the README says works as it stands there."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+README = Path(__file__).parents[1] / "README.md"
+SMALL = """"experiment": "quality-diversity",
+    "world": {"width": 32, "height": 32}, "body": {"nodes": 12}, "task": {"steps": 60},
+    "search": {"generations": 2, "batch": 16}"""
+
+
+def test_the_library_example_runs_and_its_check_is_exact():
+    (example,) = re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL)
+    spec = '"experiment": "quality-diversity", "search": {"generations": 10}'
+    assert spec in example
+    environment = os.environ | {"JAX_PLATFORMS": "cpu"}
+    command = [sys.executable, "-c", example.replace(spec, SMALL)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "True"
+
+
+def test_the_pictures_and_documents_that_are_linked_are_there():
+    links = re.findall(r"\]\(([^)#]+)\)", README.read_text())
+    assert links
+    assert [link for link in links if not (README.parent / link).exists()] == []
