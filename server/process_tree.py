@@ -19,9 +19,7 @@ Start = Callable[[], Popen[bytes]]
 
 
 def say(subject: str, text: str) -> None:
-    with suppress(
-        OSError
-    ):  # Nobody may be reading any more, which is no reason to fall over.
+    with suppress(OSError):  # Nobody may be reading any more, which is no reason to fall over.
         print(f"{subject:<10} {text}", flush=True)
 
 

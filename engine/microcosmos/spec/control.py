@@ -21,9 +21,9 @@ class Control(Part):
     """Period of the sine and cosine."""
     ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
     """Over how many periods the actuation grows from nothing to its full size."""
-    angle_scale: float = Field(default=0.5, gt=0.0, le=1.5, json_schema_extra=unit("rad"))
+    angle_scale: float = Field(default=0.1, gt=0.0, le=1.5, json_schema_extra=unit("rad"))
     """Rest angles are this times tanh of the output, added to the body's own."""
-    length_scale: float = Field(default=0.3, ge=0.0, le=0.8)
+    length_scale: float = Field(default=0.1, ge=0.0, le=0.8)
     """Rest lengths are the body's own times 1 + this times tanh of the output."""
 
     @property
@@ -40,7 +40,7 @@ class Genome(Part):
     """Room for connections, disabled ones among them."""
     weight_rate: float = Field(default=0.6, ge=0.0, le=1.0)
     """Probability, for each weight and bias, to be perturbed."""
-    weight_step: float = Field(default=0.5, gt=0.0, le=10.0)
+    weight_step: float = Field(default=1.0, gt=0.0, le=10.0)
     """Standard deviation of a perturbation."""
     replace_rate: float = Field(default=0.05, ge=0.0, le=1.0)
     """Probability, for each weight and bias, to be drawn anew."""

@@ -1,5 +1,6 @@
 """The spec of a quality-diversity run, its presets, and what it will need."""
 
+from math import ceil
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
@@ -28,10 +29,10 @@ class QualityDiversity(Part):
     @model_validator(mode="after")
     def refuse_too_large_a_body(self) -> Self:
         """The stretched body and the delta's support must fit once around the box."""
-        needed = self.body.length * (1 + self.control.length_scale) + SUPPORT
+        needed = ceil(self.body.length * (1 + self.control.length_scale) + SUPPORT)
         if needed > self.world.width:
             raise ValueError(
-                f"`world.width` must be at least {needed:.0f} cells for `body.nodes` = "
+                f"`world.width` must be at least {needed} cells for `body.nodes` = "
                 f"{self.body.nodes} at `body.spacing` = {self.body.spacing:g}, stretched by "
                 f"`control.length_scale` = {self.control.length_scale:g}; "
                 f"got {self.world.width}"
@@ -42,7 +43,7 @@ class QualityDiversity(Part):
 DEMO = QualityDiversity(
     world=World(width=32, height=32),
     body=Body(nodes=16),
-    control=Control(period=50),
+    control=Control(period=50, angle_scale=0.3, length_scale=0.2),
     task=Task(steps=100),
     archive=Archive(
         descriptors=(
@@ -55,7 +56,7 @@ DEMO = QualityDiversity(
 
 PAPER = QualityDiversity(
     coupling=Coupling(projection="none", theta_feedback=0),
-    control=Control(timer="linear", position="unit"),
+    control=Control(timer="linear", position="unit", angle_scale=0.5, length_scale=0.3),
     archive=Archive(
         descriptors=(
             Descriptor(name="bending_effort", low=0, high=0.5, scale="linear"),

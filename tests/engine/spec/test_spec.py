@@ -47,7 +47,7 @@ def test_not_a_number_is_refused():
 
 
 def test_a_body_larger_than_its_world_is_refused_with_the_width_it_needs():
-    assert "`world.width` must be at least 44" in refusal(world={"width": 32})
+    assert "`world.width` must be at least 39" in refusal(world={"width": 32})
 
 
 def test_torque_projection_with_literal_angles_is_refused():
