@@ -17,7 +17,7 @@ from .artifacts import Stored, checkpoint_path
 from .checkpoints import last_checkpoint, point_at, rewind
 from .db import clock
 from .lifecycle import announce, change, lost, release, yield_up
-from .models import CANCELLED, FINISHED, PAUSED, QUEUED, RUNNING, Run
+from .models import CANCELLED, FINISHED, GIVEN, NEEDED, PAUSED, QUEUED, RUNNING, Run
 from .services import Services
 
 ANNOUNCE_EVERY = 1.0
@@ -68,6 +68,7 @@ def _begin(services: Services, session: Session, run: Run) -> "Claim":
         generation=run.checkpoint_generation,
         checkpoint=Stored(row.path, row.size, row.sha256) if row else None,
         seconds=run.seconds,
+        other_device=run.device_leave == GIVEN,
     )
 
 
@@ -85,6 +86,8 @@ class Claim:
     """The file to go on from; None: from the beginning."""
     seconds: float
     """Wall time of the computing that led to the last record."""
+    other_device: bool = False
+    """Whether people gave leave to go on on another kind of device than began the run."""
     announced: float = 0.0
     """When everybody was last told how the run as a whole stands."""
 
@@ -153,6 +156,17 @@ class Claim:
 
     def pause(self) -> None:
         self._end(status=PAUSED, worker=None, wish=None, wished_at=None)
+
+    def wait_for_leave(self, text: str) -> None:
+        """Pause until people say that another kind of device will do, by resuming it."""
+        self._end(
+            status=PAUSED,
+            worker=None,
+            wish=None,
+            wished_at=None,
+            warning=text,
+            device_leave=NEEDED,
+        )
 
     def cancel(self) -> None:
         self._end(status=CANCELLED, finished_at=clock(), wish=None, wished_at=None)

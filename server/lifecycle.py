@@ -10,7 +10,18 @@ from sqlalchemy import case, or_, update
 from sqlalchemy.orm import Session
 
 from .db import ago, clock
-from .models import CANCEL, CANCELLED, FAILED, PAUSE, PAUSED, QUEUED, RUNNING, Run
+from .models import (
+    CANCEL,
+    CANCELLED,
+    FAILED,
+    GIVEN,
+    NEEDED,
+    PAUSE,
+    PAUSED,
+    QUEUED,
+    RUNNING,
+    Run,
+)
 from .progress import read_run
 from .services import Services
 
@@ -72,7 +83,9 @@ def cancel(session: Session, run: Run) -> Run:
 
 def resume(session: Session, run: Run) -> Run:
     """Back into the queue, its attempts counted anew."""
-    values = {"status": QUEUED, "attempts_without_checkpoint": 0}
+    # Whoever resumes a run that waits for leave to change its kind of device gives it.
+    leave = case((Run.device_leave == NEEDED, GIVEN), else_=Run.device_leave)
+    values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_leave": leave}
     return change(session, run.id, Run.status == PAUSED, **values) or _refuse(
         session, "resume", run, "paused"
     )

@@ -27,6 +27,7 @@ FINISHED, FAILED, CANCELLED = "finished", "failed", "cancelled"
 STATUSES = (QUEUED, RUNNING, PAUSED, FINISHED, FAILED, CANCELLED)
 TERMINAL = (FINISHED, FAILED, CANCELLED)
 PAUSE, CANCEL = "pause", "cancel"
+NEEDED, GIVEN = "needed", "given"
 CHECKPOINT, REPLAY = "checkpoint", "replay"
 
 
@@ -88,6 +89,8 @@ class Run(Base):
     attempts_without_checkpoint: Mapped[int] = mapped_column(default=0)
     worker: Mapped[str | None] = mapped_column(String(255))
     device: Mapped[str | None] = mapped_column(Text)
+    device_leave: Mapped[str | None] = mapped_column(String(16))
+    """Leave to go on on another kind of device than began it: None until it is `needed`."""
     heartbeat_at: Mapped[datetime | None]
     generation: Mapped[int] = mapped_column(default=0)
     """The last one recorded."""

@@ -8,8 +8,7 @@ from redis import Redis
 from redis.backoff import ExponentialBackoff
 from redis.retry import Retry
 from rq import Queue
-from rq.command import send_stop_job_command
-from rq.exceptions import InvalidJobOperation, NoSuchJobError
+from rq.exceptions import NoSuchJobError
 from rq.job import Job
 from rq.registry import clean_registries
 from rq.serializers import JSONSerializer
@@ -86,11 +85,6 @@ class Jobs:
         """Jobs of runs that wait in the queue or that a worker has taken."""
         waiting = self.runs.get_job_ids()
         return {*waiting, *self.runs.started_job_registry.get_job_ids(cleanup=False)}
-
-    def stop(self, run_id: UUID) -> None:
-        """Kill a job's process; where nobody computes it there is nothing to kill."""
-        with suppress(NoSuchJobError, InvalidJobOperation):
-            send_stop_job_command(self.redis, str(run_id), serializer=JSONSerializer)
 
     def clean(self) -> None:
         """Drop jobs whose worker has died; idle workers do it too, but none may be idle."""

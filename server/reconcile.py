@@ -59,7 +59,7 @@ def reconcile(services: Services) -> None:
 
 
 def end_disobedient(services: Services) -> None:
-    """Cancel runs whose workers were asked to and did not, and kill their jobs."""
+    """Cancel runs whose workers were asked to and did not; their heartbeats notice and kill."""
     grace = services.settings.grace
     with services.sessions.read() as session:
         overdue = (
@@ -72,7 +72,6 @@ def end_disobedient(services: Services) -> None:
         with services.sessions.write.begin() as session:
             ended = yield_up(session, run_id, *overdue)
         if ended:
-            services.jobs.stop(run_id)
             announce(services, run_id)
 
 

@@ -64,6 +64,15 @@ class Attempt:
     def restore(self) -> bytes | None:
         return self._claim.restore()
 
+    @property
+    def other_device(self) -> bool:
+        return self._claim.other_device
+
+    def wait_for_leave(self, reason: str) -> None:
+        """Pause: on this kind of device bits may differ, which is for people to allow."""
+        text = f"{reason} To go on here, resume the run; its archive will say so."
+        persist(lambda: self._claim.wait_for_leave(text))
+
     def interrupted(self) -> bool:
         """Whether to stop here; asked between blocks."""
         now = time.monotonic()

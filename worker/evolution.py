@@ -5,7 +5,7 @@ from contextlib import suppress
 
 from microcosmos.build import build
 from microcosmos.device import device_kind, prepare
-from microcosmos.experiments import Stopped
+from microcosmos.experiments import OtherDevice, Stopped
 from microcosmos.spec import parse
 
 from .attempt import Attempt
@@ -17,7 +17,15 @@ def carry_out(attempt: Attempt) -> None:
     attempt.use(device_kind())
     experiment = build(parse(attempt.spec))
     data = attempt.restore()
-    state = experiment.restore(data) if data else experiment.init()
+    try:
+        state = (
+            experiment.restore(data, other_device=attempt.other_device)
+            if data
+            else experiment.init()
+        )
+    except OtherDevice as error:
+        attempt.wait_for_leave(str(error))
+        return
     with suppress(Stopped):
         while not (experiment.done(state) or attempt.interrupted()):
             started = time.monotonic()

@@ -25,10 +25,15 @@ class JobProcess(Worker):
         stop.listen()
 
 
+NICE = 10
+"""People wait for the page and for replays; nobody waits for the next block."""
+
+
 def main(worker: str, queue: str, job: str, execution: str, parent: str) -> None:
     """Perform the job and exit; if the supervisor dies, so do we, wherever we are."""
     die_with_parent(int(parent), signal.SIGKILL)
     stop.listen()
+    os.nice(NICE)
     os.environ[WORKER] = worker
     connection = open_redis(Settings().redis_url)
     key = JobProcess.redis_worker_namespace_prefix + worker

@@ -15,8 +15,6 @@ from server.settings import Settings
 
 from . import log, loop, stop
 
-NICE = 10
-"""Watching must not slow down evolving."""
 SILENCE = 120
 """Seconds after which a replay's maker counts as dead."""
 
@@ -37,7 +35,6 @@ def take_up(jobs: Jobs) -> None:
 
 def main() -> None:
     """Render until told to stop."""
-    os.nice(NICE)
     # Its few arrays need little of a GPU that belongs to a worker.
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
     stop.listen(interrupt=True)

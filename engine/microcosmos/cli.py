@@ -88,7 +88,7 @@ def _read_spec(name: str) -> Spec:
 
 def _evolve(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: bool) -> bool:
     """Carry the run on behind a progress bar; the first Ctrl-C asks it to stop."""
-    from . import local
+    from . import experiments, local
 
     wishes: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -119,6 +119,9 @@ def _evolve(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: 
                 checkpoint_seconds=checkpoint_seconds,
                 other_device=other_device,
             )
+        except experiments.OtherDevice as error:
+            progress.stop()
+            _fail(f"{archive}: {error} To go on here all the same: --other-device.")
         except ValueError as error:
             progress.stop()
             _fail(f"{archive}: {error}")

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from sqlalchemy import func, select, update
 
-from server import workers
+from server import lifecycle, workers
 from server.artifacts import Artifacts
 from server.claims import Fenced, claim
 from server.db import ago
@@ -208,3 +208,21 @@ def test_redis_can_be_away_while_a_run_is_recorded(services, run_id, report, row
     attempt.record(report(1, {1: 1.0}), 1.0)
     attempt.finish()
     assert row().status == "finished"
+
+
+def test_whoever_resumes_a_run_that_needs_leave_for_another_device_gives_it(services, run_id):
+    first = claim(services, run_id, "first")
+    assert not first.other_device
+    first.wait_for_leave("it began elsewhere")
+    with services.sessions.write.begin() as session:
+        run = session.get_one(Run, run_id)
+        assert (run.status, run.warning) == ("paused", "it began elsewhere")
+        lifecycle.resume(session, run)
+    assert claim(services, run_id, "second").other_device
+
+
+def test_resuming_a_run_that_needs_no_leave_gives_none(services, run_id):
+    claim(services, run_id, "first").pause()
+    with services.sessions.write.begin() as session:
+        lifecycle.resume(session, session.get_one(Run, run_id))
+    assert not claim(services, run_id, "second").other_device

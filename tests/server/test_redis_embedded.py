@@ -5,6 +5,7 @@ import importlib.util
 import os
 import signal
 import sys
+from pathlib import Path
 
 import pytest
 import redis
@@ -57,8 +58,8 @@ def test_asks_for_a_password_and_listens_on_loopback_alone(embedded, tmp_path):
     with connected(prepared.url) as client:
         assert client.config_get("bind")["bind"] == "127.0.0.1"
         assert client.config_get("maxmemory-policy")["maxmemory-policy"] == "noeviction"
-    with open(f"/proc/{process.pid}/cmdline", "rb") as file:
-        assert prepared.password.encode() not in file.read()
+    arguments = Path(f"/proc/{process.pid}/cmdline").read_bytes()
+    assert prepared.password.encode() not in arguments
 
 
 def test_two_never_share_a_folder(embedded, tmp_path, monkeypatch):
@@ -97,5 +98,5 @@ def test_what_keeps_it_from_starting_is_in_the_error(tmp_path, embedded):
     prepared = redis_embedded.prepare(tmp_path / "redis")
     (tmp_path / "redis" / "appendonly.aof").mkdir()
     (tmp_path / "redis" / "appendonlydir").write_text("in the way")
-    with pytest.raises(RedisError, match="its log .* ends with"):
+    with pytest.raises(RedisError, match=r"its log .* ends with"):
         embedded(prepared)

@@ -105,7 +105,7 @@ def _check(plan: Plan, attributes: dict[str, str], other_device: bool) -> tuple[
     if devices[-1] != plan.device and not other_device:
         raise OtherDevice(
             f"`device` must be {devices[-1]!r}, on which the run was computed, for the same "
-            f"bits; got {plan.device!r}. Allow another device to go on all the same."
+            f"bits; got {plan.device!r}."
         )
     return tuple(devices)
 

@@ -39,6 +39,7 @@ def upgrade() -> None:
         sa.Column("attempts_without_checkpoint", sa.Integer(), nullable=False),
         sa.Column("worker", sa.String(length=255), nullable=True),
         sa.Column("device", sa.Text(), nullable=True),
+        sa.Column("device_leave", sa.String(length=16), nullable=True),
         sa.Column("heartbeat_at", sa.DateTime(timezone=True), nullable=True),
         sa.Column("generation", sa.Integer(), nullable=False),
         sa.Column("checkpoint_generation", sa.Integer(), nullable=False),
