@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from jaxtyping import install_import_hook
 
-PHYSICS = ("bodies", "coupling", "filaments", "fluid", "world")
+SHAPED = ("bodies", "coupling", "filaments", "fluid", "world", "genomes", "neat", "search")
 
-install_import_hook([f"microcosmos.{name}" for name in PHYSICS], "beartype.beartype")
+install_import_hook([f"microcosmos.{name}" for name in SHAPED], "beartype.beartype")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 
 from microcosmos import bodies, filaments, spec, world  # noqa: E402

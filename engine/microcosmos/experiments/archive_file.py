@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import neat, search
 from ..archive import file
+from ..genomes import CPPN
 from ..version import VERSION
 from .state import CURVES, Diverged, Lineage, Plan, State, start
 
@@ -61,13 +62,13 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
     cells = archive["cell"]
     rows = search.Elites(
         occupied=jnp.ones(len(cells), bool),
-        networks=type(state.elites.networks)(**archive["genomes"]),
-        **{name: archive[name] for name in ROWS},
+        networks=_networks(archive["genomes"]),
+        **{name: jnp.asarray(archive[name]) for name in ROWS},
     )
     creatures, operators = state.creatures.copy(), state.operators.copy()
     creatures[cells], operators[cells] = archive["creature"], archive["operator"]
     diverged = tree["diverged"]
-    networks = type(state.elites.networks)(**diverged.pop("networks"))
+    networks = jax.device_get(_networks(diverged.pop("networks")))
     return State(
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
@@ -108,6 +109,10 @@ def _check(plan: Plan, attributes: dict[str, str], other_device: bool) -> tuple[
             f"bits; got {plan.device!r}."
         )
     return tuple(devices)
+
+
+def _networks(columns: dict[str, np.ndarray]) -> CPPN:
+    return CPPN(**{name: jnp.asarray(values) for name, values in columns.items()})
 
 
 def _columns(module: eqx.Module) -> dict[str, Any]:

@@ -115,9 +115,9 @@ def _candidates(
 ) -> search.Elites:
     batch = len(evaluation.fitness)
     return search.Elites(
-        occupied=evaluation.status == 0,
-        fitness=evaluation.fitness,
-        features=evaluation.features,
+        occupied=jnp.asarray(evaluation.status == 0),
+        fitness=jnp.asarray(evaluation.fitness),
+        features=jnp.asarray(evaluation.features),
         generation=jnp.full(batch, generation, jnp.int32),
         slot=jnp.arange(batch, dtype=jnp.int32),
         digest=jnp.zeros((batch, 2), jnp.uint32),  # `insert` computes it.

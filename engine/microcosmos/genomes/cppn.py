@@ -33,17 +33,17 @@ ACTIVATIONS = {
 class CPPN(eqx.Module):
     """A feed-forward network; rows of nodes are inputs, outputs, then hidden ones."""
 
-    node_used: Bool[Array, "node"]
-    node_id: Int[Array, "node"]
-    activation: Int[Array, "node"]
-    bias: Float[Array, "node"]
-    connection_used: Bool[Array, "connection"]
-    innovation: Int[Array, "connection"]
-    source: Int[Array, "connection"]
+    node_used: Bool[Array, "*batch node"]
+    node_id: Int[Array, "*batch node"]
+    activation: Int[Array, "*batch node"]
+    bias: Float[Array, "*batch node"]
+    connection_used: Bool[Array, "*batch connection"]
+    innovation: Int[Array, "*batch connection"]
+    source: Int[Array, "*batch connection"]
     """Row of the node that a connection comes from."""
-    target: Int[Array, "connection"]
-    enabled: Bool[Array, "connection"]
-    weight: Float[Array, "connection"]
+    target: Int[Array, "*batch connection"]
+    enabled: Bool[Array, "*batch connection"]
+    weight: Float[Array, "*batch connection"]
 
 
 def depths(network: CPPN) -> Int[Array, "node"]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ..archive.encoding import ACTIVATIONS, decode, encode
@@ -50,23 +51,21 @@ def from_genes(genes: Mapping[str, Any], max_nodes: int, max_connections: int) -
 
 
 def empty(max_nodes: int, max_connections: int, batch: tuple[int, ...] = ()) -> CPPN:
-    """NumPy arrays without any gene."""
-
-    def zeros(size: int, dtype: type) -> Any:
-        return np.zeros((*batch, size), dtype)
-
-    return CPPN(
-        node_used=zeros(max_nodes, bool),
-        node_id=zeros(max_nodes, np.int32),
-        activation=zeros(max_nodes, np.int32),
-        bias=zeros(max_nodes, np.float32),
-        connection_used=zeros(max_connections, bool),
-        innovation=zeros(max_connections, np.int32),
-        source=zeros(max_connections, np.int32),
-        target=zeros(max_connections, np.int32),
-        enabled=zeros(max_connections, bool),
-        weight=zeros(max_connections, np.float32),
+    """NumPy arrays without any gene, to be written to."""
+    node, connection = (*batch, max_nodes), (*batch, max_connections)
+    network = CPPN(
+        node_used=jnp.zeros(node, bool),
+        node_id=jnp.zeros(node, jnp.int32),
+        activation=jnp.zeros(node, jnp.int32),
+        bias=jnp.zeros(node, jnp.float32),
+        connection_used=jnp.zeros(connection, bool),
+        innovation=jnp.zeros(connection, jnp.int32),
+        source=jnp.zeros(connection, jnp.int32),
+        target=jnp.zeros(connection, jnp.int32),
+        enabled=jnp.zeros(connection, bool),
+        weight=jnp.zeros(connection, jnp.float32),
     )
+    return jax.tree.map(np.array, network)
 
 
 def take(networks: CPPN, index: int) -> CPPN:

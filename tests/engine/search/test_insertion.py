@@ -23,15 +23,15 @@ def candidates(count, seed, generation=0, levels=4):
     networks.node_used[:] = True
     networks.bias[:] = random.integers(0, 3, (count, 4))
     rows = search.Elites(
-        occupied=random.random(count) < 0.9,
-        fitness=random.integers(0, levels, count).astype(np.float32),
-        features=features.astype(np.float32),
-        generation=np.full(count, generation, np.int32),
-        slot=np.arange(count, dtype=np.int32),
-        digest=np.zeros((count, 2), np.uint32),
-        networks=networks,
+        occupied=jnp.asarray(random.random(count) < 0.9),
+        fitness=jnp.asarray(random.integers(0, levels, count), jnp.float32),
+        features=jnp.asarray(features, jnp.float32),
+        generation=jnp.full(count, generation, jnp.int32),
+        slot=jnp.arange(count, dtype=jnp.int32),
+        digest=jnp.zeros((count, 2), jnp.uint32),
+        networks=jax.tree.map(jnp.asarray, networks),
     )
-    return search.named(jax.tree.map(jnp.asarray, rows))
+    return search.named(rows)
 
 
 insert = jax.jit(lambda archive, rows: search.insert(archive, rows, AXES))
