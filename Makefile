@@ -39,11 +39,13 @@ STYLE = $(BIN)/ruff format --check . && $(BIN)/ruff check . \
 
 check: install web
 	$(STYLE)
-	$(BIN)/pytest -m fast
+	$(BIN)/pytest -m fast tests/engine
 
+# Two processes: the tests of the server fork, which a process with JAX in it must not.
 test: install web
 	$(STYLE)
-	$(BIN)/pytest
+	$(BIN)/pytest tests/engine
+	$(BIN)/pytest --ignore=tests/engine
 
 bench: install
 	$(BIN)/python engine/benchmarks/physics.py
