@@ -27,7 +27,7 @@ def build(spec: Spec) -> QualityDiversity:
     """The experiment that a spec describes, its programs ready to be compiled."""
     plan = build_plan(spec)
     genes, axes, batch = plan.genes, plan.axes, plan.batch
-    key = jax.random.key(spec.seed)
+    key = jax.random.key(spec.seed, impl="threefry2x32")
     # Bound one by one: a program is compiled for this run's sizes and seed.
     programs = Programs(
         newcomers=jax.jit(lambda g: search.newcomers(g, genes, key=key, batch=batch)),
@@ -63,7 +63,10 @@ def build_plan(spec: Spec) -> Plan:
 
 def frame(spec: Spec) -> dict[str, Any]:
     """The identity of the spec's creatures but for their genes."""
-    place = spec.world.model_dump(mode="json")
+    place, form = spec.world.model_dump(mode="json"), spec.coupling.model_dump(mode="json")
+    # In numbers: a creature must not change with what an empty limit stands for.
+    form["max_displacement"] = spec.coupling.displacement_limit(spec.world.viscosity)
+    form["max_force"] = spec.coupling.force_limit(spec.world.viscosity)
     return {
         "format": naming.FORMAT,
         "genome": {
@@ -72,7 +75,7 @@ def frame(spec: Spec) -> dict[str, Any]:
             "outputs": list(OUTPUTS),
             "control": spec.control.model_dump(mode="json"),
         },
-        "world": place | {"coupling": spec.coupling.model_dump(mode="json")},
+        "world": place | {"coupling": form},
         "body": spec.body.model_dump(mode="json"),
         "task": spec.task.model_dump(mode="json"),
     }

@@ -1,6 +1,7 @@
 """The command line: evolve and replay without a server. JAX is loaded only to compute."""
 
 import json
+import os
 import signal
 import sys
 from pathlib import Path
@@ -22,6 +23,9 @@ from .spec import EXPERIMENTS, Spec, estimate, parse
 app = typer.Typer(help=__doc__, no_args_is_help=True, pretty_exceptions_enable=False)
 console = Console(stderr=True)
 
+CACHE = Path.home() / ".cache" / "microcosmos"
+"""Where compiled programs are kept, unless JAX_COMPILATION_CACHE_DIR says otherwise."""
+
 
 @app.command()
 def evolve(
@@ -41,8 +45,13 @@ def evolve(
         _fail(f"--out needs an existing folder; got {path.parent}")
     from .device import device_kind, prepare
 
-    prepare()
     need = estimate(chosen)
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if need.memory_bytes > memory:
+        _fail(
+            f"the run needs about {need.memory_bytes:,} bytes of memory; there are {memory:,}"
+        )
+    prepare(cache=CACHE)
     console.print(f"{need.evaluations:,} evaluations on {device_kind()} into {path}")
     if not _evolve(chosen, path, checkpoint_seconds, other_device):
         console.print(f"Stopped. The same command goes on from {path}.")
@@ -62,14 +71,13 @@ def replay(
     from .archive.creature import CreatureError
     from .device import prepare
 
-    prepare()
+    prepare(cache=CACHE)
     try:
-        document = json.loads(file.read_bytes())
         if check:
-            _check(document)
+            _check(file)
         else:
-            _record(document, out or file.with_suffix(".replay"))
-    except (CreatureError, ValueError) as error:
+            _record(file, out or file.with_suffix(".replay"))
+    except (CreatureError, OSError) as error:
         _fail(f"{file}: {error}")
 
 
@@ -82,7 +90,7 @@ def _read_spec(name: str) -> Spec:
         _fail(f"SPEC needs a file, or one of the presets {', '.join(presets)}; got {name}")
     try:
         return parse(json.loads(path.read_bytes()))
-    except ValueError as error:
+    except (ValueError, RecursionError, OSError) as error:
         _fail(f"{path}: {error}")
 
 
@@ -91,8 +99,13 @@ def _evolve(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: 
     from . import experiments, local
 
     wishes: list[int] = []
+
+    def note(received: int, frame: object) -> None:
+        wishes.append(received)
+        signal.signal(received, signal.SIG_DFL)  # The second one ends it at once.
+
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, frame: wishes.append(received))
+        signal.signal(number, note)
     columns = [
         SpinnerColumn(),
         BarColumn(),
@@ -122,17 +135,18 @@ def _evolve(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: 
         except experiments.OtherDevice as error:
             progress.stop()
             _fail(f"{archive}: {error} To go on here all the same: --other-device.")
-        except ValueError as error:
+        except (ValueError, OSError) as error:
             progress.stop()
             _fail(f"{archive}: {error}")
 
 
-def _check(document: dict) -> None:
+def _check(file: Path) -> None:
+    from .archive.creature import parse
     from .render import check
 
-    result = check(document)
-    for name, recorded in result.recorded.items():
-        repeated = result.repeated[name]
+    result = check(parse(file.read_bytes()))
+    for name, repeated in result.repeated.items():
+        recorded = result.recorded.get(name, float("nan"))
         print(f"{name:>18}  recorded {recorded:.9g}  repeated {repeated:.9g}")
     if result.exact:
         print("The same, bit for bit.")
@@ -142,11 +156,12 @@ def _check(document: dict) -> None:
     raise typer.Exit(1)
 
 
-def _record(document: dict, out: Path) -> None:
+def _record(file: Path, out: Path) -> None:
+    from .archive.creature import parse
     from .archive.store import write_whole
     from .render import record
 
-    write_whole(out, record(document))
+    write_whole(out, record(parse(file.read_bytes())))
     print(out)
 
 

@@ -10,6 +10,8 @@ from pathlib import Path
 import jax
 from jaxlib.version import __version__ as jaxlib_version
 
+from .version import VERSION
+
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
 
 
@@ -17,15 +19,15 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     """Settings that make results repeatable; to be called before JAX is first used.
 
     On a CPU, one device a core (or `devices` of them) lets every core have a block of its
-    own; results do not depend on how many. Compiled programs are kept in `cache`, else
-    where JAX_COMPILATION_CACHE_DIR says.
+    own; results do not depend on how many. Compiled programs are kept where
+    JAX_COMPILATION_CACHE_DIR says, else in `cache`.
     """
     flags = os.environ.get("XLA_FLAGS", "")
-    if "xla_gpu_deterministic_ops" not in flags:
+    if Path("/proc/driver/nvidia").exists() and "xla_gpu_deterministic_ops" not in flags:
         os.environ["XLA_FLAGS"] = f"{flags} {GPU_FLAGS}".strip()
     jax.config.update("jax_default_matmul_precision", "highest")
     jax.config.update("jax_num_cpu_devices", devices or len(os.sched_getaffinity(0)))
-    if cache:
+    if cache and not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
         jax.config.update("jax_compilation_cache_dir", os.fspath(cache))
     # Even small programs are worth keeping: a resumed run then starts within a second.
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
@@ -36,9 +38,10 @@ def device_kind() -> str:
     """Platform, model and software, on which the bits of a result depend."""
     device = jax.local_devices()[0]
     model = _processor() if device.platform == "cpu" else device.device_kind
-    flags = " ".join(sorted(os.environ.get("XLA_FLAGS", "").replace(GPU_FLAGS, "").split()))
-    parts = [device.platform, model, f"jaxlib {jaxlib_version}"]
-    return ", ".join([*parts, flags] if flags else parts)
+    software = f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib_version}"
+    flags = " ".join(sorted(os.environ.get("XLA_FLAGS", "").split()))
+    parts = [device.platform, model, software, flags]
+    return ", ".join(part for part in parts if part)
 
 
 def _processor() -> str:

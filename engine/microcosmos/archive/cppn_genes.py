@@ -47,9 +47,7 @@ class Connections(Part):
         return text
 
 
-def check_genes(
-    inputs: int, outputs: tuple[str, ...], nodes: Nodes, connections: Connections
-) -> None:
+def check_genes(inputs: int, outputs: int, nodes: Nodes, connections: Connections) -> None:
     """Raise `ValueError` where genes do not make a feed-forward network in canonical order."""
     _same_length("nodes", nodes.id, nodes.activation, decode(nodes.bias))
     _same_length(
@@ -62,9 +60,11 @@ def check_genes(
     )
     _increasing("nodes.id", nodes.id)
     _increasing("connections.innovation", connections.innovation)
-    fixed = inputs + len(outputs)
+    fixed = inputs + outputs
     if nodes.id[:fixed] != tuple(range(fixed)):
         raise ValueError(f"`nodes.id` must begin with 0 to {fixed - 1}, got {nodes.id[:fixed]}")
+    if set(nodes.activation[:inputs]) != {"identity"} or decode(nodes.bias)[:inputs].any():
+        raise ValueError("`nodes` that are inputs must have activation identity and bias 0")
     pairs = list(zip(connections.source, connections.target, strict=True))
     if len(set(pairs)) < len(pairs):
         raise ValueError("`connections` must join each pair of nodes once, got one twice")

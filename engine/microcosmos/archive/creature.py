@@ -6,7 +6,17 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from ..spec import Body, Control, Coupling, Genome, QualityDiversity, Search, Task, World
+from ..spec import (
+    OUTPUTS,
+    Body,
+    Control,
+    Coupling,
+    Genome,
+    QualityDiversity,
+    Search,
+    Task,
+    World,
+)
 from ..spec.base import Part
 from .cppn_genes import Connections, Nodes, check_genes
 from .naming import FORMAT, LICENCE, canonical, name
@@ -14,6 +24,7 @@ from .naming import FORMAT, LICENCE, canonical, name
 __all__ = ["FORMAT", "CreatureError", "canonical", "document", "name", "parse", "spec_of"]
 
 
+Room = Annotated[int, Field(ge=8, le=8192)]
 Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
@@ -41,7 +52,9 @@ class CPPN(Part):
             raise ValueError(
                 f"`inputs` must be {list(self.control.inputs)}, got {list(self.inputs)}"
             )
-        check_genes(len(self.inputs), self.outputs, self.nodes, self.connections)
+        if self.outputs != OUTPUTS:
+            raise ValueError(f"`outputs` must be {list(OUTPUTS)}, got {list(self.outputs)}")
+        check_genes(len(self.inputs), len(self.outputs), self.nodes, self.connections)
         return self
 
 
@@ -73,9 +86,20 @@ class Measured(Part):
     descriptors: dict[str, float]
     features: dict[str, float]
     block: int = Field(ge=1, le=4096)
-    room: tuple[int, int]
+    room: tuple[Room, Room]
     """`max_nodes` and `max_connections` of the evaluated arrays."""
     device: str
+
+    @model_validator(mode="after")
+    def check_agreement(self) -> Self:
+        """Fitness and descriptors are features, so that a check of those is one of all."""
+        told = {**self.descriptors, "displacement": self.fitness}
+        if wrong := [name for name in told if told[name] != self.features.get(name)]:
+            raise ValueError(
+                f"`features` must hold fitness (as displacement) and descriptors; "
+                f"got other values of {wrong}"
+            )
+        return self
 
 
 class Provenance(Part):
@@ -96,6 +120,12 @@ class CreatureFile(Part):
     measured: Measured | None = None
     provenance: Provenance | None = None
     licence: str = LICENCE
+
+    @model_validator(mode="after")
+    def check_room(self) -> Self:
+        """The arrays that were measured had room for the genes."""
+        _spec(self.identity, self.measured)
+        return self
 
 
 def document(
@@ -119,7 +149,10 @@ def parse(data: Any) -> dict[str, Any]:
     Raises `CreatureError`, which names the field, what was needed and what came.
     """
     if isinstance(data, str | bytes):
-        data = json.loads(data)
+        try:
+            data = json.loads(data)
+        except (ValueError, RecursionError) as error:
+            raise CreatureError("file", f"JSON ({error})", data[:60]) from error
     try:
         file = CreatureFile.model_validate(data)
     except ValidationError as error:
@@ -142,8 +175,10 @@ def spec_of(file: Mapping[str, Any]) -> QualityDiversity:
 def _spec(identity: Identity, measured: Measured | None = None) -> QualityDiversity:
     """The room is the recorded one, else just enough: sums round differently in another."""
     genome = identity.genome
-    needed = (max(8, len(genome.nodes.id)), max(8, len(genome.connections.innovation)))
-    nodes, connections = measured.room if measured else needed
+    least = (max(8, len(genome.nodes.id)), max(8, len(genome.connections.innovation)))
+    nodes, connections = measured.room if measured else (least[0], max(least))
+    if nodes < least[0] or connections < least[1]:
+        raise ValueError(f"`room` must be at least {list(least)}, got {[nodes, connections]}")
     world = identity.world.model_dump()
     coupling = world.pop("coupling")
     return QualityDiversity(
@@ -151,7 +186,7 @@ def _spec(identity: Identity, measured: Measured | None = None) -> QualityDivers
         coupling=Coupling(**coupling),
         body=identity.body,
         control=genome.control,
-        genome=Genome(max_nodes=nodes, max_connections=max(nodes, connections)),
+        genome=Genome(max_nodes=nodes, max_connections=connections),
         task=identity.task,
         search=Search(batch=1, block=measured.block if measured else 1, generations=1),
     )

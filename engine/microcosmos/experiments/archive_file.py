@@ -37,6 +37,7 @@ def save(plan: Plan, state: State) -> bytes:
             "descriptors": elites.features[:, [axis.feature for axis in plan.axes]],
             "creature": state.creatures[cells],
             "operator": state.operators[cells],
+            "device": state.origins[cells],
             "genomes": _columns(elites.networks),
             **{name: getattr(elites, name) for name in ROWS},
         },
@@ -57,7 +58,13 @@ def save(plan: Plan, state: State) -> bytes:
 def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
     """The state that `save` wrote; see `QualityDiversity.restore` for what it raises."""
     tree, attributes = file.load(data)
-    devices = _check(plan, attributes, other_device)
+    try:
+        return _restore(plan, tree, _check(plan, attributes, other_device))
+    except KeyError as error:
+        raise ValueError(f"an archive file must hold {error}, which is not there") from error
+
+
+def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
     state, archive, loop = start(plan), tree["archive"], tree["loop"]
     cells = archive["cell"]
     rows = search.Elites(
@@ -65,8 +72,9 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         networks=_networks(archive["genomes"]),
         **{name: jnp.asarray(archive[name]) for name in ROWS},
     )
-    creatures, operators = state.creatures.copy(), state.operators.copy()
+    creatures, operators, origins = state.creatures, state.operators, state.origins
     creatures[cells], operators[cells] = archive["creature"], archive["operator"]
+    origins[cells] = archive["device"]
     diverged = tree["diverged"]
     networks = jax.device_get(_networks(diverged.pop("networks")))
     return State(
@@ -77,6 +85,7 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         creatures=creatures,
         operators=operators,
+        origins=origins,
         curves=np.stack([tree["curves"][name] for name in CURVES], 1),
         lineage=Lineage(**tree["lineage"]),
         quarantine=Diverged(**diverged, networks=networks),
@@ -85,13 +94,10 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
 
 
 def _attributes(plan: Plan, state: State) -> dict[str, str]:
-    devices = list(state.devices)
-    if not devices or devices[-1] != plan.device:
-        devices.append(plan.device)
     return {
         "format": file.FORMAT,
         "version": VERSION,
-        "device": json.dumps(devices),
+        "device": json.dumps(state.devices),
         "spec": plan.spec,
         "features": json.dumps(search.FEATURES),
         "operators": json.dumps(search.OPERATORS),
@@ -108,7 +114,7 @@ def _check(plan: Plan, attributes: dict[str, str], other_device: bool) -> tuple[
             f"`device` must be {devices[-1]!r}, on which the run was computed, for the same "
             f"bits; got {plan.device!r}."
         )
-    return tuple(devices)
+    return tuple(devices if devices[-1] == plan.device else [*devices, plan.device])
 
 
 def _networks(columns: dict[str, np.ndarray]) -> CPPN:

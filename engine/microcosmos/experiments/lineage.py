@@ -25,6 +25,7 @@ class News:
     elites: tuple[Elite, ...]
     creatures: np.ndarray
     operators: np.ndarray
+    origins: np.ndarray
     lineage: Lineage
 
 
@@ -51,12 +52,14 @@ def record(
             generation=generation,
             operator=int(operator[i]),
             parent=parents[i],
+            device=plan.device,
         )
         for i, slot in enumerate(slots.tolist())
     )
     names = [np.frombuffer(bytes.fromhex(elite.creature), np.uint8) for elite in elites]
     creatures, operators = state.creatures.copy(), state.operators.copy()
-    operators[cells] = operator
+    origins = state.origins.copy()
+    operators[cells], origins[cells] = operator, len(state.devices) - 1
     new = Lineage(
         creature=np.array(names, np.uint8).reshape(-1, 32),
         parent=parents,
@@ -68,7 +71,7 @@ def record(
     )
     creatures[cells] = new.creature
     lineage = jax.tree.map(lambda a, b: np.concatenate([a, b]), state.lineage, new)
-    return News(elites, creatures, operators, lineage)
+    return News(elites, creatures, operators, origins, lineage)
 
 
 def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
@@ -83,6 +86,7 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
         generation=int(elites.generation),
         operator=int(state.operators[cell]),
         parent=state.lineage.parent[entry],
+        device=state.devices[state.origins[cell]],
     )
     return {
         "identity": json.loads(elite.identity),
@@ -107,6 +111,7 @@ def _elite(
     generation: int,
     operator: int,
     parent: np.ndarray,
+    device: str,
 ) -> Elite:
     whole = identity(plan.frame, network)
     features: dict[str, float] = dict(zip(search.FEATURES, values.tolist(), strict=True))
@@ -118,7 +123,7 @@ def _elite(
         "features": features,
         "block": plan.block,
         "room": list(plan.room),
-        "device": plan.device,
+        "device": device,
     }
     provenance = {
         "parents": list(parents),

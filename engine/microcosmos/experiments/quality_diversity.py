@@ -71,6 +71,7 @@ class QualityDiversity:
             counters=counters,
             creatures=news.creatures,
             operators=news.operators,
+            origins=news.origins,
             lineage=news.lineage,
             quarantine=_set_apart(state, children.networks, np.asarray(evaluation.status)),
         )

@@ -77,11 +77,13 @@ class State(eqx.Module):
     creatures: UInt8[np.ndarray, "cell 32"]
     """The SHA-256 of each cell's elite."""
     operators: Int[np.ndarray, "cell"]
+    origins: Int[np.ndarray, "cell"]
+    """Which of `devices` measured each cell's elite."""
     curves: Float[np.ndarray, "generation curve"]
     lineage: Lineage
     quarantine: Diverged
-    devices: tuple[str, ...] = eqx.field(static=True, default=())
-    """Kinds of device in the file that the run was taken up from."""
+    devices: tuple[str, ...] = eqx.field(static=True)
+    """Kinds of device that computed the run, the present one last."""
 
 
 def start(plan: Plan) -> State:
@@ -96,7 +98,9 @@ def start(plan: Plan) -> State:
         counters=neat.first_counters(plan.genes.inputs, plan.genes.outputs),
         creatures=np.zeros((plan.cells, 32), np.uint8),
         operators=np.zeros(plan.cells, np.int32),
+        origins=np.zeros(plan.cells, np.int32),
         curves=np.zeros((0, len(CURVES))),
         lineage=Lineage(names, names, none, none, none, np.zeros(0, np.float32), descriptors),
         quarantine=Diverged(none, none, none, empty(*plan.room, (0,))),
+        devices=(plan.device,),
     )

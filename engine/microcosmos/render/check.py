@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import jax
-import numpy as np
 
 from .. import search
 from ..archive import creature
@@ -24,10 +23,7 @@ class Check:
 
     @property
     def exact(self) -> bool:
-        return all(
-            np.float32(self.repeated[name]) == np.float32(value)
-            for name, value in self.recorded.items()
-        )
+        return self.recorded == self.repeated
 
 
 def check(file: Mapping[str, Any]) -> Check:

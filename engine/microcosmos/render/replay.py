@@ -16,15 +16,21 @@ import numpy as np
 
 from .. import search, world
 from ..archive import creature
-from ..build import build_task
+from ..build import build_body, build_task
 from ..device import device_kind
 from ..fluid import vorticity
 from ..genomes import CPPN, develop, from_genes
-from ..spec import Spec, parse
+from ..spec import Spec, estimate, parse
 
 FORMAT = "microcosmos-replay/1"
 FRAMES = 250
-"""About as many frames as are kept, whatever the number of steps."""
+"""At most about twice as many frames are kept, whatever the number of steps."""
+
+FRAME_BYTES = 2**28
+"""At most about so many bytes of vorticity are held while a replay is made."""
+
+CELL_STEPS = 3 * 10**10
+"""Fluid cells times steps that a replay may take: minutes."""
 
 
 def record(file: Mapping[str, Any]) -> bytes:
@@ -35,9 +41,12 @@ def record(file: Mapping[str, Any]) -> bytes:
     """
     file = creature.parse(file)
     spec = creature.spec_of(file)
-    network = network_of(file, spec)
-    every = max(1, spec.task.steps // FRAMES)
-    positions, curl, features = jax.device_get(_program(spec.model_dump_json(), every)(network))
+    every = interval(spec)
+    program = _program(spec.model_dump_json(), every)
+    positions, curl, features = jax.device_get(program(network_of(file, spec)))
+    if not (np.isfinite(positions).all() and np.isfinite(curl).all()):
+        needed = "a creature whose simulation stays finite"
+        raise creature.CreatureError("identity", needed, "one that diverges")
     positions = np.asarray(positions, "<f4")
     replayed = dict(zip(search.FEATURES, features.tolist(), strict=True))
     measured = file["measured"] or {}
@@ -51,7 +60,7 @@ def record(file: Mapping[str, Any]) -> bytes:
         "every": every,
         "steps": spec.task.steps,
         "nodes": positions.shape[1],
-        "edges": build_task(spec).controls.edges.tolist(),
+        "edges": build_body(spec.body).edges.tolist(),
         "size": [spec.world.width, spec.world.height],
         "vorticity": {"scale": scale},
         "fitness": {
@@ -66,6 +75,26 @@ def record(file: Mapping[str, Any]) -> bytes:
         "device": device_kind(),
     }
     return _pack(header, positions, np.round(curl / scale * 127).astype(np.int8))
+
+
+def interval(spec: Spec) -> int:
+    """Every how many steps a frame is kept.
+
+    Raises `creature.CreatureError` where the simulation is too long or too large to watch.
+    """
+    work = estimate(spec)
+    cells = spec.world.width * spec.world.height
+    for field, limit, found in (
+        ("task.steps", CELL_STEPS, work.cell_steps),
+        ("body.nodes", 2**32, work.memory_bytes),
+    ):
+        if found > limit:
+            unit = "cell steps" if limit == CELL_STEPS else "bytes of memory"
+            raise creature.CreatureError(
+                field, f"at most {limit:.1e} {unit} for a replay", found
+            )
+    frames = min(FRAMES, max(2, FRAME_BYTES // (4 * cells)))
+    return max(1, spec.task.steps // frames)
 
 
 def network_of(file: Mapping[str, Any], spec: Spec) -> CPPN:

@@ -47,7 +47,7 @@ def parse(document: Mapping[str, Any]) -> Spec:
     Raises `pydantic.ValidationError`, whose errors name each field, what was needed and
     what came.
     """
-    name = document.get("experiment")
+    name = document.get("experiment") if isinstance(document, Mapping) else document
     experiment = EXPERIMENTS.get(name) if isinstance(name, str) else None
     if experiment is None:
         needed = ", ".join(repr(name) for name in EXPERIMENTS)

@@ -28,14 +28,15 @@ class QualityDiversity(Part):
 
     @model_validator(mode="after")
     def refuse_too_large_a_body(self) -> Self:
-        """The stretched body and the delta's support must fit once around the box."""
+        """However it turns, the stretched body and the delta's support must fit in."""
         needed = ceil(self.body.length * (1 + self.control.length_scale) + SUPPORT)
-        if needed > self.world.width:
+        side = "width" if self.world.width <= self.world.height else "height"
+        if needed > getattr(self.world, side):
             raise ValueError(
-                f"`world.width` must be at least {needed} cells for `body.nodes` = "
+                f"`world.{side}` must be at least {needed} cells for `body.nodes` = "
                 f"{self.body.nodes} at `body.spacing` = {self.body.spacing:g}, stretched by "
                 f"`control.length_scale` = {self.control.length_scale:g}; "
-                f"got {self.world.width}"
+                f"got {getattr(self.world, side)}"
             )
         return self
 
@@ -72,7 +73,7 @@ PRESETS = {
         QualityDiversity(),
     ),
     "paper": (
-        "The paper's literal form: linear timer, linear efforts, coupling as written",
+        "As in the paper: linear timer, linear efforts, free edge angles, no projection",
         PAPER,
     ),
 }

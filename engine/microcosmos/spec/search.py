@@ -24,7 +24,7 @@ class Descriptor(Part):
     """Sum over time and joints (edges) of the squared change of rest angles (lengths)."""
     low: float = Field(default=1e-4, ge=0.0)
     """Lower end of the axis, in raw units; what is below counts in the first bin."""
-    high: float = Field(default=1e2, gt=0.0)
+    high: float = Field(default=1e2, gt=0.0, le=1e30)
     """Upper end of the axis, in raw units; what is above counts in the last bin."""
     bins: int = Field(default=20, ge=1, le=1024)
     """Cells along the axis."""
@@ -67,7 +67,7 @@ class Archive(Part):
 class Search(Part):
     """MAP-Elites over generations of equal size."""
 
-    generations: int = Field(default=50, ge=1, le=10_000_000)
+    generations: int = Field(default=50, ge=1, le=1_000_000)
     """Generations of the run, the random first one among them."""
     batch: int = Field(default=64, ge=1, le=65_536)
     """Creatures evaluated in a generation."""

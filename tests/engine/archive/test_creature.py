@@ -85,6 +85,8 @@ GENES = ("identity", "genome")
         ((*GENES, "connections", "target"), [3, 4, 9, 9], "genome"),
         ((*GENES, "connections", "innovation"), [0, 4, 4, 8], "genome"),
         ((*GENES, "inputs"), ["position", "time"], "genome"),
+        ((*GENES, "outputs"), ["rest_length", "rest_angle"], "genome"),
+        ((*GENES, "nodes", "bias"), encode([1, 0, 0, 0.5, -1, 2]), "genome"),
         (("identity", "world", "viscosity"), -1, "viscosity"),
         (("identity", "world", "gravity"), 9.8, "gravity"),
         (("identity", "body", "nodes"), 500, "identity"),
@@ -112,5 +114,47 @@ def test_a_cycle_is_refused(file):
 
 
 def test_text_that_is_no_json_is_a_value_error():
-    with pytest.raises(ValueError, match="Expecting"):
+    with pytest.raises(creature.CreatureError, match="`file` needs JSON"):
         creature.parse("{")
+
+
+def measured(**changes):
+    features = {"displacement": 2.0, "bending_effort": 0.5}
+    whole = {
+        "fitness": 2.0,
+        "descriptors": {"bending_effort": 0.5},
+        "features": features,
+        "block": 16,
+        "room": [8, 16],
+        "device": "cpu",
+    }
+    return whole | changes
+
+
+def test_a_measurement_is_kept(file):
+    assert creature.parse(file | {"measured": measured()})["measured"]["fitness"] == 2
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"fitness": 3.0},
+        {"descriptors": {"bending_effort": 0.6}},
+        {"features": {}},
+        {"room": [-1, 16]},
+        {"room": [10**30, 16]},
+        {"block": 0},
+    ],
+)
+def test_a_measurement_that_contradicts_itself_is_refused(file, changes):
+    assert "measured" in refused(file | {"measured": measured(**changes)}, dict).field
+
+
+def test_room_for_fewer_genes_than_there_are_is_refused(file):
+    ids = list(range(5)) + list(range(9, 13))
+    nodes = file["identity"]["genome"]["nodes"]
+    nodes["id"], nodes["activation"] = ids, ["identity"] * 9
+    nodes["bias"] = encode([0] * 9)
+    file["sha256"] = creature.name(file["identity"])
+    assert creature.parse(file)
+    assert "`room` must be at least" in str(refused(file | {"measured": measured()}, dict))

@@ -105,14 +105,18 @@ def test_another_spec_is_refused(small, experiment, course):
 
 
 def test_another_device_needs_leave_and_is_marked(experiment, course):
-    elsewhere = replace(experiment, plan=replace(experiment.plan, device="abacus"))
-    data = elsewhere.save(course[0][1])
+    data = experiment.save(replace(course[0][1], devices=("abacus",)))
     with pytest.raises(OtherDevice, match="abacus"):
         experiment.restore(data)
     allowed = experiment.restore(data, other_device=True)
-    assert allowed.devices == ("abacus",)
-    again = experiment.restore(experiment.save(allowed))
-    assert again.devices == ("abacus", experiment.plan.device)
+    assert allowed.devices == ("abacus", experiment.plan.device)
+    later, report = experiment.advance(allowed)
+    again = experiment.restore(experiment.save(later))
+    assert again.devices == allowed.devices
+    new = {elite.cell for elite in report.elites}
+    for cell in np.flatnonzero(again.elites.occupied).tolist():
+        measured_on = experiment.creature(again, cell)["measured"]["device"]
+        assert measured_on == (experiment.plan.device if cell in new else "abacus")
 
 
 def test_diverged_creatures_are_kept_apart_with_their_reason(small):

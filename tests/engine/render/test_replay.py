@@ -80,8 +80,31 @@ def test_a_check_repeats_every_recorded_number_exactly(best):
 
 def test_a_check_notices_a_wrong_record(best):
     changed = copy.deepcopy(best)
-    changed["measured"]["features"]["displacement"] *= 1.001
+    changed["measured"]["features"]["path_length"] *= 1 + 1e-12
     assert not check(changed).exact
+    del changed["measured"]["features"]["path_length"]
+    assert not check(changed).exact
+
+
+@pytest.mark.parametrize(
+    ("part", "change", "field"),
+    [
+        ("world", {"width": 2048, "height": 2048}, "task.steps"),
+        ("task", {"steps": 1_000_000}, "body.nodes"),
+    ],
+)
+def test_a_creature_that_is_too_much_to_watch_is_refused(best, part, change, field):
+    identity = copy.deepcopy(best["identity"])
+    identity[part] |= change
+    if part == "world":
+        identity["task"]["steps"] = 100_000
+    else:
+        identity["world"] |= {"width": 32, "height": 32}
+        identity["genome"]["control"]["length_scale"] = 0.0
+        identity["body"]["nodes"] = 28
+    with pytest.raises(creature.CreatureError) as caught:
+        record(creature.document(identity, None, None))
+    assert caught.value.field == field
 
 
 def test_a_check_needs_a_measurement(best):
