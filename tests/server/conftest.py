@@ -264,7 +264,11 @@ def report(identity) -> Callable[..., Any]:
             measured={
                 "fitness": fitness,
                 "descriptors": {"bending_effort": 0.25, "stretching_effort": 0.5},
-                "features": {"bending_effort": 0.25, "stretching_effort": 0.5},
+                "features": {
+                    "displacement": fitness,
+                    "bending_effort": 0.25,
+                    "stretching_effort": 0.5,
+                },
                 "block": 16,
                 "room": [24, 64],
                 "device": "a device",

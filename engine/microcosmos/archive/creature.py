@@ -158,7 +158,8 @@ def parse(data: Any) -> dict[str, Any]:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         field = ".".join(str(part) for part in first["loc"]) or "file"
-        raise CreatureError(field, first["msg"], first["input"]) from error
+        needed = first["msg"].removeprefix("Value error, ")
+        raise CreatureError(field, needed, first["input"]) from error
     whole = file.model_dump(mode="json")
     expected = name(whole["identity"])
     if expected != file.sha256:

@@ -8,6 +8,7 @@ import json
 import struct
 from collections.abc import Callable, Mapping
 from functools import lru_cache
+from math import ceil
 from typing import Any
 
 import jax
@@ -24,7 +25,7 @@ from ..spec import Spec, estimate, parse
 
 FORMAT = "microcosmos-replay/1"
 FRAMES = 250
-"""At most about twice as many frames are kept, whatever the number of steps."""
+"""At most so many frames are kept besides the first, whatever the number of steps."""
 
 FRAME_BYTES = 2**28
 """At most about so many bytes of vorticity are held while a replay is made."""
@@ -94,7 +95,7 @@ def interval(spec: Spec) -> int:
                 field, f"at most {limit:.1e} {unit} for a replay", found
             )
     frames = min(FRAMES, max(2, FRAME_BYTES // (4 * cells)))
-    return max(1, spec.task.steps // frames)
+    return ceil(spec.task.steps / frames)
 
 
 def network_of(file: Mapping[str, Any], spec: Spec) -> CPPN:

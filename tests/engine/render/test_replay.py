@@ -48,8 +48,8 @@ def replay(best):
 def test_the_layout_is_what_the_header_says(replay, best):
     header, _, curl = replay
     assert header["creature"] == best["sha256"]
-    assert header["every"] == 2
-    assert header["frames"] == 301
+    assert header["every"] == 3
+    assert header["frames"] == 201
     assert header["size"] == [40, 32]
     assert np.abs(curl).max() == 127
     assert not curl[0].any()
@@ -65,7 +65,7 @@ def test_the_motion_ends_where_the_fitness_says(replay, best):
     header, positions, _ = replay
     moved = np.linalg.norm(positions[-1].mean(0) - positions[0].mean(0))
     replayed = header["fitness"]["replayed"]
-    # The last frame is one step before the end: 601 steps, every second kept.
+    # The last frame is one step before the end: 601 steps, every third kept.
     assert moved == pytest.approx(replayed, abs=0.1)
     assert replayed == pytest.approx(best["measured"]["fitness"], rel=1e-3)
     assert header["fitness"]["difference"] == replayed - header["fitness"]["recorded"]
