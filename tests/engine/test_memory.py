@@ -1,0 +1,34 @@
+"""The memory that a spec is said to need is at least what its compiled programs take."""
+
+import jax
+import jax.numpy as jnp
+import pytest
+
+from microcosmos import search
+from microcosmos.build import build, build_task
+from microcosmos.spec import estimate, parse
+
+SPECS = {
+    "ordinary": {},
+    "large networks": {"genome": {"max_nodes": 200, "max_connections": 400}},
+    "large world": {"world": {"width": 256, "height": 256}},
+    "long": {"task": {"steps": 5000}},
+}
+
+
+def taken(program, *arguments) -> int:
+    sizes = program.lower(*arguments).compile().memory_analysis()
+    return sizes.temp_size_in_bytes + sizes.output_size_in_bytes
+
+
+@pytest.mark.parametrize("name", SPECS)
+def test_programs_take_no_more_than_was_estimated(name):
+    spec = parse({"experiment": "quality-diversity", **SPECS[name]})
+    run = build(spec)
+    state = run.init()
+    networks = jax.tree.map(lambda x: x[: spec.search.block], state.elites.networks)
+    task = build_task(spec)
+    batched = jax.jit(jax.vmap(lambda network: search.evaluate(task, network)))
+    together = taken(run.programs.vary, state.elites, state.counters, jnp.asarray(1))
+    together += max(taken(run.programs.evaluate_block, networks), taken(batched, networks))
+    assert together <= estimate(spec).memory_bytes
