@@ -2,6 +2,7 @@
 
 import re
 from contextlib import suppress
+from typing import Any
 from uuid import UUID
 
 from redis import Redis
@@ -9,8 +10,9 @@ from redis.backoff import ExponentialBackoff
 from redis.retry import Retry
 from rq import Queue
 from rq.exceptions import NoSuchJobError
-from rq.job import Job
+from rq.job import Job, JobStatus
 from rq.registry import clean_registries
+from rq.results import Result
 from rq.serializers import JSONSerializer
 
 EVOLVE = "worker.jobs.evolve"
@@ -46,7 +48,7 @@ class Jobs:
             failure_ttl=3600,
         )
 
-    def render(self, creature: str) -> None:
+    def render(self, creature: str, meta: dict[str, Any] | None = None) -> None:
         """Ask for a replay to be made."""
         job_id = self.replay_id(creature)
         self.forget(job_id)
@@ -57,7 +59,17 @@ class Jobs:
             job_timeout=600,
             result_ttl=0,
             failure_ttl=FAILURE_KEPT,
+            meta=meta,
         )
+
+    def give_up(self, job: Job, reason: str) -> None:
+        """Count a job as failed that its worker can say nothing about any more."""
+        self.forget(job.id)
+        job.set_status(JobStatus.FAILED)
+        with self.redis.pipeline() as pipeline:
+            job.failed_job_registry.add(job, FAILURE_KEPT, reason, pipeline)
+            Result.create_failure(job, FAILURE_KEPT, reason, pipeline=pipeline)
+            pipeline.execute()
 
     def replay_id(self, creature: str) -> str:
         """All installations know the same creatures, but each has its own jobs."""

@@ -9,7 +9,7 @@ from .artifacts import Artifacts
 from .models import Artifact
 from .problems import Refused
 
-ONE_RANGE = re.compile(r"bytes=(\d*)-(\d*)")
+ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")
 
 
 def file(

@@ -1,5 +1,6 @@
 """Replays: kept as files, made by the renderer when somebody wants to watch."""
 
+import re
 from typing import Any
 
 from rq.job import JobStatus
@@ -12,6 +13,8 @@ from .models import REPLAY, Artifact, Creature
 from .records import insert_missing
 from .services import Services
 
+REFUSAL = re.compile(r"^[\w.]*CreatureError: ")
+"""Before the words in which the engine refuses a replay; other errors say what they are."""
 UNDERWAY = (JobStatus.QUEUED, JobStatus.STARTED, JobStatus.DEFERRED, JobStatus.SCHEDULED)
 
 
@@ -27,13 +30,13 @@ def find(session: Session, creature: str) -> Artifact | None:
 def order(services: Services, creature: str) -> None:
     """Have a replay made, once; `RenderingFailed` says why the last try gave none."""
     job = services.jobs.find(services.jobs.replay_id(creature))
-    status = job.get_status() if job else None
+    status = job.get_status(refresh=False) if job else None
     if status in UNDERWAY:
         return
     if job and status == JobStatus.FAILED:
         result = job.latest_result()
         text = (result.exc_string if result else None) or "the renderer ended without a word"
-        raise RenderingFailed(text.strip().splitlines()[-1])
+        raise RenderingFailed(REFUSAL.sub("", text.strip().splitlines()[-1]))
     services.jobs.render(creature)
 
 

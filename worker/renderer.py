@@ -16,21 +16,29 @@ from server.settings import Settings
 from . import log, loop, stop
 
 SILENCE = 120
-"""Seconds after which a replay's maker counts as dead."""
+"""Seconds after which a renderer without work counts as dead."""
+MARGIN = 60
+"""Seconds beyond a replay's time after which whoever makes it counts as dead."""
+AGAIN = "again"
+"""Marks a job that is tried a second time."""
 
 
 class Renderer(SimpleWorker):
     """RQ's worker without processes of its own, which says nothing while it renders."""
 
     def get_heartbeat_ttl(self, job: Job) -> int:
-        return SILENCE
+        """The whole of what it may take, since nothing beats meanwhile."""
+        return int(job.timeout or 0) + MARGIN
 
 
 def take_up(jobs: Jobs) -> None:
-    """Ask again for the replays that a renderer was making when it died."""
+    """Ask again, once, for the replays that a renderer was making when it died."""
     for job_id in jobs.replays.started_job_registry.get_job_ids(cleanup=False):
-        if job := jobs.find(job_id):
-            jobs.render(*job.args)
+        job = jobs.find(job_id)
+        if job and job.meta.get(AGAIN):
+            jobs.give_up(job, "it has ended the renderer twice, perhaps for want of memory")
+        elif job:
+            jobs.render(*job.args, meta={AGAIN: True})
 
 
 def main() -> None:
