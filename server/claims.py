@@ -4,21 +4,24 @@ Each write is one transaction that first proves that the attempt is still the cu
 one. `Fenced` says that it is not: the process should end without another word.
 """
 
+import logging
 from dataclasses import dataclass
 from time import monotonic
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import func, or_
+from sqlalchemy import case, func, or_
 from sqlalchemy.orm import Session
 
 from . import records
 from .artifacts import Stored, checkpoint_path
 from .checkpoints import last_checkpoint, point_at, rewind
 from .db import clock
-from .lifecycle import announce, change, lost, release, yield_up
-from .models import CANCELLED, FINISHED, GIVEN, NEEDED, PAUSED, QUEUED, RUNNING, Run
+from .lifecycle import announce, change, hand_back, lost, release
+from .models import CANCEL, CANCELLED, FINISHED, GIVEN, NEEDED, PAUSED, QUEUED, RUNNING, Run
 from .services import Services
+
+log = logging.getLogger(__name__)
 
 ANNOUNCE_EVERY = 1.0
 """Seconds between two events that tell how a run as a whole stands."""
@@ -55,6 +58,17 @@ def _begun(worker: str) -> dict[str, Any]:
         "worker": worker,
         "heartbeat_at": clock(),
         "started_at": func.coalesce(Run.started_at, clock()),
+    }
+
+
+def _paused() -> dict[str, Any]:
+    """Unless people have meanwhile asked to cancel."""
+    return {
+        "status": case((Run.wish == CANCEL, CANCELLED), else_=PAUSED),
+        "finished_at": case((Run.wish == CANCEL, clock()), else_=None),
+        "worker": None,
+        "wish": None,
+        "wished_at": None,
     }
 
 
@@ -106,9 +120,12 @@ class Claim:
         elites = [records.elite_row(elite) for elite in report.elites]
         creatures = [records.creature_row(elite) for elite in report.elites]
         with self.services.sessions.write.begin() as session:
+            # After an outage nobody knows whether the same write was committed before it.
+            new = self._prove(session).generation != curve["generation"]
             standing = {**records.standing(report), "seconds": total}
             wish = self._prove(session, **standing).wish
-            records.write(session, self.run_id, curve, elites, creatures)
+            if new:
+                records.write(session, self.run_id, curve, elites, creatures)
         self.seconds = total
         self._tell(curve, elites)
         return wish
@@ -145,7 +162,10 @@ class Claim:
                 )
         self.checkpoint, self.generation = stored, generation
         for path in superfluous:
-            self.services.artifacts.delete(path)
+            try:
+                self.services.artifacts.delete(path)
+            except OSError as error:  # The new checkpoint stands all the same.
+                log.warning("a file that nothing needs stays: %s", error)
 
     def warn(self, text: str) -> None:
         """Say something on the run that people should know; the next checkpoint clears it."""
@@ -155,18 +175,11 @@ class Claim:
         self._end(status=FINISHED, finished_at=clock(), error=None, wish=None, wished_at=None)
 
     def pause(self) -> None:
-        self._end(status=PAUSED, worker=None, wish=None, wished_at=None)
+        self._end(**_paused())
 
     def wait_for_leave(self, text: str) -> None:
         """Pause until people say that another kind of device will do, by resuming it."""
-        self._end(
-            status=PAUSED,
-            worker=None,
-            wish=None,
-            wished_at=None,
-            warning=text,
-            device_leave=NEEDED,
-        )
+        self._end(**_paused(), warning=text, device_leave=NEEDED)
 
     def cancel(self) -> None:
         self._end(status=CANCELLED, finished_at=clock(), wish=None, wished_at=None)
@@ -174,8 +187,8 @@ class Claim:
     def requeue(self) -> None:
         """Hand the run back in good order, as on SIGTERM: not one of the three chances."""
         with self.services.sessions.write.begin() as session:
-            strikes = max(0, self._prove(session).attempts_without_checkpoint - 1)
-            yield_up(session, self.run_id, attempts_without_checkpoint=strikes)
+            self._prove(session)
+            hand_back(session, self.run_id)
         announce(self.services, self.run_id)
 
     def fail(self, error: str) -> None:

@@ -3,10 +3,12 @@
 Every change is one guarded UPDATE, so that of two that come at once only one happens.
 """
 
+import logging
 from typing import Any, NoReturn
 from uuid import UUID
 
 from sqlalchemy import case, or_, update
+from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from .db import ago, clock
@@ -24,6 +26,8 @@ from .models import (
 )
 from .progress import read_run
 from .services import Services
+
+log = logging.getLogger(__name__)
 
 ATTEMPTS = 3
 """So many attempts without a new checkpoint end a run."""
@@ -116,15 +120,29 @@ def yield_up(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run 
     return change(session, run_id, Run.status == RUNNING, *where, finished_at=over, **values)
 
 
+def hand_back(session: Session, run_id: UUID, *where: Any) -> Run | None:
+    """A running run given up in good order: its attempt is not one of the three chances."""
+    strikes = Run.attempts_without_checkpoint
+    kept = case((strikes > 0, strikes - 1), else_=0)
+    return yield_up(session, run_id, *where, attempts_without_checkpoint=kept)
+
+
 def lost(session: Session, lease: float) -> Any:
     """The condition that nobody has spoken for a run as long as a lease."""
     return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
 
 
 def announce(services: Services, run_id: UUID) -> None:
-    """Tell everybody how a run stands, after what changed it was committed."""
-    with services.sessions.read() as session:
-        run = session.get(Run, run_id)
-        if run:
-            data = read_run(session, run).model_dump(mode="json")
-            services.events.publish("run", run_id, data)
+    """Tell everybody how a run stands, after what changed it was committed.
+
+    What changed stands even where nobody can be told: an event is a courtesy.
+    """
+    try:
+        with services.sessions.read() as session:
+            run = session.get(Run, run_id)
+            data = read_run(session, run).model_dump(mode="json") if run else None
+    except SQLAlchemyError as error:
+        log.warning("no event of run %s: %s", run_id, error)
+        return
+    if data:
+        services.events.publish("run", run_id, data)

@@ -14,7 +14,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from .db import ago
-from .lifecycle import announce, lost, release, yield_up
+from .lifecycle import announce, hand_back, lost, release, yield_up
 from .models import CANCEL, QUEUED, RUNNING, Run, Worker
 from .services import Services
 
@@ -111,6 +111,15 @@ def job_died(services: Services, run_id: UUID, worker: str, error: str) -> None:
     """A job process ended without a word: its run waits for another attempt at once."""
     with services.sessions.write.begin() as session:
         run = release(session, run_id, Run.worker == worker, error=error)
+    if run:
+        announce(services, run_id)
+    requeue(services, run_id)
+
+
+def job_stopped(services: Services, run_id: UUID, worker: str) -> None:
+    """A job was killed because its worker had to stop: its run waits, without a mark."""
+    with services.sessions.write.begin() as session:
+        run = hand_back(session, run_id, Run.worker == worker)
     if run:
         announce(services, run_id)
     requeue(services, run_id)

@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from contextlib import suppress
 from typing import Any
 from uuid import UUID
@@ -17,7 +18,7 @@ from rq.worker import SpawnWorker
 from sqlalchemy.exc import SQLAlchemyError
 
 from server import services
-from server.reconcile import job_died
+from server.reconcile import job_died, job_stopped
 from server.services import Services
 from server.settings import Settings
 
@@ -26,6 +27,10 @@ from .pulse import BEATS, Pulse
 
 SHORTEST_LEASE = 2
 """Redis counts in seconds."""
+PATIENCE = 18.0
+"""Seconds that a job has to end after it was asked to; less than this process itself has."""
+LOOK = 1.0
+"""At most so often it is seen, while it is to end, whether it has."""
 
 journal = logging.getLogger(__name__)
 
@@ -37,6 +42,10 @@ class Supervisor(SpawnWorker):
     pulse: Pulse
     lease: int
     environment: dict[str, str]
+    asked_at: float | None = None
+    """When the job was first asked to stop."""
+    cut_short: bool = False
+    """Whether it had to be killed since it did not stop."""
 
     def execute_job(self, job: Job, queue: Queue) -> None:
         """Carry out a run, and see to it that it goes on when its process died."""
@@ -50,7 +59,14 @@ class Supervisor(SpawnWorker):
         finally:
             self.pulse.let_go()
             with loop.surviving():
-                job_died(self.services, run, self.name, "the job's process died without a word")
+                self.account_for(run)
+
+    def account_for(self, run: UUID) -> None:
+        """Have a run wait again that its job has left without a word."""
+        if self.cut_short:
+            job_stopped(self.services, run, self.name)
+        else:
+            job_died(self.services, run, self.name, "the job's process died without a word")
 
     def fork_work_horse(self, job: Job, queue: Queue) -> None:
         """Start the job's process; nothing secret is among its arguments."""
@@ -71,6 +87,7 @@ class Supervisor(SpawnWorker):
         while (code := self._ended()) is None:
             with loop.surviving():
                 self.maintain_heartbeats(job)
+            self.lose_patience()
         self._horse_pid = 0
         if code:
             journal.warning("Run %s: its process ended with %s", job.id, code)
@@ -79,8 +96,14 @@ class Supervisor(SpawnWorker):
 
     def _ended(self) -> int | None:
         with suppress(subprocess.TimeoutExpired):
-            return self._horse.wait(self.lease / BEATS)
+            return self._horse.wait(LOOK if self.asked_at else self.lease / BEATS)
         return None
+
+    def lose_patience(self) -> None:
+        """Kill a job that was asked to stop and is in one block for too long."""
+        if self.asked_at and time.monotonic() - self.asked_at > PATIENCE:
+            self.cut_short = True
+            self.kill_horse()
 
     def kill_horse(self, sig: signal.Signals = signal.SIGKILL) -> None:
         self._horse.send_signal(sig)
@@ -88,6 +111,7 @@ class Supervisor(SpawnWorker):
     def pass_on(self) -> None:
         """Ask the job to stop: between blocks, with a checkpoint."""
         if self.horse_pid:
+            self.asked_at = self.asked_at or time.monotonic()
             self.kill_horse(signal.SIGTERM)
 
     def heartbeat(self, timeout: int | None = None, pipeline: Any = None) -> None:

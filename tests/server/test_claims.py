@@ -5,10 +5,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from sqlalchemy import func, select, update
+from sqlalchemy.exc import OperationalError
 
 from server import lifecycle, workers
 from server.artifacts import Artifacts
-from server.claims import Fenced, claim
+from server.claims import Claim, Fenced, claim
 from server.db import ago
 from server.models import Creature, Elite, Generation, Run
 
@@ -226,3 +227,53 @@ def test_resuming_a_run_that_needs_no_leave_gives_none(services, run_id):
     with services.sessions.write.begin() as session:
         lifecycle.resume(session, session.get_one(Run, run_id))
     assert not claim(services, run_id, "second").other_device
+
+
+@pytest.mark.parametrize("end", [Claim.pause, lambda held: held.wait_for_leave("why")])
+def test_a_cancellation_that_comes_while_a_pause_is_carried_out_holds(
+    services, run_id, row, end
+):
+    attempt = claim(services, run_id, "worker")
+    with services.sessions.write.begin() as session:
+        lifecycle.cancel(session, session.get_one(Run, run_id))
+    end(attempt)
+    assert (row().status, row().wish) == ("cancelled", None)
+    assert row().finished_at is not None
+
+
+def test_a_generation_that_was_committed_unnoticed_is_not_written_again(
+    services, run_id, report, row
+):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {1: 1.0}), 2.0)
+    attempt.seconds = 0.0  # As after a commit whose answer was lost.
+    attempt.record(report(1, {1: 1.0}), 2.0)
+    assert count(services, Generation) == count(services, Elite) == 1
+    assert (row().seconds, attempt.seconds) == (2.0, 2.0)
+
+
+def test_what_was_committed_stands_where_nobody_can_be_told(
+    services, run_id, report, row, monkeypatch
+):
+    def away(*_):
+        raise OperationalError("", {}, Exception("away"))
+
+    attempt = claim(services, run_id, "worker")
+    monkeypatch.setattr(lifecycle, "read_run", away)
+    attempt.record(report(1), 1.0)
+    attempt.finish()
+    assert row().status == "finished"
+
+
+def test_an_old_file_that_cannot_be_deleted_does_not_undo_a_checkpoint(
+    services, run_id, report, row, monkeypatch
+):
+    def refuse(*_):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Artifacts, "delete", refuse)
+    attempt = claim(services, run_id, "worker")
+    for generation in range(1, 6):
+        attempt.record(report(generation), 1.0)
+        attempt.save(generation, f"state {generation}".encode())
+    assert row().checkpoint_generation == attempt.generation == 5

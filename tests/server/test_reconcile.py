@@ -8,7 +8,7 @@ from sqlalchemy import update
 from server.claims import Fenced, claim
 from server.db import ago
 from server.models import Run, Worker
-from server.reconcile import job_died, reconcile
+from server.reconcile import job_died, job_stopped, reconcile
 
 
 def put(services, table, **values):
@@ -113,6 +113,18 @@ def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
     assert row().status == "running"
     job_died(services, run_id, "worker", "killed by signal 9")
     assert (row().status, row().error) == ("queued", "killed by signal 9")
+    assert enqueued(services) == [str(run_id)]
+
+
+def test_a_job_killed_because_its_worker_stops_is_no_lost_chance(services, run_id, row, flush):
+    for _ in range(4):
+        attempt = claim(services, run_id, "worker")
+        job_stopped(services, run_id, "another")
+        assert row().status == "running"
+        job_stopped(services, run_id, "worker")
+        assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
+        with pytest.raises(Fenced):
+            attempt.wish()
     assert enqueued(services) == [str(run_id)]
 
 
