@@ -2,21 +2,25 @@
 
 import json
 import math
+import re
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 from fastapi import Request
+from fastapi.concurrency import run_in_threadpool
 
 from .problems import Refused
 
 DEPTH = 32
+NUL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
+"""As JSON is written: escaped, and the escape itself not escaped."""
 
 
 def json_object(limit: int) -> Callable[[Request], Awaitable[dict[str, Any]]]:
     """A dependency that reads the body as a JSON object of at most so many bytes."""
 
     async def read(request: Request) -> dict[str, Any]:
-        document = parse(await _limited(request, limit))
+        document = await run_in_threadpool(parse, await _limited(request, limit))
         if not isinstance(document, dict):
             raise Refused(
                 422, "Not an object", f"A JSON object is needed; got {document!r:.80}."
@@ -36,7 +40,10 @@ async def _limited(request: Request, limit: int) -> bytes:
 
 
 def parse(body: bytes) -> Any:
-    """The document in some JSON; NaN, infinities and deep nesting are refused."""
+    """The document in some JSON; what cannot be kept or sent on is refused.
+
+    That is NaN, infinities, deep nesting, and text with lone surrogates or NUL.
+    """
     try:
         document = json.loads(body, parse_constant=_refuse_constant, parse_float=_finite)
     except RecursionError:
@@ -46,6 +53,7 @@ def parse(body: bytes) -> Any:
             422, "Not JSON", f"JSON is needed; got something else: {error}."
         ) from error
     _refuse_depth(document)
+    _refuse_text(document)
     return document
 
 
@@ -72,6 +80,17 @@ def _refuse_depth(document: Any) -> None:
         if not level:
             return
     raise _too_deep()
+
+
+def _refuse_text(document: Any) -> None:
+    text = json.dumps(document, ensure_ascii=False)
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        found = ascii(text[error.start])
+        raise Refused(422, "Not Unicode", f"Text must be Unicode; got {found}.") from None
+    if NUL.search(text):
+        raise Refused(422, "Not text", "Text must be without NUL; got \\u0000.")
 
 
 def _too_deep() -> Refused:
