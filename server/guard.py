@@ -1,7 +1,7 @@
 """Who may speak to the server: this machine's pages, or whoever has the token."""
 
 from hmac import compare_digest
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, urlsplit
 
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection
@@ -38,10 +38,10 @@ class Guard:
 
     def _foreign(self, headers: Headers) -> Problem | None:
         host, origin = headers.get("host", ""), headers.get("origin")
-        if _name(f"//{host}") not in LOOPBACK:
+        if _split(f"//{host}").hostname not in LOOPBACK:
             needed = f"Host must be one of {', '.join(LOOPBACK)}; got {host!r}."
             return Problem(title="Forbidden", status=403, detail=needed)
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origin is not None and _split(origin).netloc != host:
             needed = f"Origin must be this server's own page; got {origin!r}."
             return Problem(title="Forbidden", status=403, detail=needed)
         return None
@@ -75,8 +75,9 @@ def _remember(request: HTTPConnection) -> Response:
     return answer
 
 
-def _name(address: str) -> str | None:
+def _split(address: str) -> SplitResult:
+    """The parts of an address; none where it is malformed."""
     try:
-        return urlsplit(address).hostname
+        return urlsplit(address)
     except ValueError:
-        return None
+        return urlsplit("")

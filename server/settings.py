@@ -26,10 +26,10 @@ class Settings(BaseSettings):
     artifacts_url: str = ""
     """Where files are kept, as fsspec understands it. Empty: a folder in the data folder."""
     max_bytes: Annotated[int, Field(gt=0)] | None = None
-    """Memory that a run may need while no worker has reported its own."""
+    """Memory that a run may need at most, however much workers have."""
     host: str = "127.0.0.1"
     port: int = Field(
-        default=8000, ge=0, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
+        default=8000, ge=1, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
     )
     token: SecretStr | None = None
     workers: int = Field(

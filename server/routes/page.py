@@ -30,5 +30,8 @@ def page(path: str) -> Response:
 
 
 def _file(path: str) -> Path | None:
-    file = (BUILT / path).resolve()
-    return file if file.is_file() and file.is_relative_to(BUILT.resolve()) else None
+    try:
+        file = (BUILT / path).resolve()
+        return file if file.is_file() and file.is_relative_to(BUILT.resolve()) else None
+    except (OSError, ValueError):  # No file can have such a name.
+        raise HTTPException(404, f"There is nothing at /{path:.80}") from None

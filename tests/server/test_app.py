@@ -108,3 +108,8 @@ def answers(url: str) -> bool:
         return httpx.get(url).status_code == 200
     except httpx.ConnectError:
         return False
+
+
+@pytest.mark.parametrize("path", ["/%00", "/" + "a" * 300, "/assets/%00"])
+def test_a_path_that_no_file_can_have_leads_nowhere(address, path):
+    assert httpx.get(f"{address}{path}").status_code == 404

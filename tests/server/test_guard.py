@@ -61,3 +61,13 @@ def test_a_page_opened_with_the_token_keeps_it_in_a_cookie(serve):
         for word in ("HttpOnly", "SameSite=strict"):
             assert word in answer.headers["set-cookie"]
         assert client.get(f"{address}/api/v1/runs").status_code == 200
+
+
+def test_a_malformed_origin_is_refused(api):
+    assert api.get("runs", headers={"Origin": "http://["}).status_code == 403
+
+
+def test_a_port_that_nobody_can_be_told_is_refused(monkeypatch):
+    monkeypatch.setenv("PORT", "0")
+    with pytest.raises(ValueError, match="greater than or equal to 1"):
+        Settings()
