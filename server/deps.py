@@ -28,11 +28,15 @@ def session(services: ServicesDep) -> Iterator[Session]:
 SessionDep = Annotated[Session, Depends(session, scope="function")]
 
 
-def run(run_id: UUID, session: SessionDep) -> Run:
+def find_run(session: Session, run_id: UUID) -> Run:
     found = session.get(Run, run_id)
     if found is None:
         raise Refused(404, "Not found", f"No run has the id {run_id}.")
     return found
+
+
+def run(run_id: UUID, session: SessionDep) -> Run:
+    return find_run(session, run_id)
 
 
 def creature(

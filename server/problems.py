@@ -11,7 +11,7 @@ from fastapi.responses import JSONResponse
 from microcosmos.archive.creature import CreatureError
 from pydantic import ValidationError
 from redis import RedisError
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import OperationalError, SQLAlchemyError, TimeoutError
 from starlette.exceptions import HTTPException
 
 from .lifecycle import Conflict
@@ -78,8 +78,9 @@ def install(app: FastAPI) -> None:
         return answer(problem, error.headers)
 
     @app.exception_handler(OperationalError)
+    @app.exception_handler(TimeoutError)
     @app.exception_handler(RedisError)
-    def away(_: Request, error: OperationalError | RedisError) -> JSONResponse:
+    def away(_: Request, error: SQLAlchemyError | RedisError) -> JSONResponse:
         name = "Redis" if isinstance(error, RedisError) else "The database"
         log.error("%s did not answer: %s", name, error)
         detail = f"{name} does not answer; try again."

@@ -18,13 +18,13 @@ from .services import Services
 
 
 def memory_limit(services: Services, session: Session) -> int:
-    """Bytes that a run may need: the largest worker's, else as set, else this machine's."""
+    """Bytes that a run may need: the largest worker's, else this machine's; or less, if set."""
     live = workers.live(session, services.settings.lease)
-    if live:
-        return max(worker.memory_bytes for worker in live)
-    return services.settings.max_bytes or os.sysconf("SC_PAGE_SIZE") * os.sysconf(
-        "SC_PHYS_PAGES"
-    )
+    cap = services.settings.max_bytes
+    if not live:
+        return cap or os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    largest = max(worker.memory_bytes for worker in live)
+    return min(largest, cap) if cap else largest
 
 
 def refuse_too_large(services: Services, spec: Spec) -> None:

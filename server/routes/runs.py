@@ -12,7 +12,7 @@ from sqlalchemy import and_, or_, select
 from sqlalchemy.orm import Session
 
 from .. import lifecycle
-from ..deps import RunDep, ServicesDep, SessionDep
+from ..deps import RunDep, ServicesDep, SessionDep, find_run
 from ..models import Run
 from ..problems import Refused
 from ..progress import read_run, read_runs
@@ -92,27 +92,30 @@ def read(run: RunDep, session: SessionDep) -> RunRead:
 
 
 @router.post("/{run_id}/pause", status_code=202)
-def pause_run(run: RunDep, services: ServicesDep) -> RunRead:
-    return _changed(services, run, lifecycle.pause)
+def pause_run(run_id: UUID, services: ServicesDep) -> RunRead:
+    return _changed(services, run_id, lifecycle.pause)
 
 
 @router.post("/{run_id}/resume", status_code=202)
-def resume_run(run: RunDep, services: ServicesDep) -> RunRead:
-    changed = _changed(services, run, lifecycle.resume)
-    requeue(services, run.id)
+def resume_run(run_id: UUID, services: ServicesDep) -> RunRead:
+    changed = _changed(services, run_id, lifecycle.resume)
+    requeue(services, run_id)
     return changed
 
 
 @router.post("/{run_id}/cancel", status_code=202)
-def cancel_run(run: RunDep, services: ServicesDep) -> RunRead:
-    return _changed(services, run, lifecycle.cancel)
+def cancel_run(run_id: UUID, services: ServicesDep) -> RunRead:
+    return _changed(services, run_id, lifecycle.cancel)
 
 
-def _changed(services: Services, run: Run, change: Callable[[Session, Run], Run]) -> RunRead:
+def _changed(
+    services: Services, run_id: UUID, change: Callable[[Session, Run], Run]
+) -> RunRead:
+    """With one connection at a time: requests that held two could wait for each other."""
     with services.sessions.write.begin() as session:
-        change(session, session.get_one(Run, run.id))
-    lifecycle.announce(services, run.id)
-    return _current(services, run.id)
+        change(session, find_run(session, run_id))
+    lifecycle.announce(services, run_id)
+    return _current(services, run_id)
 
 
 def _current(services: Services, run_id: UUID) -> RunRead:

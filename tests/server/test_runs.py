@@ -1,11 +1,14 @@
 """Submitting, listing, reading and steering runs, over HTTP."""
 
 from concurrent.futures import ThreadPoolExecutor
+from uuid import uuid4
 
 import pytest
+from sqlalchemy.exc import TimeoutError
 
 from server import workers
 from server.claims import claim
+from server.routes import runs as routes
 
 PROBLEM = "application/problem+json"
 
@@ -81,6 +84,9 @@ def test_bad_input_is_refused_with_field_and_reason(
         (b'{"a":' + b"[" * 50 + b"]" * 50 + b"}", 422, "At most 32 levels"),
         (b'{"a":' + b"[" * 100_000, 422, "At most 32 levels"),
         (b"\xff\xfe", 422, "JSON is needed"),
+        (b'{"experiment": "\\ud800"}', 422, "must be Unicode; got '\\ud800'"),
+        (b'{"\\udfff": 1}', 422, "must be Unicode"),
+        (b'{"body": {"kind": "\\u0000"}}', 422, "without NUL"),
         (b'"' + b"a" * (1 << 21) + b'"', 413, "At most 1,048,576 bytes"),
     ],
 )
@@ -101,6 +107,9 @@ def test_a_run_must_fit_the_largest_live_worker(api, services, spec):
     assert "1,000 bytes are available" in answer.json()["detail"]
     workers.report(services.sessions, "large", "cpu", needed["memory_bytes"], "idle")
     assert api.post("runs", json=spec).status_code == 202
+    workers.report(services.sessions, "huge", "cpu", 1 << 50, "idle")
+    capped = api.post("runs/estimate", json=spec).json()
+    assert capped["memory_limit_bytes"] == services.settings.max_bytes
 
 
 def test_the_same_key_at_once_gives_one_run(api, services, spec):
@@ -226,3 +235,24 @@ def test_curves_are_columns_of_all_or_some_generations(api, services, run_id, re
     assert curves["mean"][3] == 2.0
     some = api.get(f"runs/{run_id}/generations", params={"points": 5}).json()
     assert some["generation"] == [1, 11, 21, 30, 40]
+
+
+def test_many_that_steer_at_once_do_not_wait_for_each_other(api, run_id):
+    with ThreadPoolExecutor(24) as pool:
+        answers = list(pool.map(lambda _: api.post(f"runs/{run_id}/cancel"), range(24)))
+    assert sorted(answer.status_code for answer in answers) == [202] + 23 * [409]
+
+
+def test_a_database_without_a_free_connection_is_unavailable(api, run_id, monkeypatch):
+    def exhausted(*_):
+        raise TimeoutError("QueuePool limit reached")
+
+    monkeypatch.setattr(routes, "read_run", exhausted)
+    answer = api.get(f"runs/{run_id}")
+    assert (answer.status_code, answer.headers["content-type"]) == (503, PROBLEM)
+
+
+def test_an_unknown_run_cannot_be_steered(api):
+    for action in ("pause", "resume", "cancel"):
+        assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
+        assert api.post(f"runs/nonsense/{action}").status_code == 422
