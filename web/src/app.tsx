@@ -59,7 +59,7 @@ function Page({ route, query }: Place) {
     case "run":
       return <RunPage key={route.id} id={route.id} query={query} />;
     case "creature":
-      return <CreaturePage sha={route.sha} query={query} />;
+      return <CreaturePage key={route.sha} sha={route.sha} query={query} />;
     case "unknown":
       return (
         <main>

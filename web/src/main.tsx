@@ -1,7 +1,7 @@
 import { render } from "preact";
 import "uplot/dist/uPlot.min.css";
 import { App } from "./app";
-import { connect } from "./live/live";
+import { connect } from "./live/stream";
 import "./styles/base.css";
 import "./styles/frame.css";
 import "./styles/parts.css";

@@ -18,11 +18,19 @@ export function routeOf(path: string): Route {
   const [first, second, ...rest] = path.split("/").filter(Boolean);
   if (first === undefined) return { page: "runs" };
   if (first === "new" && second === undefined) return { page: "new" };
-  if (second !== undefined && rest.length === 0) {
-    if (first === "runs") return { page: "run", id: decodeURIComponent(second) };
-    if (first === "creatures") return { page: "creature", sha: decodeURIComponent(second) };
-  }
+  const name = rest.length === 0 ? decoded(second) : null;
+  if (name !== null && first === "runs") return { page: "run", id: name };
+  if (name !== null && first === "creatures") return { page: "creature", sha: name };
   return { page: "unknown" };
+}
+
+/** Null where there is no text, or its escapes are of none. */
+function decoded(part: string | undefined): string | null {
+  try {
+    return part === undefined ? null : decodeURIComponent(part);
+  } catch {
+    return null;
+  }
 }
 
 const MOVED = "microcosmos:moved";

@@ -107,6 +107,21 @@ describe("a snapshot", () => {
     expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
   });
 
+  it("that comes first keeps what events told since the run was opened", () => {
+    const waiting = after({ type: "run", run: RUN }, { type: "open", run: "a" }, elites(3, 5, "cc"), {
+      type: "generation",
+      event: generation(3),
+    });
+    expect(waiting.details.get("a")).toMatchObject({ archive: null, curves: null });
+    const next = reduce(waiting, snapshot(waiting));
+    expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
+    expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
+  });
+
+  it("leaves a run that was opened again as it was shown", () => {
+    expect(reduce(opened, { type: "open", run: "a" })).toBe(opened);
+  });
+
   it("asked for before a reset is not taken", () => {
     const late = snapshot(EMPTY);
     expect(after({ type: "reset" }, late).details.size).toBe(0);
@@ -148,6 +163,18 @@ describe("a reset", () => {
     expect(epochOf(next, "a")).toBe(epochOf(opened, "a") + 1);
     expect(epochOf(next, "b")).toBe(epochOf(opened, "b") + 1);
     expect(creatures(next)).toEqual(creatures(opened));
+  });
+
+  it("lets nothing older outlive the next snapshot, but what came after it", () => {
+    const lost = [elites(7, 9, "lost"), { type: "generation", event: generation(7) }] as Action[];
+    const before = lost.reduce(reduce, opened);
+    const shown = reduce(before, { type: "reset" });
+    expect(creatures(shown)).toContainEqual([9, "lost"]);
+    const fresh = [elites(3, 5, "cc"), { type: "generation", event: generation(3) }] as Action[];
+    const waiting = fresh.reduce(reduce, shown);
+    const next = reduce(waiting, snapshot(waiting));
+    expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
+    expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
   });
 });
 

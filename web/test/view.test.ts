@@ -1,8 +1,9 @@
 import { describe, expect, it } from "vitest";
-import type { Run, Spec } from "../src/api/types";
+import type { Creature, Run, Spec } from "../src/api/types";
 import type { Replay } from "../src/frames/replay";
 import { diverging, viridis } from "../src/view/colours";
 import { bytes, duration, number, titleOf } from "../src/view/format";
+import { factsOf } from "../src/view/facts";
 import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "../src/view/replay/motion";
 import { routeOf } from "../src/router";
 
@@ -86,6 +87,31 @@ describe("words for people", () => {
   });
 });
 
+describe("a creature file", () => {
+  const identity = { body: { nodes: 8 }, world: { width: 64, height: 32 } };
+  const bare = { identity, measured: null, provenance: null, licence: "CC0" } as unknown as Creature;
+
+  it("without figures and origin says so", () => {
+    expect(Object.fromEntries(factsOf(bare))).toEqual({
+      Fitness: "not measured",
+      Generation: "unknown",
+      "Made by": "unknown",
+      Seed: "unknown",
+      Body: "8 nodes",
+      World: "64 × 32 cells",
+      Device: "unknown",
+      Licence: "CC0",
+    });
+  });
+
+  it("with figures shows each of them, zeros too", () => {
+    const measured = { fitness: 0, descriptors: { speed: 0.5 }, features: {}, block: 1, device: "cpu" };
+    const provenance = { parents: [], operator: "random", generation: 0, seed: 0, version: "1" };
+    const facts = Object.fromEntries(factsOf({ ...bare, measured, provenance }));
+    expect(facts).toMatchObject({ Fitness: "0", Speed: "0.5", Generation: "0", Seed: "0" });
+  });
+});
+
 describe("an address", () => {
   it.each([
     ["/", { page: "runs" }],
@@ -93,6 +119,10 @@ describe("an address", () => {
     ["/runs/abc", { page: "run", id: "abc" }],
     ["/creatures/ff", { page: "creature", sha: "ff" }],
     ["/runs/abc/more", { page: "unknown" }],
+    ["/runs/a%20b", { page: "run", id: "a b" }],
+    ["/runs/%E0%A4%A", { page: "unknown" }],
+    ["/creatures/%", { page: "unknown" }],
+    ["/runs", { page: "unknown" }],
     ["/elsewhere", { page: "unknown" }],
   ])("%s leads to its page", (path, route) => {
     expect(routeOf(path)).toEqual(route);

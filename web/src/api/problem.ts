@@ -23,3 +23,10 @@ export function messageOf(error: unknown): string {
   if (error instanceof TypeError) return "The server could not be reached.";
   return error instanceof Error ? error.message : String(error);
 }
+
+const BUSY = [429, 502, 503, 504];
+
+/** Whether the same request may succeed later: the server was away or busy, not unwilling. */
+export function passes(error: unknown): boolean {
+  return error instanceof TypeError || (error instanceof Problem && BUSY.includes(error.status));
+}

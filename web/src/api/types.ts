@@ -34,7 +34,7 @@ export interface Genome {
   };
 }
 
-/** A creature file. */
+/** A creature file; one made elsewhere may know neither its figures nor its origin. */
 export interface Creature {
   identity: {
     format: string;
@@ -50,14 +50,14 @@ export interface Creature {
     features: { [name: string]: number };
     block: number;
     device: string;
-  };
+  } | null;
   provenance: {
     parents: string[];
     operator: string;
     generation: number;
     seed: number;
     version: string;
-  };
+  } | null;
   licence: string;
 }
 

@@ -14,6 +14,8 @@ export interface Curves {
   readonly best: Column;
 }
 
+export const NO_CURVES: Curves = columns(() => []);
+
 export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
   const last = curves.generation.at(-1);
   if (last !== undefined && event.generation <= last) return curves;
@@ -22,12 +24,12 @@ export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
 }
 
 /** A snapshot, and what events told of later generations while it was on its way. */
-export function mergeCurves(generations: Generations, known: Curves | null): Curves {
+export function mergeCurves(generations: Generations, known: Curves): Curves {
   const last = generations.generation.at(-1) ?? -1;
-  const later = (known?.generation ?? []).map((generation) => generation > last);
+  const later = known.generation.map((generation) => generation > last);
   return columns((name) => [
     ...generations[name],
-    ...(known?.[name] ?? []).filter((_, i) => later[i]),
+    ...known[name].filter((_, i) => later[i]),
   ]);
 }
 

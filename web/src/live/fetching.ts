@@ -60,6 +60,7 @@ export async function moreRuns(): Promise<void> {
 export function useRunDetail(id: string): Loaded<true> {
   const epoch = useLive((state) => epochOf(state, id));
   return useFetched(async () => {
+    dispatch({ type: "open", run: id });
     const [run, archive, generations] = await Promise.all([
       api.readRun(id),
       api.readArchive(id),

@@ -9,18 +9,18 @@ import type {
   Run,
   RunPage,
 } from "../api/types";
-import { type Curves, appendCurves, cutCurves, mergeCurves } from "./curves";
-import { type Elites, cutElites, mergeElites, withElites } from "./elites";
+import {
+  type Detail,
+  NOTHING,
+  cut,
+  doubted,
+  replaced,
+  withChanges,
+  withCurvePoint,
+} from "./detail";
 import { type Pace, rateOf, withEvent, withPoint } from "./pace";
 
 export type Connection = "connecting" | "live" | "lost";
-
-/** The opened part of a run; kept up to date by events once it was fetched. */
-export interface Detail {
-  archive: Archive | null;
-  elites: Elites;
-  curves: Curves | null;
-}
 
 export interface State {
   connection: Connection;
@@ -40,6 +40,7 @@ export type Action =
   | { type: "connection"; connection: Connection }
   | { type: "run"; run: Run }
   | { type: "list"; page: RunPage; more: boolean }
+  | { type: "open"; run: string }
   | { type: "snapshot"; run: string; epoch: number; archive: Archive; generations: Generations }
   | { type: "generation"; event: GenerationEvent }
   | { type: "elites"; event: ElitesEvent }
@@ -57,8 +58,6 @@ export const EMPTY: State = {
   epochs: new Map(),
 };
 
-const NOTHING: Detail = { archive: null, elites: new Map(), curves: null };
-
 export function reduce(state: State, action: Action): State {
   switch (action.type) {
     case "connection":
@@ -67,19 +66,18 @@ export function reduce(state: State, action: Action): State {
       return withRun(state, action.run);
     case "list":
       return withPage(state, action.page, action.more);
+    case "open":
+      return opened(state, action.run);
     case "snapshot":
       return withSnapshot(state, action);
     case "generation":
       return withGeneration(state, action.event);
     case "elites":
-      return withDetail(state, action.event.run, (detail) => ({
-        ...detail,
-        elites: withElites(detail.elites, action.event),
-      }));
+      return withDetail(state, action.event.run, (detail) => withChanges(detail, action.event));
     case "rewind":
       return rewound(state, action.event);
     case "reset":
-      return { ...state, epoch: state.epoch + 1 };
+      return reset(state);
   }
 }
 
@@ -108,22 +106,21 @@ function withPage(state: State, page: RunPage, more: boolean): State {
   return { ...state, runs, listed: [...kept, ...ids], next: page.next };
 }
 
+/** From here on events of the run are kept: its snapshot may be older than they are. */
+function opened(state: State, run: string): State {
+  if (state.details.has(run)) return state;
+  return { ...state, details: new Map(state.details).set(run, NOTHING) };
+}
+
 function withSnapshot(state: State, action: Action & { type: "snapshot" }): State {
   if (action.epoch !== epochOf(state, action.run)) return state;
   const old = state.details.get(action.run) ?? NOTHING;
-  const detail = {
-    archive: action.archive,
-    elites: mergeElites(action.archive, old.elites),
-    curves: mergeCurves(action.generations, old.curves),
-  };
+  const detail = replaced(old, action.archive, action.generations);
   return { ...state, details: new Map(state.details).set(action.run, detail) };
 }
 
 function withGeneration(state: State, event: GenerationEvent): State {
-  const next = withDetail(state, event.run, (detail) => ({
-    ...detail,
-    curves: detail.curves && appendCurves(detail.curves, event),
-  }));
+  const next = withDetail(state, event.run, (detail) => withCurvePoint(detail, event));
   const run = state.runs.get(event.run);
   if (!run || event.generation <= run.generation) return next;
   const pace = withEvent(state.paces.get(run.id) ?? [], event);
@@ -147,11 +144,13 @@ function rewound(state: State, event: RewindEvent): State {
   const next = { ...state, epochs: new Map(state.epochs).set(event.run, raised) };
   const run = state.runs.get(event.run);
   if (run) next.runs = new Map(state.runs).set(run.id, cutRun(run, event.generation));
-  return withDetail(next, event.run, (detail) => ({
-    ...detail,
-    elites: cutElites(detail.elites, event.generation),
-    curves: detail.curves && cutCurves(detail.curves, event.generation),
-  }));
+  return withDetail(next, event.run, (detail) => cut(detail, event.generation));
+}
+
+/** A rewind may have been missed: what is known is shown on, but not believed. */
+function reset(state: State): State {
+  const details = new Map([...state.details].map(([run, detail]) => [run, doubted(detail)]));
+  return { ...state, details, epoch: state.epoch + 1 };
 }
 
 /** A run that goes on from an earlier generation; its figures follow with the next one. */

@@ -7,12 +7,12 @@ import type { Creature } from "../api/types";
 import { networkOf } from "../frames/network";
 import { type Replay, decodeReplay } from "../frames/replay";
 import { useFetched } from "../live/fetching";
+import { poll } from "../live/polling";
 import { tell } from "../live/toasts";
-import { number, short, words } from "../view/format";
+import { number, short } from "../view/format";
+import { UNKNOWN, factsOf } from "../view/facts";
 import { NetworkGraph } from "../view/network/NetworkGraph";
 import { ReplayPlayer } from "../view/replay/ReplayPlayer";
-
-const POLL_MS = 1000;
 
 interface Props {
   sha: string;
@@ -71,7 +71,7 @@ function Sharing({ sha }: { sha: string }) {
 }
 
 function Motion({ sha }: { sha: string }) {
-  const { replay, error } = useReplay(sha);
+  const { replay, note, error } = useReplay(sha);
   return (
     <section class="card motion" aria-label="Replay">
       {error && <p class="banner wrong">{error}</p>}
@@ -80,7 +80,7 @@ function Motion({ sha }: { sha: string }) {
           <p>
             <span class="ripple" aria-hidden="true" />
             <span>Simulating this creature again to record its motion …</span>
-            <span class="small">The first one takes longest.</span>
+            <span class="small">{note ? `${note} Trying again …` : "The first one takes longest."}</span>
           </p>
         </div>
       )}
@@ -90,30 +90,32 @@ function Motion({ sha }: { sha: string }) {
   );
 }
 
+interface Rendering {
+  replay: Replay | null;
+  note: string | null;
+  error: string | null;
+}
+
 /** The replay, asked for until it has been rendered. */
-function useReplay(sha: string): { replay: Replay | null; error: string | null } {
-  const [replay, setReplay] = useState<Replay | null>(null);
-  const [error, setError] = useState<string | null>(null);
+function useReplay(sha: string): Rendering {
+  const [state, setState] = useState<Rendering>({ replay: null, note: null, error: null });
   useEffect(() => {
-    let timer: ReturnType<typeof setTimeout> | undefined;
-    let wanted = true;
-    const poll = async () => {
-      try {
-        const bytes = await api.readReplay(sha);
-        if (!wanted) return;
-        if (bytes) setReplay(decodeReplay(bytes));
-        else timer = setTimeout(poll, POLL_MS);
-      } catch (reason) {
-        if (wanted) setError(messageOf(reason));
-      }
-    };
-    void poll();
-    return () => {
-      wanted = false;
-      clearTimeout(timer);
-    };
+    const change = (part: Partial<Rendering>) => setState((old) => ({ ...old, ...part }));
+    return poll(() => api.readReplay(sha), {
+      value: (bytes) => change(read(bytes)),
+      note: (note) => change({ note }),
+      error: (error) => change({ error }),
+    });
   }, [sha]);
-  return { replay, error };
+  return state;
+}
+
+function read(bytes: ArrayBuffer): Partial<Rendering> {
+  try {
+    return { replay: decodeReplay(bytes) };
+  } catch (error) {
+    return { error: messageOf(error) };
+  }
 }
 
 function Difference({ replay }: { replay: Replay }) {
@@ -138,25 +140,12 @@ function Brain({ creature }: { creature: Creature }) {
 }
 
 function Facts({ creature, run }: { creature: Creature; run: string | null }) {
-  const { measured, provenance, identity } = creature;
-  const rows: [string, string][] = [
-    ["Fitness", number(measured.fitness, 6)],
-    ...Object.entries({ ...measured.descriptors, ...measured.features }).map(
-      ([name, value]): [string, string] => [words(name), number(value, 6)],
-    ),
-    ["Generation", String(provenance.generation)],
-    ["Made by", provenance.operator],
-    ["Seed", String(provenance.seed)],
-    ["Body", `${identity.body.nodes} nodes`],
-    ["World", `${identity.world.width} × ${identity.world.height} cells`],
-    ["Device", measured.device],
-    ["Licence", creature.licence],
-  ];
+  const parents = creature.provenance?.parents;
   return (
     <section class="card" aria-labelledby="facts-title">
       <h2 id="facts-title">Measurements</h2>
       <dl class="rows">
-        {rows.map(([name, value]) => (
+        {factsOf(creature).map(([name, value]) => (
           <div key={name}>
             <dt>{name}</dt>
             <dd>{value}</dd>
@@ -165,8 +154,9 @@ function Facts({ creature, run }: { creature: Creature; run: string | null }) {
         <div>
           <dt>Parents</dt>
           <dd>
-            {provenance.parents.length === 0 && "none: random"}
-            {provenance.parents.map((parent) => (
+            {!parents && UNKNOWN}
+            {parents?.length === 0 && "none: random"}
+            {parents?.map((parent) => (
               <a key={parent} href={`/creatures/${parent}${run ? `?run=${run}` : ""}`}>
                 <code>{short(parent)}</code>
               </a>

@@ -6,7 +6,7 @@ import { messageOf } from "../api/problem";
 import type { Axis, Run } from "../api/types";
 import { useExperiments, useRunDetail } from "../live/fetching";
 import { useLive } from "../live/live";
-import type { Detail } from "../live/store";
+import type { Detail } from "../live/detail";
 import { tell } from "../live/toasts";
 import { navigate, setQuery } from "../router";
 import { ArchiveMap } from "../view/archive/ArchiveMap";
@@ -136,7 +136,7 @@ function ArchiveCard({ run, detail, query }: ArchiveProps) {
     <section class="card" aria-labelledby="archive-title">
       <div class="card-head">
         <h2 id="archive-title">Archive</h2>
-        <span class="quiet">{elites ? `${count(elites.size)} elites` : ""}</span>
+        <span class="quiet">{detail?.archive && elites ? `${count(elites.size)} elites` : ""}</span>
         <span class="spring" />
         <label class="compact">
           Colour

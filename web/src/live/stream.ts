@@ -1,0 +1,62 @@
+/** The one stream of events that feeds a tab's store, while somebody looks at the tab. */
+
+import { EVENTS_URL } from "../api/client";
+import { dispatch } from "./live";
+import type { Action } from "./store";
+
+const RECONNECT_MS = 2000;
+/** A browser has six connections to a host for all its tabs: hidden ones give theirs back. */
+const HIDDEN_MS = 10_000;
+
+type Timer = ReturnType<typeof setTimeout>;
+
+let source: EventSource | null = null;
+let reconnecting: Timer | undefined;
+let resting: Timer | undefined;
+
+export function connect(): void {
+  document.addEventListener("visibilitychange", followVisibility);
+  open();
+  followVisibility();
+}
+
+function followVisibility(): void {
+  clearTimeout(resting);
+  if (document.visibilityState === "hidden") resting = setTimeout(close, HIDDEN_MS);
+  else if (!source) open();
+}
+
+/**
+ * EventSource reconnects by itself with Last-Event-ID; where it gave up, was closed, or is
+ * the first, nobody knows what was missed, and everything is fetched again.
+ */
+function open(): void {
+  const opened = new EventSource(EVENTS_URL);
+  source = opened;
+  let fresh = true;
+  opened.onopen = () => {
+    dispatch({ type: "connection", connection: "live" });
+    if (fresh) dispatch({ type: "reset" });
+    fresh = false;
+  };
+  opened.onerror = () => {
+    dispatch({ type: "connection", connection: "lost" });
+    if (opened.readyState === EventSource.CLOSED) reconnecting = setTimeout(open, RECONNECT_MS);
+  };
+  listen(opened, "run", (run) => ({ type: "run", run }) as Action);
+  listen(opened, "generation", (event) => ({ type: "generation", event }) as Action);
+  listen(opened, "elites", (event) => ({ type: "elites", event }) as Action);
+  listen(opened, "rewind", (event) => ({ type: "rewind", event }) as Action);
+  listen(opened, "reset", () => ({ type: "reset" }));
+}
+
+function close(): void {
+  clearTimeout(reconnecting);
+  source?.close();
+  source = null;
+  dispatch({ type: "connection", connection: "connecting" });
+}
+
+function listen(from: EventSource, name: string, action: (data: unknown) => Action): void {
+  from.addEventListener(name, (event) => dispatch(action(JSON.parse(event.data))));
+}
