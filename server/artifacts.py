@@ -54,6 +54,14 @@ class Artifacts:
     def read(self, path: str) -> bytes:
         return self.files.cat_file(self._full(path))
 
+    def sound(self, stored: Stored) -> bytes | None:
+        """The content, or None where the file is missing or is not what was written."""
+        try:
+            data = self.read(stored.path)
+        except FileNotFoundError:
+            return None
+        return data if hashlib.sha256(data).hexdigest() == stored.sha256 else None
+
     def stream(self, path: str, start: int, stop: int) -> Iterator[bytes]:
         """The bytes from `start` up to `stop`, in pieces."""
         with self.files.open(self._full(path), "rb") as file:

@@ -44,6 +44,15 @@ def _prune(session: Session, run_id: UUID) -> list[str]:
     return list(session.scalars(gone.returning(Artifact.path)))
 
 
+def fall_back(session: Session, run: Run, path: str) -> Artifact | None:
+    """Return to the checkpoint before one whose file is not sound, if there is one."""
+    session.execute(delete(Artifact).where(Artifact.path == path))
+    before = last_checkpoint(session, run.id)
+    run.checkpoint_generation = (before.generation or 0) if before else 0
+    rewind(session, run)
+    return before
+
+
 def rewind(session: Session, run: Run) -> bool:
     """Forget what was recorded beyond the checkpoint: whether there was anything."""
     last = run.checkpoint_generation

@@ -15,10 +15,21 @@ from sqlalchemy.orm import Session
 
 from . import records
 from .artifacts import Stored, checkpoint_path
-from .checkpoints import last_checkpoint, point_at, rewind
+from .checkpoints import fall_back, last_checkpoint, point_at, rewind
 from .db import clock
 from .lifecycle import announce, change, hand_back, lost, release
-from .models import CANCEL, CANCELLED, FINISHED, GIVEN, NEEDED, PAUSED, QUEUED, RUNNING, Run
+from .models import (
+    CANCEL,
+    CANCELLED,
+    FINISHED,
+    GIVEN,
+    NEEDED,
+    PAUSED,
+    QUEUED,
+    RUNNING,
+    Artifact,
+    Run,
+)
 from .services import Services
 
 log = logging.getLogger(__name__)
@@ -44,8 +55,7 @@ def claim(services: Services, run_id: UUID, worker: str) -> "Claim | None":
         rewound = run is not None and rewind(session, run)
         begun = _begin(services, session, run) if run else None
     if rewound and begun:
-        place = {"run": str(run_id), "generation": begun.generation}
-        services.events.publish("rewind", run_id, place)
+        _tell_rewind(begun)
     announce(services, run_id)
     return begun
 
@@ -59,6 +69,15 @@ def _begun(worker: str) -> dict[str, Any]:
         "heartbeat_at": clock(),
         "started_at": func.coalesce(Run.started_at, clock()),
     }
+
+
+def _stored(row: Artifact | None) -> Stored | None:
+    return Stored(row.path, row.size, row.sha256) if row else None
+
+
+def _tell_rewind(held: "Claim") -> None:
+    place = {"run": str(held.run_id), "generation": held.generation}
+    held.services.events.publish("rewind", held.run_id, place)
 
 
 def _paused() -> dict[str, Any]:
@@ -80,7 +99,7 @@ def _begin(services: Services, session: Session, run: Run) -> "Claim":
         attempt=run.attempt,
         spec=run.spec,
         generation=run.checkpoint_generation,
-        checkpoint=Stored(row.path, row.size, row.sha256) if row else None,
+        checkpoint=_stored(row),
         seconds=run.seconds,
         other_device=run.device_leave == GIVEN,
     )
@@ -110,8 +129,31 @@ class Claim:
         self._end(device=device)
 
     def restore(self) -> bytes | None:
-        """The content of the checkpoint, if there is one."""
-        return self.services.artifacts.read(self.checkpoint.path) if self.checkpoint else None
+        """The content of the newest checkpoint whose file is sound, if there is one.
+
+        To be asked before anything is recorded: what is beyond that checkpoint is deleted.
+        """
+        while self.checkpoint:
+            if (data := self.services.artifacts.sound(self.checkpoint)) is not None:
+                return data
+            self._fall_back(self.checkpoint)
+        return None
+
+    def _fall_back(self, unsound: Stored) -> None:
+        damaged = self.generation
+        with self.services.sessions.write.begin() as session:
+            run = self._prove(session)
+            row = fall_back(session, run, unsound.path)
+            place = f"generation {run.checkpoint_generation}" if row else "the beginning"
+            run.warning = (
+                f"The checkpoint of generation {damaged} is missing or damaged; "
+                f"the run goes on from {place}."
+            )
+        log.warning("run %s: %s (%s)", self.run_id, run.warning, unsound.path)
+        self.checkpoint = _stored(row)
+        self.generation, self.seconds = run.checkpoint_generation, run.seconds
+        _tell_rewind(self)
+        announce(self.services, self.run_id)
 
     def record(self, report: records.Report, seconds: float) -> str | None:
         """Write down a generation that took so many seconds: the wish, `pause` or `cancel`."""

@@ -62,7 +62,7 @@ class Attempt:
         persist(lambda: self._claim.use(device))
 
     def restore(self) -> bytes | None:
-        return self._claim.restore()
+        return persist(self._claim.restore)
 
     @property
     def other_device(self) -> bool:

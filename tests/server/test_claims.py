@@ -2,6 +2,7 @@
 
 import errno
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 from sqlalchemy import func, select, update
@@ -277,3 +278,42 @@ def test_an_old_file_that_cannot_be_deleted_does_not_undo_a_checkpoint(
         attempt.record(report(generation), 1.0)
         attempt.save(generation, f"state {generation}".encode())
     assert row().checkpoint_generation == attempt.generation == 5
+
+
+@pytest.mark.parametrize("harm", [Path.unlink, lambda file: file.write_bytes(b"rot")])
+def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(
+    services, run_id, report, row, harm
+):
+    first = claim(services, run_id, "worker")
+    for generation in range(1, 4):
+        first.record(report(generation, {generation: 1.0}), 1.0)
+        first.save(generation, f"state {generation}".encode())
+    folder = services.settings.data / "artifacts" / "runs" / str(run_id)
+    harm(next(folder.glob("00000003-*")))
+    second = claim(services, run_id, "worker")
+    assert second.restore() == b"state 2"
+    assert (second.generation, second.seconds) == (2, 2.0)
+    assert (row().generation, row().checkpoint_generation, row().qd_score) == (2, 2, 20.0)
+    assert count(services, Generation) == count(services, Elite) == 2
+    assert "generation 3 is missing or damaged" in row().warning
+    assert "goes on from generation 2" in row().warning
+    second.record(report(3, {3: 1.0}), 1.0)
+    second.save(3, b"state 3")
+    assert row().warning is None
+    assert claim(services, run_id, "worker").restore() == b"state 3"
+
+
+def test_a_run_none_of_whose_checkpoints_is_sound_begins_anew(services, run_id, report, row):
+    first = claim(services, run_id, "worker")
+    for generation in range(1, 3):
+        first.record(report(generation, {generation: 1.0}), 1.0)
+        first.save(generation, f"state {generation}".encode())
+    for file in (services.settings.data / "artifacts" / "runs" / str(run_id)).iterdir():
+        file.unlink()
+    second = claim(services, run_id, "worker")
+    assert second.restore() is None
+    assert (second.generation, second.checkpoint, second.seconds) == (0, None, 0)
+    assert (row().generation, row().checkpoint_generation, row().qd_score) == (0, 0, None)
+    assert count(services, Generation) == count(services, Elite) == 0
+    assert "goes on from the beginning" in row().warning
+    second.record(report(1, {1: 1.0}), 1.0)
