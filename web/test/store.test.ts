@@ -108,10 +108,9 @@ describe("a snapshot", () => {
   });
 
   it("that comes first keeps what events told since the run was opened", () => {
-    const waiting = after({ type: "run", run: RUN }, { type: "open", run: "a" }, elites(3, 5, "cc"), {
-      type: "generation",
-      event: generation(3),
-    });
+    const told: Action = { type: "generation", event: generation(3) };
+    const open: Action = { type: "open", run: "a" };
+    const waiting = after({ type: "run", run: RUN }, open, elites(3, 5, "cc"), told);
     expect(waiting.details.get("a")).toMatchObject({ archive: null, curves: null });
     const next = reduce(waiting, snapshot(waiting));
     expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);

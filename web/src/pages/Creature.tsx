@@ -80,7 +80,9 @@ function Motion({ sha }: { sha: string }) {
           <p>
             <span class="ripple" aria-hidden="true" />
             <span>Simulating this creature again to record its motion …</span>
-            <span class="small">{note ? `${note} Trying again …` : "The first one takes longest."}</span>
+            <span class="small">
+              {note ? `${note} Trying again …` : "The first one takes longest."}
+            </span>
           </p>
         </div>
       )}
