@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager, suppress
 from functools import partial
 
 from fastapi import FastAPI
+
 from microcosmos.version import VERSION
 
 from . import migrations, problems

@@ -3,8 +3,9 @@
 import json
 from typing import Any
 
-from microcosmos.archive import creature
 from sqlalchemy.orm import Session
+
+from microcosmos.archive import creature
 
 from .models import Creature
 from .records import creature_columns, insert_missing

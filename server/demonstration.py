@@ -1,7 +1,8 @@
 """The small run that a new data folder begins with, so that there is something to watch."""
 
-from microcosmos.spec import EXPERIMENTS
 from sqlalchemy import exists, select
+
+from microcosmos.spec import EXPERIMENTS
 
 from .models import Run
 from .services import Services

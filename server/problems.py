@@ -8,11 +8,12 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from microcosmos.archive.creature import CreatureError
 from pydantic import ValidationError
 from redis import RedisError
 from sqlalchemy.exc import OperationalError, SQLAlchemyError, TimeoutError
 from starlette.exceptions import HTTPException
+
+from microcosmos.archive.creature import CreatureError
 
 from .lifecycle import Conflict
 from .schemas import FieldError, Problem

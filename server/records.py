@@ -5,10 +5,11 @@ from operator import itemgetter
 from typing import Any, Protocol
 from uuid import UUID
 
-from microcosmos.archive.creature import LICENCE
 from sqlalchemy import insert
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
+
+from microcosmos.archive.creature import LICENCE
 
 from .events import finite
 from .models import Base, Creature, Elite, Generation

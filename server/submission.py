@@ -4,10 +4,11 @@ import os
 from hashlib import sha256
 
 import rfc8785
-from microcosmos.spec import Spec, estimate
-from microcosmos.version import VERSION
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
+
+from microcosmos.spec import Spec, estimate
+from microcosmos.version import VERSION
 
 from . import workers
 from .lifecycle import announce

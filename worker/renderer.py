@@ -4,11 +4,11 @@ import os
 import socket
 from uuid import uuid4
 
-from microcosmos.device import prepare
 from rq.job import Job
 from rq.serializers import JSONSerializer
 from rq.worker import SimpleWorker
 
+from microcosmos.device import prepare
 from server.queue import Jobs
 from server.services import connect
 from server.settings import Settings

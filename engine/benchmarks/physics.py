@@ -16,6 +16,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+
 from microcosmos import bodies, coupling, device, filaments, fluid, world
 
 WORLDS, SIZE, NODES, STEPS, REPEATS = 64, (64, 64), 32, 100, 15

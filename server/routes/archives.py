@@ -5,9 +5,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
-from microcosmos.archive import export
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
+
+from microcosmos.archive import export
 
 from .. import ranges
 from ..checkpoints import last_checkpoint

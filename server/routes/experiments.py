@@ -1,6 +1,7 @@
 """What can be run: the page's forms come from here."""
 
 from fastapi import APIRouter
+
 from microcosmos.spec import EXPERIMENTS, Experiment
 
 from ..schemas import ExperimentRead, PresetRead

@@ -7,9 +7,10 @@ from typing import Annotated, Any
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Header, Query, Response
-from microcosmos.spec import Spec, estimate, parse
 from sqlalchemy import and_, or_, select
 from sqlalchemy.orm import Session
+
+from microcosmos.spec import Spec, estimate, parse
 
 from .. import lifecycle
 from ..deps import RunDep, ServicesDep, SessionDep, find_run

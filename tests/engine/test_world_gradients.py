@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+
 from microcosmos import genomes, world
 from microcosmos.build import build_controls
 from microcosmos.spec import Control

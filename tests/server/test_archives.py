@@ -5,8 +5,8 @@ import json
 
 import numpy as np
 import pytest
-from microcosmos.archive import file
 
+from microcosmos.archive import file
 from server.claims import claim
 
 

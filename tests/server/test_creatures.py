@@ -4,10 +4,10 @@ import json
 
 import httpx
 import pytest
-from microcosmos.archive import creature
 from rq import SimpleWorker
 from rq.serializers import JSONSerializer
 
+from microcosmos.archive import creature
 from server import queue, replays
 from server.claims import claim
 

@@ -2,8 +2,8 @@
 
 import httpx
 import pytest
-from microcosmos.archive import creature
 
+from microcosmos.archive import creature
 from server import replays
 
 

@@ -3,8 +3,8 @@
 from types import SimpleNamespace
 
 import pytest
-from microcosmos.spec import EXPERIMENTS
 
+from microcosmos.spec import EXPERIMENTS
 from server import migrations, redis_embedded
 from server.models import Run
 from server.services import connect

@@ -65,9 +65,9 @@ def vary(
     networks, novelty, cell = jax.vmap(child)(keys)
     networks, numbered = neat.number(networks, novelty, counters)
     fresh = newcomers(generation, genes, key=key, batch=batch)
-    pick = lambda new, old: jax.tree.map(lambda a, b: jnp.where(total > 0, a, b), new, old)  # noqa: E731
-    return pick(Children(networks, cell, jnp.ones(batch, jnp.int32)), fresh), pick(
-        numbered, counters
+    varied = Children(networks, cell, jnp.ones(batch, jnp.int32)), numbered
+    return jax.tree.map(
+        lambda one, other: jnp.where(total > 0, one, other), varied, (fresh, counters)
     )
 
 

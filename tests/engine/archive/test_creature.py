@@ -4,6 +4,7 @@ import copy
 import json
 
 import pytest
+
 from microcosmos.archive import creature
 from microcosmos.archive.encoding import encode
 

@@ -8,6 +8,7 @@ import signal
 
 import numpy as np
 import pytest
+
 from microcosmos.archive import export, file
 from microcosmos.archive.store import write_whole
 

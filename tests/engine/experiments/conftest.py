@@ -1,6 +1,7 @@
 """A run small enough to be carried out many times."""
 
 import pytest
+
 from microcosmos.build import build
 from microcosmos.spec import parse
 

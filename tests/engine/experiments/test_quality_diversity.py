@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from microcosmos.archive import creature, naming
 from microcosmos.build import build
 from microcosmos.experiments import Stopped

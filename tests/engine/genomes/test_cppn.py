@@ -8,6 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+
 from microcosmos import genomes, neat
 from microcosmos.archive import encoding
 

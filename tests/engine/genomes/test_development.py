@@ -3,6 +3,7 @@
 import jax
 import numpy as np
 import pytest
+
 from microcosmos import genomes, neat
 from microcosmos.build import build_body, build_controls
 from microcosmos.spec import Body, Control

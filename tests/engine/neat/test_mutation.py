@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+
 from microcosmos import genomes, neat
 
 INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 32

@@ -7,6 +7,7 @@ import struct
 import jax
 import numpy as np
 import pytest
+
 from microcosmos import search
 from microcosmos.archive import creature
 from microcosmos.build import build

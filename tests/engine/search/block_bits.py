@@ -11,6 +11,7 @@ prepare(devices=int(sys.argv[1]), cache=os.environ["MICROCOSMOS_TEST_CACHE"])
 
 import jax  # noqa: E402
 import numpy as np  # noqa: E402
+
 from microcosmos import search  # noqa: E402
 from microcosmos.build import build_block, build_genes  # noqa: E402
 from microcosmos.spec import parse  # noqa: E402

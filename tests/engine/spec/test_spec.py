@@ -4,8 +4,9 @@ import subprocess
 import sys
 
 import pytest
-from microcosmos.spec import EXPERIMENTS, QualityDiversity, estimate, parse
 from pydantic import ValidationError
+
+from microcosmos.spec import EXPERIMENTS, QualityDiversity, estimate, parse
 
 pytestmark = pytest.mark.fast
 
