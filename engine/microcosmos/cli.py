@@ -4,10 +4,12 @@ import json
 import os
 import signal
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
+from pydantic import ValidationError
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -90,8 +92,17 @@ def _read_spec(name: str) -> Spec:
         _fail(f"SPEC needs a file, or one of the presets {', '.join(presets)}; got {name}")
     try:
         return parse(json.loads(path.read_bytes()))
+    except ValidationError as error:
+        _fail("\n".join(f"{path}: {_said(found)}" for found in error.errors()))
     except (ValueError, RecursionError, OSError) as error:
         _fail(f"{path}: {error}")
+
+
+def _said(error: Mapping[str, Any]) -> str:
+    """The field, what was needed and what came, on one line."""
+    field = ".".join(str(part) for part in error["loc"])
+    needed = str(error["msg"]).removeprefix("Value error, ")
+    return f"{field}: {needed}" + ("" if "got" in needed else f"; got {error['input']!r:.80}")
 
 
 def _evolve(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: bool) -> bool:
