@@ -9,7 +9,7 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
 
-.PHONY: run install web test check bench acceptance lock
+.PHONY: run install web test check bench acceptance validate lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -44,7 +44,7 @@ check: install web
 # Two processes: the tests of the server fork, which a process with JAX in it must not.
 test: install web
 	$(STYLE)
-	$(BIN)/pytest tests/engine
+	$(BIN)/pytest -n auto --maxprocesses 4 --dist loadfile tests/engine
 	$(BIN)/pytest --ignore=tests/engine
 
 bench: install
@@ -53,10 +53,13 @@ bench: install
 acceptance: install web
 	$(BIN)/python tests/faults/acceptance.py
 
+validate: install
+	$(BIN)/python -m validation
+
 lock:
 	@$(BIN)/python -m pip install -q --disable-pip-version-check uv
 	$(eval COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --no-annotate)
-	$(COMPILE) pyproject.toml --group dev --group server --group build -o requirements.lock
-	$(COMPILE) pyproject.toml --group dev --group server --group build --extra cuda -c requirements.lock -o requirements-cuda.lock
+	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra shapes -o requirements.lock
+	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra shapes --extra cuda -c requirements.lock -o requirements-cuda.lock
 	$(COMPILE) --group pyproject.toml:server -c requirements.lock -o requirements-server.lock
 	$(COMPILE) --group pyproject.toml:node -o requirements-node.lock

@@ -1,4 +1,4 @@
-"""Files behind fsspec: checkpoints and replays, whole or not there at all."""
+"""Files behind fsspec: checkpoints and renderings, whole or not there at all."""
 
 import hashlib
 import os
@@ -100,8 +100,8 @@ def checkpoint_path(run_id: UUID, generation: int, data: bytes) -> str:
     return f"runs/{run_id}/{generation:08d}-{name}.h5"
 
 
-def replay_path(creature: str) -> str:
-    return f"replays/{creature[:2]}/{creature}.replay"
+def rendering_path(creature: str, kind: str) -> str:
+    return f"replays/{creature[:2]}/{creature}.{kind}"
 
 
 def superfluous(numbers: list[int]) -> list[int]:

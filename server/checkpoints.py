@@ -1,12 +1,13 @@
 """Which files are a run's checkpoints, which of them can go, and how a run returns to one."""
 
+from typing import Any
 from uuid import UUID
 
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from .artifacts import Stored, superfluous
-from .models import CHECKPOINT, Artifact, Elite, Generation, Run
+from .models import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 
 
 def last_checkpoint(session: Session, run_id: UUID) -> Artifact | None:
@@ -58,11 +59,19 @@ def rewind(session: Session, run: Run) -> bool:
     last = run.checkpoint_generation
     if run.generation <= last:
         return False
-    for table in (Elite, Generation):
+    for table in (Elite, Result, Generation):
         session.execute(delete(table).where(table.run_id == run.id, table.generation > last))
     kept = session.get(Generation, (run.id, last))
     for column in ("qd_score", "coverage", "best"):
         setattr(run, column, getattr(kept, column, None))
     for column in ("generation", "evaluations", "diverged", "seconds"):
         setattr(run, column, getattr(kept, column, 0))
+    run.summary = _summary(session, run.id)
     return True
+
+
+def _summary(session: Session, run_id: UUID) -> dict[str, Any] | None:
+    """The newest that is recorded."""
+    told = (Generation.run_id == run_id) & Generation.summary.is_not(None)
+    newest = select(Generation.summary).where(told).order_by(Generation.generation.desc())
+    return session.scalars(newest.limit(1)).one_or_none()

@@ -30,6 +30,7 @@ from .models import (
     Artifact,
     Run,
 )
+from .reports import Report
 from .services import Services
 
 log = logging.getLogger(__name__)
@@ -155,21 +156,19 @@ class Claim:
         _tell_rewind(self)
         announce(self.services, self.run_id)
 
-    def record(self, report: records.Report, seconds: float) -> str | None:
+    def record(self, report: Report, seconds: float) -> str | None:
         """Write down a generation that took so many seconds: the wish, `pause` or `cancel`."""
         total = self.seconds + seconds
-        curve = records.generation_row(report, total)
-        elites = [records.elite_row(elite) for elite in report.elites]
-        creatures = [records.creature_row(elite) for elite in report.elites]
+        rows = records.rows_of(report, total)
         with self.services.sessions.write.begin() as session:
             # After an outage nobody knows whether the same write was committed before it.
-            new = self._prove(session).generation != curve["generation"]
+            new = self._prove(session).generation != rows.curve["generation"]
             standing = {**records.standing(report), "seconds": total}
             wish = self._prove(session, **standing).wish
             if new:
-                records.write(session, self.run_id, curve, elites, creatures)
+                records.write(session, self.run_id, rows)
         self.seconds = total
-        self._tell(curve, elites)
+        self._tell(rows)
         return wish
 
     def wish(self) -> str | None:
@@ -253,12 +252,9 @@ class Claim:
             raise Fenced(f"run {self.run_id}, attempt {self.attempt}")
         return run
 
-    def _tell(self, curve: dict[str, Any], elites: list[dict[str, Any]]) -> None:
-        publish = self.services.events.publish
-        publish("generation", self.run_id, {"run": str(self.run_id), **curve})
-        if elites:
-            changed = records.elites_event(self.run_id, curve["generation"], elites)
-            publish("elites", self.run_id, changed)
+    def _tell(self, rows: records.Rows) -> None:
+        for kind, data in records.events(self.run_id, rows):
+            self.services.events.publish(kind, self.run_id, data)
         if monotonic() - self.announced >= ANNOUNCE_EVERY:
             self.announced = monotonic()
-            announce(self.services, self.run_id)
+            announce(self.services, self.run_id, without=["spec"])

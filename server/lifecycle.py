@@ -4,6 +4,7 @@ Every change is one guarded UPDATE, so that of two that come at once only one ha
 """
 
 import logging
+from collections.abc import Collection
 from typing import Any, NoReturn
 from uuid import UUID
 
@@ -132,17 +133,20 @@ def lost(session: Session, lease: float) -> Any:
     return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
 
 
-def announce(services: Services, run_id: UUID) -> None:
+def announce(services: Services, run_id: UUID, *, without: Collection[str] = ()) -> None:
     """Tell everybody how a run stands, after what changed it was committed.
+
+    Said again and again, it is said `without` what never changes and may be long.
 
     What changed stands even where nobody can be told: an event is a courtesy.
     """
     try:
         with services.sessions.read() as session:
             run = session.get(Run, run_id)
-            data = read_run(session, run).model_dump(mode="json") if run else None
+            told = read_run(session, run) if run else None
     except SQLAlchemyError as error:
         log.warning("no event of run %s: %s", run_id, error)
         return
-    if data:
+    if told:
+        data = told.model_dump(mode="json", exclude=set(without))
         services.events.publish("run", run_id, data)

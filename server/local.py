@@ -1,4 +1,4 @@
-"""What `make run` starts: Redis, server, workers and renderer, in one process tree."""
+"""What `make run` starts: Redis, server, workers, renderer and auditor, in one process tree."""
 
 import os
 import sys
@@ -78,7 +78,8 @@ def start(place: Place, tree: Tree) -> None:
     for index in range(settings.workers):
         name = f"worker-{index}"
         tree.children.append(Child(name, place.module(name, "worker.supervisor", str(index))))
-    tree.children.append(Child("renderer", place.module("renderer", "worker.renderer")))
+    for name in ("renderer", "auditor"):
+        tree.children.append(Child(name, place.module(name, f"worker.{name}")))
     for child in tree.children:
         say(child.name, f"process {child.process.pid}, log in {place.log(child.name)}")
 

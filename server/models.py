@@ -28,7 +28,9 @@ STATUSES = (QUEUED, RUNNING, PAUSED, FINISHED, FAILED, CANCELLED)
 TERMINAL = (FINISHED, FAILED, CANCELLED)
 PAUSE, CANCEL = "pause", "cancel"
 NEEDED, GIVEN = "needed", "given"
-CHECKPOINT, REPLAY = "checkpoint", "replay"
+CHECKPOINT = "checkpoint"
+REPLAY, AUDIT, STRIP, GIF, MP4 = "replay", "audit", "strip.png", "film.gif", "film.mp4"
+"""What can be made of a creature, under the names that the API has for it."""
 
 
 class Sha256(TypeDecorator[str]):
@@ -92,6 +94,8 @@ class Run(Base):
     device_leave: Mapped[str | None] = mapped_column(String(16))
     """Leave to go on on another kind of device than began it: None until it is `needed`."""
     heartbeat_at: Mapped[datetime | None]
+    generations: Mapped[int]
+    """How many there will be."""
     generation: Mapped[int] = mapped_column(default=0)
     """The last one recorded."""
     checkpoint_generation: Mapped[int] = mapped_column(default=0)
@@ -103,6 +107,8 @@ class Run(Base):
     qd_score: Mapped[float | None]
     coverage: Mapped[float | None]
     best: Mapped[float | None]
+    summary: Mapped[dict[str, Any] | None]
+    """Figures of the result as a whole, where it is a table."""
     error: Mapped[str | None] = mapped_column(Text)
     warning: Mapped[str | None] = mapped_column(Text)
 
@@ -123,6 +129,23 @@ class Generation(Base):
     evaluations: Mapped[int] = mapped_column(BigInteger)
     diverged: Mapped[int] = mapped_column(BigInteger)
     seconds: Mapped[float]
+    summary: Mapped[dict[str, Any] | None]
+    """As the run's, where this generation changed it."""
+
+
+class Result(Base):
+    """A row of the table that is a run's result; append-only."""
+
+    __tablename__ = "results"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    """Its place in the whole table, from 0."""
+    generation: Mapped[int]
+    values: Mapped[dict[str, Any]]
+    creature: Mapped[str | None] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
 
 
 class Elite(Base):

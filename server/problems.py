@@ -14,6 +14,7 @@ from sqlalchemy.exc import OperationalError, SQLAlchemyError, TimeoutError
 from starlette.exceptions import HTTPException
 
 from microcosmos.archive.creature import CreatureError
+from microcosmos.spec import field_path
 
 from .lifecycle import Conflict
 from .schemas import FieldError, Problem
@@ -59,12 +60,14 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(ValidationError)
     def invalid(_: Request, error: ValidationError) -> JSONResponse:
         found = _without_echoes(error.errors())
-        return answer(invalid_input([_field_error(one) for one in found]))
+        return answer(invalid_input([_field_error(e, field_path(e["loc"])) for e in found]))
 
     @app.exception_handler(RequestValidationError)
     def invalid_request(_: Request, error: RequestValidationError) -> JSONResponse:
-        found = [{**e, "loc": e["loc"][1:]} for e in error.errors()]  # Without "query", "path".
-        return answer(invalid_input([_field_error(e) for e in found]))
+        found = [(e, e["loc"][1:]) for e in error.errors()]  # Without "query", "path".
+        return answer(
+            invalid_input([_field_error(e, ".".join(map(str, place))) for e, place in found])
+        )
 
     @app.exception_handler(CreatureError)
     def bad_creature(_: Request, error: CreatureError) -> JSONResponse:
@@ -109,12 +112,11 @@ def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, An
     return [error for error in errors if not echoes(error)]
 
 
-def _field_error(error: Mapping[str, Any]) -> FieldError:
-    path = [str(part) for part in error["loc"]]
+def _field_error(error: Mapping[str, Any], path: str) -> FieldError:
     message = str(error["msg"]).removeprefix("Value error, ")
     if error["type"] == "value_error":  # Our own words: they name the field and what came.
         named = NAMED.search(message)
-        field = ".".join([*path, *([named[1]] if named else [])])
+        field = ".".join(filter(None, [path, named[1] if named else ""]))
         return FieldError(field=field, message=message)
     needed = message.removeprefix("Input should be ")
     if error["type"] == "extra_forbidden":
@@ -123,7 +125,7 @@ def _field_error(error: Mapping[str, Any]) -> FieldError:
     if error["type"] == "missing":
         needed, got = "a value", "nothing"
     return FieldError(
-        field=".".join(path), message=f"needs {needed}; got {got!r}", needed=needed, got=got
+        field=path, message=f"needs {needed}; got {got!r}", needed=needed, got=got
     )
 
 

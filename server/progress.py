@@ -48,28 +48,31 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
 
 
 def _read(run: Run, curve: list[Generation]) -> RunRead:
-    generations = run.spec["search"]["generations"]
-    evaluations = generations * run.spec["search"]["batch"]
-    rate = _rate(curve)
-    left = max(0, evaluations - run.evaluations)
+    generations, evaluations = _rates(curve)
+    left = max(0, run.generations - run.generation)
     columns = {column.key: getattr(run, column.key) for column in Run.__table__.columns}
     columns["error"] = run.error if run.status == FAILED else None
     return RunRead(
         **{name: columns[name] for name in RunRead.model_fields if name in columns},
-        generations=generations,
-        progress=min(1.0, run.generation / generations),
-        eta_seconds=left / rate if rate and run.status == RUNNING else None,
-        evaluations_per_second=rate,
+        progress=min(1.0, run.generation / run.generations),
+        eta_seconds=left / generations if generations and run.status == RUNNING else None,
+        evaluations_per_second=evaluations,
         sparkline=[row.qd_score for row in curve if row.qd_score is not None],
     )
 
 
-def _rate(curve: list[Generation]) -> float | None:
-    """Evaluations a second between the last two points; the first one had to compile."""
-    if not curve:
-        return None
-    last = curve[-1]
-    evaluations, seconds = last.evaluations, last.seconds
-    if len(curve) > 1:
-        evaluations, seconds = evaluations - curve[-2].evaluations, seconds - curve[-2].seconds
-    return evaluations / seconds if seconds > 0 else None
+def _rates(curve: list[Generation]) -> tuple[float | None, float | None]:
+    """Generations and evaluations a second between the last two points.
+
+    The first one had to compile.
+    """
+    names = ("generation", "evaluations", "seconds")
+    first, last = ([getattr(row, name) for name in names] for row in _ends(curve))
+    generations, evaluations, seconds = (b - a for a, b in zip(first, last, strict=True))
+    return (generations / seconds, evaluations / seconds) if seconds > 0 else (None, None)
+
+
+def _ends(curve: list[Generation]) -> tuple[Generation, Generation]:
+    start = Generation(generation=0, evaluations=0, seconds=0.0)
+    before, last = [start, start, *curve][-2:]
+    return before, last

@@ -1,4 +1,4 @@
-"""The queues: messages that a run or a replay is to be made. The truth is in SQL."""
+"""The queues: messages that a run or a rendering is to be made. The truth is in SQL."""
 
 import re
 from contextlib import suppress
@@ -15,8 +15,13 @@ from rq.registry import clean_registries
 from rq.results import Result
 from rq.serializers import JSONSerializer
 
+from .models import AUDIT, REPLAY
+
 EVOLVE = "worker.jobs.evolve"
 RENDER = "worker.jobs.render"
+TIMEOUTS = {AUDIT: 3600}
+RENDER_SECONDS = 600
+"""How long a rendering may take, those of `TIMEOUTS` aside."""
 FAILURE_KEPT = 60
 """Seconds for which a failed rendering is remembered, before it may be tried again."""
 
@@ -28,13 +33,15 @@ def open_redis(url: str) -> Redis:
 
 
 class Jobs:
-    """The queues `runs` and `replays`, under a prefix."""
+    """The queues `runs`, `renderings` and `audits`, under a prefix."""
 
     def __init__(self, redis: Redis, prefix: str):
         self.redis = redis
         self.slug = re.sub(r"[^\w-]", "-", prefix)
-        self.runs = Queue(f"{prefix}runs", connection=redis, serializer=JSONSerializer)
-        self.replays = Queue(f"{prefix}replays", connection=redis, serializer=JSONSerializer)
+        self.runs, self.renderings, self.audits = (
+            Queue(f"{prefix}{name}", connection=redis, serializer=JSONSerializer)
+            for name in ("runs", "renderings", "audits")
+        )
 
     def evolve(self, run_id: UUID) -> None:
         """Ask for a run to be computed, in place of any earlier request."""
@@ -48,15 +55,24 @@ class Jobs:
             failure_ttl=3600,
         )
 
-    def render(self, creature: str, meta: dict[str, Any] | None = None) -> None:
-        """Ask for a replay to be made."""
-        job_id = self.replay_id(creature)
+    def render(
+        self, creature: str, kind: str = REPLAY, meta: dict[str, Any] | None = None
+    ) -> None:
+        """Ask for a rendering to be made.
+
+        Replays come first: somebody waits to watch. Audits take minutes, and have a queue of
+        their own.
+        """
+        job_id = self.rendering_id(creature, kind)
         self.forget(job_id)
-        self.replays.enqueue(
+        queue = self.audits if kind == AUDIT else self.renderings
+        queue.enqueue(
             RENDER,
             creature,
+            kind,
             job_id=job_id,
-            job_timeout=600,
+            at_front=kind == REPLAY,
+            job_timeout=TIMEOUTS.get(kind, RENDER_SECONDS),
             result_ttl=0,
             failure_ttl=FAILURE_KEPT,
             meta=meta,
@@ -71,9 +87,9 @@ class Jobs:
             Result.create_failure(job, FAILURE_KEPT, reason, pipeline=pipeline)
             pipeline.execute()
 
-    def replay_id(self, creature: str) -> str:
+    def rendering_id(self, creature: str, kind: str = REPLAY) -> str:
         """All installations know the same creatures, but each has its own jobs."""
-        return f"{self.slug}replay-{creature}"
+        return f"{self.slug}{kind.replace('.', '-')}-{creature}"
 
     def find(self, job_id: str) -> Job | None:
         with suppress(NoSuchJobError):
@@ -100,5 +116,5 @@ class Jobs:
 
     def clean(self) -> None:
         """Drop jobs whose worker has died; idle workers do it too, but none may be idle."""
-        for queue in (self.runs, self.replays):
+        for queue in (self.runs, self.renderings, self.audits):
             clean_registries(queue)

@@ -13,7 +13,11 @@ ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")
 
 
 def file(
-    request: Request, artifacts: Artifacts, artifact: Artifact, headers: dict[str, str]
+    request: Request,
+    artifacts: Artifacts,
+    artifact: Artifact,
+    headers: dict[str, str],
+    media_type: str = "application/octet-stream",
 ) -> Response:
     """An artifact, or 304 where the client has it, or 206 with one range of it."""
     etag = f'"{artifact.sha256}"'
@@ -29,7 +33,7 @@ def file(
         headers["Content-Range"] = f"bytes {start}-{stop - 1}/{artifact.size}"
     headers["Content-Length"] = str(stop - start)
     content = artifacts.stream(artifact.path, start, stop)
-    return StreamingResponse(content, status, headers, media_type="application/octet-stream")
+    return StreamingResponse(content, status, headers, media_type)
 
 
 def _part(wanted: str, size: int) -> tuple[int, int] | None:

@@ -1,64 +1,56 @@
 """What an experiment reports, as rows and as events."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from operator import itemgetter
-from typing import Any, Protocol
+from typing import Any
 from uuid import UUID
 
-from sqlalchemy import insert
+from sqlalchemy import func, insert, select
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from microcosmos.archive.creature import LICENCE
 
 from .events import finite
-from .models import Base, Creature, Elite, Generation
+from .models import Base, Creature, Elite, Generation, Result
+from .reports import NewElite, NewRow, Report
 
 
-class NewElite(Protocol):
-    """The engine's `Elite`, which the server does not import."""
+@dataclass(frozen=True)
+class Rows:
+    """A report, as the rows that are written of it."""
 
-    @property
-    def cell(self) -> int: ...
-    @property
-    def fitness(self) -> float: ...
-    @property
-    def descriptors(self) -> Sequence[float]: ...
-    @property
-    def creature(self) -> str: ...
-    @property
-    def identity(self) -> bytes: ...
-    @property
-    def generation(self) -> int: ...
-    @property
-    def measured(self) -> Mapping[str, Any]: ...
-    @property
-    def provenance(self) -> Mapping[str, Any]: ...
+    curve: dict[str, Any]
+    elites: list[dict[str, Any]]
+    results: list[dict[str, Any]]
+    """Without their place, which only the table knows."""
+    creatures: list[dict[str, Any]]
+    summary: dict[str, Any] | None
 
 
-class Report(Protocol):
-    """The engine's `Report`: a generation as it stands, and the cells that it changed."""
-
-    @property
-    def generation(self) -> int: ...
-    @property
-    def qd_score(self) -> float: ...
-    @property
-    def coverage(self) -> float: ...
-    @property
-    def best(self) -> float: ...
-    @property
-    def mean(self) -> float: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def diverged(self) -> int: ...
-    @property
-    def elites(self) -> Sequence[NewElite]: ...
+def rows_of(report: Report, seconds: float) -> Rows:
+    """What is written of a generation at which the run has taken so many seconds."""
+    named = [row for row in report.rows if row.creature is not None]
+    return Rows(
+        curve=generation_row(report, seconds),
+        elites=[elite_row(elite) for elite in report.elites],
+        results=[result_row(report.generation, row) for row in report.rows],
+        creatures=[creature_row(one) for one in (*report.elites, *named)],
+        summary=plain(report.summary),
+    )
 
 
 def standing(report: Report) -> dict[str, Any]:
     """What the row of a run says about its last generation."""
+    summary = plain(report.summary)
+    return {
+        **({} if summary is None else {"summary": summary}),
+        **figures(report),
+    }
+
+
+def figures(report: Report) -> dict[str, Any]:
     return {
         "generation": int(report.generation),
         "qd_score": finite(report.qd_score),
@@ -70,7 +62,7 @@ def standing(report: Report) -> dict[str, Any]:
 
 
 def generation_row(report: Report, seconds: float) -> dict[str, Any]:
-    return {**standing(report), "mean": finite(report.mean), "seconds": seconds}
+    return {**figures(report), "mean": finite(report.mean), "seconds": seconds}
 
 
 def elite_row(elite: NewElite) -> dict[str, Any]:
@@ -84,9 +76,28 @@ def elite_row(elite: NewElite) -> dict[str, Any]:
     }
 
 
-def creature_row(elite: NewElite) -> dict[str, Any]:
+def result_row(generation: int, row: NewRow) -> dict[str, Any]:
+    return {
+        "generation": int(generation),
+        "values": plain(row.values),
+        "creature": row.creature,
+    }
+
+
+def plain(values: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """Flat values as JSON has them: what is not finite is None."""
+    if values is None:
+        return None
+    return {
+        name: finite(value) if isinstance(value, float) else value
+        for name, value in values.items()
+    }
+
+
+def creature_row(found: Any) -> dict[str, Any]:
+    """The creature of an elite, or of a row that has one."""
     return creature_columns(
-        elite.creature, elite.identity, elite.measured, elite.provenance, LICENCE
+        found.creature, found.identity, found.measured, found.provenance, LICENCE
     )
 
 
@@ -118,18 +129,35 @@ def insert_missing(session: Session, table: type[Base], rows: Sequence[dict[str,
         session.execute(dialect.insert(table).on_conflict_do_nothing(), rows)
 
 
-def write(
-    session: Session,
-    run_id: UUID,
-    curve: dict[str, Any],
-    elites: list[dict[str, Any]],
-    creatures: list[dict[str, Any]],
-) -> None:
-    session.execute(insert(Generation), [{"run_id": run_id, **curve}])
+def write(session: Session, run_id: UUID, rows: Rows) -> None:
+    session.execute(
+        insert(Generation), [{"run_id": run_id, **rows.curve, "summary": rows.summary}]
+    )
     # In one order, so that two runs with the same creatures cannot wait for each other.
-    insert_missing(session, Creature, sorted(creatures, key=itemgetter("sha256")))
-    if elites:
-        session.execute(insert(Elite), [{"run_id": run_id, **row} for row in elites])
+    insert_missing(session, Creature, sorted(rows.creatures, key=itemgetter("sha256")))
+    if rows.elites:
+        session.execute(insert(Elite), [{"run_id": run_id, **row} for row in rows.elites])
+    if rows.results:
+        first = count_results(session, run_id)
+        placed = [{"number": first + i, **row} for i, row in enumerate(rows.results)]
+        session.execute(insert(Result), [{"run_id": run_id, **row} for row in placed])
+
+
+def count_results(session: Session, run_id: UUID) -> int:
+    mine = select(func.count()).select_from(Result).where(Result.run_id == run_id)
+    return session.execute(mine).scalar_one()
+
+
+def events(run_id: UUID, rows: Rows) -> Iterator[tuple[str, dict[str, Any]]]:
+    """What everybody is told of a generation."""
+    run, generation = str(run_id), rows.curve["generation"]
+    yield "generation", {"run": run, **rows.curve}
+    if rows.elites:
+        yield "elites", elites_event(run_id, generation, rows.elites)
+    if rows.results:
+        table = [{**row["values"], "creature": row["creature"]} for row in rows.results]
+        told = {"generation": generation, "summary": rows.summary, "rows": table}
+        yield "results", {"run": run, **told}
 
 
 def elites_event(run_id: UUID, generation: int, rows: list[dict[str, Any]]) -> dict[str, Any]:

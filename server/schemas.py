@@ -59,6 +59,8 @@ class RunRead(Wire):
     qd_score: float | None
     coverage: float | None
     best: float | None
+    summary: dict[str, Any] | None
+    """Figures of the result as a whole, where it is a table."""
     diverged: int
     sparkline: list[float]
     """QD scores, evenly spaced over the generations so far."""
@@ -105,6 +107,14 @@ class ArchiveRead(Wire):
     descriptors: list[list[float]]
     elite_generation: list[int]
     creature: list[str]
+
+
+class ResultsRead(Wire):
+    """The table that is a run's result; each row names its `creature`, if it has one."""
+
+    generation: int
+    summary: dict[str, Any] | None
+    rows: list[dict[str, Any]]
 
 
 class CreatureName(Wire):

@@ -17,6 +17,9 @@ from .problems import FieldError, Refused
 from .reconcile import requeue
 from .services import Services
 
+DECISIVE = {"quality-diversity": "search.block", "gaits": "block", "scaling": "nodes"}
+"""The field of each experiment that decides most about its memory."""
+
 
 def memory_limit(services: Services, session: Session) -> int:
     """Bytes that a run may need: the largest worker's, else this machine's; or less, if set."""
@@ -35,8 +38,9 @@ def refuse_too_large(services: Services, spec: Spec) -> None:
     needed = estimate(spec).memory_bytes
     if needed > limit:
         detail = f"The run needs {needed:,} bytes of memory; {limit:,} bytes are available."
+        field = DECISIVE[spec.experiment]
         error = FieldError(
-            field="search.block", message=detail, needed=f"at most {limit} bytes", got=needed
+            field=field, message=detail, needed=f"at most {limit} bytes", got=needed
         )
         raise Refused(422, "More memory than there is", detail, [error])
 
@@ -48,6 +52,7 @@ def submit(
     run = Run(
         experiment=spec.experiment,
         spec=spec.model_dump(mode="json"),
+        generations=spec.generations,
         version=VERSION,
         demonstration=demonstration,
     )

@@ -1,1 +1,1 @@
-"""Takes runs from the queue and carries them out; the renderer of replays too."""
+"""Takes runs from the queue and carries them out; the renderer of creatures too."""

@@ -12,7 +12,7 @@ from sqlalchemy.exc import OperationalError
 
 from server.claims import Claim, Fenced, claim
 from server.models import CANCEL, PAUSE
-from server.records import Report
+from server.reports import Report
 from server.services import Services
 
 from . import stop

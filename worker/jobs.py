@@ -8,7 +8,8 @@ import os
 from functools import cache
 from uuid import UUID
 
-from server import replays
+from server import renderings
+from server.models import REPLAY
 from server.services import Services, connect
 from server.settings import Settings
 
@@ -32,8 +33,17 @@ def evolve(run_id: str) -> None:
             carry_out(attempt)
 
 
-def render(creature: str) -> None:
-    """Make and keep the replay of a creature."""
-    from microcosmos.render import record
+@cache
+def prepared() -> None:
+    """Settings of the device: once, before a process first computes."""
+    from microcosmos.device import prepare
 
-    replays.save(services(), creature, record(replays.creature(services(), creature)))
+    prepare()
+
+
+def render(creature: str, kind: str = REPLAY) -> None:
+    """Make and keep a rendering of a creature."""
+    prepared()
+    from .pictures import make
+
+    renderings.save(services(), creature, kind, make(services(), creature, kind))

@@ -17,7 +17,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import bodies, coupling, device, filaments, fluid, world
+from microcosmos import bodies, coupling, device, filaments, fluid, groups, world
 
 WORLDS, SIZE, NODES, STEPS, REPEATS = 64, (64, 64), 32, 100, 15
 VISCOSITY, AMPLITUDE, PERIOD = 0.05, 0.25, 100
@@ -60,7 +60,7 @@ def main() -> None:
         Program("fluid alone: moments, collision, streaming", fluid_step),
         Program("+ windows, interpolation, one spread", carried_step),
         Program(f"+ forcing, {box.form.forcing_iterations} iterations", unconstrained_step),
-        Program(f"+ {box.form.constraint_iterations} sweeps: the coupled step", world.step),
+        Program(f"+ {box.form.constraint_iterations} sweeps: the coupled step", coupled_step),
     ]
     parts = [jax.device_put(part, d) for part, d in split(starts, rests)]
     for program in programs:
@@ -77,8 +77,9 @@ def main() -> None:
 def scene() -> tuple[world.World, world.State, filaments.Rest]:
     """One world's parameters, the start of every world, and what every body does."""
     body = bodies.chain(NODES, 1.0, stretch=1.0, shear=1.0, bend=1.0)
-    form = world.Form(displacement_limit=0.1, force_limit=0.1)
-    box = world.World(jnp.float32(VISCOSITY), rods_of(body), SIZE, form)
+    limits = world.Limits(jnp.float32(0.1), jnp.float32(0.1))
+    alone = groups.one(NODES)
+    box = world.World(jnp.float32(VISCOSITY), rods_of(body), alone, SIZE, limits=limits)
     middle = jnp.asarray(body.positions - body.positions.mean(0) + np.array(SIZE) / 2)
     start = world.at_rest(box, middle.astype(jnp.float32))
     starts = jax.tree.map(lambda x: jnp.broadcast_to(x, (WORLDS, *x.shape)), start)
@@ -155,9 +156,13 @@ def carried_step(box: world.World, state: world.State, rest: filaments.Rest) -> 
 def unconstrained_step(
     box: world.World, state: world.State, rest: filaments.Rest
 ) -> world.State:
-    return world.step(
+    return coupled_step(
         replace(box, form=replace(box.form, constraint_iterations=0)), state, rest
     )
+
+
+def coupled_step(box: world.World, state: world.State, rest: filaments.Rest) -> world.State:
+    return world.step(box, state, rest)[0]
 
 
 def advance(box: world.World, state: world.State, force: fluid.Vectors) -> fluid.Populations:
@@ -166,9 +171,8 @@ def advance(box: world.World, state: world.State, force: fluid.Vectors) -> fluid
 
 
 def interpolate(state: world.State, at: coupling.Windows) -> jax.Array:
-    momentum = fluid.momentum(state.populations)
-    weights = at.weights / coupling.read(fluid.density(state.populations), at)
-    return jnp.stack([jnp.sum(weights * coupling.read(m, at), (1, 2)) for m in momentum], 1)
+    rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
+    return coupling.interpolate(momentum, coupling.divided(at, rho))
 
 
 def copier() -> Callable[[], float]:

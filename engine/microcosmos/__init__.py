@@ -11,11 +11,14 @@ from .version import VERSION as __version__
 
 _HOME = {
     "EXPERIMENTS": "spec",
+    "Gaits": "spec",
     "QualityDiversity": "spec",
+    "Scaling": "spec",
     "parse": "spec",
     "evolve": "local",
     "prepare": "device",
     "record": "render",
+    "audit": "render",
     "check": "render",
 }
 

@@ -4,12 +4,11 @@ import json
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from .archive.store import write_whole
 from .build import build
-from .experiments import Report, Stopped
-from .experiments.quality_diversity import QualityDiversity
-from .experiments.state import State
+from .experiments import Experiment, Report, Stopped
 from .search import never
 from .spec import Spec
 
@@ -48,7 +47,7 @@ def evolve(
     return experiment.done(state)
 
 
-def keep(experiment: QualityDiversity, state: State, archive: Path) -> None:
+def keep(experiment: Experiment, state: Any, archive: Path) -> None:
     """Write the archive file and, beside it, the creature file of its best elite."""
     write_whole(archive, experiment.save(state))
     best = experiment.best(state)

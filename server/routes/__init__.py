@@ -3,8 +3,28 @@
 from fastapi import APIRouter
 
 from ..description import PROBLEMS
-from . import archives, creatures, events, experiments, generations, replays, runs, workers
+from . import (
+    archives,
+    creatures,
+    events,
+    experiments,
+    generations,
+    renderings,
+    results,
+    runs,
+    workers,
+)
 
 api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
-for noun in (experiments, runs, generations, archives, creatures, replays, events, workers):
+for noun in (
+    experiments,
+    runs,
+    generations,
+    archives,
+    results,
+    creatures,
+    renderings,
+    events,
+    workers,
+):
     api.include_router(noun.router)

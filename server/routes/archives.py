@@ -40,6 +40,7 @@ def read_archive(
     generation: Annotated[int | None, Query(ge=0)] = None,
 ) -> ArchiveRead:
     """The elite of each cell, now or as of a generation."""
+    _refuse_without(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
     elites = _elites(session, run, as_of)
     return ArchiveRead(
@@ -51,6 +52,15 @@ def read_archive(
         elite_generation=[elite.generation for elite in elites],
         creature=[elite.creature for elite in elites],
     )
+
+
+def _refuse_without(run: Run) -> None:
+    if "archive" not in run.spec:
+        detail = (
+            f"A run of `{run.experiment}` fills no archive; its result is at "
+            f"/api/v1/runs/{run.id}/results."
+        )
+        raise Refused(404, "No archive", detail)
 
 
 def _elites(session: Session, run: Run, as_of: int) -> Sequence[Any]:
@@ -70,7 +80,7 @@ def _elites(session: Session, run: Run, as_of: int) -> Sequence[Any]:
 def download_archive(
     request: Request, run: RunDep, session: SessionDep, services: ServicesDep
 ) -> Response:
-    """The last checkpoint's file."""
+    """The last checkpoint's file; of a run without an archive it holds the table."""
     artifact = _checkpoint(session, run)
     headers = {**_attachment(run, "h5"), "Cache-Control": "no-cache"}
     return ranges.file(request, services.artifacts, artifact, headers)
@@ -81,6 +91,7 @@ def download_archive(
 )
 def download_table(run: RunDep, session: SessionDep, services: ServicesDep) -> Response:
     """The last checkpoint's archive in the columns of pyribs."""
+    _refuse_without(run)
     table = export.csv(services.artifacts.read(_checkpoint(session, run).path))
     return Response(table, headers=_attachment(run, "csv"), media_type="text/csv")
 
@@ -94,4 +105,6 @@ def _checkpoint(session: Session, run: Run) -> Artifact:
 
 
 def _attachment(run: Run, ending: str) -> dict[str, str]:
-    return {"Content-Disposition": f'attachment; filename="archive-{str(run.id)[:8]}.{ending}"'}
+    kind = "archive" if "archive" in run.spec else run.experiment
+    name = f"{kind}-{str(run.id)[:8]}.{ending}"
+    return {"Content-Disposition": f'attachment; filename="{name}"'}

@@ -6,7 +6,19 @@ import numpy as np
 import pytest
 from jaxtyping import install_import_hook
 
-SHAPED = ("bodies", "coupling", "filaments", "fluid", "world", "genomes", "neat", "search")
+SHAPED = (
+    "bodies",
+    "coupling",
+    "fields",
+    "filaments",
+    "fluid",
+    "groups",
+    "creatures",
+    "world",
+    "genomes",
+    "neat",
+    "search",
+)
 
 install_import_hook([f"microcosmos.{name}" for name in SHAPED], "beartype.beartype")
 jax.config.update("jax_numpy_rank_promotion", "raise")
@@ -47,7 +59,7 @@ def chain():
     """A function that makes a straight filament with nodes one cell apart."""
 
     def straight(nodes):
-        return bodies.chain(nodes, 1.0, stretch=1.0, shear=1.0, bend=1.0)
+        return bodies.chain(nodes, 1.0)
 
     return straight
 
@@ -57,60 +69,9 @@ def ring():
     """A function that makes a closed filament with nodes one cell apart."""
 
     def closed(nodes):
-        number, turn = np.arange(nodes), 2 * np.pi / nodes
-        radius = 0.5 / np.sin(turn / 2)
-        circle = np.stack([np.cos(number * turn), np.sin(number * turn)], 1)
-        edges = np.stack([number, (number + 1) % nodes], 1)
-        ones = np.ones(nodes)
-        return bodies.Body(
-            positions=radius * circle,
-            edges=edges,
-            joints=edges,
-            rest_length=ones,
-            rest_angle=turn * ones,
-            stretch=ones,
-            shear=ones,
-            bend=ones,
-            arc=number / nodes,
-        )
+        return bodies.ring(nodes, 1.0)
 
     return closed
-
-
-@pytest.fixture
-def hold():
-    """A function that asks a body to keep its rest shape for a number of steps."""
-
-    def rest(body, steps, dtype):
-        return _rest(body, np.zeros((steps, len(body.joints))), dtype)
-
-    return rest
-
-
-@pytest.fixture
-def worm():
-    """A function that makes one wave travel along a filament, growing over one period."""
-
-    def gait(body, dtype, *, period, periods, amplitude=0.15):
-        t = np.arange(period * periods)[:, None] / period
-        joint = np.arange(len(body.joints))[None] / len(body.joints)
-        wave = np.sin(2 * np.pi * (joint - t))
-        return _rest(body, amplitude * np.minimum(t, 1) * wave, dtype)
-
-    return gait
-
-
-@pytest.fixture
-def reciprocal():
-    """A function that opens and closes one joint in the middle of a filament."""
-
-    def gait(body, dtype, *, period, periods):
-        t = np.arange(period * periods) / period
-        turn = np.zeros((len(t), len(body.joints)))
-        turn[:, len(body.joints) // 2] = np.minimum(t, 1) * (0.5 + 0.8 * np.sin(2 * np.pi * t))
-        return _rest(body, turn, dtype)
-
-    return gait
 
 
 @pytest.fixture

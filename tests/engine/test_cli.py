@@ -9,6 +9,8 @@ import time
 
 import pytest
 
+from microcosmos.archive.table import read_table
+
 SPEC = {
     "experiment": "quality-diversity",
     "seed": 5,
@@ -77,3 +79,26 @@ def test_a_name_that_is_no_file_is_refused_with_the_presets(run):
 def test_a_creature_that_is_not_sound_is_refused(run, tmp_path):
     (tmp_path / "creature.json").write_text("{}")
     assert "identity" in finished(run("replay", "creature.json", "--check"), code=2)
+
+
+def test_a_sweep_is_carried_out_drawn_and_its_table_read(run, tmp_path):
+    spec = {
+        "experiment": "gaits",
+        "swimmers": ["worm"],
+        "forms": ["ours"],
+        "viscosities": [0.5, 2.0],
+        "period": 40,
+        "cycles": 2,
+    }
+    (tmp_path / "sweep.json").write_text(json.dumps(spec))
+    assert "Done" in finished(run("evolve", "sweep.json"))
+    assert "sweep.svg" in finished(run("figure", "sweep.h5", "sweep.svg"))
+    assert "worm" in (tmp_path / "sweep.svg").read_text()
+    table = read_table((tmp_path / "sweep.h5").read_bytes())
+    assert [row["viscosity"] for row in table.rows] == [0.5, 2.0]
+
+
+def test_a_picture_of_an_unknown_kind_is_refused(run, tmp_path):
+    (tmp_path / "creature.replay").write_bytes(b"nothing")
+    text = finished(run("figure", "creature.replay", "creature.bmp"), code=2)
+    assert ".mp4" in text

@@ -5,93 +5,83 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import filaments, fluid, world
+from microcosmos import bodies, creatures, filaments, world
+from validation import scenes, swimmers
+
+swim = jax.jit(world.rollout)
 
 
-def momentum(state):
-    return jnp.stack([jnp.sum(m) for m in fluid.momentum(state.populations)])
+@pytest.fixture
+def small():
+    """A function that puts a worm of 16 nodes into a small box, with its gait."""
+
+    def make(dtype, viscosity, period, periods):
+        swimmer = creatures.worm(nodes=16)
+        box, start = scenes.immersed(swimmer.body, viscosity, dtype, size=(32, 32))
+        return box, start, scenes.stroke(swimmer, period, periods, dtype)
+
+    return make
 
 
-def lengths(state):
-    v = jnp.diff(state.positions, axis=0)
-    return jnp.sqrt(jnp.sum(v * v, 1))
+def test_no_known_swimmer_gives_the_fluid_an_impulse():
+    assert not swimmers.check_impulse(period=250).missed
 
 
-@jax.jit
-def swim(box, start, rest):
-    """The end, and the fluid's momentum and the lengths of edges after every step."""
-    return world.rollout(box, start, rest, lambda state: (momentum(state), lengths(state)))
-
-
-def largest_impulse(box, start, rest):
-    """The largest sum of forces, accumulated over time, that the body gave the fluid."""
-    end, (given, _) = swim(box, start, rest)
-    assert np.all(np.isfinite(end.positions))
-    return float(np.sqrt(np.max(np.sum(np.asarray(given, float) ** 2, 1))))
-
-
-@pytest.mark.parametrize("viscosity", [0.05, 0.5, 2.0])
-@pytest.mark.parametrize("limits", [True, False])
-def test_a_worm_gives_the_fluid_no_impulse(immerse, chain, worm, viscosity, limits, dtype):
-    body = chain(32)
-    box, start = immerse(body, dtype, viscosity=viscosity, limits=limits)
-    rest = worm(body, dtype, period=250, periods=2)
-    assert largest_impulse(box, start, rest) <= 1e-4
+def test_a_worm_without_limits_gives_the_fluid_no_impulse(dtype):
+    found = swimmers.check_impulse(("worm",), (0.05, 2.0), 250, dtype.name, limits=False)
+    assert not found.missed
 
 
 @pytest.mark.parametrize("viscosity", [0.05, 2.0])
-def test_limits_that_act_give_the_fluid_no_impulse(immerse, chain, erratic, viscosity, dtype):
-    body = chain(32)
-    box, start = immerse(body, dtype, viscosity=viscosity)
-    assert largest_impulse(box, start, erratic(body, 500, dtype)) <= 1e-4
+def test_limits_that_act_give_the_fluid_no_impulse(viscosity, dtype):
+    body = bodies.chain(32, 1.0)
+    limits = scenes.limits(viscosity, dtype)
+    box, start = scenes.immersed(body, viscosity, dtype, limits=limits)
+    wild = scenes.erratic(body, 500, dtype, seed=0)
+    assert swimmers.largest_impulse(box, start, wild) <= 1e-4
 
 
-def test_the_literal_form_gives_the_fluid_an_impulse(immerse, chain, worm, float64):
-    body = chain(32)
-    box, start = immerse(body, float64, viscosity=2.0, limits=False, projection="none")
-    rest = worm(body, float64, period=250, periods=2)
-    assert largest_impulse(box, start, rest) >= 1
+def test_the_literal_form_gives_the_fluid_an_impulse(float64):
+    swimmer = creatures.worm()
+    form = world.Form(projection=scenes.LITERAL.projection)
+    box, start = scenes.immersed(swimmer.body, 2.0, float64, form=form)
+    gait = scenes.stroke(swimmer, 250, 2, float64)
+    assert swimmers.largest_impulse(box, start, gait) >= 1
 
 
-def test_mass_is_kept_for_ten_thousand_steps_of_a_swimmer(immerse, chain, worm, dtype):
-    body = chain(16)
-    box, start = immerse(body, dtype, viscosity=0.05, size=(32, 32))
-    rest = worm(body, dtype, period=250, periods=40)
-    end, _ = swim(box, start, rest)
+def test_mass_is_kept_for_ten_thousand_steps_of_a_swimmer(small, dtype):
+    box, start, gait = small(dtype, 0.05, 250, 40)
+    end, _ = swim(box, start, gait)
     drift = sum(np.sum(np.asarray(plane, float)) for plane in end.populations)
     assert np.all(np.isfinite(end.positions))
     assert abs(drift) <= 1e-6 * 32 * 32
 
 
-def test_an_untouched_body_stays_exactly_at_rest(immerse, chain, hold, dtype):
-    body = chain(16)
-    box, start = immerse(body, dtype, viscosity=0.05, size=(32, 32))
-    end, _ = swim(box, start, hold(body, 200, dtype))
+def test_an_untouched_body_stays_exactly_at_rest(dtype):
+    body = bodies.chain(16, 1.0)
+    box, start = scenes.immersed(body, 0.05, dtype, size=(32, 32))
+    end, _ = swim(box, start, scenes.held(body, 200, dtype))
     jax.tree.map(np.testing.assert_array_equal, end, start)
 
 
-def test_edges_keep_their_length_while_a_worm_swims(immerse, chain, worm, float64):
-    body = chain(32)
-    box, start = immerse(body, float64, viscosity=0.5, limits=False)
-    rest = worm(body, float64, period=250, periods=2)
-    _, (_, seen) = swim(box, start, rest)
-    np.testing.assert_allclose(seen, 1.0, atol=0.01)
+def test_edges_keep_their_length_while_a_worm_swims(float64):
+    swimmer = creatures.worm()
+    box, start = scenes.immersed(swimmer.body, 0.5, float64)
+    seen = scenes.recorded(box, start, scenes.stroke(swimmer, 250, 2, float64))
+    lengths = np.hypot(*np.moveaxis(np.diff(seen, axis=1), -1, 0))
+    np.testing.assert_allclose(lengths, 1.0, atol=0.01)
 
 
-def test_a_creature_swims_alike_wherever_it_starts(immerse, chain, worm, float64):
-    body = chain(16)
-    box, start = immerse(body, float64, viscosity=0.1, size=(32, 32))
-    rest = worm(body, float64, period=200, periods=1)
+def test_a_creature_swims_alike_wherever_it_starts(small, float64):
+    box, start, gait = small(float64, 0.1, 200, 1)
     shift = jnp.asarray([[37.0, -11.0]])
     moved = world.at_rest(box, start.positions + shift)
-    here, there = (swim(box, state, rest)[0].positions for state in (start, moved))
+    here, there = (swim(box, state, gait)[0].positions for state in (start, moved))
     np.testing.assert_allclose(there - shift, here, atol=1e-9)
 
 
-def test_a_mirrored_gait_swims_the_mirrored_way(immerse, chain, worm, float64):
-    body = chain(16)
-    box, start = immerse(body, float64, viscosity=0.1, size=(32, 32))
-    rest = worm(body, float64, period=200, periods=1)
-    mirrored = filaments.Rest(-rest.angle, rest.length)
-    one, other = (swim(box, start, gait)[0].positions for gait in (rest, mirrored))
+def test_a_mirrored_gait_swims_the_mirrored_way(small, float64):
+    box, start, gait = small(float64, 0.1, 200, 1)
+    mirrored = filaments.Rest(-gait.angle, gait.length)
+    one, other = (swim(box, start, rest)[0].positions for rest in (gait, mirrored))
     np.testing.assert_allclose(32 - other[:, 1], one[:, 1], atol=1e-9)

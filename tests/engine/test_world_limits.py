@@ -34,13 +34,15 @@ def test_no_node_moves_further_than_the_limit(wild):
 
 def test_no_forcing_exceeds_the_limit_and_sums_stay_zero(wild):
     box, start, rest = wild
-    motion = world.move(box, start, rest, jnp.zeros_like(start.positions))
+    still = jnp.zeros_like(start.positions)
+    motion = world.move(box, start, rest, still)
     forced = coupling.multi_direct_forcing(
-        motion.velocity,
+        still,
         motion.target,
         start.positions,
         jnp.ones(box.size),
         coupling.windows(start.positions, box.size),
+        groups=box.groups,
         iterations=3,
         projection=coupling.torque_free,
         limit=LIMIT / 4,

@@ -20,7 +20,8 @@ from psycopg import sql
 from sqlalchemy import make_url, select
 
 from microcosmos.archive import creature
-from microcosmos.spec import EXPERIMENTS
+from microcosmos.spec import EXPERIMENTS, parse
+from microcosmos.spec import identity as identity_of
 from server import migrations
 from server.app import create_app
 from server.models import Base, Run
@@ -112,7 +113,7 @@ def services(settings) -> Iterator[Services]:
 
 def empty_redis(services: Services) -> None:
     """Remove everything that is ours, as FLUSHALL would."""
-    for queue in (services.jobs.runs, services.jobs.replays):
+    for queue in (services.jobs.runs, services.jobs.renderings, services.jobs.audits):
         queue.delete(delete_jobs=True)
     for key in services.redis.scan_iter(f"*{services.settings.redis_prefix[:-1]}*"):
         services.redis.delete(key)
@@ -202,16 +203,16 @@ def little_endian(*values: float) -> str:
 
 
 @pytest.fixture
-def identity(spec) -> Callable[[int], dict[str, Any]]:
+def identity() -> Callable[[int], dict[str, Any]]:
     """The identity of a swimmer whose one weight is a number."""
+    demo: Any = EXPERIMENTS["quality-diversity"].presets[0].spec
 
     def make(number: int = 1) -> dict[str, Any]:
-        control = spec["control"]
         genome = {
             "encoding": "cppn",
             "inputs": ["position", "sine", "cosine"],
             "outputs": ["rest_angle", "rest_length"],
-            "control": control,
+            "control": identity_of(demo.control),
             "nodes": {
                 "id": [0, 1, 2, 3, 4],
                 "activation": ["identity"] * 5,
@@ -228,10 +229,51 @@ def identity(spec) -> Callable[[int], dict[str, Any]]:
         return {
             "format": "microcosmos-creature/1",
             "genome": genome,
-            "world": {**spec["world"], "coupling": spec["coupling"]},
-            "body": spec["body"],
-            "task": spec["task"],
+            "world": {**identity_of(demo.world), "coupling": identity_of(demo.coupling)},
+            "body": identity_of(demo.body),
+            "task": identity_of(demo.task),
         }
+
+    return make
+
+
+@pytest.fixture
+def sweep() -> dict[str, Any]:
+    """The spec of a run whose result is a table."""
+    presets = {preset.name: preset.spec for preset in EXPERIMENTS["gaits"].presets}
+    return presets["demo"].model_dump(mode="json")
+
+
+@pytest.fixture
+def sweep_id(services, sweep) -> UUID:
+    """A queued run whose result is a table."""
+    return submit(services, parse(sweep))[0].id
+
+
+@pytest.fixture
+def table(identity) -> Callable[..., Any]:
+    """What an experiment without an archive reports of a generation: rows of values."""
+
+    def make(generation: int, *rows: dict[str, Any], summary: Any = None) -> Any:
+        return SimpleNamespace(
+            generation=generation,
+            evaluations=generation,
+            diverged=0,
+            elites=(),
+            rows=tuple(row(values) for values in rows),
+            summary=summary,
+            **dict.fromkeys(("qd_score", "coverage", "best", "mean")),
+        )
+
+    def row(values: dict[str, Any]) -> Any:
+        found = identity(values["number"]) if "number" in values else None
+        return SimpleNamespace(
+            values=values,
+            creature=creature.name(found) if found else None,
+            identity=creature.canonical(found) if found else None,
+            measured=None,
+            provenance=None,
+        )
 
     return make
 
@@ -250,6 +292,8 @@ def report(identity) -> Callable[..., Any]:
             evaluations=16 * generation,
             diverged=generation,
             elites=tuple(elite(generation, *item) for item in (elites or {}).items()),
+            rows=(),
+            summary=None,
         )
 
     def elite(generation: int, cell: int, fitness: float) -> Any:

@@ -8,8 +8,9 @@ from rq import SimpleWorker
 from rq.serializers import JSONSerializer
 
 from microcosmos.archive import creature
-from server import queue, replays
+from server import queue, renderings
 from server.claims import claim
+from server.models import REPLAY
 
 
 @pytest.fixture
@@ -130,26 +131,26 @@ def test_a_replay_is_ordered_once_and_served_when_it_is_made(api, services, know
         answer = api.get(f"creatures/{known}/replay")
         assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
         assert answer.headers["retry-after"] == "1"
-    (job_id,) = services.jobs.replays.get_job_ids()
+    (job_id,) = services.jobs.renderings.get_job_ids()
     job = services.jobs.find(job_id)
-    assert (job.func_name, job.args) == ("worker.jobs.render", [known])
-    replays.save(services, known, b"the replay")
+    assert (job.func_name, job.args) == ("worker.jobs.render", [known, "replay"])
+    renderings.save(services, known, REPLAY, b"the replay")
     answer = api.get(f"creatures/{known}/replay")
     assert (answer.status_code, answer.content) == (200, b"the replay")
     assert answer.headers["content-type"] == "application/octet-stream"
-    assert replays.creature(services, known)["sha256"] == known
+    assert renderings.creature(services, known)["sha256"] == known
 
 
 def test_a_rendering_that_failed_says_why(api, services, known, monkeypatch):
     monkeypatch.setattr(queue, "RENDER", "math.sqrt")
     assert api.get(f"creatures/{known}/replay").status_code == 202
     worker = SimpleWorker(
-        [services.jobs.replays], connection=services.redis, serializer=JSONSerializer
+        [services.jobs.renderings], connection=services.redis, serializer=JSONSerializer
     )
     worker.work(burst=True)
     answer = api.get(f"creatures/{known}/replay")
     assert answer.status_code == 500
-    assert "must be real number, not str" in answer.json()["detail"]
+    assert "takes exactly one argument" in answer.json()["detail"]
     assert answer.headers["retry-after"]
 
 
@@ -165,4 +166,4 @@ def test_a_lost_order_is_given_again(api, services, known, flush):
     api.get(f"creatures/{known}/replay")
     flush()
     assert api.get(f"creatures/{known}/replay").status_code == 202
-    assert services.jobs.replays.count == 1
+    assert services.jobs.renderings.count == 1

@@ -64,6 +64,7 @@ def test_who_listens_is_told_what_happens_to_a_run(address, services, run_id, re
     }
     assert (data[2]["cell"], data[2]["fitness"]) == ([3, 9], [1.0, 2.0])
     assert (data[3]["generation"], data[4]["status"]) == (1, "finished")
+    assert [("spec" in data[i]) for i in (0, 3, 4)] == [True, False, True]
 
 
 def test_taking_a_run_up_again_rewinds(address, services, run_id, report):

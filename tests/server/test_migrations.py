@@ -1,8 +1,10 @@
 """The tables are those of the models, on every database."""
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 
-from sqlalchemy import inspect
+from alembic import command
+from sqlalchemy import inspect, text
 
 from server import migrations
 from server.db import connect
@@ -22,9 +24,31 @@ def test_several_processes_may_migrate_a_new_database_at_once(tmp_path):
         sessions.engine.dispose()
 
 
-def test_the_tables_can_be_taken_down_again(tmp_path):
-    from alembic import command
+def test_runs_of_before_know_how_many_generations_they_have(tmp_path, spec):
+    sessions = connect(f"sqlite:///{tmp_path / 'old.sqlite'}")
+    with sessions.engine.begin() as connection:
+        command.upgrade(migrations.config(connection), "0001")
+        names = (
+            "id, experiment, spec, version, demonstration, status, created_at, attempt, "
+            "attempts_without_checkpoint, generation, checkpoint_generation, evaluations, "
+            "diverged, seconds"
+        )
+        values = "'00', 'quality-diversity', :spec, '', 0, 'paused', '', 0, 0, 0, 0, 0, 0, 0"
+        insert = text(f"INSERT INTO runs ({names}) VALUES ({values})")
+        connection.execute(insert, {"spec": json.dumps(spec)})
+        columns = "run_id, generation, evaluations, diverged, seconds"
+        row = f"INSERT INTO generations ({columns}) VALUES ('00', 1, 1, 0, 1)"
+        connection.execute(text(row))
+    migrations.upgrade(sessions)
+    with sessions.engine.begin() as connection:
+        found = connection.execute(text("SELECT generations FROM runs")).scalar_one()
+        curve = connection.execute(text("SELECT generation FROM generations")).scalars().all()
+    assert curve == [1], "rebuilding the table of runs leaves what belongs to them"
+    assert found == spec["search"]["generations"]
+    sessions.engine.dispose()
 
+
+def test_the_tables_can_be_taken_down_again(tmp_path):
     sessions = connect(f"sqlite:///{tmp_path / 'new.sqlite'}")
     migrations.upgrade(sessions)
     with sessions.engine.begin() as connection:

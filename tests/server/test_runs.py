@@ -23,13 +23,15 @@ def changed(spec, path, value):
 
 
 def test_experiments_carry_schema_and_presets_that_can_be_submitted(api):
-    (found,) = api.get("experiments").json()
-    assert set(found) == {"experiment", "title", "schema", "presets"}
-    assert found["schema"]["properties"]["world"]
-    names = [preset["name"] for preset in found["presets"]]
-    assert {"demo", "paper"} <= set(names)
-    for preset in found["presets"]:
-        assert api.post("runs/estimate", json=preset["spec"]).status_code == 200
+    experiments = api.get("experiments").json()
+    names = [found["experiment"] for found in experiments]
+    assert names == ["quality-diversity", "gaits", "scaling"]
+    for found in experiments:
+        assert set(found) == {"experiment", "title", "schema", "presets"}
+        assert found["schema"]["properties"]["experiment"]
+        assert {"demo", "paper"} <= {preset["name"] for preset in found["presets"]}
+        for preset in found["presets"]:
+            assert api.post("runs/estimate", json=preset["spec"]).status_code == 200
 
 
 def test_a_submitted_run_is_queued_and_enqueued(api, services, spec):
@@ -72,6 +74,19 @@ def test_bad_input_is_refused_with_field_and_reason(
         assert error["got"] == value
     assert api.get("runs").json()["items"] == []
     assert services.jobs.runs.count == 0
+
+
+@pytest.mark.parametrize(
+    ("experiment", "field"),
+    [("quality-diversity", "search.block"), ("gaits", "block"), ("scaling", "nodes")],
+)
+def test_a_run_that_needs_too_much_memory_is_told_which_field_decides(
+    api, services, experiment, field
+):
+    workers.report(services.sessions, "small", "cpu", 1000, "idle")
+    answer = api.post("runs", json={"experiment": experiment})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == field
 
 
 @pytest.mark.parametrize(

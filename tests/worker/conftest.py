@@ -75,6 +75,8 @@ def report():
             evaluations=16 * generation,
             diverged=0,
             elites=(),
+            rows=(),
+            summary=None,
         )
 
     return make

@@ -12,7 +12,7 @@ from worker.renderer import Renderer
 @pytest.fixture
 def worker(services):
     """A worker whose jobs run in this process."""
-    return Renderer([services.jobs.replays], "renderer", serializer=JSONSerializer)
+    return Renderer([services.jobs.renderings], "renderer", serializer=JSONSerializer)
 
 
 @pytest.fixture
@@ -20,7 +20,9 @@ def ask(services):
     """Enqueue a call, and what it calls is recorded."""
 
     def enqueue(name):
-        return services.jobs.replays.enqueue("builtins.len", name, job_id=name, result_ttl=60)
+        return services.jobs.renderings.enqueue(
+            "builtins.len", name, job_id=name, result_ttl=60
+        )
 
     return enqueue
 
@@ -56,13 +58,13 @@ def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
 
 def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
     services.jobs.render("ab" * 32)
-    job_id = services.jobs.replays.job_ids[0]
-    services.jobs.replays.pop_job_id()
+    job_id = services.jobs.renderings.job_ids[0]
+    services.jobs.renderings.pop_job_id()
     job = Job.fetch(job_id, connection=services.redis, serializer=JSONSerializer)
     worker.register_birth()
     execution = worker.prepare_execution(job)
     services.redis.delete(execution.key)  # It expires, before what leads there.
-    assert services.jobs.replays.started_job_registry.get_job_ids() == [job_id]
-    renderer.take_up(services.jobs)
-    assert services.jobs.replays.job_ids == [job_id]
-    assert not services.jobs.replays.started_job_registry.get_job_ids()
+    assert services.jobs.renderings.started_job_registry.get_job_ids() == [job_id]
+    renderer.take_up(services.jobs, services.jobs.renderings)
+    assert services.jobs.renderings.job_ids == [job_id]
+    assert not services.jobs.renderings.started_job_registry.get_job_ids()

@@ -5,7 +5,7 @@ import time
 import pytest
 from rq.serializers import JSONSerializer
 
-from server.replays import RenderingFailed, order
+from server.renderings import RenderingFailed, order
 from worker.renderer import Renderer, take_up
 
 CREATURE = "ab" * 32
@@ -16,7 +16,7 @@ def begin(services):
     """Takes the order as far as a renderer that dies while it works on it."""
 
     def take():
-        queue = services.jobs.replays
+        queue = services.jobs.renderings
         renderer = Renderer([queue], serializer=JSONSerializer)
         renderer.register_birth()
         job, _ = queue.dequeue_any([queue], None, services.redis, serializer=JSONSerializer)
@@ -31,11 +31,11 @@ def begin(services):
 def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services, begin):
     order(services, CREATURE)
     begin()
-    take_up(services.jobs)
-    assert services.jobs.replays.count == 1
+    take_up(services.jobs, services.jobs.renderings)
+    assert services.jobs.renderings.count == 1
     begin()
-    take_up(services.jobs)
-    assert services.jobs.replays.count == 0
+    take_up(services.jobs, services.jobs.renderings)
+    assert services.jobs.renderings.count == 0
     with pytest.raises(RenderingFailed, match="ended the renderer twice"):
         order(services, CREATURE)
 

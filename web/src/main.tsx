@@ -9,6 +9,9 @@ import "./styles/runs.css";
 import "./styles/new-run.css";
 import "./styles/run.css";
 import "./styles/creature.css";
+import "./styles/plot.css";
+import "./styles/results.css";
+import "./styles/audit.css";
 
 connect();
 render(<App />, document.getElementById("app")!);

@@ -1,6 +1,15 @@
 import { describe, expect, it } from "vitest";
 import type { Schema, Spec } from "../src/api/types";
-import { complaints, messagesByPath, typed, valueAt, withValue } from "../src/view/form/document";
+import {
+  complaints,
+  messagesByPath,
+  partOf,
+  typed,
+  typedJson,
+  typedList,
+  valueAt,
+  withValue,
+} from "../src/view/form/document";
 import { type Field, type Section, formOf } from "../src/view/form/fields";
 
 const SCHEMA: Schema = {
@@ -16,7 +25,36 @@ const SCHEMA: Schema = {
         magic: { type: "string", enum: ["capped", "fixed"] },
         factor: { type: "integer", enum: [1, 2] },
         open: { type: "boolean" },
+        steric: { anyOf: [{ $ref: "#/$defs/Steric" }, { type: "null" }], default: null },
       },
+    },
+    Steric: {
+      type: "object",
+      properties: { strength: { type: "number", default: 4, maximum: 20 } },
+    },
+    Chain: {
+      type: "object",
+      description: "A straight filament.",
+      properties: {
+        stretch: { type: "number", default: 1 },
+        builder: { const: "chain", default: "chain", type: "string" },
+        nodes: { type: "integer", default: 32, minimum: 3 },
+      },
+    },
+    Line: {
+      type: "object",
+      properties: {
+        builder: { const: "line", type: "string" },
+        points: {
+          type: "array",
+          minItems: 2,
+          items: { type: "array", prefixItems: [{ type: "number" }, { type: "number" }] },
+        },
+      },
+    },
+    Known: {
+      type: "object",
+      properties: { builder: { enum: ["worm", "ray"], type: "string" } },
     },
     Axis: {
       type: "object",
@@ -26,6 +64,20 @@ const SCHEMA: Schema = {
   properties: {
     experiment: { const: "quality-diversity", type: "string" },
     world: { $ref: "#/$defs/World", default: {} },
+    body: {
+      oneOf: [
+        { $ref: "#/$defs/Chain" },
+        { $ref: "#/$defs/Line" },
+        { $ref: "#/$defs/Known" },
+      ],
+    },
+    swimmers: { type: "array", items: { enum: ["worm", "ray"], type: "string" }, minItems: 1 },
+    viscosities: {
+      type: "array",
+      items: { type: "number", minimum: 0.001, maximum: 2 },
+      minItems: 1,
+      maxItems: 3,
+    },
     axes: { type: "array", items: { $ref: "#/$defs/Axis" }, minItems: 1, maxItems: 2 },
   },
 };
@@ -64,6 +116,30 @@ describe("a form", () => {
     expect(part(FORM, "experiment")).toMatchObject({ kind: "constant" });
   });
 
+  it("has a section that can be switched on with its defaults where null is allowed", () => {
+    expect(part(WORLD, "world.steric")).toMatchObject({ kind: "section", fresh: { strength: 4 } });
+    expect(WORLD.fresh).toBeUndefined();
+  });
+
+  it("has a part for each word of a union, which begins as its defaults say", () => {
+    const union = part(FORM, "body");
+    if (union.kind !== "union") throw new Error(union.kind);
+    expect([union.tag, ...union.parts.keys()]).toEqual(["builder", "chain", "line", "worm", "ray"]);
+    const chain = union.parts.get("chain")!;
+    expect(chain.fresh).toEqual({ builder: "chain", stretch: 1, nodes: 32 });
+    expect(chain.help).toBe("A straight filament.");
+    expect(chain.fields.map(({ path }) => path)).toEqual(["body.stretch", "body.nodes"]);
+    expect(union.parts.get("line")!.fresh).toEqual({ builder: "line", points: [[0, 0], [1, 1]] });
+    expect(union.parts.get("ray")!.fresh).toEqual({ builder: "ray" });
+    expect(partOf(union, { body: { builder: "worm" } })).toBe(union.parts.get("worm"));
+    expect(partOf(union, { body: { builder: "unheard of" } })).toBeNull();
+  });
+
+  it("has lists of numbers and of words for arrays of them", () => {
+    expect(part(FORM, "swimmers")).toMatchObject({ kind: "several", options: ["worm", "ray"] });
+    expect(part(FORM, "viscosities")).toMatchObject({ kind: "list", least: 1, most: 3 });
+  });
+
   it("has rows for arrays of objects, and a fresh row from their defaults", () => {
     const rows = part(FORM, "axes");
     if (rows.kind !== "rows") throw new Error(rows.kind);
@@ -74,6 +150,11 @@ describe("a form", () => {
 
 describe("a spec under a form", () => {
   const spec: Spec = { world: { width: 32 }, axes: [{ bins: 4 }, { bins: 5 }] };
+
+  const at = (...fields: string[]) => {
+    const whole = { ...spec, world: { width: 32, steric: null }, body: { builder: "chain" } };
+    return messagesByPath(fields.map((field) => ({ field, message: field })), FORM, whole);
+  };
 
   it("is changed by path, and never in place", () => {
     const next = withValue(spec, "axes.1.bins", 9);
@@ -92,6 +173,36 @@ describe("a spec under a form", () => {
     expect(typed(text)).toBe(value);
   });
 
+  it("has lists as they are typed, and what is no number stays text", () => {
+    expect(typedList(" 0.001, 2;3\n4 ")).toEqual([0.001, 2, 3, 4]);
+    expect(typedList("1, x")).toEqual([1, "x"]);
+    expect(typedList("")).toEqual([]);
+    expect([typedJson("[[0, 1]]"), typedJson("[[0,")]).toEqual([[[0, 1]], "[[0,"]);
+  });
+
+  it.each([
+    ["viscosities", [], "Needs at least 1 number."],
+    ["viscosities", [1, 1, 1, 1], "Needs at most 3 numbers."],
+    ["viscosities", [0.5, 3], "Needs at most 2."],
+    ["viscosities", [0.5, "x"], "Needs a number, got “x”."],
+    ["swimmers", [], "Needs at least 1 of them."],
+    ["body.nodes", 2, "Needs at least 3."],
+    ["world.steric", { strength: 21 }, "Needs at most 20."],
+    ["body", { builder: "line", points: "[[" }, "Needs a list, [[0, 1], [2, 3]]."],
+  ])("is told what is wrong with parts and lists at %s with %j", (path, value, message) => {
+    const whole = {
+      world: { width: 32, viscosity: 1, limit: null, steric: null },
+      body: { builder: "chain", stretch: 1, nodes: 8 },
+      swimmers: ["worm"],
+      viscosities: [1],
+      axes: [],
+    };
+    expect(complaints(FORM, whole)).toEqual([]);
+    expect(complaints(FORM, withValue(whole, path, value)).map((one) => one.message)).toEqual([
+      message,
+    ]);
+  });
+
   it.each([
     ["world.width", 8, "Needs at least 16."],
     ["world.width", 16.5, "Needs a whole number, got 16.5."],
@@ -100,16 +211,33 @@ describe("a spec under a form", () => {
     ["world.viscosity", 3, "Needs at most 2."],
     ["axes.0.bins", "x", "Needs a number, got “x”."],
   ])("is told what is wrong at %s with %j", (path, value, message) => {
-    const whole = { world: { width: 32, viscosity: 1, limit: null }, axes: [{ bins: 4 }] };
+    const whole = {
+      world: { width: 32, viscosity: 1, limit: null },
+      body: { builder: "worm" },
+      swimmers: ["worm"],
+      viscosities: [1],
+      axes: [{ bins: 4 }],
+    };
     expect(complaints(FORM, whole)).toEqual([]);
     expect(complaints(FORM, withValue(whole, path, value))).toEqual([{ field: path, message }]);
   });
 
   it("shows the server's errors at the field they name, however the place is written", () => {
-    const messages = messagesByPath([
-      { field: "archive.descriptors[0].low", message: "one" },
-      { field: "archive.descriptors.0.low", message: "two" },
-    ]);
-    expect(messages.get("archive.descriptors.0.low")).toEqual(["one", "two"]);
+    const messages = at("axes[0].bins", "axes.0.bins");
+    expect(messages.get("axes.0.bins")).toEqual(["axes[0].bins", "axes.0.bins"]);
+    expect([...at("body.nodes")]).toEqual([["body.nodes", ["body.nodes"]]]);
+  });
+
+  it.each([
+    ["viscosities.2", "viscosities"],
+    ["body.positions", "body"],
+    ["body.builder", "body"],
+    ["axes.7.bins", "axes"],
+    ["world.steric.strength", "world.steric"],
+    ["nobody.knows", ""],
+    ["experiment", ""],
+    ["", ""],
+  ])("shows an error at %j, which has no field, at %j", (field, place) => {
+    expect([...at(field).keys()]).toEqual([place]);
   });
 });

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Archive, GenerationEvent, Generations, Run } from "../src/api/types";
+import type { Archive, GenerationEvent, Generations, Run, Values } from "../src/api/types";
 import { type Action, EMPTY, type State, epochOf, reduce } from "../src/live/store";
 import { LONGEST, appendCurves } from "../src/live/curves";
 import { withPoint } from "../src/live/pace";
@@ -11,7 +11,8 @@ const RUN = {
   generations: 10,
   evaluations: 32,
   sparkline: [1, 2],
-} as Run;
+  spec: { archive: {} },
+} as unknown as Run;
 
 const ARCHIVE: Archive = {
   generation: 2,
@@ -86,6 +87,13 @@ describe("events", () => {
     );
     // 16 evaluations in 2 seconds, and 6 of 10 generations of 16 to come.
     expect(next.runs.get("a")).toMatchObject({ evaluations_per_second: 8, eta_seconds: 12 });
+  });
+
+  it("of how a run stands leave out what it is, which was told before", () => {
+    const { spec: _, ...standing } = { ...RUN, generation: 3 };
+    const next = reduce(opened, { type: "run", run: standing });
+    expect(next.runs.get("a")).toEqual({ ...RUN, generation: 3 });
+    expect(after({ type: "run", run: standing })).toBe(EMPTY);
   });
 
   it("of runs that are not open leave no trace", () => {
@@ -191,5 +199,30 @@ describe("long runs", () => {
     for (let g = 1; g <= 200; g++) line = withPoint(line, g - 1, 3 * g, g);
     expect(line.length).toBe(32);
     line.forEach((value, k) => expect(value).toBeCloseTo(3 + (k * 597) / 31, 6));
+  });
+});
+
+describe("a run without an archive", () => {
+  const bare = (state: State): Action => ({ ...(snapshot(state) as object), archive: null }) as Action;
+
+  it("has curves and no elites", () => {
+    const detail = after({ type: "open", run: "a" }, bare).details.get("a")!;
+    expect([detail.archive, detail.elites.size]).toEqual([null, 0]);
+    expect(detail.curves!.generation).toEqual([1, 2]);
+  });
+
+  it("is told of each growth of its table, and others are not", () => {
+    const event = { run: "a", generation: 3, rows: [], summary: null };
+    const state = after({ type: "results", event }, { type: "results", event });
+    expect([state.tables.get("a"), state.tables.get("b")]).toEqual([2, undefined]);
+  });
+
+  it("has the newest summary that was told, and keeps it where none comes", () => {
+    const told = (generation: number, summary: Values | null): Action => {
+      return { type: "results", event: { run: "a", generation, rows: [], summary } };
+    };
+    const run: Action = { type: "run", run: RUN };
+    const state = after(run, told(2, { best: 2 }), told(3, null), told(1, { best: 1 }));
+    expect(state.runs.get("a")!.summary).toEqual({ best: 2 });
   });
 });

@@ -1,27 +1,29 @@
 """Creature files: what a creature is, named by the SHA-256 of its canonical form."""
 
 import json
+import re
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
+import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
-from ..spec import (
-    OUTPUTS,
-    Body,
-    Control,
-    Coupling,
-    Genome,
-    QualityDiversity,
-    Search,
-    Task,
-    World,
-)
-from ..spec.base import Part
-from .cppn_genes import Connections, Nodes, check_genes
+from ..spec import Part, Scene, Task, field_path
+from ..spec import identity as identity_of
+from .identity import CPPN, Identity, Stroke
 from .naming import FORMAT, LICENCE, canonical, name
 
-__all__ = ["FORMAT", "CreatureError", "canonical", "document", "name", "parse", "spec_of"]
+__all__ = [
+    "FORMAT",
+    "CreatureError",
+    "Identity",
+    "canonical",
+    "document",
+    "name",
+    "parse",
+    "room",
+    "scene_of",
+]
 
 
 Room = Annotated[int, Field(ge=8, le=8192)]
@@ -36,49 +38,6 @@ class CreatureError(ValueError):
         self.field, self.needed, self.got = field, needed, got
 
 
-class CPPN(Part):
-    """The genes of a controller, without unused room, in the order of their numbers."""
-
-    encoding: Literal["cppn"]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    control: Control
-    nodes: Nodes
-    connections: Connections
-
-    @model_validator(mode="after")
-    def check(self) -> Self:
-        if self.inputs != self.control.inputs:
-            raise ValueError(
-                f"`inputs` must be {list(self.control.inputs)}, got {list(self.inputs)}"
-            )
-        if self.outputs != OUTPUTS:
-            raise ValueError(f"`outputs` must be {list(OUTPUTS)}, got {list(self.outputs)}")
-        check_genes(len(self.inputs), len(self.outputs), self.nodes, self.connections)
-        return self
-
-
-class PlacedWorld(World):
-    """The world with the form of the coupling, both of which a creature's numbers depend on."""
-
-    coupling: Coupling
-
-
-class Identity(Part):
-    """Everything that a creature is."""
-
-    format: Literal["microcosmos-creature/1"]
-    genome: CPPN
-    world: PlacedWorld
-    body: Body
-    task: Task
-
-    @model_validator(mode="after")
-    def check_fit(self) -> Self:
-        _spec(self)
-        return self
-
-
 class Measured(Part):
     """What was found when the creature was evaluated, and what repeating it exactly needs."""
 
@@ -86,19 +45,16 @@ class Measured(Part):
     descriptors: dict[str, float]
     features: dict[str, float]
     block: int = Field(ge=1, le=4096)
-    room: tuple[Room, Room]
-    """`max_nodes` and `max_connections` of the evaluated arrays."""
+    room: tuple[Room, Room] | None = None
+    """`max_nodes` and `max_connections` of the evaluated arrays; none without a network."""
     device: str
 
     @model_validator(mode="after")
     def check_agreement(self) -> Self:
-        """Fitness and descriptors are features, so that a check of those is one of all."""
-        told = {**self.descriptors, "displacement": self.fitness}
+        """Descriptors are features, so that a check of those is one of all."""
+        told = self.descriptors
         if wrong := [name for name in told if told[name] != self.features.get(name)]:
-            raise ValueError(
-                f"`features` must hold fitness (as displacement) and descriptors; "
-                f"got other values of {wrong}"
-            )
+            raise ValueError(f"`features` must hold descriptors; got other values of {wrong}")
         return self
 
 
@@ -122,10 +78,27 @@ class CreatureFile(Part):
     licence: str = LICENCE
 
     @model_validator(mode="after")
-    def check_room(self) -> Self:
-        """The arrays that were measured had room for the genes."""
-        _spec(self.identity, self.measured)
+    def check_measured(self) -> Self:
+        """The arrays that were measured had room for the genes; fitness is its features'."""
+        if self.measured is None:
+            return self
+        room_of(self.identity.genome, self.measured.room)
+        expected = fitness_of(self.identity.task, self.measured.features)
+        # Compilers may fuse the sum, which rounds it otherwise.
+        if not np.isclose(self.measured.fitness, expected, rtol=1e-5, atol=1e-9):
+            raise ValueError(
+                f"`measured.fitness` must be {expected!r} as `features` have it for "
+                f"{self.identity.task.fitness}; got {self.measured.fitness!r}"
+            )
         return self
+
+
+def fitness_of(task: Task, features: Mapping[str, float]) -> float:
+    """Fitness in float32, as it is computed where a creature is evaluated."""
+    displacement = np.float32(features.get("displacement", np.nan))
+    energy = np.float32(task.energy_weight) * np.float32(features.get("energy", np.nan))
+    both = {"displacement": displacement, "energy": energy}
+    return float(both.get(task.fitness, displacement + energy))
 
 
 def document(
@@ -157,37 +130,37 @@ def parse(data: Any) -> dict[str, Any]:
         file = CreatureFile.model_validate(data)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
-        field = ".".join(str(part) for part in first["loc"]) or "file"
         needed = first["msg"].removeprefix("Value error, ")
+        named = re.match(r"`([\w.]+)`", needed)
+        field = field_path(first["loc"]) or (named[1] if named else "file")
         raise CreatureError(field, needed, first["input"]) from error
-    whole = file.model_dump(mode="json")
+    whole = {**file.model_dump(mode="json"), "identity": identity_of(file.identity)}
     expected = name(whole["identity"])
     if expected != file.sha256:
         raise CreatureError("sha256", f"the identity's own hash {expected}", file.sha256)
     return whole
 
 
-def spec_of(file: Mapping[str, Any]) -> QualityDiversity:
-    """The spec under which one creature of a parsed file is evaluated or replayed."""
-    parsed = CreatureFile.model_validate(file)
-    return _spec(parsed.identity, parsed.measured)
+def scene_of(file: Mapping[str, Any]) -> Scene:
+    """What is simulated when a parsed file is evaluated or replayed."""
+    return Identity.model_validate(file["identity"]).scene
 
 
-def _spec(identity: Identity, measured: Measured | None = None) -> QualityDiversity:
-    """The room is the recorded one, else just enough: sums round differently in another."""
-    genome = identity.genome
+def room_of(genome: CPPN | Stroke, recorded: tuple[int, int] | None) -> tuple[int, int] | None:
+    """The room that was recorded, else just enough: sums round differently in another."""
+    if isinstance(genome, Stroke):
+        return None
     least = (max(8, len(genome.nodes.id)), max(8, len(genome.connections.innovation)))
-    nodes, connections = measured.room if measured else (least[0], max(least))
+    nodes, connections = recorded or (least[0], max(least))
     if nodes < least[0] or connections < least[1]:
-        raise ValueError(f"`room` must be at least {list(least)}, got {[nodes, connections]}")
-    world = identity.world.model_dump()
-    coupling = world.pop("coupling")
-    return QualityDiversity(
-        world=World(**world),
-        coupling=Coupling(**coupling),
-        body=identity.body,
-        control=genome.control,
-        genome=Genome(max_nodes=nodes, max_connections=connections),
-        task=identity.task,
-        search=Search(batch=1, block=measured.block if measured else 1, generations=1),
-    )
+        raise ValueError(
+            f"`measured.room` must be at least {list(least)}, got {[nodes, connections]}"
+        )
+    return nodes, connections
+
+
+def room(file: Mapping[str, Any]) -> tuple[int, int] | None:
+    """`max_nodes` and `max_connections` for a parsed file's network; None without one."""
+    parsed = CreatureFile.model_validate(file)
+    measured = parsed.measured
+    return room_of(parsed.identity.genome, measured.room if measured else None)

@@ -1,6 +1,36 @@
 """Bodies as NumPy data; JAX-free, so that a spec can be checked anywhere."""
 
+from .assembly import placed, together
+from .branching import star, tree
 from .chain import chain
-from .graph import Body, Colour, colour
+from .checks import MIN_GAP
+from .circle import arc, ring
+from .colouring import Colour, colour
+from .curve import polyline, svg
+from .graph import Body
+from .inside import refuse_outside
+from .network import from_graph, graph
+from .refine import Refined, subdivided
+from .shape import from_edges
 
-__all__ = ["Body", "Colour", "chain", "colour"]
+__all__ = [
+    "MIN_GAP",
+    "Body",
+    "Colour",
+    "Refined",
+    "arc",
+    "chain",
+    "colour",
+    "from_edges",
+    "from_graph",
+    "graph",
+    "placed",
+    "polyline",
+    "refuse_outside",
+    "ring",
+    "star",
+    "subdivided",
+    "svg",
+    "together",
+    "tree",
+]

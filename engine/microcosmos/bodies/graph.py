@@ -1,71 +1,58 @@
 """Bodies as graphs: nodes, edges and joints as NumPy data, coloured once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-
-@dataclass(frozen=True)
-class Colour:
-    """Constraints that share no member, seen from every member.
-
-    `sign` is 1 for the first of a pair, −1 for the second, and 0 where no constraint of
-    this colour touches the member.
-    """
-
-    partner: np.ndarray
-    constraint: np.ndarray
-    sign: np.ndarray
+from .checks import refuse_malformed
+from .colouring import Colour, colour_parts
 
 
 @dataclass(frozen=True)
 class Body:
-    """A creature's filaments at rest, in cells and radians."""
+    """Filaments at rest, in cells and radians: one creature, or several in one world."""
 
     positions: np.ndarray
-    """(node, 2), the first node at the origin."""
+    """(node, 2)."""
     edges: np.ndarray
-    """(edge, 2) node numbers."""
+    """(edge, 2) node numbers; an edge's direction is from the first to the second."""
     joints: np.ndarray
-    """(joint, 2) edge numbers; the first edge ends where the second begins."""
+    """(joint, 2) numbers of edges that share a node."""
     rest_length: np.ndarray
     rest_angle: np.ndarray
+    """(joint,) the second edge's direction less the first's."""
     stretch: np.ndarray
     shear: np.ndarray
     bend: np.ndarray
     arc: np.ndarray
-    """(node,) position along the filament from 0 to 1."""
+    """(node,) position along the creature from 0 to 1."""
+    member: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
+    """(node,) the creature that a node belongs to, ascending from 0; one if left out."""
+
+    def __post_init__(self):
+        if not len(self.member):
+            object.__setattr__(self, "member", np.zeros(len(self.positions), int))
+        refuse_malformed(vars(self))
 
     @property
+    def count(self) -> int:
+        """The number of creatures."""
+        return int(self.member[-1]) + 1
+
+    @cached_property
+    def joint_nodes(self) -> np.ndarray:
+        """(joint,) the node that the two edges share."""
+        first, second = self.edges[self.joints[:, 0]], self.edges[self.joints[:, 1]]
+        shared = (first[:, :, None] == second[:, None, :]).any(2)
+        return np.where(shared[:, 0], first[:, 0], first[:, 1])
+
+    @cached_property
     def edge_colours(self) -> tuple[Colour, ...]:
-        return colour(self.edges, len(self.positions))
+        return colour_parts(self.edges, self.member)
 
-    @property
+    @cached_property
     def joint_colours(self) -> tuple[Colour, ...]:
-        return colour(self.joints, len(self.edges))
-
-
-def colour(pairs: np.ndarray, members: int) -> tuple[Colour, ...]:
-    """Greedy colouring: each pair gets the first colour that neither member has yet."""
-    taken: list[set[int]] = [set() for _ in range(members)]
-    groups: list[list[int]] = []
-    for number, (first, second) in enumerate(pairs.tolist()):
-        used = taken[first] | taken[second]
-        chosen = next(c for c in range(len(groups) + 1) if c not in used)
-        if chosen == len(groups):
-            groups.append([])
-        groups[chosen].append(number)
-        taken[first].add(chosen)
-        taken[second].add(chosen)
-    return tuple(_seen_from_members(pairs, group, members) for group in groups)
-
-
-def _seen_from_members(pairs: np.ndarray, group: list[int], members: int) -> Colour:
-    partner = np.arange(members)
-    constraint = np.zeros(members, int)
-    sign = np.zeros(members)
-    first, second = pairs[group].T
-    partner[first], partner[second] = second, first
-    constraint[first] = constraint[second] = group
-    sign[first], sign[second] = 1, -1
-    return Colour(partner, constraint, sign)
+        if not len(self.joints):
+            return ()
+        return colour_parts(self.joints, self.member[self.edges[:, 0]])

@@ -1,8 +1,12 @@
-"""Peskin's four-point delta and the transfer between nodes and cells.
+"""Regularised deltas and the transfer between points and cells.
 
-Peskin, Acta Numerica 11, 479 (2002), eq. 6.27. Interpolation J and spreading S use the
-same weights, so S is the transpose of J: what one body exerts, the fluid receives.
+Interpolation J and spreading S use the same weights, so S is the transpose of J: what one
+body exerts, the fluid receives. Points are worked on in chunks, so that what a transfer
+needs besides its arguments does not grow with their number and stays in cache.
 """
+
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import equinox as eqx
 import jax
@@ -13,11 +17,20 @@ Distances = Float[Array, "*shape"]
 Vectors = Float[Array, "node 2"]
 Plane = Float[Array, "x y"]
 
-POINTS = 4
+CHUNK = 2**13
+"""Points in a chunk: measured, beyond it temporaries leave the cache."""
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A delta in one dimension, zero beyond half as many cells as it has points."""
+
+    weight: Callable[[Distances], Distances]
+    points: int
 
 
 def peskin(r: Distances) -> Distances:
-    """Peskin's four-point delta, zero beyond two cells."""
+    """Peskin's four-point delta (Acta Numerica 11, 479, 2002, eq. 6.27)."""
     r = jnp.abs(r)
     near, far = r < 1, (r >= 1) & (r < 2)
     a, b = jnp.where(near, r, 0.5), jnp.where(far, r, 1.5)  # Keep both roots positive.
@@ -26,38 +39,105 @@ def peskin(r: Distances) -> Distances:
     return jnp.where(near, inner, jnp.where(far, outer, 0.0))
 
 
+def roma(r: Distances) -> Distances:
+    """Three-point delta: Roma, Peskin and Berger (J. Comput. Phys. 153, 509, 1999, eq. 22)."""
+    r = jnp.abs(r)
+    near, far = r < 0.5, (r >= 0.5) & (r < 1.5)
+    a, b = jnp.where(near, r, 0.25), jnp.where(far, r, 1.0)  # Keep both roots positive.
+    inner = (1 + jnp.sqrt(1 - 3 * a**2)) / 3
+    outer = (5 - 3 * b - jnp.sqrt(1 - 3 * (1 - b) ** 2)) / 6
+    return jnp.where(near, inner, jnp.where(far, outer, 0.0))
+
+
+def hat(r: Distances) -> Distances:
+    """Linear interpolation."""
+    return jnp.maximum(1 - jnp.abs(r), 0.0)
+
+
+PESKIN, ROMA, HAT = Kernel(peskin, 4), Kernel(roma, 3), Kernel(hat, 2)
+
+
 class Windows(eqx.Module):
-    """The 4 × 4 cells around each node and their weights."""
+    """The cells around each point and their weights, in chunks of points."""
 
-    cells: Int[Array, "node 4 4"]
+    cells: Int[Array, "chunk row p p"]
     """Cell numbers, x · height + y."""
-    weights: Float[Array, "node 4 4"]
+    weights: Float[Array, "chunk row p p"]
+    """Zero for the points that fill up the last chunk."""
+    points: int = eqx.field(static=True)
+
+    def chunks(self, values: Float[Array, "node channel"]) -> Float[Array, "chunk row channel"]:
+        """Values at points, in the same chunks."""
+        chunks, rows = self.cells.shape[:2]
+        filled = jnp.pad(values, ((0, chunks * rows - self.points), (0, 0)))
+        return filled.reshape(chunks, rows, -1)
 
 
-def windows(positions: Vectors, size: tuple[int, int]) -> Windows:
-    """The cells that nodes act on in a periodic box of `size` cells."""
-    base = jax.lax.stop_gradient(jnp.floor(positions)) - 1
-    offsets = jnp.arange(POINTS, dtype=positions.dtype)
-    cells = base[:, :, None] + offsets[None, None]
-    weights = peskin(positions[:, :, None] - cells)
-    x = jnp.mod(cells[:, 0], size[0]).astype(jnp.int32)
-    y = jnp.mod(cells[:, 1], size[1]).astype(jnp.int32)
-    return Windows(
-        x[:, :, None] * size[1] + y[:, None, :],
-        weights[:, 0, :, None] * weights[:, 1, None, :],
+def windows(positions: Vectors, size: tuple[int, ...], kernel: Kernel = PESKIN) -> Windows:
+    """The cells that points act on in a periodic box of `size` cells."""
+    points = len(positions)
+    if points <= CHUNK:
+        cells, weights = _around(positions, size, kernel)
+        return Windows(cells[None], weights[None], points)
+    chunks = -(-points // CHUNK)
+    filled = jnp.pad(positions, ((0, chunks * CHUNK - points), (0, 0)))
+    cells, weights = jax.lax.map(
+        lambda part: _around(part, size, kernel), filled.reshape(chunks, CHUNK, 2)
     )
+    real = jnp.arange(chunks * CHUNK).reshape(chunks, CHUNK) < points
+    return Windows(cells, jnp.where(real[:, :, None, None], weights, 0.0), points)
 
 
-def read(plane: Plane, at: Windows) -> Float[Array, "node 4 4"]:
-    """The values of a plane in every window."""
-    return plane.reshape(-1)[at.cells]
+def interpolate(
+    planes: tuple[Plane, ...] | Float[Array, "channel x y"], at: Windows
+) -> Float[Array, "node channel"]:
+    """J: the values of planes at points."""
+    flat = [plane.reshape(-1) for plane in planes]
+
+    def read(chunk):
+        cells, weights = chunk
+        return jnp.stack([jnp.sum(weights * plane[cells], (1, 2)) for plane in flat], 1)
+
+    if len(at.cells) == 1:
+        return read((at.cells[0], at.weights[0]))
+    values = jax.lax.map(read, (at.cells, at.weights))
+    return values.reshape(-1, len(flat))[: at.points]
 
 
 def spread(
     values: Float[Array, "node channel"], at: Windows, size: tuple[int, ...]
 ) -> Float[Array, "channel x y"]:
-    """S: the density that values at nodes make in the cells."""
-    amounts = values.T[:, :, None, None] * at.weights[None]
+    """S: the density that values at points make in the cells."""
     planes = jnp.zeros((values.shape[1], size[0] * size[1]), values.dtype)
-    planes = planes.at[:, at.cells].add(amounts, mode="promise_in_bounds")
+
+    def add(planes, chunk):
+        values, cells, weights = chunk
+        amounts = values.T[:, :, None, None] * weights[None]
+        return planes.at[:, cells].add(amounts, mode="promise_in_bounds"), None
+
+    if len(at.cells) == 1:
+        planes, _ = add(planes, (values, at.cells[0], at.weights[0]))
+    else:
+        planes, _ = jax.lax.scan(add, planes, (at.chunks(values), at.cells, at.weights))
     return planes.reshape(-1, *size)
+
+
+def divided(at: Windows, plane: Plane) -> Windows:
+    """Windows whose weights are divided by a plane: J (p/ρ) without forming p/ρ everywhere."""
+    flat = plane.reshape(-1)
+    if len(at.cells) == 1:
+        return Windows(at.cells, at.weights / flat[at.cells], at.points)
+    weights = jax.lax.map(lambda chunk: chunk[1] / flat[chunk[0]], (at.cells, at.weights))
+    return Windows(at.cells, weights, at.points)
+
+
+def _around(positions, size, kernel):
+    first = kernel.points / 2 - 1
+    base = jax.lax.stop_gradient(jnp.floor(positions - first))
+    offsets = jnp.arange(kernel.points, dtype=positions.dtype)
+    cells = base[:, :, None] + offsets[None, None]
+    weights = kernel.weight(positions[:, :, None] - cells)
+    x = jnp.mod(cells[:, 0], size[0]).astype(jnp.int32)
+    y = jnp.mod(cells[:, 1], size[1]).astype(jnp.int32)
+    numbers = x[:, :, None] * size[1] + y[:, None, :]
+    return numbers, weights[:, 0, :, None] * weights[:, 1, None, :]

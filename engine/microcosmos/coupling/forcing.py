@@ -1,9 +1,10 @@
-"""Multi-direct forcing: find the force at the nodes that makes the fluid follow the body.
+"""Multi-direct forcing: find the force at the nodes that makes the fluid follow the bodies.
 
 Multi-direct forcing: Wang, Fan and Luo, Int. J. Multiphase Flow 34, 283 (2008). Each
 increment is scaled by β = 1 / (row sum of J S), which converges for any packing of nodes.
-Freeing each increment of its mean (and its rigid rotation) keeps the body from pushing
-itself: the displacements that constraints make sum to zero, but (J S)⁻¹ of them do not.
+Freeing each increment of its mean (and its rigid rotation), body by body, keeps a body from
+pushing itself: the displacements that constraints make sum to zero, but (J S)⁻¹ of them do
+not.
 """
 
 from collections.abc import Callable
@@ -13,11 +14,12 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .delta import Windows, read, spread
+from ..groups import Groups
+from .delta import Windows, divided, interpolate, spread
 
 Vectors = Float[Array, "node 2"]
 Scalars = Float[Array, "node"]
-Projection = Callable[[Vectors, Scalars, Vectors], Vectors]
+Projection = Callable[[Vectors, Scalars, Vectors, Groups], Vectors]
 
 
 class Forced(eqx.Module):
@@ -25,28 +27,32 @@ class Forced(eqx.Module):
 
     forcing: Vectors
     target: Vectors
+    scale: Float[Array, "group"]
+    """What each body's forcing was multiplied by to stay within the limit; 1 if nothing."""
 
 
-def unprojected(error: Vectors, beta: Scalars, positions: Vectors) -> Vectors:
+def unprojected(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
     """No rigid motion is removed: the literal method."""
     return jnp.zeros_like(error)
 
 
-def force_free(error: Vectors, beta: Scalars, positions: Vectors) -> Vectors:
-    """The rigid translation whose removal makes Σ β e = 0."""
-    mean = jnp.sum(beta[:, None] * error, 0) / jnp.sum(beta)
-    return jnp.broadcast_to(mean[None], error.shape)
+def force_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
+    """The rigid translations whose removal makes Σ β e = 0 for each body."""
+    return groups.each(_mean(error, beta, groups))
 
 
-def torque_free(error: Vectors, beta: Scalars, positions: Vectors) -> Vectors:
-    """The rigid motion whose removal makes Σ β e = 0 and Σ a × β e = 0."""
-    translation = force_free(error, beta, positions)
+def torque_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
+    """The rigid motions whose removal makes Σ β e = 0 and Σ a × β e = 0 for each body."""
+    translation = force_free(error, beta, positions, groups)
     error = error - translation
-    centre = jnp.sum(beta[:, None] * positions, 0) / jnp.sum(beta)
-    arm = positions - centre[None]
-    turning = jnp.sum(beta * (arm[:, 0] * error[:, 1] - arm[:, 1] * error[:, 0]))
-    spin = turning / jnp.sum(beta * jnp.sum(arm * arm, 1))
-    return translation + spin * jnp.stack([-arm[:, 1], arm[:, 0]], 1)
+    arm = positions - groups.each(_mean(positions, beta, groups))
+    turning = groups.total(beta * (arm[:, 0] * error[:, 1] - arm[:, 1] * error[:, 0]))
+    spin = groups.each(turning / groups.total(beta * jnp.sum(arm * arm, 1)))
+    return translation + spin[:, None] * jnp.stack([-arm[:, 1], arm[:, 0]], 1)
+
+
+def _mean(values: Vectors, beta: Scalars, groups: Groups) -> Float[Array, "group 2"]:
+    return groups.total(beta[:, None] * values) / groups.total(beta)[:, None]
 
 
 def multi_direct_forcing(
@@ -56,38 +62,35 @@ def multi_direct_forcing(
     rho: Float[Array, "x y"],
     at: Windows,
     *,
+    groups: Groups,
     iterations: int,
     projection: Projection,
-    limit: float | None,
+    limit: Float[Array, ""] | float | None,
 ) -> Forced:
     """The forcing at nodes for a fluid at `velocity` there to move with `target`.
 
     Forcing and velocities are in cells a step; the force on the fluid is a multiple of the
-    forcing, spread. With `limit`, the largest forcing of the body is at most that, by one
-    factor for all nodes, so that sums stay zero.
+    forcing, spread. With `limit`, the largest forcing of a body is at most that, by one
+    factor for all of its nodes, so that sums stay zero.
     """
-    weights_by_density = at.weights / read(rho, at)
-    coverage = spread(jnp.ones_like(target[:, :1]), at, rho.shape)[0]
-    beta = 1.0 / jnp.sum(at.weights * read(coverage, at), (1, 2))
-
-    def response(q: Vectors) -> Vectors:
-        spread_q = spread(q, at, rho.shape)
-        parts = [jnp.sum(weights_by_density * read(plane, at), (1, 2)) for plane in spread_q]
-        return jnp.stack(parts, 1)
+    by_density = divided(at, rho)
+    coverage = spread(jnp.ones_like(target[:, :1]), at, rho.shape)
+    beta = 1.0 / interpolate(coverage, at)[:, 0]
 
     def improve(q, target, reached):
         error = target - velocity - reached
-        rigid = projection(error, beta, positions)
+        rigid = projection(error, beta, positions, groups)
         return q + beta[:, None] * (error - rigid), target - rigid
 
     def iterate(carry, _):
         q, target = carry
-        return improve(q, target, response(q)), None
+        return improve(q, target, interpolate(spread(q, at, rho.shape), by_density)), None
 
     first = improve(jnp.zeros_like(target), target, jnp.zeros_like(target))
     # A loop, though a short one: written out, XLA forms the weights anew in every iteration.
     (q, target), _ = jax.lax.scan(iterate, first, None, length=iterations - 1)
-    if limit is not None:
-        largest = jnp.sqrt(jnp.max(jnp.sum(q * q, 1)) + 1e-24)
-        q = q * jnp.minimum(1.0, limit / largest)
-    return Forced(q, target)
+    if limit is None:
+        return Forced(q, target, jnp.ones(groups.count, q.dtype))
+    largest = jnp.sqrt(groups.largest(jnp.sum(q * q, 1)) + 1e-24)
+    scale = jnp.minimum(1.0, limit / largest)
+    return Forced(q * groups.each(scale)[:, None], target, scale)

@@ -59,7 +59,8 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
     """The state that `save` wrote; see `QualityDiversity.restore` for what it raises."""
     tree, attributes = file.load(data)
     try:
-        return _restore(plan, tree, _check(plan, attributes, other_device))
+        devices = devices_of(plan.spec, plan.device, attributes, other_device)
+        return _restore(plan, tree, devices)
     except KeyError as error:
         raise ValueError(f"an archive file must hold {error}, which is not there") from error
 
@@ -100,21 +101,29 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
         "device": json.dumps(state.devices),
         "spec": plan.spec,
         "features": json.dumps(search.FEATURES),
+        "force_free": json.dumps(plan.force_free),
         "operators": json.dumps(search.OPERATORS),
         "statuses": json.dumps(search.STATUSES),
     }
 
 
-def _check(plan: Plan, attributes: dict[str, str], other_device: bool) -> tuple[str, ...]:
-    if json.loads(attributes["spec"]) != json.loads(plan.spec):
+def devices_of(
+    spec: str, device: str, attributes: dict[str, str], other_device: bool
+) -> tuple[str, ...]:
+    """The kinds of device of a file and, last, the present one.
+
+    Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
+    `other_device` allows it.
+    """
+    if json.loads(attributes["spec"]) != json.loads(spec):
         raise ValueError("`spec` in the file must be the run's own, got another")
     devices = json.loads(attributes["device"])
-    if devices[-1] != plan.device and not other_device:
+    if devices[-1] != device and not other_device:
         raise OtherDevice(
             f"`device` must be {devices[-1]!r}, on which the run was computed, for the same "
-            f"bits; got {plan.device!r}."
+            f"bits; got {device!r}."
         )
-    return tuple(devices if devices[-1] == plan.device else [*devices, plan.device])
+    return tuple(devices if devices[-1] == device else [*devices, device])
 
 
 def _networks(columns: dict[str, np.ndarray]) -> CPPN:

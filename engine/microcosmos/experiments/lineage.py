@@ -47,6 +47,7 @@ def record(
         _elite(
             plan,
             take(children.networks, slot),
+            float(fitness[i]),
             features[i],
             cell=int(cells[i]),
             generation=generation,
@@ -81,6 +82,7 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
     elite = _elite(
         plan,
         elites.networks,
+        float(elites.fitness),
         elites.features,
         cell=cell,
         generation=int(elites.generation),
@@ -105,6 +107,7 @@ def identity(frame: Mapping[str, Any], network: CPPN) -> dict[str, Any]:
 def _elite(
     plan: Plan,
     network: CPPN,
+    fitness: float,
     values: np.ndarray,
     *,
     cell: int,
@@ -118,7 +121,7 @@ def _elite(
     descriptors = {name: features[name] for name in plan.descriptors}
     parents = (bytes(parent).hex(),) if parent.any() else ()
     measured = {
-        "fitness": features["displacement"],
+        "fitness": fitness,
         "descriptors": descriptors,
         "features": features,
         "block": plan.block,
@@ -134,7 +137,7 @@ def _elite(
     }
     return Elite(
         cell=cell,
-        fitness=features["displacement"],
+        fitness=fitness,
         descriptors=tuple(descriptors.values()),
         features=features,
         creature=naming.name(whole),

@@ -1,7 +1,10 @@
 """What an experiment tells about a generation."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+
+Value = float | int | str | bool | None
 
 
 @dataclass(frozen=True)
@@ -23,14 +26,31 @@ class Elite:
 
 
 @dataclass(frozen=True)
+class Row:
+    """A line of a run's result, with the creature that it is about, if it is about one."""
+
+    values: Mapping[str, Value]
+    creature: str | None = None
+    identity: bytes | None = None
+    measured: Mapping[str, Any] | None = None
+    provenance: Mapping[str, Any] | None = None
+
+
+@dataclass(frozen=True)
 class Report:
-    """The archive after a generation; counts are of the whole run so far."""
+    """The run after a generation; counts are of the whole run so far.
+
+    A search tells of its archive, other experiments of the rows of their result.
+    """
 
     generation: int
-    qd_score: float
-    coverage: float
-    best: float
-    mean: float
     evaluations: int
     diverged: int
-    elites: tuple[Elite, ...]
+    qd_score: float | None = None
+    coverage: float | None = None
+    best: float | None = None
+    mean: float | None = None
+    elites: tuple[Elite, ...] = ()
+    rows: tuple[Row, ...] = ()
+    summary: Mapping[str, Value] | None = None
+    """What the result comes to so far; the newest counts."""

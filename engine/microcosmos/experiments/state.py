@@ -36,6 +36,8 @@ class Plan:
     axes: tuple[search.Axis, ...]
     genes: search.Genes
     device: str
+    force_free: bool = True
+    """Whether bodies cannot push themselves; if not, their swimming may be the solver's."""
 
     @property
     def room(self) -> tuple[int, int]:

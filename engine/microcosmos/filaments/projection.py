@@ -56,6 +56,13 @@ def edge_angles(positions: Positions, rods: Rods) -> Angles:
     return jnp.arctan2(v[:, 1], v[:, 0])
 
 
+def normals(angles: Angles, rods: Rods, nodes: int) -> Float[Array, "node 2"]:
+    """Unit vectors across the filament at its nodes; zero where edges cancel each other."""
+    across = jnp.stack([-jnp.sin(angles), jnp.cos(angles)], 1)
+    total = jnp.zeros((nodes, 2), angles.dtype).at[rods.edges].add(across[:, None])
+    return total / jnp.sqrt(jnp.sum(total * total, 1, keepdims=True) + 1e-12)
+
+
 def follow_geometry(angles: Angles, positions: Positions, rods: Rods) -> Angles:
     """Angles as the geometry has them, on the branch nearest to what they were."""
     return angles + wrap(edge_angles(positions, rods) - angles)

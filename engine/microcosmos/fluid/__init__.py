@@ -2,11 +2,15 @@
 
 from .dynamics import Rates, capped_magic, collide, fixed_magic, rates, stream, vorticity
 from .lattice import Populations, Vectors, density, equilibrium, momentum
+from .surroundings import Sponge, Surroundings, advance
 
 __all__ = [
     "Populations",
     "Rates",
+    "Sponge",
+    "Surroundings",
     "Vectors",
+    "advance",
     "capped_magic",
     "collide",
     "density",

@@ -1,7 +1,7 @@
 """What is inherited and varied, and how it becomes a controller."""
 
 from .cppn import ACTIVATIONS, CPPN, depths, evaluate
-from .development import OUTPUTS, Controls, develop, linear, network_inputs, sine_cosine
+from .development import OUTPUTS, Controls, develop, linear, respond, sine_cosine
 from .identity import empty, from_genes, take, to_genes
 
 __all__ = [
@@ -15,7 +15,7 @@ __all__ = [
     "evaluate",
     "from_genes",
     "linear",
-    "network_inputs",
+    "respond",
     "sine_cosine",
     "take",
     "to_genes",

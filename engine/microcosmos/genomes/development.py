@@ -15,13 +15,15 @@ OUTPUTS = 2
 
 @dataclass(frozen=True)
 class Controls:
-    """What a CPPN's inputs and outputs mean; open loop, so that all times are one batch.
+    """What a CPPN's inputs and outputs mean.
 
-    `inputs` is (input, time · node); `ramp` is (time,); rest angles and lengths are the
-    body's own, in rad and cells.
+    `position` is (node,), `timer` (input, time), `ramp` (time,); rest angles and lengths are
+    the body's own, in rad and cells. A CPPN that `senses` has one more input, which is known
+    only while the world moves; any other's outputs for all times are one batch.
     """
 
-    inputs: np.ndarray
+    position: np.ndarray
+    timer: np.ndarray
     ramp: np.ndarray
     edges: np.ndarray
     joint_nodes: np.ndarray
@@ -29,6 +31,12 @@ class Controls:
     rest_length: np.ndarray
     angle_scale: float
     length_scale: float
+    senses: bool = False
+
+    @property
+    def inputs(self) -> int:
+        """Inputs of the CPPN."""
+        return 1 + len(self.timer) + self.senses
 
 
 def sine_cosine(steps: int, period: float) -> np.ndarray:
@@ -42,23 +50,44 @@ def linear(steps: int, period: float) -> np.ndarray:
     return np.arange(steps)[None] / steps
 
 
-def network_inputs(position: np.ndarray, timer: np.ndarray) -> np.ndarray:
-    """(1 + timer, time · node): every node's position beside every time."""
-    steps, nodes = timer.shape[1], len(position)
-    return np.concatenate([np.tile(position, steps)[None], np.repeat(timer, nodes, 1)])
-
-
 def develop(network: CPPN, controls: Controls) -> Rest:
-    """Rest angles (time, joint) and rest lengths (time, edge) as applied.
+    """Rest angles (time, joint) and rest lengths (time, edge) as applied, in one batch.
 
     A joint takes the output at its node; an edge the mean of its two ends, so that a
     mirrored network makes a mirrored body.
     """
+    steps, nodes = len(controls.ramp), len(controls.position)
+    position = np.tile(controls.position, steps)[None]
+    inputs = np.concatenate([position, np.repeat(controls.timer, nodes, 1)])
     dtype = network.bias.dtype
-    steps = len(controls.ramp)
-    outputs = evaluate(network, jnp.asarray(controls.inputs, dtype), OUTPUTS)
-    angle, length = (jnp.tanh(row).reshape(steps, -1) for row in outputs)
-    ramp = jnp.asarray(controls.ramp, dtype)[:, None]
+    outputs = evaluate(network, jnp.asarray(inputs, dtype), OUTPUTS)
+    return _rest(
+        outputs.reshape(OUTPUTS, steps, nodes), jnp.asarray(controls.ramp, dtype), controls
+    )
+
+
+def respond(
+    network: CPPN,
+    controls: Controls,
+    timer: Float[Array, "input"],
+    ramp: Float[Array, ""],
+    sensed: Float[Array, "node"],
+) -> Rest:
+    """Rest angles (joint,) and rest lengths (edge,) at one time, from what nodes sense."""
+    dtype = network.bias.dtype
+    clock = jnp.broadcast_to(timer[:, None], (len(timer), len(sensed)))
+    position = jnp.asarray(controls.position, dtype)[None]
+    inputs = jnp.concatenate([position, clock, sensed[None]])
+    outputs = evaluate(network, inputs, OUTPUTS)
+    rest = _rest(outputs[:, None], ramp[None], controls)
+    return Rest(rest.angle[0], rest.length[0])
+
+
+def _rest(
+    outputs: Float[Array, "2 time node"], ramp: Float[Array, "time"], controls: Controls
+) -> Rest:
+    angle, length = jnp.tanh(outputs)
+    ramp, dtype = ramp[:, None], outputs.dtype
     length = 0.5 * (length[:, controls.edges[:, 0]] + length[:, controls.edges[:, 1]])
     stretch = 1 + controls.length_scale * ramp * length
     turn = controls.angle_scale * ramp * angle[:, controls.joint_nodes]

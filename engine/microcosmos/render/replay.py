@@ -17,11 +17,12 @@ import numpy as np
 
 from .. import search, world
 from ..archive import creature
-from ..build import build_body, build_task
+from ..build import build_stroke, build_task
 from ..device import device_kind
 from ..fluid import vorticity
-from ..genomes import CPPN, develop, from_genes
-from ..spec import Spec, estimate, parse
+from ..genomes import from_genes
+from ..spec import Gait, Scene, shape
+from ..spec.estimate import simulation
 
 FORMAT = "microcosmos-replay/1"
 FRAMES = 250
@@ -41,17 +42,19 @@ def record(file: Mapping[str, Any]) -> bytes:
     file that is not sound.
     """
     file = creature.parse(file)
-    spec = creature.spec_of(file)
-    every = interval(spec)
-    program = _program(spec.model_dump_json(), every)
-    positions, curl, features = jax.device_get(program(network_of(file, spec)))
+    scene = creature.scene_of(file)
+    nodes, _ = creature.room(file) or (0, 0)
+    every = interval(scene, nodes)
+    program = _program(scene.model_dump_json(), every)
+    positions, curl, features = jax.device_get(program(actuator_of(file, scene)))
     if not (np.isfinite(positions).all() and np.isfinite(curl).all()):
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
     positions = np.asarray(positions, "<f4")
-    replayed = dict(zip(search.FEATURES, features.tolist(), strict=True))
+    replayed = {name: float(value) for name, value in features.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
+    fitness = creature.fitness_of(scene.task, replayed)
     scale = float(np.max(np.abs(curl))) or 1.0
     names = list(measured.get("descriptors", ())) or ["bending_effort", "stretching_effort"]
     header = {
@@ -59,80 +62,85 @@ def record(file: Mapping[str, Any]) -> bytes:
         "creature": file["sha256"],
         "frames": len(positions),
         "every": every,
-        "steps": spec.task.steps,
+        "steps": scene.task.steps,
         "nodes": positions.shape[1],
-        "edges": build_body(spec.body).edges.tolist(),
-        "size": [spec.world.width, spec.world.height],
+        "edges": shape(scene.body).edges.tolist(),
+        "size": [scene.world.width, scene.world.height],
         "vorticity": {"scale": scale},
         "fitness": {
             "recorded": recorded,
-            "replayed": replayed["displacement"],
-            "difference": None if recorded is None else replayed["displacement"] - recorded,
+            "replayed": fitness,
+            "difference": None if recorded is None else fitness - recorded,
         },
         "descriptors": {
             "recorded": measured.get("descriptors"),
             "replayed": {name: replayed[name] for name in names},
         },
+        "force_free": scene.coupling.force_free,
         "device": device_kind(),
     }
     return _pack(header, positions, np.round(curl / scale * 127).astype(np.int8))
 
 
-def interval(spec: Spec) -> int:
+def interval(scene: Scene, network_nodes: int) -> int:
     """Every how many steps a frame is kept.
 
     Raises `creature.CreatureError` where the simulation is too long or too large to watch.
     """
-    work = estimate(spec)
-    cells = spec.world.width * spec.world.height
-    for field, limit, found in (
-        ("task.steps", CELL_STEPS, work.cell_steps),
-        ("body.nodes", 2**32, work.memory_bytes),
+    cells = scene.world.width * scene.world.height
+    for field, limit, found, unit in (
+        ("task.steps", CELL_STEPS, cells * scene.task.steps, "cell steps"),
+        ("body.nodes", 2**32, simulation(scene, network_nodes), "bytes of memory"),
     ):
         if found > limit:
-            unit = "cell steps" if limit == CELL_STEPS else "bytes of memory"
             raise creature.CreatureError(
                 field, f"at most {limit:.1e} {unit} for a replay", found
             )
     frames = min(FRAMES, max(2, FRAME_BYTES // (4 * cells)))
-    return ceil(spec.task.steps / frames)
+    return ceil(scene.task.steps / frames)
 
 
-def network_of(file: Mapping[str, Any], spec: Spec) -> CPPN:
-    """The network of a parsed creature file in the spec's room."""
-    genome = file["identity"]["genome"]
-    return from_genes(genome, spec.genome.max_nodes, spec.genome.max_connections)
+def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
+    """What moves the body of a parsed creature file: its network, or its gait's rest shapes."""
+    if isinstance(scene.control, Gait):
+        return build_stroke(scene.control, scene.task.steps)
+    return from_genes(file["identity"]["genome"], *(creature.room(file) or (8, 8)))
 
 
 @lru_cache(maxsize=16)
-def _program(spec_json: str, every: int) -> Callable[[CPPN], tuple]:
-    """From a network to positions (frame, node, 2), vorticity (frame, x, y) and features.
+def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
+    """From an actuator to positions (frame, node, 2), vorticity (frame, x, y) and features.
 
     Frames are the start and the state after each `every` steps. Compiled programs are
     kept, so that the second creature of a run is shown at once.
     """
-    spec = parse(json.loads(spec_json))
-    task = build_task(spec)
-    frames = spec.task.steps // every
+    scene = Scene.model_validate_json(scene_json)
+    task = build_task(scene)
+    frames = scene.task.steps // every
 
     def frame(state):
         return state.positions, vorticity(world.flow(task.world, state))
 
-    def advance(state, rest):
-        end, centres = world.rollout(task.world, state, rest, search.centre)
-        return end, (frame(end), centres)
+    def run(actuator):
+        inputs, control = search.drive(task, actuator)
 
-    def run(network):
-        rest = develop(network, task.controls)
-        whole = jax.tree.map(lambda x: x[: frames * every].reshape(frames, every, -1), rest)
-        left = jax.tree.map(lambda x: x[frames * every :], rest)
-        end, (shown, centres) = jax.lax.scan(advance, task.start, whole)
-        end, last = world.rollout(task.world, end, left, search.centre)
-        centres = jnp.concatenate([centres.reshape(-1, 2), last])
+        def advance(state, given):
+            end, seen = world.rollout(task.world, state, given, search.observe, control)
+            return end, (frame(end), seen)
+
+        whole = jax.tree.map(
+            lambda x: x[: frames * every].reshape(frames, every, *x.shape[1:]), inputs
+        )
+        left = jax.tree.map(lambda x: x[frames * every :], inputs)
+        end, (shown, seen) = jax.lax.scan(advance, task.start, whole)
+        end, last = world.rollout(task.world, end, left, search.observe, control)
+        seen = jax.tree.map(
+            lambda x, y: jnp.concatenate([x.reshape(-1, *x.shape[2:]), y]), seen, last
+        )
         positions, curl = jax.tree.map(
             lambda first, rest: jnp.concatenate([first[None], rest]), frame(task.start), shown
         )
-        return positions, curl, search.measure(task, network, rest, end, centres)
+        return positions, curl, search.motion(task, end, seen)
 
     return jax.jit(run)
 

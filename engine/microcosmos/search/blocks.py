@@ -2,11 +2,12 @@
 
 from collections import deque
 from collections.abc import Callable
+from typing import Any
 
 import jax
 import numpy as np
+from jaxtyping import PyTree
 
-from ..genomes import CPPN
 from .evaluation import Evaluation
 
 
@@ -20,13 +21,15 @@ def never() -> bool:
 
 
 def evaluate_blocks(
-    program: Callable[[CPPN], Evaluation],
-    networks: CPPN,
+    program: Callable[[Any], Evaluation],
+    items: PyTree[np.ndarray],
     *,
     block: int,
     stop: Callable[[], bool] = never,
 ) -> Evaluation:
-    """Evaluate networks of NumPy arrays; the last block is padded with its first creature.
+    """Evaluate networks (or other items) of NumPy arrays, their number first.
+
+    The last block is padded with its first item.
 
     Each device has one block in flight; `stop` is asked before each, and `Stopped` raised
     where it says so.
@@ -34,7 +37,7 @@ def evaluate_blocks(
     devices = jax.local_devices()
     flying: deque[Evaluation] = deque()
     landed: list[Evaluation] = []
-    count = len(networks.node_used)
+    count = len(jax.tree.leaves(items)[0])
     for number, start in enumerate(range(0, count, block)):
         if stop():
             raise Stopped
@@ -42,7 +45,7 @@ def evaluate_blocks(
             landed.append(jax.device_get(flying.popleft()))
         rows = np.arange(start, start + block)
         rows = np.where(rows < count, rows, start)
-        part = jax.tree.map(lambda x, rows=rows: x[rows], networks)
+        part = jax.tree.map(lambda x, rows=rows: x[rows], items)
         flying.append(program(jax.device_put(part, devices[number % len(devices)])))
     landed += [jax.device_get(evaluation) for evaluation in flying]
     return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *landed)

@@ -6,32 +6,34 @@ slot, neighbours or device, a creature goes through this same program.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Float, Int, PyTree
 
+from .. import units
 from ..filaments import Rest
-from ..genomes import CPPN, OUTPUTS, Controls, develop
-from ..world import State, World, flow, rollout
+from ..genomes import CPPN, OUTPUTS, Controls, develop, respond
+from ..world import Measures, State, World, flow, follow, rollout, sense
 
-FEATURES = (
+MOTION = (
     "displacement",
     "bending_effort",
     "stretching_effort",
     "path_length",
     "straightness",
     "rotation",
-    "hidden_nodes",
-    "connections",
 )
+FEATURES = (*MOTION, "hidden_nodes", "connections", "energy", "mach", "limited", "reynolds")
 """What is recorded of every elite, in this order; units in `docs/formats.md`."""
 
 STATUSES = ("ok", "non-finite", "supersonic")
 """Why an evaluation counts or does not, by status code."""
 
-SOUND_SPEED = 3**-0.5
+Actuator = CPPN | Rest
+"""What moves a body: a network, or rest shapes over time."""
 
 
 class Evaluation(eqx.Module):
@@ -42,21 +44,66 @@ class Evaluation(eqx.Module):
     status: Int[Array, "*block"]
 
 
+class Goal(eqx.Module):
+    """What fitness is made of: its weight on displacement and on collected energy."""
+
+    displacement: float = eqx.field(static=True, default=1.0)
+    energy: float = eqx.field(static=True, default=0.0)
+
+
 class Task(eqx.Module):
-    """A world with a body at its start, and what its controller's outputs mean."""
+    """A world with a body at its start, what its controller's outputs mean, and the goal."""
 
     world: World
     start: State
-    controls: Controls = eqx.field(static=True)
+    controls: Controls | None = eqx.field(static=True)
+    goal: Goal = Goal()
+    length: float = eqx.field(static=True, default=1.0)
+    """How far the body reaches, in cells: the length in the Reynolds number."""
+
+
+class Seen(eqx.Module):
+    """What is observed in every step."""
+
+    centre: Float[Array, "*time 2"]
+    rest: Rest
+    speed: Float[Array, "*time"]
+    pace: Float[Array, "*time"]
+    held: Float[Array, "*time"]
 
 
 def evaluate(task: Task, network: CPPN) -> Evaluation:
-    """Simulate one creature; fitness is the displacement of its mean node, in cells."""
-    rest = develop(network, task.controls)
-    end, centres = rollout(task.world, task.start, rest, centre)
-    features = measure(task, network, rest, end, centres)
-    fitness = features[FEATURES.index("displacement")]
-    return Evaluation(fitness, features, status(task.world, end, features))
+    """Simulate one creature and measure it."""
+    inputs, control = drive(task, network)
+    end, seen = rollout(task.world, task.start, inputs, observe, control)
+    features = measure(task, network, end, seen)
+    return Evaluation(fitness(task, features), features, status(task.world, end, features))
+
+
+def drive(task: Task, actuator: Actuator) -> tuple[PyTree[Array], Callable]:
+    """What `rollout` needs of a body's actuator: inputs over time, and its control."""
+    controls = task.controls
+    if isinstance(actuator, Rest) or controls is None:
+        return actuator, follow
+    if not controls.senses:
+        return develop(actuator, controls), follow
+
+    def control(world: World, state: State, given: tuple[Array, Array]) -> Rest:
+        return respond(actuator, controls, given[0], given[1], sense(world, state))
+
+    dtype = actuator.bias.dtype
+    return (jnp.asarray(controls.timer.T, dtype), jnp.asarray(controls.ramp, dtype)), control
+
+
+def observe(state: State, measures: Measures) -> Seen:
+    """What features are made of."""
+    return Seen(
+        centre=centre(state),
+        rest=measures.rest,
+        speed=measures.speed,
+        pace=measures.pace,
+        held=measures.held,
+    )
 
 
 def centre(state: State) -> Float[Array, "2"]:
@@ -64,25 +111,44 @@ def centre(state: State) -> Float[Array, "2"]:
     return jnp.mean(state.positions, 0)
 
 
-def measure(
-    task: Task, network: CPPN, rest: Rest, end: State, centres: Float[Array, "time 2"]
-) -> Float[Array, "feature"]:
+def measure(task: Task, network: CPPN, end: State, seen: Seen) -> Float[Array, "feature"]:
     """The features of a simulated creature, in the order of `FEATURES`."""
+    values = motion(task, end, seen)
+    fixed = (task.controls.inputs if task.controls else 0) + OUTPUTS
+    values["hidden_nodes"] = jnp.sum(network.node_used) - fixed
+    values["connections"] = jnp.sum(network.connection_used & network.enabled)
+    dtype = seen.centre.dtype
+    return jnp.stack([values[name].astype(dtype) for name in FEATURES])
+
+
+def motion(task: Task, end: State, seen: Seen) -> dict[str, Any]:
+    """What can be measured of any actuator's motion."""
     start = centre(task.start)
-    moved = jnp.diff(jnp.concatenate([start[None], centres]), axis=0)
-    displacement, path = _norm(centres[-1] - start), jnp.sum(_norm(moved))
-    fixed = task.controls.inputs.shape[0] + OUTPUTS
-    values = {
+    moved = jnp.diff(jnp.concatenate([start[None], seen.centre]), axis=0)
+    displacement, path = _norm(seen.centre[-1] - start), jnp.sum(_norm(moved))
+    return {
         "displacement": displacement,
-        "bending_effort": effort(rest.angle),
-        "stretching_effort": effort(rest.length),
+        "bending_effort": effort(seen.rest.angle),
+        "stretching_effort": effort(seen.rest.length),
         "path_length": path,
         "straightness": displacement / jnp.maximum(path, 1e-12),
         "rotation": jnp.mean(end.angles - task.start.angles),
-        "hidden_nodes": jnp.sum(network.node_used) - fixed,
-        "connections": jnp.sum(network.connection_used & network.enabled),
+        "energy": jnp.zeros(()) if end.collected is None else jnp.sum(end.collected),
+        "mach": units.mach(jnp.max(seen.speed)),
+        "limited": jnp.mean(seen.held),
+        "reynolds": units.reynolds(jnp.mean(seen.pace), task.length, task.world.viscosity),
     }
-    return jnp.stack([values[name].astype(displacement.dtype) for name in FEATURES])
+
+
+def fitness(task: Task, features: Float[Array, "feature"]) -> Float[Array, ""]:
+    """Displacement in cells, collected energy, or both, as the goal weighs them."""
+    goal = task.goal
+    if goal.energy == 0:
+        return features[FEATURES.index("displacement")]
+    energy = goal.energy * features[FEATURES.index("energy")]
+    if goal.displacement == 0:
+        return energy
+    return goal.displacement * features[FEATURES.index("displacement")] + energy
 
 
 def effort(rest: Float[Array, "time item"]) -> Float[Array, ""]:
@@ -93,27 +159,32 @@ def effort(rest: Float[Array, "time item"]) -> Float[Array, ""]:
 def status(world: World, end: State, features: Float[Array, "feature"]) -> Int[Array, ""]:
     """0 where the numbers can be believed, else why they cannot."""
     u = flow(world, end)
-    fastest = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
+    last = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
+    fastest = jnp.maximum(features[FEATURES.index("mach")], units.mach(last))
     finite = jnp.all(jnp.isfinite(features)) & jnp.isfinite(fastest)
     # At the lattice's speed of sound the expansion in Mach number means nothing any more.
-    return jnp.where(finite, jnp.where(fastest < SOUND_SPEED, 0, 2), 1)
+    return jnp.where(finite, jnp.where(fastest < 1, 0, 2), 1)
 
 
 def block_program(
     task: Task, evaluate: Callable, options: dict
 ) -> Callable[[CPPN], Evaluation]:
-    """One compiled program that evaluates a block, one creature after another on a CPU.
+    """One compiled program that evaluates a block of networks."""
+    return jax.jit(
+        lambda networks: mapped(lambda network: evaluate(task, network), networks),
+        compiler_options=options,
+    )
+
+
+def mapped(function: Callable, block: PyTree[Array]) -> Any:
+    """A function of every item of a block: one after another on a CPU, elsewhere a batch.
 
     On a CPU one world fits in a core's cache and a block keeps one core busy (measured
-    faster than a batch, with a device a core); elsewhere the block is one batch.
+    faster than a batch, with a device a core).
     """
-
-    def block(networks: CPPN) -> Evaluation:
-        if jax.default_backend() == "cpu":
-            return jax.lax.map(lambda network: evaluate(task, network), networks)
-        return jax.vmap(lambda network: evaluate(task, network))(networks)
-
-    return jax.jit(block, compiler_options=options)
+    if jax.default_backend() == "cpu":
+        return jax.lax.map(function, block)
+    return jax.vmap(function)(block)
 
 
 def _norm(v: Float[Array, "*batch 2"]) -> Float[Array, "*batch"]:

@@ -1,31 +1,49 @@
 """Everything a run can be, validated: the only place where a default is written."""
 
-from .base import Part
+from .base import Part, field_path, identity
+from .body import Body, Chain, Known, shape
 from .control import OUTPUTS, Control, Genome
+from .coupling import Coupling
 from .estimate import Estimate, estimate
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
+from .fields import Energy, Steric
+from .gaits import FORMS, Gaits
 from .quality_diversity import QualityDiversity
+from .scaling import Scaling
+from .scene import Gait, Scene
 from .search import Archive, Descriptor, Search, Task
-from .world import Body, Coupling, World
+from .world import World
 
 __all__ = [
     "EXPERIMENTS",
+    "FORMS",
     "OUTPUTS",
     "Archive",
     "Body",
+    "Chain",
     "Control",
     "Coupling",
     "Descriptor",
+    "Energy",
     "Estimate",
     "Experiment",
+    "Gait",
+    "Gaits",
     "Genome",
+    "Known",
     "Part",
     "Preset",
     "QualityDiversity",
+    "Scaling",
+    "Scene",
     "Search",
     "Spec",
+    "Steric",
     "Task",
     "World",
     "estimate",
+    "field_path",
+    "identity",
     "parse",
+    "shape",
 ]

@@ -1,7 +1,13 @@
 """What every part of a spec shares: nothing unknown is accepted and nothing changes."""
 
+from collections.abc import Sequence
+from typing import Any, Final
+
 from pydantic import BaseModel, ConfigDict
 from pydantic.config import JsonDict
+
+LATER: Final = "added after creatures had names"
+"""Marks a field that an identity leaves out at its default, so that names stay the same."""
 
 
 class Part(BaseModel):
@@ -16,6 +22,31 @@ class Part(BaseModel):
     )
 
 
+TAGS: dict[str | int, tuple[str, ...]] = {
+    "body": ("chain", "ring", "arc", "star", "tree", "polyline", "graph", "known"),
+    "genome": ("cppn", "gait"),
+}
+"""Fields that are one of several parts, and what pydantic puts behind them in errors."""
+
+
+def field_path(location: Sequence[str | int]) -> str:
+    """Where pydantic found an error, as people write it: without tags of unions."""
+    pairs = zip(("", *location), location, strict=False)
+    return ".".join(str(part) for owner, part in pairs if part not in TAGS.get(owner, ()))
+
+
 def unit(name: str) -> JsonDict:
     """The unit of a field, for the forms that people fill in."""
     return {"unit": name}
+
+
+def identity(part: Part) -> dict[str, Any]:
+    """The part as it stands in a creature's identity."""
+    document = part.model_dump(mode="json")
+    for name, field in type(part).model_fields.items():
+        value = getattr(part, name)
+        if LATER in field.metadata and value == field.default:
+            del document[name]
+        elif isinstance(value, Part):
+            document[name] = identity(value)
+    return document

@@ -1,10 +1,10 @@
 """The controller: what a CPPN sees, what its outputs mean and how its genome varies."""
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import Part, unit
+from .base import LATER, Part, unit
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
 OUTPUTS = ("rest_angle", "rest_length")
@@ -26,9 +26,12 @@ class Control(Part):
     length_scale: float = Field(default=0.1, ge=0.0, le=0.8)
     """Rest lengths are the body's own times 1 + this times tanh of the output."""
 
+    sense_energy: Annotated[bool, LATER] = False
+    """Whether the CPPN also sees the energy at its node, which closes the loop."""
+
     @property
     def inputs(self) -> tuple[str, ...]:
-        return INPUTS[self.timer]
+        return INPUTS[self.timer] + (("energy",) if self.sense_energy else ())
 
 
 class Genome(Part):

@@ -1,12 +1,22 @@
 """What a run will need, before it is accepted."""
 
 from dataclasses import dataclass
+from functools import singledispatch
 from math import ceil
 
+from .body import shape
 from .experiments import Spec
+from .gaits import Gaits
+from .quality_diversity import QualityDiversity
+from .scaling import Scaling
+from .scene import Scene
 
 FLOAT = 4
 PLANES = 9
+WINDOW = 16
+"""Cells around a node."""
+CHUNK = 2**13
+"""Nodes that are worked on at a time."""
 
 
 @dataclass(frozen=True)
@@ -17,28 +27,76 @@ class Estimate:
     """Fluid cells times steps of the whole run: the work that dominates."""
 
 
+@singledispatch
 def estimate(spec: Spec) -> Estimate:
     """An upper estimate of a worker's memory, and the work of the whole run.
 
-    Memory counts one block in flight with the populations before, during and after a
-    step, the coupling's windows of 16 cells a node, the controls of all steps, and the
-    archive with its offspring and what varying them takes. It leaves out what JAX itself
-    occupies.
+    Memory counts what is in flight at once with the populations before, during and after a
+    step, the coupling's windows of 16 cells a node, the controls of all steps, and for an
+    archive the offspring and what varying them takes. It leaves out what JAX itself occupies.
     """
-    world, body, task, search = spec.world, spec.body, spec.task, spec.search
-    cells = world.width * world.height
-    fluid = 4 * PLANES * cells * FLOAT
-    coupling = 8 * 16 * body.nodes * FLOAT
-    # A batched choice among activations computes all of them.
-    controls = 10 * task.steps * body.nodes * (spec.genome.max_nodes + 2) * FLOAT
+    raise TypeError(f"`spec` must be an experiment's, got {type(spec).__name__}")
+
+
+@estimate.register
+def _(spec: QualityDiversity) -> Estimate:
+    search = spec.search
     genome = FLOAT * (3 * spec.genome.max_nodes + 5 * spec.genome.max_connections)
     archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 128)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
     evaluations = search.batch * search.generations
     record = 2 * (48 * search.generations + 96 * min(evaluations, 4 * spec.archive.cells))
     computed = ceil(search.batch / search.block) * search.block * search.generations
+    one = simulation(spec.scene, spec.genome.max_nodes)
     return Estimate(
-        memory_bytes=search.block * (fluid + coupling + controls) + archive + vary + record,
+        memory_bytes=search.block * one + archive + vary + record,
         evaluations=evaluations,
-        cell_steps=computed * cells * task.steps,
+        cell_steps=computed * spec.world.width * spec.world.height * spec.task.steps,
     )
+
+
+@estimate.register
+def _(spec: Gaits) -> Estimate:
+    points = len(spec.viscosities)
+    largest = max(simulation(spec.scene(*stroke, 0.1), 0) for stroke in spec.strokes)
+    return Estimate(
+        memory_bytes=min(spec.block, points) * largest,
+        evaluations=points * len(spec.strokes),
+        cell_steps=points
+        * len(spec.strokes)
+        * spec.width
+        * spec.height
+        * spec.period
+        * spec.cycles,
+    )
+
+
+@estimate.register
+def _(spec: Scaling) -> Estimate:
+    cells, most = spec.width * spec.height, max(spec.nodes)
+    pairs = 64 * min(spec.all_pairs, most) * CHUNK // 16
+    steps = spec.steps + 3 * spec.part_steps
+    return Estimate(
+        memory_bytes=fluid(cells) + nodes(most) + pairs,
+        evaluations=len(spec.nodes),
+        cell_steps=len(spec.nodes) * cells * steps,
+    )
+
+
+def simulation(scene: Scene, network_nodes: int) -> int:
+    """Bytes of one simulated creature."""
+    count = len(shape(scene.body).positions)
+    # A batched choice among activations computes all of them.
+    controls = 10 * scene.task.steps * count * (network_nodes + 2) * FLOAT
+    cells = scene.world.width * scene.world.height
+    return fluid(cells) + nodes(count * scene.coupling.layers) + controls
+
+
+def fluid(cells: int) -> int:
+    """Bytes of the populations before, during and after a step, and of scalar fields."""
+    return (4 * PLANES + 8) * cells * FLOAT
+
+
+def nodes(count: int) -> int:
+    """Bytes of windows, and of transfers by chunks, constraints and positions."""
+    return (4 * WINDOW * count + 8 * WINDOW * min(count, CHUNK) + 60 * count) * FLOAT

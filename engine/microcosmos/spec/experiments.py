@@ -2,16 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from . import quality_diversity
+from . import gaits, quality_diversity, scaling
+from .base import Part
+from .gaits import Gaits
 from .quality_diversity import QualityDiversity
+from .scaling import Scaling
 
-Spec = QualityDiversity
-"""Any experiment's spec; a union once there are several."""
+Spec = QualityDiversity | Gaits | Scaling
+"""Any experiment's spec."""
 
 
 @dataclass(frozen=True)
@@ -27,18 +30,23 @@ class Experiment:
 
     name: str
     title: str
-    spec: type[Spec]
+    spec: type[Part]
     presets: tuple[Preset, ...]
 
 
-EXPERIMENTS = {
-    "quality-diversity": Experiment(
-        "quality-diversity",
-        "Quality-diversity: the best swimmer of every kind",
-        QualityDiversity,
-        tuple(Preset(n, t, s) for n, (t, s) in quality_diversity.PRESETS.items()),
+def _experiment(title: str, module: Any, spec: type[Part]) -> Experiment:
+    presets = tuple(Preset(name, *rest) for name, rest in module.PRESETS.items())
+    return Experiment(spec.model_fields["experiment"].default, title, spec, presets)
+
+
+_ALL = (
+    _experiment(
+        "Quality-diversity: the best swimmer of every kind", quality_diversity, QualityDiversity
     ),
-}
+    _experiment("Gaits: five known swimmers at every viscosity", gaits, Gaits),
+    _experiment("Scaling: wall time against the number of nodes", scaling, Scaling),
+)
+EXPERIMENTS = {experiment.name: experiment for experiment in _ALL}
 
 
 def parse(document: Mapping[str, Any]) -> Spec:
@@ -56,4 +64,4 @@ def parse(document: Mapping[str, Any]) -> Spec:
         )
         details = InitErrorDetails(type=error, loc=("experiment",), input=name)
         raise ValidationError.from_exception_data("Spec", [details])
-    return TypeAdapter(experiment.spec).validate_python(document)
+    return TypeAdapter(cast(type[Spec], experiment.spec)).validate_python(document)

@@ -1,14 +1,17 @@
 """The spec of a quality-diversity run, its presets, and what it will need."""
 
-from math import ceil
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
 from .base import Part
+from .body import Body, Chain
 from .control import Control, Genome
+from .coupling import Coupling
+from .fields import Steric
+from .scene import Scene, refuse_senseless, refuse_too_large
 from .search import Archive, Descriptor, Search, Task
-from .world import SUPPORT, Body, Coupling, World
+from .world import World
 
 
 class QualityDiversity(Part):
@@ -18,7 +21,7 @@ class QualityDiversity(Part):
     seed: int = Field(default=0, ge=0, lt=2**32)
     """The one source of randomness."""
     world: World = World()
-    body: Body = Body()
+    body: Body = Chain()
     coupling: Coupling = Coupling()
     control: Control = Control()
     genome: Genome = Genome()
@@ -27,23 +30,31 @@ class QualityDiversity(Part):
     search: Search = Search()
 
     @model_validator(mode="after")
-    def refuse_too_large_a_body(self) -> Self:
-        """However it turns, the stretched body and the delta's support must fit in."""
-        needed = ceil(self.body.length * (1 + self.control.length_scale) + SUPPORT)
-        side = "width" if self.world.width <= self.world.height else "height"
-        if needed > getattr(self.world, side):
-            raise ValueError(
-                f"`world.{side}` must be at least {needed} cells for `body.nodes` = "
-                f"{self.body.nodes} at `body.spacing` = {self.body.spacing:g}, stretched by "
-                f"`control.length_scale` = {self.control.length_scale:g}; "
-                f"got {getattr(self.world, side)}"
-            )
+    def check_scene(self) -> Self:
+        refuse_too_large(self.world, self.body, self.control.length_scale)
+        refuse_senseless(self.world, self.control, self.task)
         return self
+
+    @property
+    def generations(self) -> int:
+        """Generations of the whole run."""
+        return self.search.generations
+
+    @property
+    def scene(self) -> Scene:
+        """What is simulated for each creature."""
+        return Scene(
+            world=self.world,
+            body=self.body,
+            coupling=self.coupling,
+            control=self.control,
+            task=self.task,
+        )
 
 
 DEMO = QualityDiversity(
     world=World(width=32, height=32),
-    body=Body(nodes=16),
+    body=Chain(nodes=16),
     control=Control(period=50, angle_scale=0.3, length_scale=0.2),
     task=Task(steps=100),
     archive=Archive(
@@ -56,7 +67,8 @@ DEMO = QualityDiversity(
 )
 
 PAPER = QualityDiversity(
-    coupling=Coupling(projection="none", theta_feedback=0),
+    world=World(steric=Steric()),
+    coupling=Coupling(projection="none", theta_feedback=0, layers=2),
     control=Control(timer="linear", position="unit", angle_scale=0.5, length_scale=0.3),
     archive=Archive(
         descriptors=(
@@ -73,7 +85,7 @@ PRESETS = {
         QualityDiversity(),
     ),
     "paper": (
-        "As in the paper: linear timer, linear efforts, free edge angles, no projection",
+        "As in the paper: linear timer and efforts, two layers, repulsion; not force-free",
         PAPER,
     ),
 }

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import Part, unit
+from .base import LATER, Part, unit
 
 
 class Task(Part):
@@ -13,8 +13,11 @@ class Task(Part):
 
     steps: int = Field(default=500, ge=10, le=1_000_000, json_schema_extra=unit("steps"))
     """Steps of the simulation."""
-    fitness: Literal["displacement"] = "displacement"
-    """Distance between the mean unwrapped node position at the end and at the start."""
+    fitness: Literal["displacement", "energy", "displacement+energy"] = "displacement"
+    """Distance between the mean unwrapped node position at the end and at the start; energy
+    that all nodes collect; or both."""
+    energy_weight: Annotated[float, LATER] = Field(default=1e-3, gt=0.0, le=1e3)
+    """What a unit of collected energy is worth beside a cell of displacement."""
 
 
 class Descriptor(Part):

@@ -7,6 +7,7 @@ import pytest
 
 from microcosmos.archive import creature
 from microcosmos.archive.encoding import encode
+from microcosmos.spec import identity
 
 pytestmark = pytest.mark.fast
 
@@ -39,8 +40,8 @@ IDENTITY = {
 @pytest.fixture
 def file():
     """A sound creature file, all defaults written out."""
-    parsed = creature.Identity.model_validate(IDENTITY).model_dump(mode="json")
-    return creature.document(parsed, None, None)
+    parsed = creature.Identity.model_validate(IDENTITY)
+    return creature.document(identity(parsed), None, None)
 
 
 def refused(file, change) -> creature.CreatureError:
@@ -158,4 +159,6 @@ def test_room_for_fewer_genes_than_there_are_is_refused(file):
     nodes["bias"] = encode([0] * 9)
     file["sha256"] = creature.name(file["identity"])
     assert creature.parse(file)
-    assert "`room` must be at least" in str(refused(file | {"measured": measured()}, dict))
+    assert "`measured.room` must be at least" in str(
+        refused(file | {"measured": measured()}, dict)
+    )

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import coupling
+from microcosmos import coupling, groups
 
 SIZE = (32, 32)
 
@@ -28,16 +28,20 @@ def scene(float64):
 def force(scene, iterations, projection=coupling.torque_free, limit=None):
     at = coupling.windows(scene["positions"], SIZE)
     return coupling.multi_direct_forcing(
-        **scene, at=at, iterations=iterations, projection=projection, limit=limit
+        **scene,
+        at=at,
+        groups=groups.one(len(scene["positions"])),
+        iterations=iterations,
+        projection=projection,
+        limit=limit,
     )
 
 
 def slip(scene, forced):
     """How far the forced fluid misses the target, root mean square over nodes."""
     at = coupling.windows(scene["positions"], SIZE)
-    weights = at.weights / coupling.read(scene["rho"], at)
     change = coupling.spread(forced.forcing, at, SIZE)
-    reached = jnp.stack([jnp.sum(weights * coupling.read(p, at), (1, 2)) for p in change], 1)
+    reached = coupling.interpolate(change, coupling.divided(at, scene["rho"]))
     return float(jnp.sqrt(jnp.mean((forced.target - scene["velocity"] - reached) ** 2)))
 
 

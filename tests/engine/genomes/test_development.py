@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from microcosmos import genomes, neat
-from microcosmos.build import build_body, build_controls
-from microcosmos.spec import Body, Control
+from microcosmos.build import build_controls
+from microcosmos.spec import Chain, Control, shape
 
-BODY = build_body(Body(nodes=12))
+BODY = shape(Chain(nodes=12))
 STEPS = 120
 
 
@@ -44,11 +44,11 @@ def test_a_periodic_timer_repeats_the_shape(network):
 
 
 def test_a_linear_timer_runs_from_zero_towards_one():
-    inputs = controls(timer="linear", position="unit").inputs.reshape(2, STEPS, 12)
-    np.testing.assert_allclose(inputs[0, 0], BODY.arc)
-    np.testing.assert_allclose(inputs[1, :, 0], np.arange(STEPS) / STEPS)
+    found = controls(timer="linear", position="unit")
+    np.testing.assert_allclose(found.position, BODY.arc)
+    np.testing.assert_allclose(found.timer, np.arange(STEPS)[None] / STEPS)
 
 
 def test_signed_positions_run_from_minus_one_to_one():
-    position = controls().inputs.reshape(3, STEPS, 12)[0, 0]
+    position = controls().position
     assert (position[0], position[-1]) == (-1, 1)

@@ -34,7 +34,7 @@ def bits(evaluation: search.Evaluation, slot: int) -> str:
 
 
 def main() -> None:
-    program, genes = build_block(SPEC), build_genes(SPEC)
+    program, genes = build_block(SPEC.scene), build_genes(SPEC)
     children = search.newcomers(np.int32(0), genes, key=jax.random.key(0), batch=64)
     networks = jax.device_get(children.networks)
 

@@ -6,7 +6,7 @@ import sys
 import pytest
 from pydantic import ValidationError
 
-from microcosmos.spec import EXPERIMENTS, QualityDiversity, estimate, parse
+from microcosmos.spec import EXPERIMENTS, QualityDiversity, estimate, field_path, parse
 
 pytestmark = pytest.mark.fast
 
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.fast
 def refusal(**changes) -> str:
     with pytest.raises(ValidationError) as caught:
         parse({"experiment": "quality-diversity", **changes})
-    return str(caught.value)
+    return "\n".join(f"{field_path(e['loc'])}: {e['msg']}" for e in caught.value.errors())
 
 
 @pytest.mark.parametrize(

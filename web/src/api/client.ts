@@ -3,7 +3,7 @@
 import createClient from "openapi-fetch";
 import { problemOf } from "./problem";
 import type { paths } from "./schema";
-import type { Creature, Experiment, Run, RunPage, Spec } from "./types";
+import type { Audit, Creature, Experiment, Results, Run, RunPage, Spec } from "./types";
 
 const ROOT = "/api/v1";
 export const EVENTS_URL = `${ROOT}/events`;
@@ -41,6 +41,10 @@ export async function readRun(id: string): Promise<Run> {
 
 export function readArchive(id: string) {
   return success(client.GET(`${ROOT}/runs/{run_id}/archive`, run(id)));
+}
+
+export async function readResults(id: string): Promise<Results> {
+  return (await success(client.GET(`${ROOT}/runs/{run_id}/results`, run(id)))) as Results;
 }
 
 export function readGenerations(id: string, points: number) {
@@ -81,13 +85,33 @@ export async function readReplay(sha: string): Promise<ArrayBuffer | null> {
   return (await asked).response.status === 202 ? null : bytes;
 }
 
+/** The audit, or null while the renderer is still at work on it. */
+export async function readAudit(sha: string): Promise<Audit | null> {
+  const asked = client.GET(`${ROOT}/creatures/{sha}/audit`, { params: { path: { sha } } });
+  const audit = (await success(asked as Promise<Answer<unknown>>)) as Audit;
+  return (await asked).response.status === 202 ? null : audit;
+}
+
+/** True once a rendering is there, null while it is made; nothing of it is read. */
+export async function proveRendering(url: string): Promise<true | null> {
+  return (await proved(url)).status === 202 ? null : true;
+}
+
 /** Throws the reason where a file cannot be had; nothing of it is read. */
 export async function proveFile(url: string): Promise<void> {
+  await proved(url);
+}
+
+async function proved(url: string): Promise<Response> {
   const stop = new AbortController();
   const response = await fetch(url, { signal: stop.signal });
   if (!response.ok) throw problemOf(response.status, await response.json().catch(() => null));
   stop.abort();
+  return response;
 }
 
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
+export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
+export type Picture = "strip.png" | "film.gif" | "film.mp4";
+export const pictureUrl = (sha: string, kind: Picture) => `${ROOT}/creatures/${sha}/${kind}`;
 export const creatureFileUrl = (sha: string) => `${ROOT}/creatures/${sha}?download=1`;

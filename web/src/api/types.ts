@@ -10,7 +10,9 @@ export type Json = null | boolean | number | string | Json[] | { [key: string]: 
 export type Spec = { [key: string]: Json };
 export type Schema = { [keyword: string]: Json };
 
-export type Run = With<Wire["RunRead"], { spec: Spec }>;
+export type Run = With<Wire["RunRead"], { spec: Spec; summary: Values | null }>;
+/** How a run stands; what it is may be left out where that was told before. */
+export type RunEvent = Omit<Run, "spec"> & { spec?: Spec };
 export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
 export type Preset = With<Wire["PresetRead"], { spec: Spec }>;
 export type Experiment = With<Wire["ExperimentRead"], { schema: Schema; presets: Preset[] }>;
@@ -20,8 +22,15 @@ export type Archive = Wire["ArchiveRead"];
 export type ArchiveColumns = Omit<Archive, "generation" | "axes">;
 export type Generations = Wire["Curves"];
 
-export interface Genome {
-  encoding: string;
+export type Value = null | boolean | number | string;
+export type Values = { [name: string]: Value };
+/** A line of a run's result; `creature` names whom it is about, if anybody. */
+export type ResultRow = Values & { creature: string | null };
+export type Results = With<Wire["ResultsRead"], { rows: ResultRow[]; summary: Values | null }>;
+
+/** A network of nodes and connections. */
+export interface Genes {
+  encoding: "cppn";
   inputs: string[];
   outputs: string[];
   nodes: { id: number[]; activation: string[]; bias: string };
@@ -32,6 +41,34 @@ export interface Genome {
     enabled: boolean[];
     weight: string;
   };
+}
+
+/** A gait made by hand, in the place of genes. */
+export interface Stroke {
+  encoding: "gait";
+  swimmer: string;
+  period: number;
+  ramp: number;
+}
+
+export type Genome = Genes | Stroke;
+
+export interface AuditRow {
+  name: string;
+  quantity: string;
+  value: number | null;
+  unit: string;
+  /** What it needs to be, in words. */
+  bar: string | number | null;
+  passed: boolean | null;
+  /** What it means where it has not passed. */
+  note: string;
+}
+
+/** Whether a creature's swimming survives refinement, and the figures that say so. */
+export interface Audit {
+  verdict: { survives: boolean; reasons: string[] };
+  rows: AuditRow[];
 }
 
 /** A creature file; one made elsewhere may know neither its figures nor its origin. */
@@ -71,6 +108,14 @@ export type GenerationEvent = { run: string } & {
 };
 
 export type ElitesEvent = ArchiveColumns & { run: string; generation: number };
+
+export interface ResultsEvent {
+  run: string;
+  generation: number;
+  /** As the run's, where this generation changed it. */
+  summary: Values | null;
+  rows: ResultRow[];
+}
 
 export interface RewindEvent {
   run: string;

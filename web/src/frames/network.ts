@@ -1,6 +1,6 @@
 /** A genome's arrays as a graph: nodes with their depth, links with their weights. */
 
-import type { Genome } from "../api/types";
+import type { Genes } from "../api/types";
 import { decodeFloats } from "./base64";
 
 export interface Neuron {
@@ -25,7 +25,7 @@ export interface Network {
   depth: number;
 }
 
-export function networkOf(genome: Genome): Network {
+export function networkOf(genome: Genes): Network {
   const { nodes, connections, inputs, outputs } = genome;
   const biases = decodeFloats(nodes.bias);
   const weights = decodeFloats(connections.weight);

@@ -5,7 +5,7 @@ import { type Curves, NO_CURVES, appendCurves, cutCurves, mergeCurves } from "./
 import { type Elites, cutElites, mergeElites, withElites } from "./elites";
 
 export interface Detail {
-  /** Null until the first snapshot is there. */
+  /** Null until the first snapshot is there, and where a run has no archive. */
   archive: Archive | null;
   elites: Elites;
   curves: Curves | null;
@@ -32,8 +32,12 @@ export function withCurvePoint(detail: Detail, event: GenerationEvent): Detail {
   return { ...detail, curves: detail.curves && appendCurves(detail.curves, event), news };
 }
 
-export function replaced(detail: Detail, archive: Archive, generations: Generations): Detail {
-  const elites = mergeElites(archive, detail.news.elites);
+export function replaced(
+  detail: Detail,
+  archive: Archive | null,
+  generations: Generations,
+): Detail {
+  const elites = archive ? mergeElites(archive, detail.news.elites) : detail.elites;
   return { ...detail, archive, elites, curves: mergeCurves(generations, detail.news.curves) };
 }
 

@@ -3,9 +3,12 @@
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Experiment } from "../api/types";
+import type { Experiment, Results, Run } from "../api/types";
 import { current, dispatch, useLive } from "./live";
 import { epochOf } from "./store";
+
+/** Whether a run searches for elites; others measure, and their result is a table. */
+export const hasArchive = ({ spec }: Run) => "archive" in spec;
 
 const PAGE = 30;
 /** Points of a curve that a snapshot carries; a screen shows no more. */
@@ -61,13 +64,20 @@ export function useRunDetail(id: string): Loaded<true> {
   const epoch = useLive((state) => epochOf(state, id));
   return useFetched(async () => {
     dispatch({ type: "open", run: id });
-    const [run, archive, generations] = await Promise.all([
-      api.readRun(id),
-      api.readArchive(id),
+    const run = await api.readRun(id);
+    const [archive, generations] = await Promise.all([
+      hasArchive(run) ? api.readArchive(id) : null,
       api.readGenerations(id, POINTS),
     ]);
     if (epoch === epochOf(current(), id)) dispatch({ type: "run", run });
     dispatch({ type: "snapshot", run: id, epoch, archive, generations });
     return true as const;
   }, [id, epoch]);
+}
+
+/** Keeps the table of a run fetched: anew after every row, rewind and reset. */
+export function useResults(id: string): Loaded<Results> {
+  const epoch = useLive((state) => epochOf(state, id));
+  const told = useLive((state) => state.tables.get(id));
+  return useFetched(() => api.readResults(id), [id, epoch, told]);
 }

@@ -5,8 +5,10 @@ import type {
   ElitesEvent,
   GenerationEvent,
   Generations,
+  ResultsEvent,
   RewindEvent,
   Run,
+  RunEvent,
   RunPage,
 } from "../api/types";
 import {
@@ -27,6 +29,8 @@ export interface State {
   runs: ReadonlyMap<string, Run>;
   paces: ReadonlyMap<string, Pace>;
   details: ReadonlyMap<string, Detail>;
+  /** How often the table of a run has grown since the page was opened. */
+  tables: ReadonlyMap<string, number>;
   /** Ids of the listed runs, newest first, and where the list goes on. */
   listed: readonly string[];
   next: string | null;
@@ -38,12 +42,19 @@ export interface State {
 
 export type Action =
   | { type: "connection"; connection: Connection }
-  | { type: "run"; run: Run }
+  | { type: "run"; run: RunEvent }
   | { type: "list"; page: RunPage; more: boolean }
   | { type: "open"; run: string }
-  | { type: "snapshot"; run: string; epoch: number; archive: Archive; generations: Generations }
+  | {
+      type: "snapshot";
+      run: string;
+      epoch: number;
+      archive: Archive | null;
+      generations: Generations;
+    }
   | { type: "generation"; event: GenerationEvent }
   | { type: "elites"; event: ElitesEvent }
+  | { type: "results"; event: ResultsEvent }
   | { type: "rewind"; event: RewindEvent }
   | { type: "reset" };
 
@@ -52,6 +63,7 @@ export const EMPTY: State = {
   runs: new Map(),
   paces: new Map(),
   details: new Map(),
+  tables: new Map(),
   listed: [],
   next: null,
   epoch: 0,
@@ -74,6 +86,8 @@ export function reduce(state: State, action: Action): State {
       return withGeneration(state, action.event);
     case "elites":
       return withDetail(state, action.event.run, (detail) => withChanges(detail, action.event));
+    case "results":
+      return grown(state, action.event);
     case "rewind":
       return rewound(state, action.event);
     case "reset":
@@ -86,7 +100,10 @@ export function epochOf(state: State, run: string): number {
   return state.epoch + (state.epochs.get(run) ?? 0);
 }
 
-function withRun(state: State, run: Run): State {
+function withRun(state: State, event: RunEvent): State {
+  const spec = event.spec ?? state.runs.get(event.id)?.spec;
+  if (!spec) return state;
+  const run = { ...event, spec };
   const known = state.listed.includes(run.id);
   const listed = known ? state.listed : byAge(state.runs, [run, ...state.listed]);
   return { ...state, runs: new Map(state.runs).set(run.id, run), listed };
@@ -137,6 +154,15 @@ function advanced(run: Run, event: GenerationEvent, pace: Pace): Run {
   const progress = Math.min(1, generation / run.generations);
   const sparkline = withPoint(run.sparkline, run.generation, qd_score, generation);
   return { ...run, ...newer, progress, sparkline, ...rateOf(pace, run) };
+}
+
+/** Tables are short: they are fetched anew rather than put together of events. */
+function grown(state: State, { run: id, generation, summary }: ResultsEvent): State {
+  const count = (state.tables.get(id) ?? 0) + 1;
+  const next = { ...state, tables: new Map(state.tables).set(id, count) };
+  const run = state.runs.get(id);
+  if (!run || !summary || generation < run.generation) return next;
+  return { ...next, runs: new Map(state.runs).set(id, { ...run, summary }) };
 }
 
 function rewound(state: State, event: RewindEvent): State {

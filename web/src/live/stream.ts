@@ -46,6 +46,7 @@ function open(): void {
   listen(opened, "run", (run) => ({ type: "run", run }) as Action);
   listen(opened, "generation", (event) => ({ type: "generation", event }) as Action);
   listen(opened, "elites", (event) => ({ type: "elites", event }) as Action);
+  listen(opened, "results", (event) => ({ type: "results", event }) as Action);
   listen(opened, "rewind", (event) => ({ type: "rewind", event }) as Action);
   listen(opened, "reset", () => ({ type: "reset" }));
 }

@@ -3,16 +3,20 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Creature } from "../api/types";
+import type { Genes, Spec } from "../api/types";
 import { networkOf } from "../frames/network";
 import { type Replay, decodeReplay } from "../frames/replay";
 import { useFetched } from "../live/fetching";
 import { poll } from "../live/polling";
 import { tell } from "../live/toasts";
-import { number, short } from "../view/format";
-import { UNKNOWN, factsOf } from "../view/facts";
+import { number, short, words } from "../view/format";
+import { isFree } from "../view/coupling";
+import { NotFree } from "../view/NotFree";
 import { NetworkGraph } from "../view/network/NetworkGraph";
 import { ReplayPlayer } from "../view/replay/ReplayPlayer";
+import { AuditCard } from "./Audit";
+import { Facts } from "./Facts";
+import { Pictures } from "./Pictures";
 
 interface Props {
   sha: string;
@@ -33,8 +37,12 @@ export function CreaturePage({ sha, query }: Props) {
       </nav>
       <header class="page-head">
         <h1>
-          Creature <code>{short(sha)}</code>
+          {creature?.identity.genome.encoding === "gait"
+            ? words(creature.identity.genome.swimmer)
+            : "Creature"}{" "}
+          <code>{short(sha)}</code>
         </h1>
+        {creature && !isFree(creature.identity.world.coupling) && <NotFree />}
         <span class="spring" />
         {creature && <Sharing sha={sha} />}
       </header>
@@ -42,9 +50,12 @@ export function CreaturePage({ sha, query }: Props) {
       {!creature && !error && <p class="quiet loading">Loading creature …</p>}
       {creature && (
         <div class="creature-columns">
-          <Motion key={sha} sha={sha} />
+          <Motion key={sha} sha={sha} task={creature.identity.task} />
           <div class="stack">
-            <Brain creature={creature} />
+            {creature.identity.genome.encoding === "cppn" && (
+              <Brain genes={creature.identity.genome} />
+            )}
+            <AuditCard key={sha} sha={sha} query={query} />
             <Facts creature={creature} run={run} />
           </div>
         </div>
@@ -70,7 +81,7 @@ function Sharing({ sha }: { sha: string }) {
   );
 }
 
-function Motion({ sha }: { sha: string }) {
+function Motion({ sha, task }: { sha: string; task: Spec }) {
   const { replay, note, error } = useReplay(sha);
   return (
     <section class="card motion" aria-label="Replay">
@@ -87,7 +98,8 @@ function Motion({ sha }: { sha: string }) {
         </div>
       )}
       {replay && <ReplayPlayer replay={replay} />}
-      {replay && <Difference replay={replay} />}
+      {replay && <Difference replay={replay} task={task} />}
+      {replay && <Pictures sha={sha} />}
     </section>
   );
 }
@@ -120,58 +132,25 @@ function read(bytes: ArrayBuffer): Partial<Rendering> {
   }
 }
 
-function Difference({ replay }: { replay: Replay }) {
+function Difference({ replay, task }: { replay: Replay; task: Spec }) {
   const { recorded, replayed, difference } = replay.header.fitness;
+  const swims = task.fitness === "displacement";
   return (
     <p class="quiet small">
-      In this replay it swims {number(replayed, 4)} cells
+      In this replay {swims ? "it swims" : "its fitness is"} {number(replayed, 4)}
+      {swims && " cells"}
       {recorded !== null && `; its recorded fitness is ${number(recorded, 4)}`}
       {difference !== null && difference !== 0 && ` (rounding: ${number(difference, 2)})`}.
     </p>
   );
 }
 
-function Brain({ creature }: { creature: Creature }) {
-  const network = useMemo(() => networkOf(creature.identity.genome), [creature]);
+function Brain({ genes }: { genes: Genes }) {
+  const network = useMemo(() => networkOf(genes), [genes]);
   return (
     <section class="card" aria-labelledby="network-title">
       <h2 id="network-title">Network</h2>
       <NetworkGraph network={network} />
-    </section>
-  );
-}
-
-function Facts({ creature, run }: { creature: Creature; run: string | null }) {
-  const parents = creature.provenance?.parents;
-  return (
-    <section class="card" aria-labelledby="facts-title">
-      <h2 id="facts-title">Measurements</h2>
-      <dl class="rows">
-        {factsOf(creature).map(([name, value]) => (
-          <div key={name}>
-            <dt>{name}</dt>
-            <dd>{value}</dd>
-          </div>
-        ))}
-        <div>
-          <dt>Parents</dt>
-          <dd>
-            {!parents && UNKNOWN}
-            {parents?.length === 0 && "none: random"}
-            {parents?.map((parent) => (
-              <a key={parent} href={`/creatures/${parent}${run ? `?run=${run}` : ""}`}>
-                <code>{short(parent)}</code>
-              </a>
-            ))}
-          </dd>
-        </div>
-        <div>
-          <dt>SHA-256</dt>
-          <dd>
-            <code class="long">{creature.sha256}</code>
-          </dd>
-        </div>
-      </dl>
     </section>
   );
 }

@@ -43,7 +43,7 @@ function Editor({ experiments, first }: EditorProps) {
   const check = useEstimate(spec, slips);
   const { start, busy, refusal } = useSubmission(spec);
   const errors = [...(refusal?.errors ?? []), ...check.errors];
-  const messages = messagesByPath([...slips, ...errors]);
+  const messages = messagesByPath([...slips, ...errors], form, spec);
   const choose = (chosen: Preset, of: Experiment) => {
     setExperiment(of);
     setPreset(chosen);

@@ -1,19 +1,18 @@
-/** One run: its archive, its curves, how it is doing, and its files. */
+/** One run: how it is doing, what it has come to, and its files. */
 
 import { useEffect } from "preact/hooks";
-import { archiveUrl, proveFile } from "../api/client";
-import { messageOf } from "../api/problem";
-import type { Axis, Run } from "../api/types";
-import { useExperiments, useRunDetail } from "../live/fetching";
+import type { Run } from "../api/types";
+import { hasArchive, useExperiments, useRunDetail } from "../live/fetching";
 import { useLive } from "../live/live";
-import type { Detail } from "../live/detail";
-import { tell } from "../live/toasts";
-import { navigate, setQuery } from "../router";
-import { ArchiveMap } from "../view/archive/ArchiveMap";
-import type { ColourBy } from "../view/archive/draw";
-import { Curves } from "../view/Curves";
-import { count, moment, number, percent, short, titleOf } from "../view/format";
+import { freedomOf } from "../view/coupling";
+import { count, short, titleOf } from "../view/format";
+import { NotFree } from "../view/NotFree";
+import { type Figure, figuresOf, generationsOf } from "../view/results/figures";
 import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
+import { ArchiveRun } from "./ArchiveRun";
+import { Files } from "./Files";
+import { GaitsRun } from "./GaitsRun";
+import { ScalingRun } from "./ScalingRun";
 import { ON } from "./wishes";
 
 interface Props {
@@ -36,6 +35,7 @@ export function RunPage({ id, query }: Props) {
       </main>
     );
   }
+  const freedom = freedomOf(run.spec);
   return (
     <main>
       <nav class="crumbs" aria-label="Where you are">
@@ -46,23 +46,16 @@ export function RunPage({ id, query }: Props) {
           {title} <code>{short(run.id)}</code>
         </h1>
         <Badge run={run} />
+        {freedom !== "all" && <NotFree some={freedom === "some"} />}
         <span class="spring" />
         <Actions run={run} on={ON(title)} name={title} />
       </header>
       {error && <p class="banner wrong">{error}</p>}
       <Banners run={run} />
       <Standing run={run} />
-      <div class="run-columns">
-        <ArchiveCard run={run} detail={detail} query={query} />
-        <section class="card curves-card" aria-labelledby="curves-title">
-          <h2 id="curves-title">Curves</h2>
-          {detail?.curves && detail.curves.generation.length > 0 ? (
-            <Curves curves={detail.curves} />
-          ) : (
-            <p class="quiet waiting">They begin with the first generation.</p>
-          )}
-        </section>
-      </div>
+      {run.experiment === "gaits" && <GaitsRun run={run} query={query} />}
+      {run.experiment === "scaling" && <ScalingRun run={run} query={query} />}
+      {hasArchive(run) && <ArchiveRun run={run} detail={detail} query={query} />}
       <Files run={run} />
     </main>
   );
@@ -91,17 +84,18 @@ function Banners({ run }: { run: Run }) {
   );
 }
 
+const searching = (run: Run): Figure[] => [
+  ["Evaluations", count(run.evaluations)],
+  ["Evaluations/s", rateOf(run)],
+];
+
 function Standing({ run }: { run: Run }) {
   const time = timeOf(run);
-  const facts: [string, string][] = [
-    ["Generation", `${count(run.generation)} / ${count(run.generations)}`],
+  const facts: Figure[] = [
+    [generationsOf(run), `${count(run.generation)} / ${count(run.generations)}`],
     [time.label, time.text],
-    ["Evaluations", count(run.evaluations)],
-    ["Evaluations/s", rateOf(run)],
-    ["QD score", number(run.qd_score)],
-    ["Coverage", percent(run.coverage)],
-    ["Best fitness", number(run.best)],
-    ["Diverged", count(run.diverged)],
+    ...(hasArchive(run) ? searching(run) : []),
+    ...figuresOf(run),
   ];
   return (
     <section class="standing" aria-label="How the run is doing">
@@ -115,95 +109,5 @@ function Standing({ run }: { run: Run }) {
         ))}
       </dl>
     </section>
-  );
-}
-
-interface ArchiveProps {
-  run: Run;
-  detail: Detail | undefined;
-  query: URLSearchParams;
-}
-
-function ArchiveCard({ run, detail, query }: ArchiveProps) {
-  const colourBy: ColourBy = query.get("colour") === "generation" ? "generation" : "fitness";
-  const cell = query.get("cell");
-  const elites = detail?.elites;
-  const open = (chosen: number) => {
-    setQuery({ cell: String(chosen) });
-    navigate(`/creatures/${elites!.get(chosen)!.creature}?run=${run.id}`);
-  };
-  return (
-    <section class="card" aria-labelledby="archive-title">
-      <div class="card-head">
-        <h2 id="archive-title">Archive</h2>
-        <span class="quiet">{detail?.archive && elites ? `${count(elites.size)} elites` : ""}</span>
-        <span class="spring" />
-        <label class="compact">
-          Colour
-          <select
-            value={colourBy}
-            onChange={({ currentTarget: { value } }) =>
-              setQuery({ colour: value === "fitness" ? null : value })
-            }
-          >
-            <option value="fitness">fitness</option>
-            <option value="generation">generation</option>
-          </select>
-        </label>
-      </div>
-      {detail?.archive && elites ? (
-        <ArchiveMap
-          axes={detail.archive.axes as [Axis, Axis]}
-          elites={elites}
-          colourBy={colourBy}
-          marked={cell === null ? null : Number(cell)}
-          onMark={(marked) => setQuery({ cell: String(marked) })}
-          onOpen={open}
-        />
-      ) : (
-        <p class="quiet waiting">Loading the archive …</p>
-      )}
-    </section>
-  );
-}
-
-function Files({ run }: { run: Run }) {
-  const spec = JSON.stringify(run.spec, null, 2);
-  const href = `data:application/json;charset=utf-8,${encodeURIComponent(spec)}`;
-  return (
-    <section class="card files" aria-labelledby="files-title">
-      <h2 id="files-title">Files</h2>
-      <p class="links">
-        <ArchiveLink url={archiveUrl(run.id, "h5")} name="archive.h5" />
-        <ArchiveLink url={archiveUrl(run.id, "csv")} name="archive.csv" />
-        <a class="button" href={href} download={`${short(run.id)}-spec.json`}>
-          spec.json
-        </a>
-      </p>
-      <p class="quiet">
-        Archive files are of the last checkpoint. Created {moment(run.created_at)}, attempt{" "}
-        {run.attempt}, version {run.version}
-        {run.device && `, on ${run.device}`}.
-      </p>
-      <details>
-        <summary>Spec</summary>
-        <pre>{spec}</pre>
-      </details>
-    </section>
-  );
-}
-
-/** A download that says why where there is no file yet. */
-function ArchiveLink({ url, name }: { url: string; name: string }) {
-  const download = (event: MouseEvent) => {
-    event.preventDefault();
-    proveFile(url)
-      .then(() => location.assign(url))
-      .catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
-  };
-  return (
-    <a class="button" href={url} onClick={download}>
-      {name}
-    </a>
   );
 }

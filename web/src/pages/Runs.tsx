@@ -6,7 +6,10 @@ import type { Experiment, Run } from "../api/types";
 import { moreRuns, useExperiments, useRunList } from "../live/fetching";
 import { useLive } from "../live/live";
 import { tell } from "../live/toasts";
-import { DASH, number, percent, short, titleOf } from "../view/format";
+import { freedomOf } from "../view/coupling";
+import { DASH, short, titleOf } from "../view/format";
+import { NotFree } from "../view/NotFree";
+import { keyFigureOf } from "../view/results/figures";
 import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
 import { Sparkline } from "../view/Sparkline";
 import { ON } from "./wishes";
@@ -37,8 +40,7 @@ export function RunsPage() {
               <th scope="col">Progress</th>
               <th scope="col">Time</th>
               <th scope="col">Evaluations/s</th>
-              <th scope="col">QD score</th>
-              <th scope="col">Coverage</th>
+              <th scope="col">Result</th>
               <th scope="col">
                 <span class="unseen">Actions</span>
               </th>
@@ -60,12 +62,14 @@ function Row({ run, experiments }: { run: Run; experiments: Experiment[] }) {
   const title = titleOf(run, experiments);
   const name = `${title} ${short(run.id)}`;
   const time = timeOf(run);
+  const [figureName, figure] = keyFigureOf(run);
   return (
     <tr>
       <th scope="row">
         <a class="run-name" href={`/runs/${run.id}`}>
           {title} <code>{short(run.id)}</code>
         </a>
+        {freedomOf(run.spec) === "none" && <NotFree />}
         {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
         {run.warning && <span class="row-note warning-text">{run.warning}</span>}
       </th>
@@ -83,11 +87,14 @@ function Row({ run, experiments }: { run: Run; experiments: Experiment[] }) {
         {run.status === "running" && time.text !== DASH && <span class="quiet"> left</span>}
       </td>
       <td data-label="Evaluations/s">{rateOf(run)}</td>
-      <td data-label="QD score" class="with-spark">
-        <span>{number(run.qd_score)}</span>
-        <Sparkline values={run.sparkline} label={`QD score of ${name} over time`} />
+      <td data-label="Result" class="with-spark">
+        <span>
+          {figure} <span class="quiet small">{figureName}</span>
+        </span>
+        {run.sparkline.length > 1 && (
+          <Sparkline values={run.sparkline} label={`QD score of ${name} over time`} />
+        )}
       </td>
-      <td data-label="Coverage">{percent(run.coverage)}</td>
       <td class="row-actions">
         <Actions run={run} on={ON(title)} name={name} />
       </td>

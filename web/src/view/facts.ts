@@ -1,25 +1,73 @@
 /** What a creature file says of its creature, as rows of words. */
 
-import type { Creature } from "../api/types";
-import { number, words } from "./format";
+import type { Creature, Genome, Spec } from "../api/types";
+import { couplingFacts } from "./coupling";
+import { number, percent, words } from "./format";
 
 export const UNKNOWN = "unknown";
 const NOT_MEASURED = "not measured";
 
 type Row = [name: string, value: string];
 
-export function factsOf({ identity, measured, provenance, licence }: Creature): Row[] {
+/** Features whose bare name does not say what they are. */
+const FEATURES: Record<string, [name: string, write: (value: number) => string]> = {
+  displacement: ["Displacement", (value) => `${number(value, 6)} cells`],
+  cycle: ["In the last cycle", (value) => `${number(value, 6)} cells`],
+  direction: ["Direction", (value) => `${number(value)} rad`],
+  reynolds: ["Reynolds number", number],
+  sperm: ["Sperm number", number],
+  mach: ["Mach number", number],
+  limited: ["Limits active", (value) => `${percent(value)} of node steps`],
+  impulse: ["Net impulse", (value) => `${number(value)} lattice units`],
+};
+
+export function measurementsOf({ identity, measured }: Creature): Row[] {
+  if (!measured) return [["Fitness", NOT_MEASURED]];
+  const figures = Object.entries({ ...measured.descriptors, ...measured.features });
+  const gait = identity.genome.encoding === "gait";
   return [
-    ["Fitness", measured ? number(measured.fitness, 6) : NOT_MEASURED],
-    ...Object.entries({ ...measured?.descriptors, ...measured?.features }).map(
-      ([name, value]): Row => [words(name), number(value, 6)],
-    ),
-    ["Generation", String(provenance?.generation ?? UNKNOWN)],
+    ...(gait ? [] : [["Fitness", number(measured.fitness, 6)] as Row]),
+    ...figures.map(([name, value]): Row => {
+      const [title, write] = FEATURES[name] ?? [words(name), (x: number) => number(x, 6)];
+      return [title, write(value)];
+    }),
+  ];
+}
+
+export function originOf({ identity, measured, provenance, licence }: Creature): Row[] {
+  return [
+    ...gaitOf(identity.genome),
+    ["Body", bodyOf(identity.body)],
+    ["World", worldOf(identity.world)],
+    ...(identity.genome.encoding === "gait"
+      ? []
+      : [["Generation", String(provenance?.generation ?? UNKNOWN)] as Row]),
     ["Made by", provenance?.operator ?? UNKNOWN],
     ["Seed", String(provenance?.seed ?? UNKNOWN)],
-    ["Body", `${identity.body.nodes} nodes`],
-    ["World", `${identity.world.width} × ${identity.world.height} cells`],
     ["Device", measured?.device ?? UNKNOWN],
     ["Licence", licence],
   ];
+}
+
+export const formOf = ({ identity }: Creature): Row[] => couplingFacts(identity.world.coupling);
+
+function gaitOf(genome: Genome): Row[] {
+  if (genome.encoding !== "gait") return [];
+  return [
+    ["Swimmer", words(genome.swimmer)],
+    ["Period", `${number(genome.period)} steps`],
+    ["Ramp", `${number(genome.ramp)} ${genome.ramp === 1 ? "period" : "periods"}`],
+  ];
+}
+
+function bodyOf({ builder, nodes }: Spec): string {
+  const count = Array.isArray(nodes) ? nodes.length : nodes;
+  const name = words(String(builder ?? "chain"));
+  return typeof count === "number" ? `${name}, ${count} nodes` : name;
+}
+
+function worldOf({ width, height, viscosity, steric, energy }: Spec): string {
+  const fields = [steric && "steric repulsion", energy && "energy"].filter(Boolean);
+  const size = `${width} × ${height} cells, ν = ${number(viscosity as number)}`;
+  return [size, ...fields].join(", ");
 }

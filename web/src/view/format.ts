@@ -71,7 +71,10 @@ export function titleOf(run: Run, experiments: Experiment[]): string {
   const presets = experiments.find(({ experiment }) => experiment === run.experiment)?.presets;
   const preset = presets?.find(({ spec }) => seedless(spec) === seedless(run.spec));
   if (run.demonstration) return "Demonstration";
-  return words(preset?.name ?? run.experiment.replaceAll("-", " "));
+  const kind = words(run.experiment.replaceAll("-", " "));
+  if (!preset) return kind;
+  // Most runs are searches: those are known by their presets alone.
+  return run.experiment === "quality-diversity" ? words(preset.name) : `${kind}, ${preset.name}`;
 }
 
 function seedless(spec: Spec): string {

@@ -1,17 +1,9 @@
 /** A form for a spec, generated from its schema. */
 
-import type { Json } from "../../api/types";
-import { valueAt } from "./document";
-import type { Field, Rows, Section } from "./fields";
-import { ChoiceInput, FlagInput, NumberInput, TextInput } from "./inputs";
-
-export interface FormState {
-  document: Json;
-  /** What the values were when a preset filled the form. */
-  original: Json;
-  messages: ReadonlyMap<string, string[]>;
-  change: (path: string, value: Json) => void;
-}
+import { words } from "../format";
+import { isOff, partOf, valueAt } from "./document";
+import type { Field, Rows, Section, Union } from "./fields";
+import { Entry, type FormState, Messages } from "./Entry";
 
 interface Props {
   form: Section;
@@ -19,19 +11,86 @@ interface Props {
 }
 
 export function SpecForm({ form, state }: Props) {
-  const loose = form.fields.filter((field) => field.kind !== "section");
-  const sections = form.fields.filter((field) => field.kind === "section");
-  const general: Section = { ...form, title: "General", help: form.help, fields: loose };
+  const whole = (field: Field) => field.kind === "section" || field.kind === "union";
+  const loose = form.fields.filter((field) => !whole(field));
+  const general: Section = { ...form, title: "General", fields: loose };
+  const parts = [general, ...form.fields.filter(whole)];
   return (
-    <div class="spec-form">
-      {[general, ...sections].map((section) => (
-        <fieldset key={section.path} class="card form-section">
-          <legend>{section.title}</legend>
-          {section.help && <p class="help">{section.help}</p>}
-          <Messages path={section.path} messages={state.messages} />
-          <Fields fields={section.fields} state={state} />
-        </fieldset>
+    <div class={`spec-form ${parts.length < 3 ? "few" : ""}`}>
+      {parts.map((part) => (
+        <Part key={part.path} part={part as Section | Union} state={state} kind="card form-section" />
       ))}
+    </div>
+  );
+}
+
+interface PartProps {
+  part: Section | Union;
+  state: FormState;
+  kind: "card form-section" | "form-row";
+}
+
+/** A section, one that can be switched off, or one of several. */
+function Part({ part, state, kind }: PartProps) {
+  const off = part.kind === "section" && isOff(part, state.document);
+  const section = part.kind === "union" ? partOf(part, state.document) : part;
+  const switchable = part.kind === "section" && part.fresh !== undefined;
+  return (
+    <fieldset class={kind} aria-label={part.title}>
+      {!switchable && <legend>{part.title}</legend>}
+      {switchable && <Switch {...{ part, off, state }} />}
+      {part.help && <p class="help">{part.help}</p>}
+      {part.kind === "union" && <Kinds union={part} state={state} />}
+      <Messages path={part.path} messages={state.messages} />
+      {section && !off && <Fields fields={section.fields} state={state} />}
+    </fieldset>
+  );
+}
+
+/** Turns a section on with its defaults, or with what the preset has there. */
+function Switch({ part, off, state }: { part: Section; off: boolean; state: FormState }) {
+  const fresh = valueAt(state.original, part.path) ?? part.fresh!;
+  return (
+    <div class="entry heading">
+      <label for={`field-${part.path}`}>{part.title}</label>
+      <input
+        id={`field-${part.path}`}
+        type="checkbox"
+        class="switch"
+        checked={!off}
+        onChange={() => state.change(part.path, off ? fresh : null)}
+      />
+    </div>
+  );
+}
+
+/** Which of several parts; another one begins with its defaults. */
+function Kinds({ union, state }: { union: Union; state: FormState }) {
+  const path = `${union.path}.${union.tag}`;
+  const value = valueAt(state.document, path);
+  const original = valueAt(state.original, union.path);
+  const choose = (name: string) => {
+    const before = valueAt(state.original, path) === name;
+    state.change(union.path, before ? original : union.parts.get(name)!.fresh!);
+  };
+  return (
+    <div class="entry">
+      <label for={`field-${path}`}>{words(union.tag)}</label>
+      <select
+        id={`field-${path}`}
+        value={String(value)}
+        aria-describedby={`field-${path}-about`}
+        onChange={(event) => choose(event.currentTarget.value)}
+      >
+        {[...union.parts.keys()].map((name) => (
+          <option key={name} value={name}>
+            {name}
+          </option>
+        ))}
+      </select>
+      <p id={`field-${path}-about`} class="help about">
+        {union.parts.get(String(value))?.help}
+      </p>
     </div>
   );
 }
@@ -40,14 +99,10 @@ function Fields({ fields, state }: { fields: Field[]; state: FormState }) {
   return fields.map((field) => {
     if (field.kind === "constant") return null;
     if (field.kind === "rows") return <RowList key={field.path} rows={field} state={state} />;
-    if (field.kind !== "section") return <Entry key={field.path} field={field} state={state} />;
-    return (
-      <fieldset key={field.path} class="form-row">
-        <legend>{field.title}</legend>
-        <Messages path={field.path} messages={state.messages} />
-        <Fields fields={field.fields} state={state} />
-      </fieldset>
-    );
+    if (field.kind === "section" || field.kind === "union") {
+      return <Part key={field.path} part={field} state={state} kind="form-row" />;
+    }
+    return <Entry key={field.path} field={field} state={state} />;
   });
 }
 
@@ -84,52 +139,4 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
       )}
     </div>
   );
-}
-
-type Leaf = Exclude<Field, { kind: "section" | "rows" | "constant" }>;
-
-function Entry({ field, state }: { field: Leaf; state: FormState }) {
-  const value = valueAt(state.document, field.path);
-  const messages = state.messages.get(field.path) ?? [];
-  const changed = JSON.stringify(value) !== JSON.stringify(valueAt(state.original, field.path));
-  const common = {
-    id: `field-${field.path}`,
-    value,
-    invalid: messages.length > 0,
-    onChange: (next: Json) => state.change(field.path, next),
-  };
-  return (
-    <div class={`entry ${messages.length > 0 ? "wrong" : ""}`}>
-      <label for={common.id}>
-        {field.title}
-        {changed && (
-          <span class="changed" title="Changed from the preset">
-            {" "}
-            changed
-          </span>
-        )}
-      </label>
-      {field.kind === "number" && <NumberInput {...common} field={field} />}
-      {field.kind === "choice" && <ChoiceInput {...common} field={field} />}
-      {field.kind === "flag" && <FlagInput {...common} />}
-      {field.kind === "text" && <TextInput {...common} />}
-      <div id={`${common.id}-about`} class="about">
-        {field.help && <p class="help">{field.help}</p>}
-        <Messages path={field.path} messages={state.messages} />
-      </div>
-    </div>
-  );
-}
-
-function Messages({ path, messages }: { path: string; messages: FormState["messages"] }) {
-  return (messages.get(path) ?? []).map((message) => (
-    <p key={message} class="wrong-text" role="alert">
-      {sentence(message)}
-    </p>
-  ));
-}
-
-function sentence(message: string): string {
-  const plain = message.replaceAll("`", "");
-  return plain.charAt(0).toUpperCase() + plain.slice(1);
 }

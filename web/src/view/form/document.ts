@@ -2,7 +2,7 @@
 
 import type { FieldError, Json, Spec } from "../../api/types";
 import { number } from "../format";
-import type { Field, NumberField, Section } from "./fields";
+import type { Field, List, NumberField, Section, Several, Union } from "./fields";
 
 export function valueAt(document: Json, path: string): Json {
   const keys = path === "" ? [] : path.split(".");
@@ -48,28 +48,101 @@ export function complaint(field: NumberField, value: Json): string | null {
   return null;
 }
 
-/** Messages by path; `descriptors[0].low` and `descriptors.0.low` are the same place. */
-export function messagesByPath(errors: FieldError[]): Map<string, string[]> {
+/**
+ * Messages by the path of what shows them: the field that is named, else what is around it.
+ * `descriptors[0].low` and `descriptors.0.low` are the same place.
+ */
+export function messagesByPath(
+  errors: FieldError[],
+  form: Section,
+  document: Json,
+): Map<string, string[]> {
+  const shown = new Set(placesOf(form, document));
   const messages = new Map<string, string[]>();
   for (const { field, message } of errors) {
-    const path = field.replace(/\[(\d+)\]/g, ".$1").replace(/^(body\.|\.)/, "");
+    let path = field.replace(/\[(\d+)\]/g, ".$1").replace(/^\./, "");
+    while (!shown.has(path)) path = path.slice(0, Math.max(0, path.lastIndexOf(".")));
     const known = messages.get(path) ?? [];
     if (!known.includes(message)) messages.set(path, [...known, message]);
   }
   return messages;
 }
 
-/** What the schema alone finds wrong with the numbers of a document. */
+/** What a person typed into a field for several numbers; what is none stays text. */
+export function typedList(text: string): Json[] {
+  return text
+    .split(/[\s,;]+/)
+    .filter(Boolean)
+    .map(typed);
+}
+
+/** What a person typed as JSON; where it is none, the text itself. */
+export function typedJson(text: string): Json {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return text;
+  }
+}
+
+/** What the schema alone finds wrong with the values of a document. */
 export function complaints(form: Section, document: Json): FieldError[] {
   return leavesOf(form, document).flatMap((field) => {
-    const message = field.kind === "number" && complaint(field, valueAt(document, field.path));
+    const message = wrongWith(field, valueAt(document, field.path));
     return message ? [{ field: field.path, message }] : [];
   });
 }
 
-function leavesOf(field: Field, document: Json): Field[] {
-  if (field.kind === "section") return field.fields.flatMap((part) => leavesOf(part, document));
-  if (field.kind !== "rows") return [field];
+function wrongWith(field: Field, value: Json): string | null {
+  if (field.kind === "number") return complaint(field, value);
+  if (field.kind === "list") return listComplaint(field, value);
+  if (field.kind === "several") return severalComplaint(field, value);
+  if (field.kind === "nested" && !Array.isArray(value)) return "Needs a list, [[0, 1], [2, 3]].";
+  return null;
+}
+
+function listComplaint({ item, least, most }: List, value: Json): string | null {
+  const items = Array.isArray(value) ? value : [];
+  const wrong = items.map((one) => complaint(item, one)).find((message) => message !== null);
+  if (wrong) return wrong;
+  if (items.length < least) return `Needs at least ${least} ${least === 1 ? "number" : "numbers"}.`;
+  return items.length > most ? `Needs at most ${most} numbers.` : null;
+}
+
+function severalComplaint({ least }: Several, value: Json): string | null {
+  const chosen = Array.isArray(value) ? value.length : 0;
+  return chosen < least ? `Needs at least ${least} of them.` : null;
+}
+
+/** The part of a union that a document has. */
+export function partOf(union: Union, document: Json): Section | null {
+  return union.parts.get(String(valueAt(document, `${union.path}.${union.tag}`))) ?? null;
+}
+
+/** Whether a section that can be switched off is. */
+export function isOff(section: Section, document: Json): boolean {
+  return section.fresh !== undefined && valueAt(document, section.path) === null;
+}
+
+/** What a document has of a field: the fields of a part, of the one chosen, of each row. */
+function insideOf(field: Field, document: Json): Field[] {
+  if (field.kind === "union") return partOf(field, document)?.fields ?? [];
+  if (field.kind === "section") return isOff(field, document) ? [] : field.fields;
+  if (field.kind !== "rows") return [];
   const items = valueAt(document, field.path);
-  return (Array.isArray(items) ? items : []).flatMap((_, i) => leavesOf(field.row(i), document));
+  return (Array.isArray(items) ? items : []).map((_, i) => field.row(i));
+}
+
+const COMPOUND = ["union", "section", "rows"];
+
+function leavesOf(field: Field, document: Json): Field[] {
+  if (!COMPOUND.includes(field.kind)) return [field];
+  return insideOf(field, document).flatMap((each) => leavesOf(each, document));
+}
+
+/** Every path at which a form can show a message; the whole form's is empty. */
+function placesOf(field: Field, document: Json): string[] {
+  if (field.kind === "constant") return [];
+  const inside = insideOf(field, document).flatMap((each) => placesOf(each, document));
+  return [field.path, ...inside];
 }

@@ -1,7 +1,10 @@
 /** The fields of a form, read from a JSON schema. */
 
-import type { Json, Schema } from "../../api/types";
+import type { Json, Schema, Spec } from "../../api/types";
 import { words } from "../format";
+import { type Range, defaultOf, join, notNull, rangeOf, resolve, text } from "./schema";
+
+export type { Range } from "./schema";
 
 interface Common {
   /** Where the value is in the spec: `world.viscosity`, `archive.descriptors.0.low`. */
@@ -13,6 +16,15 @@ interface Common {
 export interface Section extends Common {
   kind: "section";
   fields: Field[];
+  /** What it begins with when it is switched on; not there where it cannot be switched off. */
+  fresh?: Json;
+}
+
+/** One of several parts, told apart by the word at `tag`. */
+export interface Union extends Common {
+  kind: "union";
+  tag: string;
+  parts: ReadonlyMap<string, Section>;
 }
 
 export interface Rows extends Common {
@@ -31,16 +43,29 @@ export interface NumberField extends Common {
   range: Range;
 }
 
-export interface Range {
-  low?: number;
-  lowOpen?: boolean;
-  high?: number;
-  highOpen?: boolean;
-}
-
 export interface Choice extends Common {
   kind: "choice";
   options: Json[];
+}
+
+/** Several numbers in a row. */
+export interface List extends Common {
+  kind: "list";
+  item: NumberField;
+  least: number;
+  most: number;
+}
+
+/** Some of a few words. */
+export interface Several extends Common {
+  kind: "several";
+  options: Json[];
+  least: number;
+}
+
+/** Lists within a list, which are written as JSON. */
+export interface Nested extends Common {
+  kind: "nested";
 }
 
 export interface Flag extends Common {
@@ -55,7 +80,8 @@ export interface Constant extends Common {
   kind: "constant";
 }
 
-export type Field = Section | Rows | NumberField | Choice | Flag | TextField | Constant;
+export type Leaf = NumberField | Choice | List | Several | Nested | Flag | TextField;
+export type Field = Section | Union | Rows | Constant | Leaf;
 
 export function formOf(schema: Schema): Section {
   return sectionOf(schema, schema, { path: "", title: "", help: text(schema.description) });
@@ -74,28 +100,64 @@ function fieldOf(property: Schema, root: Schema, key: string, path: string): Fie
   const inner = notNull(schema, root);
   const nullable = inner !== schema;
   const common = { path, title: words(key), help: text(schema.description) };
+  if (Array.isArray(inner.oneOf)) return unionOf(inner, root, common);
   if ("const" in inner) return { ...common, kind: "constant" };
   if (Array.isArray(inner.enum)) return { ...common, kind: "choice", options: inner.enum };
   switch (inner.type) {
-    case "object":
-      return sectionOf(inner, root, common);
+    case "object": {
+      const section = sectionOf(inner, root, common);
+      return nullable ? { ...section, fresh: defaultOf(inner, root) } : section;
+    }
     case "array":
-      return rowsOf(inner, root, common);
+      return arrayOf(inner, root, common);
     case "boolean":
       return { ...common, kind: "flag" };
     case "integer":
     case "number":
-      return {
-        ...common,
-        kind: "number",
-        whole: inner.type === "integer",
-        nullable,
-        unit: text(schema.unit ?? inner.unit),
-        range: rangeOf(inner),
-      };
+      return numberOf(inner, { ...common, nullable, unit: text(schema.unit ?? inner.unit) });
     default:
       return { ...common, kind: "text" };
   }
+}
+
+function numberOf(schema: Schema, known: Common & { nullable: boolean; unit: string }): NumberField {
+  return { ...known, kind: "number", whole: schema.type === "integer", range: rangeOf(schema) };
+}
+
+function arrayOf(schema: Schema, root: Schema, common: Common): Field {
+  const item = resolve((schema.items ?? {}) as Schema, root);
+  const [least, most] = [Number(schema.minItems ?? 0), Number(schema.maxItems ?? Infinity)];
+  if (Array.isArray(item.enum)) return { ...common, kind: "several", options: item.enum, least };
+  if (item.type === "array") return { ...common, kind: "nested" };
+  if (item.type !== "integer" && item.type !== "number") return rowsOf(schema, root, common);
+  const number = numberOf(item, { ...common, nullable: false, unit: text(item.unit) });
+  return { ...common, kind: "list", item: number, least, most };
+}
+
+/** The word that a part is known by is its constant, or any of several. */
+function unionOf(schema: Schema, root: Schema, common: Common): Field {
+  const parts = (schema.oneOf as Schema[]).map((part) => resolve(part, root));
+  const tag = tagOf(parts);
+  const named = parts.flatMap((part) => {
+    const { [tag]: names, ...properties } = part.properties as Record<string, Schema>;
+    const rest = { ...part, properties };
+    return ((names!.enum ?? [names!.const]) as string[]).map((name): [string, Section] => {
+      const fresh = { [tag]: name, ...(defaultOf(rest, root) as Spec | null) };
+      return [name, { ...sectionOf(rest, root, common), help: text(part.description), fresh }];
+    });
+  });
+  return { ...common, kind: "union", tag, parts: new Map(named) };
+}
+
+function tagOf(parts: Schema[]): string {
+  const [first, ...rest] = parts.map((part) => (part.properties ?? {}) as Record<string, Schema>);
+  const fixed = (part: Record<string, Schema>, key: string) =>
+    part[key] !== undefined && ("const" in part[key] || Array.isArray(part[key].enum));
+  const found = Object.keys(first ?? {}).find(
+    (key) => "const" in first![key]! && rest.every((part) => fixed(part, key)),
+  );
+  if (found === undefined) throw new Error("a union of parts needs a word to tell them apart");
+  return found;
 }
 
 function rowsOf(schema: Schema, root: Schema, common: Common): Rows {
@@ -114,56 +176,4 @@ function rowsOf(schema: Schema, root: Schema, common: Common): Rows {
     most: Number(schema.maxItems ?? Infinity),
     fresh: defaultOf(item, root),
   };
-}
-
-/** A reference followed; words beside it (a default, a description) win. */
-function resolve(schema: Schema, root: Schema): Schema {
-  const reference = schema.$ref ?? only(schema.allOf)?.$ref;
-  if (typeof reference !== "string") return schema;
-  const target = reference
-    .split("/")
-    .slice(1)
-    .reduce<Schema>((part, key) => (part[key] ?? {}) as Schema, root);
-  const { $ref: _, allOf: __, ...beside } = schema;
-  return resolve({ ...target, ...beside }, root);
-}
-
-function only(list: Json | undefined): Schema | undefined {
-  return Array.isArray(list) && list.length === 1 ? (list[0] as Schema) : undefined;
-}
-
-/** What a value can be besides null; the schema itself where null is not allowed. */
-function notNull(schema: Schema, root: Schema): Schema {
-  if (!Array.isArray(schema.anyOf)) return schema;
-  const rest = (schema.anyOf as Schema[]).filter((option) => option.type !== "null");
-  if (rest.length === schema.anyOf.length || rest.length !== 1) return schema;
-  return resolve(rest[0]!, root);
-}
-
-function rangeOf(schema: Schema): Range {
-  const { minimum, exclusiveMinimum, maximum, exclusiveMaximum } = schema;
-  const low = minimum ?? exclusiveMinimum;
-  const high = maximum ?? exclusiveMaximum;
-  return {
-    ...(typeof low === "number" && { low, lowOpen: minimum === undefined }),
-    ...(typeof high === "number" && { high, highOpen: maximum === undefined }),
-  };
-}
-
-/** The default of a schema; of an object, the defaults of its parts. */
-function defaultOf(schema: Schema, root: Schema): Json {
-  const full = resolve(schema, root);
-  if (full.default !== undefined) return full.default;
-  if (Array.isArray(full.enum)) return full.enum[0]!;
-  const properties = Object.entries((full.properties ?? {}) as Record<string, Schema>);
-  if (properties.length === 0) return null;
-  return Object.fromEntries(properties.map(([key, part]) => [key, defaultOf(part, root)]));
-}
-
-function join(path: string, key: string): string {
-  return path ? `${path}.${key}` : key;
-}
-
-function text(value: Json | undefined): string {
-  return typeof value === "string" ? value : "";
 }

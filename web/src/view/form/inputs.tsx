@@ -2,8 +2,8 @@
 
 import { useEffect, useState } from "preact/hooks";
 import type { Json } from "../../api/types";
-import { typed } from "./document";
-import type { Choice, NumberField, Range } from "./fields";
+import { typed, typedJson, typedList } from "./document";
+import type { Choice, List, NumberField, Range, Several } from "./fields";
 
 interface Common {
   id: string;
@@ -55,6 +55,77 @@ export function ChoiceInput({ id, value, invalid, onChange, field }: Common & { 
         </option>
       ))}
     </select>
+  );
+}
+
+/** Several numbers, written in a row. */
+export function ListInput({ id, value, invalid, onChange, field }: Common & { field: List }) {
+  const write = (items: Json) => (Array.isArray(items) ? items.join(", ") : "");
+  return (
+    <Written
+      {...{ id, value, invalid, onChange }}
+      title={`each ${rangeText(field.item.range)}`}
+      write={write}
+      read={typedList}
+    />
+  );
+}
+
+/** Lists within a list, written as JSON. */
+export function NestedInput({ id, value, invalid, onChange }: Common) {
+  const write = (items: Json) => (typeof items === "string" ? items : JSON.stringify(items));
+  return <Written {...{ id, value, invalid, onChange }} title="" write={write} read={typedJson} />;
+}
+
+interface WrittenProps extends Common {
+  title: string;
+  write: (value: Json) => string;
+  read: (text: string) => Json;
+}
+
+/** A text that stands for a value; what is being typed is not rewritten, a preset's is. */
+function Written({ id, value, invalid, onChange, title, write, read }: WrittenProps) {
+  const [text, setText] = useState(() => write(value));
+  const same = (a: Json, b: Json) => JSON.stringify(a) === JSON.stringify(b);
+  useEffect(() => {
+    setText((now) => (same(read(now), value) ? now : write(value)));
+  }, [value]);
+  return (
+    <textarea
+      id={id}
+      rows={2}
+      spellcheck={false}
+      value={text}
+      title={title}
+      aria-invalid={invalid}
+      aria-describedby={`${id}-about`}
+      onInput={(event) => {
+        setText(event.currentTarget.value);
+        onChange(read(event.currentTarget.value));
+      }}
+    />
+  );
+}
+
+/** A box for each of a few words; the order stays that of the schema. */
+export function SeveralInput({ id, value, invalid, onChange, field }: Common & { field: Several }) {
+  const chosen = Array.isArray(value) ? value : [];
+  const turn = (option: Json, on: boolean) =>
+    onChange(field.options.filter((each) => (each === option ? on : chosen.includes(each))));
+  return (
+    <div class="several" role="group" aria-labelledby={`${id}-label`}>
+      {field.options.map((option) => (
+        <label key={String(option)}>
+          <input
+            type="checkbox"
+            checked={chosen.includes(option)}
+            aria-invalid={invalid}
+            onChange={(event) => turn(option, event.currentTarget.checked)}
+          />
+          {String(option).replaceAll("_", " ")}
+        </label>
+      ))}
+    </div>
   );
 }
 

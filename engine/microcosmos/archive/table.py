@@ -1,0 +1,25 @@
+"""The result of a run that fills no archive, as it stands in its file."""
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from .file import load
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of flat values, and the run that they are of."""
+
+    experiment: str
+    rows: list[dict[str, Any]]
+
+
+def read_table(data: bytes) -> Table:
+    """The table in a run's file. Raises `ValueError` where there is none."""
+    tree, attributes = load(data)
+    loop = tree.get("loop", {})
+    if "rows" not in loop:
+        raise ValueError("a table is needed, as sweeps and measurements have; got an archive")
+    experiment = json.loads(attributes["spec"])["experiment"]
+    return Table(experiment, json.loads(bytes(loop["rows"])))

@@ -1,0 +1,99 @@
+"""From nodes and edges to a body at rest in the shape that it is drawn in."""
+
+import heapq
+
+import numpy as np
+
+from .graph import Body
+
+
+def from_edges(
+    positions: np.ndarray,
+    edges: np.ndarray,
+    arc: np.ndarray | None = None,
+    *,
+    rest_length: np.ndarray | None = None,
+    stretch: float | np.ndarray = 1.0,
+    shear: float | np.ndarray = 1.0,
+    bend: float | np.ndarray = 1.0,
+) -> Body:
+    """A body whose joints, lengths and angles are those of the drawing.
+
+    At a node of two edges these are joined; at a branch of three or more each is joined to
+    its neighbours on both sides. `arc` is the way along the edges from the first node
+    where it is left out; so is `rest_length` the drawn one, where left out or NaN.
+    """
+    positions, edges = np.asarray(positions, float), np.asarray(edges, int).reshape(-1, 2)
+    joints = joints_of(positions, edges)
+    v = positions[edges[:, 1]] - positions[edges[:, 0]]
+    angle = np.arctan2(v[:, 1], v[:, 0])
+    length = np.hypot(v[:, 0], v[:, 1])
+    if rest_length is not None:
+        length = np.where(np.isnan(rest_length), length, rest_length)
+    return Body(
+        positions=positions,
+        edges=edges,
+        joints=joints,
+        rest_length=length,
+        rest_angle=wrap(angle[joints[:, 1]] - angle[joints[:, 0]]),
+        stretch=np.broadcast_to(stretch, len(edges)).astype(float),
+        shear=np.broadcast_to(shear, len(edges)).astype(float),
+        bend=np.broadcast_to(bend, len(joints)).astype(float),
+        arc=_arc(len(positions), edges, length) if arc is None else arc,
+    )
+
+
+def wrap(angle: np.ndarray) -> np.ndarray:
+    """The same angle within ±π."""
+    return angle - 2 * np.pi * np.round(angle / (2 * np.pi))
+
+
+def joints_of(positions: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Joints in the order of their nodes, an edge that arrives before one that leaves."""
+    met: list[list[tuple[int, int]]] = [[] for _ in positions]
+    for number, (first, second) in enumerate(edges.tolist()):
+        for node, leaves in ((first, 1), (second, 0)):
+            if not 0 <= node < len(positions):
+                raise ValueError(
+                    f"`edges` must be pairs of nodes 0 to {len(positions) - 1}, got {node}."
+                )
+            met[node].append((leaves, number))
+    pairs = []
+    for node, found in enumerate(met):
+        if len(found) == 2:
+            pairs.append([number for _, number in sorted(found)])
+        elif len(found) > 2:
+            pairs.extend(_cyclic(node, [number for _, number in found], positions, edges))
+    return np.array(pairs, int).reshape(-1, 2)
+
+
+def _cyclic(node: int, met: list[int], positions: np.ndarray, edges: np.ndarray):
+    """Pairs of neighbours among a node's edges, anticlockwise."""
+    far = np.sum(edges[met], 1) - node
+    v = positions[far] - positions[node]
+    round_about = np.array(met)[np.argsort(np.arctan2(v[:, 1], v[:, 0]), kind="stable")]
+    return np.stack([round_about, np.roll(round_about, -1)], 1).tolist()
+
+
+def distances(nodes: int, edges: np.ndarray, length: np.ndarray, start: int = 0) -> np.ndarray:
+    """Cells along the edges from `start` to every node, infinite where no way leads."""
+    neighbours: list[list[tuple[int, float]]] = [[] for _ in range(nodes)]
+    for (first, second), cells in zip(edges.tolist(), length.tolist(), strict=True):
+        neighbours[first].append((second, cells))
+        neighbours[second].append((first, cells))
+    way = np.full(nodes, np.inf)
+    way[start], waiting = 0, [(0.0, start)]
+    while waiting:
+        here, node = heapq.heappop(waiting)
+        for other, cells in neighbours[node]:
+            if here + cells < way[other]:
+                way[other] = here + cells
+                heapq.heappush(waiting, (here + cells, other))
+    return way
+
+
+def _arc(nodes: int, edges: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """Shares of the way from the first node to the furthest; 0 where no way leads."""
+    way = distances(nodes, edges, length)
+    way[np.isinf(way)] = 0
+    return way / max(way.max(), 1e-12)

@@ -1,0 +1,37 @@
+"""From a spec to the objects that carry it out: the only place where pydantic meets JAX."""
+
+from .creatures import build_block, build_point, build_stroke_block, frame
+from .experiments import build, build_axes, build_genes, build_plan
+from .scene import (
+    build_controls,
+    build_energy,
+    build_limits,
+    build_rods,
+    build_steric,
+    build_stroke,
+    build_task,
+    build_world,
+)
+from .tables import build_crowd, build_gaits, build_scaling
+
+__all__ = [
+    "build",
+    "build_axes",
+    "build_block",
+    "build_controls",
+    "build_crowd",
+    "build_energy",
+    "build_gaits",
+    "build_genes",
+    "build_limits",
+    "build_plan",
+    "build_point",
+    "build_rods",
+    "build_scaling",
+    "build_steric",
+    "build_stroke",
+    "build_stroke_block",
+    "build_task",
+    "build_world",
+    "frame",
+]

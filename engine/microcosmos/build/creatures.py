@@ -1,0 +1,56 @@
+"""From a scene to what its creatures are called, and the programs that evaluate them."""
+
+from typing import Any
+
+import jax.numpy as jnp
+
+from .. import device, search, spec
+from ..archive import naming
+from .scene import build_limits, build_stroke, build_task
+
+
+def frame(scene: spec.Scene) -> dict[str, Any]:
+    """The identity of a scene's creatures but for their genes."""
+    place, form = spec.identity(scene.world), spec.identity(scene.coupling)
+    # In numbers: a creature must not change with what an empty limit stands for.
+    form["max_displacement"] = scene.coupling.displacement_limit(scene.world.viscosity)
+    form["max_force"] = scene.coupling.force_limit(scene.world.viscosity)
+    return {
+        "format": naming.FORMAT,
+        "genome": _genome(scene.control),
+        "world": place | {"coupling": form},
+        "body": spec.identity(scene.body),
+        "task": spec.identity(scene.task),
+    }
+
+
+def _genome(control: spec.Control | spec.Gait) -> dict[str, Any]:
+    if isinstance(control, spec.Gait):
+        return {"encoding": "gait", **spec.identity(control)}
+    return {
+        "encoding": "cppn",
+        "inputs": list(control.inputs),
+        "outputs": list(spec.OUTPUTS),
+        "control": spec.identity(control),
+    }
+
+
+def build_block(scene: spec.Scene):
+    """The compiled program that evaluates a block of networks in a scene."""
+    return search.block_program(build_task(scene), search.evaluate, device.compiler_options())
+
+
+def build_stroke_block(scene: spec.Scene):
+    """The compiled program that carries out a scene's gait in a block of conditions."""
+    gait = scene.control
+    assert isinstance(gait, spec.Gait)
+    rest = build_stroke(gait, scene.task.steps)
+    options = device.compiler_options()
+    return search.stroke_program(build_task(scene), rest, gait.period, options)
+
+
+def build_point(scene: spec.Scene) -> search.Conditions:
+    """The conditions of one point of a sweep."""
+    viscosity = scene.world.viscosity
+    limits = build_limits(scene.coupling, viscosity, jnp.float32)
+    return search.Conditions(jnp.float32(viscosity), limits)

@@ -1,0 +1,163 @@
+"""From a scene's words to the world, the body and the controller that they mean."""
+
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from .. import (
+    bodies,
+    coupling,
+    creatures,
+    fields,
+    filaments,
+    fluid,
+    genomes,
+    groups,
+    search,
+    spec,
+    world,
+)
+from ..bodies.extent import reach
+
+PROJECTIONS = {
+    "none": coupling.unprojected,
+    "force": coupling.force_free,
+    "force+torque": coupling.torque_free,
+}
+KERNELS = {"peskin": coupling.PESKIN, "roma": coupling.ROMA, "hat": coupling.HAT}
+MAGIC = {"capped": fluid.capped_magic, "fixed": fluid.fixed_magic}
+SMOOTHING = {"gaussian": fields.gaussian, "binomial": fields.binomial}
+TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
+GOALS = {"displacement": (1.0, 0.0), "energy": (0.0, 1.0), "displacement+energy": (1.0, 1.0)}
+
+
+def build_task(scene: spec.Scene, dtype: Any = jnp.float32) -> search.Task:
+    """The world with the body at rest in its middle, and the controls of all steps."""
+    body = spec.shape(scene.body)
+    place = build_world(scene.world, scene.coupling, body, dtype)
+    middle = np.array([scene.world.width, scene.world.height]) / 2
+    positions = body.positions - body.positions.mean(0) + middle
+    start = world.at_rest(place, jnp.asarray(positions, dtype))
+    controls = None
+    if isinstance(scene.control, spec.Control):
+        controls = build_controls(scene.control, body, scene.task.steps)
+    displacement, energy = GOALS[scene.task.fitness]
+    goal = search.Goal(displacement, energy * scene.task.energy_weight)
+    return search.Task(place, start, controls, goal, reach(body))
+
+
+def build_world(
+    place: spec.World, form: spec.Coupling, body: bodies.Body, dtype: Any = jnp.float32
+) -> world.World:
+    """The box of fluid around bodies."""
+    size = (place.width, place.height)
+    return world.World(
+        viscosity=jnp.asarray(place.viscosity, dtype),
+        rods=build_rods(body, dtype),
+        groups=groups.Groups(jnp.asarray(body.member, jnp.int32), body.count),
+        size=size,
+        form=world.Form(
+            projection=PROJECTIONS[form.projection],
+            force_factor=float(form.force_factor),
+            theta_feedback=float(form.theta_feedback),
+            forcing_iterations=form.forcing_iterations,
+            constraint_iterations=form.constraint_iterations,
+            layers=form.layers,
+            kernel=KERNELS[form.kernel],
+            magic=MAGIC[place.magic],
+        ),
+        limits=build_limits(form, place.viscosity, dtype),
+        nu_c=_scalar(form.nu_c, dtype),
+        steric=build_steric(place.steric, dtype),
+        energy=build_energy(place.energy, size, dtype),
+    )
+
+
+def build_limits(form: spec.Coupling, viscosity: float, dtype: Any) -> world.Limits:
+    """What a step may do at most at a viscosity."""
+    return world.Limits(
+        displacement=_scalar(form.displacement_limit(viscosity), dtype),
+        force=_scalar(form.force_limit(viscosity), dtype),
+    )
+
+
+def build_steric(steric: spec.Steric | None, dtype: Any) -> fields.Steric | None:
+    """Repulsion between nodes, if there is any."""
+    if steric is None:
+        return None
+    return fields.Steric(
+        strength=jnp.asarray(steric.strength, dtype),
+        limit=jnp.asarray(steric.limit, dtype),
+        gradient=SMOOTHING[steric.smoothing],
+    )
+
+
+def build_energy(
+    energy: spec.Energy | None, size: tuple[int, int], dtype: Any
+) -> fields.Energy | None:
+    """The packets and what becomes of them, if there are any."""
+    if energy is None:
+        return None
+    packets = fields.Packets(energy.packets, energy.width, energy.amplitude, energy.seed)
+    return fields.Energy(
+        start=jnp.asarray(fields.packets(size, packets), dtype),
+        diffusion=_scalar(energy.diffusion or None, dtype),
+        rate=_scalar(energy.rate if energy.consume else None, dtype),
+    )
+
+
+def build_rods(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Rods:
+    """The bodies' graph as device arrays."""
+
+    def pairings(colours: tuple[bodies.Colour, ...]) -> tuple[filaments.Pairing, ...]:
+        return tuple(
+            filaments.Pairing(
+                jnp.asarray(c.partner), jnp.asarray(c.constraint), jnp.asarray(c.sign, dtype)
+            )
+            for c in colours
+        )
+
+    return filaments.Rods(
+        edges=jnp.asarray(body.edges),
+        edge_colours=pairings(body.edge_colours),
+        joint_colours=pairings(body.joint_colours),
+        stretch=jnp.asarray(body.stretch, dtype),
+        shear=jnp.asarray(body.shear, dtype),
+        bend=jnp.asarray(body.bend, dtype),
+    )
+
+
+def build_controls(control: spec.Control, body: bodies.Body, steps: int) -> genomes.Controls:
+    """Inputs of the CPPN at all nodes and times, and what its outputs mean."""
+    rise = np.maximum(control.ramp * control.period, 1)
+    return genomes.Controls(
+        position=body.arc if control.position == "unit" else 2 * body.arc - 1,
+        timer=TIMERS[control.timer](steps, control.period),
+        ramp=np.minimum(1, (np.arange(steps) + (control.ramp == 0)) / rise),
+        edges=body.edges,
+        joint_nodes=body.joint_nodes,
+        rest_angle=body.rest_angle,
+        rest_length=body.rest_length,
+        angle_scale=control.angle_scale,
+        length_scale=control.length_scale,
+        senses=control.sense_energy,
+    )
+
+
+def build_stroke(gait: spec.Gait, steps: int, dtype: Any = jnp.float32) -> filaments.Rest:
+    """The rest shapes of a known swimmer over time."""
+    swimmer = creatures.SWIMMERS[gait.swimmer]()
+    t = np.arange(steps) / gait.period
+    angle, length = swimmer.gait(t)
+    rise = t / gait.ramp if gait.ramp else np.ones(steps)
+    ramp = np.minimum(1, rise)[:, None]
+    body = swimmer.body
+    return filaments.Rest(
+        angle=jnp.asarray(body.rest_angle[None] + ramp * angle, dtype),
+        length=jnp.asarray(body.rest_length[None] * (1 + ramp * length), dtype),
+    )
+
+
+def _scalar(value: float | None, dtype: Any) -> Any:
+    return None if value is None else jnp.asarray(value, dtype)

@@ -1,0 +1,83 @@
+"""From the specs of sweeps and measurements to the experiments that carry them out."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from .. import bodies, device, filaments, spec, units, world
+from ..bodies.extent import reach
+from ..experiments import gaits, scaling, timing
+from ..spec.scaling import SPACING
+from .creatures import build_point, build_stroke_block, frame
+from .scene import build_world
+
+
+def build_gaits(chosen: spec.Gaits) -> gaits.Gaits:
+    """A sweep, its programs compiled when they are first used."""
+    strokes = tuple(_stroke(chosen, form, swimmer) for form, swimmer in chosen.strokes)
+    return gaits.Gaits(_json(chosen), strokes, chosen.block, device.device_kind())
+
+
+def build_scaling(chosen: spec.Scaling) -> scaling.Scaling:
+    """A measurement."""
+
+    def measure(nodes: int, stop: Callable[[], bool]) -> tuple[dict[str, Any], ...]:
+        plan = timing.Plan(chosen.steps, chosen.part_steps, device.compiler_options(), stop)
+        scene, start = build_crowd(chosen, nodes)
+        rows = [timing.step_row(scene, start, plan)]
+        if nodes <= chosen.all_pairs:
+            rows.append(timing.pairs_row(start.positions, scene.box.size, plan))
+        return tuple(rows)
+
+    return scaling.Scaling(_json(chosen), chosen.nodes, measure, device.device_kind())
+
+
+def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[timing.Scene, world.State]:
+    """A box with many straight filaments at random places, and their shape at rest."""
+    one = bodies.chain(chosen.filament, SPACING)
+    columns, rows = chosen.places
+    place = np.random.default_rng(chosen.seed).permutation(columns * rows)
+    place = place[: nodes // chosen.filament]
+    centres = np.stack([place % columns + 0.5, place // columns + 0.5], 1)
+    centres = centres * (chosen.filament * SPACING, SPACING)
+    crowd = bodies.together([bodies.placed(one, (float(x), float(y))) for x, y in centres])
+    wide = spec.World(width=chosen.width, height=chosen.height, steric=chosen.steric)
+    box = build_world(wide, spec.Coupling(), crowd)
+    start = world.at_rest(box, jnp.asarray(crowd.positions, jnp.float32))
+    rest = filaments.Rest(
+        jnp.asarray(crowd.rest_angle, jnp.float32), jnp.asarray(crowd.rest_length, jnp.float32)
+    )
+    return timing.Scene(box, rest), start
+
+
+def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:
+    scenes = [chosen.scene(form, swimmer, viscosity) for viscosity in chosen.viscosities]
+    body = spec.shape(scenes[0].body)
+    spacing = float(body.rest_length.max())
+    joints = max(1, round(reach(body) / spacing) - 1)
+    return gaits.Stroke(
+        form=form,
+        swimmer=swimmer,
+        force_free=scenes[0].coupling.force_free,
+        program=build_stroke_block(scenes[0]),
+        conditions=gaits.stack([build_point(scene) for scene in scenes]),
+        viscosities=chosen.viscosities,
+        sperm=tuple(_sperm(scene, joints, float(body.bend.min())) for scene in scenes),
+        spacing=spacing,
+        identities=tuple(frame(scene) for scene in scenes),
+    )
+
+
+def _sperm(scene: spec.Scene, joints: int, bend: float) -> float:
+    coupling = scene.coupling
+    if coupling.nu_c is not None:
+        bend = bend / (1 + scene.world.viscosity / coupling.nu_c)
+    slowest = units.relaxation(joints, bend, coupling.constraint_iterations)
+    return units.sperm(scene.control.period, slowest)
+
+
+def _json(chosen: spec.Spec) -> str:
+    return json.dumps(chosen.model_dump(mode="json"), sort_keys=True)

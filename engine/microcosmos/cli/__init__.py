@@ -1,0 +1,6 @@
+"""The command line. JAX is loaded only to compute."""
+
+from . import creature, draw, run
+from .app import app
+
+__all__ = ["app", "creature", "draw", "run"]

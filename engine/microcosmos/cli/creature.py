@@ -1,0 +1,93 @@
+"""Creature files: replayed, checked, audited."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from .app import CACHE, app, fail
+
+
+@app.command()
+def replay(
+    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    check: Annotated[
+        bool, typer.Option("--check", help="Evaluate again and compare bit for bit.")
+    ] = False,
+    out: Annotated[Path | None, typer.Option(help="Where the replay is written.")] = None,
+) -> None:
+    """Simulate a creature file again."""
+    from ..archive.creature import CreatureError
+    from ..device import prepare
+
+    prepare(cache=CACHE)
+    try:
+        if check:
+            _check(file)
+        else:
+            _record(file, out or file.with_suffix(".replay"))
+    except (CreatureError, OSError) as error:
+        fail(f"{file}: {error}")
+
+
+@app.command()
+def audit(
+    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    out: Annotated[Path | None, typer.Option(help="Where it is written as JSON too.")] = None,
+) -> None:
+    """Does a creature swim by the fluid, or by the way it is computed?"""
+    from ..archive.creature import CreatureError, parse
+    from ..archive.store import write_whole
+    from ..device import prepare
+
+    prepare(cache=CACHE)
+    from ..render import audit as examined
+
+    try:
+        found = examined(parse(file.read_bytes()))
+    except (CreatureError, OSError) as error:
+        fail(f"{file}: {error}")
+    if out:
+        write_whole(out, json.dumps(found, indent=1).encode())
+    _print_audit(found)
+    if not found["verdict"]["survives"]:
+        raise typer.Exit(1)
+
+
+def _check(file: Path) -> None:
+    from ..archive.creature import parse
+    from ..render import check
+
+    result = check(parse(file.read_bytes()))
+    for name, repeated in result.repeated.items():
+        recorded = result.recorded.get(name, float("nan"))
+        print(f"{name:>18}  recorded {recorded:.9g}  repeated {repeated:.9g}")
+    if result.exact:
+        print("The same, bit for bit.")
+        return
+    reason = "" if result.same_device else ": it was measured on another kind of device"
+    print(f"Not the same{reason}.")
+    raise typer.Exit(1)
+
+
+def _record(file: Path, out: Path) -> None:
+    from ..archive.creature import parse
+    from ..archive.store import write_whole
+    from ..render import record
+
+    write_whole(out, record(parse(file.read_bytes())))
+    print(out)
+
+
+def _print_audit(found: Mapping[str, Any]) -> None:
+    for row in found["rows"]:
+        mark = {True: "pass", False: "FAIL", None: "    "}[row["passed"]]
+        value = "none" if row["value"] is None else f"{row['value']:.4g} {row['unit']}"
+        bar = f"  ({row['bar']})" if row["bar"] else ""
+        print(f"{mark}  {row['quantity']}: {value.strip()}{bar}")
+    survives = found["verdict"]["survives"]
+    print("Its swimming survives." if survives else "Its swimming does not survive:")
+    for reason in found["verdict"]["reasons"]:
+        print(f"  {reason}")

@@ -1,0 +1,115 @@
+"""Runs without a server."""
+
+import os
+import signal
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    SpinnerColumn,
+    TextColumn,
+    TimeRemainingColumn,
+)
+
+from ..spec import Spec, estimate
+from .app import CACHE, app, console, fail
+from .specs import presets, read_spec
+
+
+@app.command()
+def evolve(
+    spec: Annotated[str, typer.Argument(help="A spec file, or the name of a preset.")],
+    archive: Annotated[
+        Path | None, typer.Option("--out", help="Archive file; default: beside the spec.")
+    ] = None,
+    checkpoint_seconds: Annotated[float, typer.Option(min=0.0)] = 60.0,
+    other_device: Annotated[
+        bool, typer.Option(help="Go on although another kind of device began the run.")
+    ] = False,
+) -> None:
+    """Carry out a run; called again, it goes on from the archive file."""
+    chosen = read_spec(spec)
+    path = archive or Path(spec.replace("/", "-") if spec in presets() else spec).with_suffix(
+        ".h5"
+    )
+    if not path.parent.is_dir():
+        fail(f"--out needs an existing folder; got {path.parent}")
+    from ..device import device_kind, prepare
+
+    need = estimate(chosen)
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if need.memory_bytes > memory:
+        fail(f"the run needs about {need.memory_bytes:,} bytes of memory; there are {memory:,}")
+    prepare(cache=CACHE)
+    console.print(f"{need.evaluations:,} evaluations on {device_kind()} into {path}")
+    if not _evolve(chosen, path, checkpoint_seconds, other_device):
+        console.print(f"Stopped. The same command goes on from {path}.")
+        raise typer.Exit(130)
+    best = path.with_suffix(".best.json")
+    console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
+
+
+def _evolve(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: bool) -> bool:
+    """Carry the run on behind a progress bar; the first Ctrl-C asks it to stop."""
+    from .. import experiments, local
+
+    wishes: list[int] = []
+
+    def note(received: int, frame: object) -> None:
+        wishes.append(received)
+        signal.signal(received, signal.SIG_DFL)  # The second one ends it at once.
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, note)
+    columns = [
+        SpinnerColumn(),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+        TextColumn("{task.description}"),
+    ]
+    with Progress(*columns, console=console) as progress:
+        bar = progress.add_task("compiling", total=spec.generations)
+
+        def tell(report) -> None:
+            progress.update(bar, completed=report.generation, description=_told(report))
+
+        try:
+            return local.evolve(
+                spec,
+                archive,
+                stop=lambda: bool(wishes),
+                tell=tell,
+                checkpoint_seconds=checkpoint_seconds,
+                other_device=other_device,
+            )
+        except experiments.OtherDevice as error:
+            progress.stop()
+            fail(f"{archive}: {error} To go on here all the same: --other-device.")
+        except (ValueError, OSError) as error:
+            progress.stop()
+            fail(f"{archive}: {error}")
+
+
+def _told(report: Any) -> str:
+    """What a generation came to, in a few words."""
+    if report.qd_score is None:
+        return "  ".join(f"{name} {value}" for name, value in _short(report.summary).items())
+    return (
+        f"QD score {report.qd_score:.2f}  coverage {100 * report.coverage:.1f} %  "
+        f"best {report.best:.2f}"
+    )
+
+
+def _short(summary: Mapping[str, Any] | None) -> dict[str, str]:
+    values = (summary or {}).items()
+    return {
+        name.replace("_", " "): f"{value:.4g}" if isinstance(value, float) else f"{value}"
+        for name, value in values
+        if value is not None
+    }

@@ -1,0 +1,90 @@
+"""The file of a run whose result is a table, which is also its checkpoint.
+
+The layout is described in `docs/formats.md`. It holds no clock, host, run or attempt, so that
+a computed table (not one of measured times) gives the same bytes every time.
+"""
+
+import json
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..archive import file
+from ..version import VERSION
+from .archive_file import devices_of
+from .report import Row
+
+
+@dataclass(frozen=True)
+class Table:
+    """All that such a run has found so far."""
+
+    generation: int
+    rows: tuple[Row, ...]
+    devices: tuple[str, ...]
+    """Kinds of device that computed it, the present one last."""
+
+    def grown(self, rows: tuple[Row, ...]) -> "Table":
+        """With the rows of one more generation."""
+        return replace(self, generation=self.generation + 1, rows=self.rows + rows)
+
+
+def save(spec: str, table: Table) -> bytes:
+    """Rows as columns, numbers as float64, words as bytes; identities as one JSON text."""
+    rows = table.rows
+    names = list(rows[0].values) if rows else []
+    whole = [
+        {"creature": row.creature, "measured": row.measured, "provenance": row.provenance}
+        | {"identity": row.identity.decode() if row.identity else None}
+        for row in rows
+    ]
+    tree = {
+        "table": {name: _column([row.values[name] for row in rows]) for name in names},
+        "loop": {
+            "generation": np.int64(table.generation),
+            "rows": _text([dict(row.values) for row in rows]),
+            "creatures": _text(whole),
+        },
+    }
+    attributes = {
+        "format": file.FORMAT,
+        "version": VERSION,
+        "device": json.dumps(list(table.devices)),
+        "spec": spec,
+        "columns": json.dumps(names),
+    }
+    return file.dump(tree, attributes)
+
+
+def restore(spec: str, device: str, data: bytes, *, other_device: bool) -> Table:
+    """The table in a file of the same spec; raises like `archive_file.restore`."""
+    tree, attributes = file.load(data)
+    try:
+        devices = devices_of(spec, device, attributes, other_device)
+        loop = tree["loop"]
+        values, creatures = (json.loads(bytes(loop[name])) for name in ("rows", "creatures"))
+        generation = int(loop["generation"])
+    except KeyError as error:
+        raise ValueError(f"a table's file must hold {error}, which is not there") from error
+    rows = tuple(
+        Row(
+            values=row,
+            creature=about["creature"],
+            identity=about["identity"].encode() if about["identity"] else None,
+            measured=about["measured"],
+            provenance=about["provenance"],
+        )
+        for row, about in zip(values, creatures, strict=True)
+    )
+    return Table(generation, rows, devices)
+
+
+def _column(values: list[Any]) -> np.ndarray:
+    if all(isinstance(value, int | float | None) for value in values):
+        return np.array([np.nan if value is None else value for value in values], np.float64)
+    return np.array([str(value).encode() for value in values])
+
+
+def _text(document: Any) -> np.ndarray:
+    return np.frombuffer(json.dumps(document).encode(), np.uint8)

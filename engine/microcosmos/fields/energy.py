@@ -1,0 +1,63 @@
+"""Energy: packets that creatures sense and collect.
+
+The field is the one of the Microcosmos paper: Gaussian packets at random places. It lasts,
+or is consumed; it may diffuse.
+"""
+
+from dataclasses import dataclass
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+Plane = Float[Array, "x y"]
+
+
+class Energy(eqx.Module):
+    """The field at the start and what becomes of it."""
+
+    start: Plane
+    diffusion: Float[Array, ""] | None
+    """Cells² a step, at most 1/4; None: it stays where it is."""
+    rate: Float[Array, ""] | None
+    """Share of what a node covers that it takes in a step; None: nothing is taken away."""
+
+
+@dataclass(frozen=True)
+class Packets:
+    """Gaussians at places drawn from a seed."""
+
+    count: int
+    width: float
+    """Standard deviation in cells."""
+    amplitude: float
+    seed: int
+
+
+def packets(size: tuple[int, int], what: Packets) -> np.ndarray:
+    """The sum of all packets in a periodic box, each with all images that reach into it."""
+    places = np.random.default_rng(what.seed).uniform(0, size, (what.count, 2))
+    planes = []
+    for axis in range(2):
+        away = np.arange(size[axis])[None] - places[:, axis, None]
+        boxes = 1 + int(np.ceil(8 * what.width / size[axis]))
+        images = away[:, :, None] + size[axis] * np.arange(-boxes, boxes + 1)
+        planes.append(np.exp(-0.5 * (images / what.width) ** 2).sum(-1))
+    return what.amplitude * np.einsum("px,py->xy", *planes)
+
+
+def diffuse(field: Plane, diffusion: Float[Array, ""]) -> Plane:
+    """One explicit step of diffusion; the sum over the box stays."""
+    around = sum(jnp.roll(field, shift, axis) for axis in (0, 1) for shift in (-1, 1))
+    return field + diffusion * (around - 4 * field)
+
+
+def collect(field: Plane, coverage: Plane, rate: Float[Array, ""]) -> tuple[Plane, Plane]:
+    """The field after nodes have taken their share, and the share that each unit of them gets.
+
+    `coverage` is how many nodes cover each cell. Together they take at most all there is;
+    a node's part is the second plane interpolated at it, and the parts sum to what is gone.
+    """
+    taken = rate / jnp.maximum(1.0, rate * coverage)
+    return field * (1 - taken * coverage), field * taken

@@ -1,0 +1,70 @@
+"""What stands around the fluid: walls, a uniform force, a free stream.
+
+Halfway bounce-back: Ladd, J. Fluid Mech. 271, 285 (1994), for walls at rest. The wall lies
+half a cell outside the last fluid cell, exactly so for a straight wall at Λ = 3/16.
+"""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from .dynamics import Rates, collide, stream
+from .lattice import DIRECTIONS, PAIRS, Plane, Populations, Vectors, equilibrium
+
+
+class Sponge(eqx.Module):
+    """Cells in which the fluid is drawn to a free stream at rest density."""
+
+    strength: Float[Array, "x y"]
+    """Share of the difference that a step removes, 0 where the fluid is left alone."""
+    velocity: Float[Array, "2"]
+
+
+class Surroundings(eqx.Module):
+    """What acts on the fluid besides bodies; what is None costs nothing."""
+
+    force: Float[Array, "2"] | None = None
+    """The same force density in every cell."""
+    solid: Bool[Array, "x y"] | None = None
+    """Cells of wall at rest, in which there is no fluid."""
+    sponge: Sponge | None = None
+
+
+def advance(
+    f: Populations,
+    rho: Plane,
+    momentum: tuple[Plane, Plane],
+    force: Vectors,
+    rates: Rates,
+    surroundings: Surroundings,
+) -> Populations:
+    """Collide, stream, return from walls what would have entered them, feed the sponge.
+
+    `rho` and `momentum` are the moments of `f`, without force; `force` is what bodies add.
+    """
+    if surroundings.force is not None:
+        force = force + surroundings.force[:, None, None]
+    collided = collide(f, rho, momentum, force, rates)
+    f = stream(collided)
+    if surroundings.solid is not None:
+        f = _bounce(f, collided, surroundings.solid)
+    if surroundings.sponge is not None:
+        f = _absorb(f, surroundings.sponge)
+    return f
+
+
+def _bounce(streamed: Populations, collided: Populations, solid: Bool[Array, "x y"]):
+    """Where a population would come from a solid cell, its opposite comes back."""
+    out = [streamed[0]]
+    for pair in PAIRS:
+        for i, opposite in (pair, pair[::-1]):
+            from_wall = jnp.roll(solid, DIRECTIONS[i], (0, 1))
+            out.append(jnp.where(from_wall, collided[opposite], streamed[i]))
+    return tuple(jnp.where(solid, 0.0, plane) for plane in out)
+
+
+def _absorb(f: Populations, sponge: Sponge) -> Populations:
+    rest = jnp.ones_like(sponge.strength)
+    stream_velocity = jnp.broadcast_to(sponge.velocity[:, None, None], (2, *rest.shape))
+    free = equilibrium(rest, stream_velocity)
+    return tuple(p + sponge.strength * (q - p) for p, q in zip(f, free, strict=True))

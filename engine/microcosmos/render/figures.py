@@ -1,0 +1,38 @@
+"""Figures of experiments, and files of them."""
+
+from pathlib import Path
+from typing import Any
+
+from ..archive.table import Table
+from .needed import needed
+from .scaling import scaling
+from .sweep import sweep
+
+__all__ = ["of", "save", "scaling", "sweep"]
+
+UNDATED = {
+    ".png": {"Software": None},
+    ".svg": {"Date": None, "Creator": None},
+    ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+"""What is left out of each kind of file, so that the same figure gives the same bytes."""
+
+
+def of(table: Table) -> Any:
+    """The figure of a run's table. Raises `ValueError` where it has none."""
+    if table.experiment == "gaits":
+        return sweep(table.rows)
+    if table.experiment == "scaling":
+        from ..experiments.scaling import summary  # Which loads JAX.
+
+        return scaling(table.rows, summary(table.rows))
+    raise ValueError(f"`experiment` must be gaits or scaling, got {table.experiment!r}.")
+
+
+def save(figure: Any, path: str | Path) -> None:
+    """Writes a figure as .png, .svg or .pdf."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in UNDATED:
+        raise ValueError(f"`path` must end in {', '.join(UNDATED)}, got {str(path)!r}.")
+    with needed("matplotlib").rc_context({"svg.hashsalt": "microcosmos"}):
+        figure.savefig(path, dpi=160, metadata=UNDATED[suffix])

@@ -1,0 +1,151 @@
+"""Reading the bytes of a replay (`docs/formats.md`) with NumPy alone."""
+
+import json
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+FORMAT = "microcosmos-replay/1"
+
+
+class ReplayError(ValueError):
+    """Bytes that are no replay: `field`, what it `needed` and what it `got`."""
+
+    def __init__(self, field: str, needed: str, got: object):
+        super().__init__(f"`{field}` needs {needed}; got {got!r:.120}")
+        self.field, self.needed, self.got = field, needed, got
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """The recorded motion of a creature, and the vorticity of the fluid around it."""
+
+    header: dict[str, Any]
+    positions: np.ndarray
+    """(frame, node, 2), unwrapped, in cells."""
+
+    levels: np.ndarray
+    """(frame, x, y) int8: the vorticity in units of `quantum`."""
+
+    @property
+    def frames(self) -> int:
+        return len(self.positions)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Cells along x and y."""
+        width, height = self.header["size"]
+        return width, height
+
+    @property
+    def quantum(self) -> float:
+        """The vorticity of one level, in 1/step."""
+        return self.header["vorticity"]["scale"] / 127
+
+    @property
+    def vorticity(self) -> np.ndarray:
+        """(frame, x, y), in 1/step."""
+        return self.levels * np.float32(self.quantum)
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """(edge, 2) node numbers."""
+        return np.array(self.header["edges"], int).reshape(-1, 2)
+
+    @cached_property
+    def centres(self) -> np.ndarray:
+        """(frame, creature, 2): the mean position of each creature's nodes, in cells."""
+        member = np.array(self.header.get("member", [0] * self.header["nodes"]))
+        count = np.bincount(member)
+        sums = np.zeros((len(count), self.frames, 2))
+        np.add.at(sums, member, self.positions.swapaxes(0, 1))
+        return sums.swapaxes(0, 1) / count[:, None]
+
+    @cached_property
+    def strongest(self) -> float:
+        """The vorticity that one value in a hundred exceeds, of those that are not zero."""
+        counts = np.bincount(self.levels.ravel().view(np.uint8), minlength=256)
+        values = np.arange(256, dtype=np.uint8).view(np.int8).astype(int)
+        tally = np.bincount(np.abs(values), counts)
+        reaching = np.cumsum(tally[::-1])[::-1]
+        strong = np.flatnonzero(reaching > reaching[1] / 100)
+        return self.quantum * max(1, strong.max(initial=1))
+
+    def step(self, number: int) -> int:
+        """How many steps had been taken at a frame."""
+        return number * self.header["every"]
+
+
+def read_replay(data: bytes) -> Replay:
+    """The replay in these bytes. Raises `ReplayError` where they are not sound."""
+    header, start = _header(data)
+    frames, nodes, (width, height) = (header[key] for key in ("frames", "nodes", "size"))
+    split = start + 8 * frames * nodes
+    end = split + frames * width * height
+    _need(len(data) == end, "bytes", f"{end} of them by its header", len(data))
+    positions = np.frombuffer(data, "<f4", 2 * frames * nodes, start).astype(np.float32)
+    _need(bool(np.isfinite(positions).all()), "positions", "finite numbers", "others")
+    levels = np.frombuffer(data, np.int8, offset=split)
+    return Replay(
+        header, positions.reshape(frames, nodes, 2), levels.reshape(frames, width, height)
+    )
+
+
+def _header(data: bytes) -> tuple[dict[str, Any], int]:
+    """The header, and where the positions begin."""
+    _need(len(data) >= 4, "bytes", "at least 4 of them", len(data))
+    (length,) = struct.unpack_from("<I", data)
+    _need(4 + length <= len(data), "header", f"{length} bytes", len(data) - 4)
+    try:
+        header = json.loads(data[4 : 4 + length])
+    except ValueError:
+        raise ReplayError("header", "JSON", data[4 : 4 + length]) from None
+    _need(isinstance(header, dict), "header", "a JSON object", header)
+    _need(header.get("format") == FORMAT, "format", repr(FORMAT), header.get("format"))
+    _check(header)
+    return header, 4 + length
+
+
+def _check(header: dict[str, Any]) -> None:
+    for field in ("frames", "every", "nodes"):
+        found = header.get(field)
+        _need(_is_count(found), field, "a whole number from 1", found)
+    size, edges, curl = (header.get(key) for key in ("size", "edges", "vorticity"))
+    _need(_is_pair(size, _is_count), "size", "width and height", size)
+    scale = curl.get("scale") if isinstance(curl, dict) else curl
+    sound = isinstance(scale, int | float) and 0 < scale < float("inf")
+    _need(sound, "vorticity.scale", "a positive number", scale)
+    pairs = f"a list of pairs of nodes below {header['nodes']}"
+    _need(isinstance(edges, list), "edges", pairs, edges)
+    for edge in edges or ():
+        _need(_is_pair(edge, lambda k: _is_node(k, header["nodes"])), "edges", pairs, edge)
+    if "member" in header:
+        _check_member(header["member"], header["nodes"])
+
+
+def _check_member(member: Any, nodes: int) -> None:
+    needed = f"the creature of each of {nodes} nodes, counted from 0"
+    _need(isinstance(member, list) and len(member) == nodes, "member", needed, member)
+    whole = all(type(k) is int for k in member)
+    _need(whole and set(member) == set(range(len(set(member)))), "member", needed, member)
+
+
+def _is_count(value: Any) -> bool:
+    return type(value) is int and value >= 1
+
+
+def _is_node(value: Any, nodes: int) -> bool:
+    return type(value) is int and 0 <= value < nodes
+
+
+def _is_pair(value: Any, sound: Callable[[Any], bool]) -> bool:
+    return isinstance(value, list) and len(value) == 2 and all(map(sound, value))
+
+
+def _need(sound: bool, field: str, needed: str, got: object) -> None:
+    if not sound:
+        raise ReplayError(field, needed, got)

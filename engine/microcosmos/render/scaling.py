@@ -1,0 +1,84 @@
+"""The figure of a scaling run: time and memory against the number of nodes."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from .plotting import COLOURS, GREY, Row, blank, look, refuse_lacking, tidy
+
+NEEDED = ("method", "nodes", "seconds")
+
+PARTS = {
+    "fluid": "fluid",
+    "coupling": "interpolation and spreading",
+    "constraints": "constraints",
+    "steric": "steric repulsion",
+}
+
+OURS = {"color": "#1b2226", "marker": "o", "lw": 2.2}
+PAIRS = {"color": COLOURS[4], "marker": "v", "ls": "--"}
+
+
+def scaling(rows: Sequence[Row], summary: Row | None = None) -> Any:
+    """Time of 1,000 steps, whole and by parts, and memory, against the number of nodes.
+
+    `summary` has the fitted powers; the dotted line is proportional to the nodes.
+    """
+    refuse_lacking(rows, NEEDED)
+    rows = sorted(rows, key=lambda row: row["nodes"])
+    ours = [row for row in rows if row["method"] == "microcosmos"]
+    pairs = [row for row in rows if row["method"] == "all-pairs"]
+    figure = blank(10.5, 4.8)
+    time, memory = figure.subplots(1, 2, width_ratios=(3, 2))
+    _proportional(time, ours)
+    _line(time, pairs, "seconds", "all pairs" + _power(summary, "exponent_all_pairs"), PAIRS)
+    of_nodes = _power(summary, "exponent", "the nodes’ part ")
+    _line(time, ours, "seconds", "Microcosmos" + of_nodes, OURS)
+    for number, (part, name) in enumerate(PARTS.items()):
+        style = look(number) | {"ms": 4, "lw": 1.1}
+        _line(time, ours, part, name, style)
+    _line(memory, pairs, "memory_bytes", "all pairs", PAIRS)
+    _line(memory, ours, "memory_bytes", "Microcosmos", OURS)
+    _dress(time, "time of 1,000 steps [s]")
+    _dress(memory, "memory")
+    handles, labels = time.get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9
+    )
+    memory.set_yscale("log", base=2)
+    memory.yaxis.set_major_formatter(_bytes)
+    return figure
+
+
+def _line(panel: Any, rows: Sequence[Row], name: str, label: str, style: dict) -> None:
+    """What is known of a column; parts below the clock's resolution have no logarithm."""
+    known = [row for row in rows if (row.get(name) or 0) > 0]
+    if known:
+        nodes = [row["nodes"] for row in known]
+        panel.plot(nodes, [row[name] for row in known], label=label, **style)
+
+
+def _power(summary: Row | None, name: str, what: str = "") -> str:
+    found = (summary or {}).get(name)
+    return "" if found is None else f" ({what}∝ n$^{{{found:.2f}}}$)"
+
+
+def _proportional(panel: Any, rows: Sequence[Row]) -> None:
+    """A line proportional to the nodes through the largest of our runs."""
+    if len(rows) < 2:
+        return
+    first, last = rows[0]["nodes"], rows[-1]["nodes"]
+    top = rows[-1]["seconds"]
+    style = {"color": GREY, "ls": ":", "lw": 1.2, "label": "∝ n"}
+    panel.plot([first, last], [top * first / last, top], **style)
+
+
+def _dress(panel: Any, what: str) -> None:
+    panel.set(xscale="log", yscale="log", xlabel="nodes, n", ylabel=what)
+    tidy(panel)
+
+
+def _bytes(value: float, _: int) -> str:
+    power = 0
+    while value >= 1024 and power < 4:
+        value, power = value / 1024, power + 1
+    return f"{value:.3g} {('B', 'KiB', 'MiB', 'GiB', 'TiB')[power]}"

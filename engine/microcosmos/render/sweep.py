@@ -1,0 +1,142 @@
+"""The figure of a sweep: how far swimmers come at each viscosity, in each form."""
+
+from collections.abc import Sequence
+from math import isfinite, log10
+from typing import Any
+
+from .plotting import GREY, Row, blank, look, refuse_lacking, tidy
+
+NEEDED = ("form", "swimmer", "viscosity", "displacement", "status")
+
+FORMS = {
+    "ours": "Ours",
+    "strong": "Ours, unlimited strength",
+    "paper": "The paper’s literal form",
+}
+
+UNSOUND = "#f4eee0"
+"""Behind results that are not force-free."""
+
+MOST_TICKS = 5
+
+
+def sweep(rows: Sequence[Row]) -> Any:
+    """Displacement in a cycle against viscosity: a panel for each form, a line a swimmer.
+
+    Hollow marks had a limit active; crosses at the top did not finish. A form that is not
+    force-free has a shaded panel. The upper axis has the worm's Reynolds number.
+    """
+    refuse_lacking(rows, NEEDED)
+    found = {row["form"] for row in rows}
+    forms = [form for form in FORMS if form in found] + sorted(found - FORMS.keys())
+    swimmers = list(dict.fromkeys(row["swimmer"] for row in rows))
+    figure = blank(3.4 * len(forms) + 1.2, 4.4)
+    panels = figure.subplots(1, len(forms), squeeze=False)[0]
+    for panel, form in zip(panels, forms, strict=True):
+        here = [row for row in rows if row["form"] == form]
+        for number, swimmer in enumerate(swimmers):
+            own = [row for row in here if row["swimmer"] == swimmer]
+            _line(panel, sorted(own, key=lambda row: row["viscosity"]), swimmer, number)
+        _dress(panel, form, here)
+    panels[0].set_ylabel("displacement [cells a cycle]")
+    for panel, form in zip(panels, forms, strict=True):
+        panel.set_ylim(0, _top([row for row in rows if _free(row) == _free_form(rows, form)]))
+    _legend(figure, panels[0], rows)
+    return figure
+
+
+def _line(panel: Any, rows: Sequence[Row], swimmer: str, number: int) -> None:
+    style, mew = look(number), 1.4
+    ends = [row["displacement"] if _finished(row) else float("nan") for row in rows]
+    panel.plot([row["viscosity"] for row in rows], ends, label=swimmer, ms=5.5, **style)
+    limited = [row for row in rows if _finished(row) and row.get("limited")]
+    panel.plot(
+        [row["viscosity"] for row in limited],
+        [row["displacement"] for row in limited],
+        **style | {"ls": "", "mfc": panel.get_facecolor(), "ms": 5.5, "mew": mew},
+        label=f"_{swimmer}, limited",
+    )
+    failed = [row["viscosity"] for row in rows if not _finished(row)]
+    panel.plot(
+        failed,
+        [0.96 - 0.04 * number] * len(failed),
+        **style | {"ls": "", "marker": "x", "ms": 5.5, "mew": mew},
+        label=f"_{swimmer}, unfinished",
+        transform=panel.get_xaxis_transform(),
+    )
+
+
+def _free(row: Row) -> bool:
+    return bool(row.get("force_free", True))
+
+
+def _free_form(rows: Sequence[Row], form: str) -> bool:
+    return all(_free(row) for row in rows if row["form"] == form)
+
+
+def _top(rows: Sequence[Row]) -> float:
+    """One scale for all panels that are force-free, and one for those that are not."""
+    most = max((row["displacement"] for row in rows if _finished(row)), default=0) or 1
+    return most * (1.06 if all(map(_finished, rows)) else 1.25)
+
+
+def _finished(row: Row) -> bool:
+    found = row["displacement"]
+    return row["status"] == "ok" and found is not None and isfinite(found)
+
+
+def _dress(panel: Any, form: str, rows: Sequence[Row]) -> None:
+    title = FORMS.get(form, form)
+    if not _free_form(rows, form):
+        panel.set_facecolor(UNSOUND)
+        title += " (not force-free)"
+    panel.set_title(title, fontsize=10.5)
+    panel.set(xscale="log", xlabel="viscosity [cells²/step]")
+    tidy(panel)
+    _reynolds_axis(panel, rows)
+
+
+def _reynolds_axis(panel: Any, rows: Sequence[Row]) -> None:
+    """An upper axis with one swimmer's Reynolds numbers at its viscosities."""
+    known = [row for row in rows if _finished(row) and (row.get("reynolds") or 0) > 0]
+    if not known:
+        return
+    swimmers = {row["swimmer"] for row in known}
+    swimmer = "worm" if "worm" in swimmers else known[0]["swimmer"]
+    own = sorted(
+        (row for row in known if row["swimmer"] == swimmer), key=lambda row: row["viscosity"]
+    )
+    own = own[:: -(-len(own) // MOST_TICKS)]
+    upper = panel.secondary_xaxis("top")
+    upper.set_xticks(
+        [row["viscosity"] for row in own], [_two_digits(row["reynolds"]) for row in own]
+    )
+    upper.minorticks_off()
+    upper.tick_params(colors=GREY, labelsize=8)
+    upper.set_xlabel(f"Reynolds number of the {swimmer}", color=GREY, fontsize=8.5)
+
+
+def _two_digits(value: float) -> str:
+    return f"{round(value, 1 - int(log10(value) // 1)):,.6g}"
+
+
+def _legend(figure: Any, panel: Any, rows: Sequence[Row]) -> None:
+    """The swimmers, and what hollow marks and crosses say where there are some."""
+    from matplotlib.lines import Line2D
+
+    handles, labels = panel.get_legend_handles_labels()
+    mark = {"ls": "", "color": GREY, "mew": 1.4, "ms": 5.5}
+    if any(_finished(row) and row.get("limited") for row in rows):
+        handles.append(Line2D([], [], marker="o", mfc="white", **mark))
+        labels.append("a limit was active")
+    if not all(map(_finished, rows)):
+        handles.append(Line2D([], [], marker="x", **mark))
+        labels.append("did not finish")
+    figure.legend(
+        handles,
+        labels,
+        loc="outside lower center",
+        ncols=len(labels),
+        frameon=False,
+        fontsize=9,
+    )

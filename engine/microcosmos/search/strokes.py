@@ -1,0 +1,90 @@
+"""Evaluation of hand-made gaits: the same stroke in a block of conditions."""
+
+from dataclasses import replace
+from functools import partial
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from .. import units
+from ..filaments import Rest
+from ..world import Limits, Measures, State, World, flow, rollout
+from .evaluation import (
+    MOTION,
+    Evaluation,
+    Seen,
+    Task,
+    centre,
+    mapped,
+    motion,
+    observe,
+)
+
+STROKE_FEATURES = (
+    *MOTION,
+    "energy",
+    "mach",
+    "limited",
+    "reynolds",
+    "cycle",
+    "direction",
+    "impulse",
+)
+"""What is recorded of every stroke, in this order; units in `docs/formats.md`."""
+
+
+class Conditions(eqx.Module):
+    """What differs between the points of a sweep."""
+
+    viscosity: Float[Array, "*block"]
+    limits: Limits
+
+
+class Watched(eqx.Module):
+    """What is observed in every step where nothing may stay unseen."""
+
+    seen: Seen
+    mach: Float[Array, "*time"]
+    """Of the fastest fluid anywhere."""
+    force: Float[Array, "*time group 2"]
+
+
+def watch(world: World, state: State, measures: Measures) -> Watched:
+    """What `observe` sees, the whole flow's Mach number, and what bodies exert."""
+    u = flow(world, state)
+    fastest = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
+    return Watched(observe(state, measures), units.mach(fastest), measures.force)
+
+
+def impulse(watched: Watched) -> Float[Array, ""]:
+    """The largest momentum that a body has given away on balance, at any time."""
+    return jnp.max(jnp.sqrt(jnp.sum(jnp.cumsum(watched.force, 0) ** 2, -1)))
+
+
+def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluation:
+    """Carry out a stroke under its conditions and measure its last cycle."""
+    world = replace(task.world, viscosity=conditions.viscosity, limits=conditions.limits)
+    task = replace(task, world=world)
+
+    end, watched = rollout(world, task.start, rest, partial(watch, world))
+    seen, values = watched.seen, motion(task, end, watched.seen)
+    before = seen.centre[-1 - period] if len(seen.pace) > period else centre(task.start)
+    cycle = seen.centre[-1] - before
+    values["mach"] = jnp.max(watched.mach)
+    values["cycle"] = jnp.sqrt(jnp.sum(cycle * cycle))
+    values["direction"] = jnp.arctan2(cycle[1], cycle[0])
+    values["impulse"] = impulse(watched)
+    features = jnp.stack([values[name] for name in STROKE_FEATURES])
+    finite = jnp.all(jnp.isfinite(features))
+    status = jnp.where(finite, jnp.where(values["mach"] < 1, 0, 2), 1)
+    return Evaluation(values["displacement"], features, status)
+
+
+def stroke_program(task: Task, rest: Rest, period: int, options: dict):
+    """One compiled program that carries out a stroke in a block of conditions."""
+    return jax.jit(
+        lambda block: mapped(lambda point: swim(task, rest, point, period), block),
+        compiler_options=options,
+    )

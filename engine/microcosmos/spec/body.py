@@ -1,0 +1,190 @@
+"""The body: one of several builders, each with its own measures."""
+
+from functools import lru_cache
+from typing import Annotated, Any, Literal, Self, get_args
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from .. import bodies, creatures
+from .base import Part, unit
+
+SUPPORT = 4.0
+"""Cells that the four-point delta reaches across, beyond a body's own extent."""
+
+MOST = 4096
+"""Nodes of a body."""
+
+
+class Elastic(Part):
+    """Stiffness, the same everywhere."""
+
+    stretch: float = Field(default=1.0, ge=0.0, le=1.0)
+    """Share of the stretching error that one projection removes."""
+    shear: float = Field(default=1.0, ge=0.0, le=1.0)
+    """Share of the shearing error that one projection removes."""
+    bend: float = Field(default=1.0, ge=0.0, le=1.0)
+    """Share of the bending error that one projection removes."""
+
+    @model_validator(mode="after")
+    def refuse_malformed(self) -> Self:
+        if (count := _nodes(self)) > MOST:
+            raise ValueError(f"a body must have at most {MOST} nodes, got {count:.6g}")
+        shape(self)  # pyright: ignore[reportArgumentType]
+        return self
+
+
+def spacing() -> Any:
+    return Field(default=1.0, ge=0.5, le=2.0, json_schema_extra=unit("cells"))
+
+
+class Chain(Elastic):
+    """A straight filament."""
+
+    builder: Literal["chain"] = "chain"
+    nodes: int = Field(default=32, ge=3, le=MOST)
+    """Nodes of the filament."""
+    spacing: float = spacing()
+    """Rest length of an edge; wider than 2 cells, fluid leaks between the nodes."""
+
+
+class Ring(Elastic):
+    """A closed filament, round at rest."""
+
+    builder: Literal["ring"]
+    nodes: int = Field(default=32, ge=4, le=MOST)
+    """Nodes of the ring."""
+    spacing: float = spacing()
+    """Rest length of an edge."""
+
+
+class Arc(Elastic):
+    """An open circle, like a bell."""
+
+    builder: Literal["arc"]
+    nodes: int = Field(default=32, ge=4, le=MOST)
+    """Nodes of the arc."""
+    spacing: float = spacing()
+    """Rest length of an edge."""
+    gap: float = Field(default=0.25, gt=0.0, lt=1.0)
+    """Share of the circle that is missing."""
+
+
+class Star(Elastic):
+    """Straight arms from one middle node."""
+
+    builder: Literal["star"]
+    arms: int = Field(default=5, ge=3, le=64)
+    """Arms, evenly around the middle."""
+    arm_nodes: int = Field(default=8, ge=1, le=1024)
+    """Nodes of an arm, the middle one not among them."""
+    spacing: float = spacing()
+    """Rest length of an edge."""
+
+
+class Tree(Elastic):
+    """A stem that branches again and again."""
+
+    builder: Literal["tree"]
+    levels: int = Field(default=3, ge=1, le=8)
+    """How often a branch ends in branches, the stem among them."""
+    branches: int = Field(default=2, ge=2, le=4)
+    """Branches at the end of each."""
+    segment_nodes: int = Field(default=6, ge=1, le=256)
+    """Nodes of a branch."""
+    spacing: float = spacing()
+    """Rest length of an edge."""
+    angle: float = Field(default=0.9, gt=0.0, le=2.0, json_schema_extra=unit("rad"))
+    """Between the outermost branches of a fork."""
+
+
+class Polyline(Elastic):
+    """A filament along given points, with nodes evenly spaced."""
+
+    builder: Literal["polyline"]
+    points: Annotated[tuple[tuple[float, float], ...], Field(min_length=2, max_length=MOST)]
+    """Corners as [x, y] in cells; only their shape counts, the middle is put in the world's."""
+    spacing: float = spacing()
+    """About the rest length of an edge."""
+    closed: bool = False
+    """Whether the last point is joined to the first."""
+
+
+class Graph(Elastic):
+    """Any filaments: nodes and the edges between them, at rest as they are drawn."""
+
+    builder: Literal["graph"]
+    nodes: Annotated[tuple[tuple[float, float], ...], Field(min_length=3, max_length=MOST)]
+    """Places as [x, y] in cells."""
+    edges: Annotated[tuple[tuple[int, int], ...], Field(min_length=2, max_length=4 * MOST)]
+    """Pairs of node numbers, from 0."""
+
+
+Swimmer = Literal["worm", "tadpole", "ray", "cilia", "jellyfish"]
+"""The known swimmers, by name."""
+
+
+class Known(Part):
+    """The body of one of the five known swimmers."""
+
+    builder: Swimmer
+    """Whose body."""
+
+
+NAMES = ("chain", "ring", "arc", "star", "tree", "polyline", "graph", *get_args(Swimmer))
+
+
+def _tag(value: Any) -> Any:
+    """A body that names no builder is a chain."""
+    if isinstance(value, dict):
+        name = value.get("builder", "chain")
+    else:
+        name = getattr(value, "builder", None)
+    return "known" if name in get_args(Swimmer) else name
+
+
+Body = Annotated[
+    Annotated[Chain, Tag("chain")]
+    | Annotated[Ring, Tag("ring")]
+    | Annotated[Arc, Tag("arc")]
+    | Annotated[Star, Tag("star")]
+    | Annotated[Tree, Tag("tree")]
+    | Annotated[Polyline, Tag("polyline")]
+    | Annotated[Graph, Tag("graph")]
+    | Annotated[Known, Tag("known")],
+    Discriminator(
+        _tag,
+        custom_error_type="unknown_builder",
+        custom_error_message="`builder` must be one of " + ", ".join(NAMES),
+    ),
+]
+"""A body, by the name of its builder."""
+
+
+def shape(body: Body) -> bodies.Body:
+    """The graph of a body at rest. Raises `ValueError` where it is malformed."""
+    return _shape(body)  # pyright: ignore[reportArgumentType]
+
+
+def _nodes(body: Elastic) -> float:
+    """About how many nodes there will be, where fields alone do not bound it."""
+    match body:
+        case Star():
+            return 1 + body.arms * body.arm_nodes
+        case Tree():
+            return body.segment_nodes * sum(body.branches**n for n in range(body.levels))
+        case Polyline():
+            corners = np.array(body.points)
+            return float(np.sum(np.hypot(*np.diff(corners, axis=0).T)) / body.spacing)
+    return 0
+
+
+@lru_cache(maxsize=64)
+def _shape(body: Body) -> bodies.Body:
+    if isinstance(body, Known):
+        return creatures.SWIMMERS[body.builder]().body
+    measures = {name: getattr(body, name) for name in type(body).model_fields}
+    if measures.pop("builder") == "graph":
+        nodes, edges = (np.array(measures.pop(name)) for name in ("nodes", "edges"))
+        return bodies.from_edges(nodes, edges, **measures)
+    return getattr(bodies, body.builder)(**measures)

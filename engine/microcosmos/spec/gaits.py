@@ -1,0 +1,127 @@
+"""The spec of a sweep of hand-made gaits over viscosity, and its presets."""
+
+from typing import Annotated, Literal, Self, get_args
+
+from pydantic import Field, model_validator
+
+from .base import Part, unit
+from .body import Known, Swimmer
+from .coupling import Coupling
+from .fields import Steric
+from .scene import Gait, Scene, refuse_too_large
+from .search import Task
+from .world import World
+
+FORMS = {
+    "ours": "force- and torque-free, one actuator strength for all",
+    "strong": "force- and torque-free, actuators that never tire",
+    "paper": "as in the paper: two layers, free edge angles, not force-free",
+}
+"""How bodies and fluid are coupled, by name."""
+
+Form = Literal["ours", "strong", "paper"]
+Viscosity = Annotated[float, Field(ge=1e-3, le=2.0)]
+
+
+class Gaits(Part):
+    """Five known swimmers, each by its own gait, at every viscosity."""
+
+    experiment: Literal["gaits"] = "gaits"
+    swimmers: Annotated[tuple[Swimmer, ...], Field(min_length=1)] = get_args(Swimmer)
+    """Who swims."""
+    forms: Annotated[tuple[Form, ...], Field(min_length=1)] = ("ours", "strong", "paper")
+    """Forms of the coupling, side by side: ours, ours with tireless actuators, the paper's."""
+    viscosities: Annotated[tuple[Viscosity, ...], Field(min_length=1, max_length=256)] = (
+        0.001,
+        0.002,
+        0.005,
+        0.01,
+        0.02,
+        0.05,
+        0.1,
+        0.2,
+        0.5,
+        1.0,
+        2.0,
+    )
+    """Kinematic viscosities in cells²/step."""
+    width: int = Field(default=64, ge=64, le=2048, json_schema_extra=unit("cells"))
+    """Size of the box along x."""
+    height: int = Field(default=64, ge=64, le=2048, json_schema_extra=unit("cells"))
+    """Size of the box along y."""
+    period: int = Field(default=1200, ge=20, le=100_000, json_schema_extra=unit("steps"))
+    """Steps of one stroke."""
+    cycles: int = Field(default=3, ge=1, le=100)
+    """Strokes; the displacement is that of the last one."""
+    ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
+    """Over how many periods the stroke grows to its full size; 0: at once."""
+    block: int = Field(default=4, ge=1, le=256)
+    """Points computed by one call of the compiled program; results depend on its bits."""
+    nu_c: float = Field(default=0.1, gt=0.0, le=1e3, json_schema_extra=unit("cells²/step"))
+    """Viscosity at which actuators have half of their strength, in the form `ours`."""
+    steric: Steric | None = None
+    """Repulsion between nodes; empty: none."""
+
+    @model_validator(mode="after")
+    def check(self) -> Self:
+        for name in ("swimmers", "forms", "viscosities"):
+            values = getattr(self, name)
+            if len(set(values)) < len(values):
+                raise ValueError(f"`{name}` must differ, got {list(values)}")
+        for swimmer in self.swimmers:
+            refuse_too_large(World(width=self.width, height=self.height), _body(swimmer), 0.1)
+        return self
+
+    @property
+    def generations(self) -> int:
+        """One for every form and swimmer: all viscosities are computed together."""
+        return len(self.strokes)
+
+    @property
+    def strokes(self) -> tuple[tuple[str, str], ...]:
+        """Every form with every swimmer: what is computed together."""
+        return tuple((form, swimmer) for form in self.forms for swimmer in self.swimmers)
+
+    def scene(self, form: str, swimmer: str, viscosity: float) -> Scene:
+        """One point of the sweep."""
+        return Scene.model_validate(
+            {
+                "world": World(
+                    width=self.width,
+                    height=self.height,
+                    viscosity=viscosity,
+                    steric=self.steric,
+                ),
+                "body": _body(swimmer),
+                "coupling": self.coupling(form),
+                "control": Gait.model_validate(
+                    {"swimmer": swimmer, "period": self.period, "ramp": self.ramp}
+                ),
+                "task": Task(steps=self.period * self.cycles),
+            }
+        )
+
+    def coupling(self, form: str) -> Coupling:
+        """What a form's name stands for."""
+        if form == "paper":
+            return Coupling(projection="none", theta_feedback=0, layers=2)
+        return Coupling(nu_c=self.nu_c if form == "ours" else None)
+
+
+def _body(swimmer: str) -> Known:
+    return Known.model_validate({"builder": swimmer})
+
+
+PRESETS = {
+    "demo": (
+        "Worm and ray at three viscosities, seconds on a laptop",
+        Gaits(
+            swimmers=("worm", "ray"),
+            forms=("ours",),
+            viscosities=(0.05, 0.5, 2.0),
+            period=200,
+            cycles=2,
+        ),
+    ),
+    "paper": ("The paper's sweep: five swimmers, viscosity 0.001 to 2, three forms", Gaits()),
+}

@@ -1,0 +1,93 @@
+"""The spec of a measurement of wall time against the number of nodes, and its presets."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from .base import Part, unit
+from .fields import Steric
+
+Nodes = Annotated[int, Field(ge=20, le=2_000_000)]
+
+SPACING = 0.35
+"""Cells between nodes, along a filament and across: 500,000 of them fill a box of 256²."""
+
+
+class Scaling(Part):
+    """Wall time of the paper's 1,000 steps, part by part, as nodes are added to one box."""
+
+    experiment: Literal["scaling"] = "scaling"
+    nodes: Annotated[tuple[Nodes, ...], Field(min_length=2, max_length=64)] = (
+        1_000,
+        2_000,
+        4_000,
+        8_000,
+        16_000,
+        32_000,
+        64_000,
+        128_000,
+        256_000,
+        500_000,
+    )
+    """Numbers of nodes, ascending, as filaments side by side at places drawn at random."""
+    filament: int = Field(default=20, ge=3, le=1000)
+    """Nodes of each filament."""
+    width: int = Field(default=256, ge=32, le=2048, json_schema_extra=unit("cells"))
+    """Size of the box along x."""
+    height: int = Field(default=256, ge=32, le=2048, json_schema_extra=unit("cells"))
+    """Size of the box along y."""
+    steps: int = Field(default=1000, ge=2, le=1_000_000, json_schema_extra=unit("steps"))
+    """Steps that are carried out; times are told for 1,000."""
+    part_steps: int = Field(default=20, ge=2, le=10_000, json_schema_extra=unit("steps"))
+    """Steps of each part by itself, repeated three times."""
+    steric: Steric = Steric()
+    """Repulsion between nodes."""
+    all_pairs: int = Field(default=8_000, ge=0, le=100_000)
+    """Up to so many nodes an all-pairs repulsion is timed beside; 0: never."""
+    seed: int = Field(default=0, ge=0, lt=2**32)
+    """Decides where filaments are."""
+
+    @model_validator(mode="after")
+    def check(self) -> Self:
+        if list(self.nodes) != sorted(set(self.nodes)):
+            raise ValueError(f"`nodes` must ascend, got {list(self.nodes)}")
+        if odd := [n for n in self.nodes if n % self.filament]:
+            raise ValueError(
+                f"`nodes` must be multiples of `filament` ({self.filament}), got {odd}"
+            )
+        columns, rows = self.places
+        if max(self.nodes) > columns * rows * self.filament:
+            raise ValueError(
+                f"`nodes` must be at most {columns * rows * self.filament} in a box of "
+                f"{self.width} × {self.height}, got {max(self.nodes)}"
+            )
+        return self
+
+    @property
+    def places(self) -> tuple[int, int]:
+        """How many filaments have room beside each other along x, and along y."""
+        return int(self.width / (self.filament * SPACING)), int(self.height / SPACING)
+
+    @property
+    def generations(self) -> int:
+        """One for every number of nodes."""
+        return len(self.nodes)
+
+
+PRESETS = {
+    "demo": (
+        "Up to 16,000 nodes in 128 × 128 cells, a minute on a laptop",
+        Scaling(
+            nodes=(1_000, 2_000, 4_000, 8_000, 16_000),
+            width=128,
+            height=128,
+            steps=40,
+            part_steps=5,
+            all_pairs=4_000,
+        ),
+    ),
+    "paper": (
+        "The paper's figure: 256 × 256 cells, up to 500,000 nodes, 1,000 steps",
+        Scaling(),
+    ),
+}

@@ -1,0 +1,67 @@
+"""A creature's scene: the world, body, coupling, controller and task that it means."""
+
+from math import ceil
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from ..bodies.extent import reach
+from .base import Part, unit
+from .body import SUPPORT, Body, Chain, Swimmer, shape
+from .control import Control
+from .coupling import Coupling
+from .search import Task
+from .world import World
+
+
+class Gait(Part):
+    """A hand-made gait of one of the known swimmers."""
+
+    swimmer: Swimmer
+    """Whose gait."""
+    period: int = Field(default=1200, ge=20, le=1_000_000, json_schema_extra=unit("steps"))
+    """Steps of one stroke."""
+    ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
+    """Over how many periods the stroke grows from nothing to its full size; 0: at once."""
+
+
+class Scene(Part):
+    """What is simulated for one creature."""
+
+    world: World = World()
+    body: Body = Chain()
+    coupling: Coupling = Coupling()
+    control: Control | Gait = Control()
+    task: Task = Task()
+
+    @model_validator(mode="after")
+    def check(self) -> Self:
+        refuse_too_large(self.world, self.body, getattr(self.control, "length_scale", 0.0))
+        refuse_senseless(self.world, self.control, self.task)
+        if isinstance(self.control, Gait) and self.body.builder != self.control.swimmer:
+            raise ValueError(
+                f"`body.builder` must be {self.control.swimmer!r} for its gait, "
+                f"got {self.body.builder!r}"
+            )
+        return self
+
+
+def refuse_too_large(world: World, body: Body, stretch: float) -> None:
+    """However it turns and unfolds, a stretched body and the delta's support must fit in."""
+    longest = reach(shape(body))
+    needed = ceil(longest * (1 + stretch) + SUPPORT)
+    side = "width" if world.width <= world.height else "height"
+    if needed > getattr(world, side):
+        raise ValueError(
+            f"`world.{side}` must be at least {needed} cells for a `body` that reaches "
+            f"{longest:.4g} cells, stretched by up to {stretch:g}; got {getattr(world, side)}"
+        )
+
+
+def refuse_senseless(world: World, control: Control | Gait, task: Task) -> None:
+    """Energy must be there to be sensed or to count."""
+    senses = isinstance(control, Control) and control.sense_energy
+    if world.energy is None and (senses or task.fitness != "displacement"):
+        field = "control.sense_energy" if senses else "task.fitness"
+        value = True if senses else task.fitness
+        raise ValueError(f"`world.energy` must be there where `{field}` is {value!r}; got none")

@@ -1,0 +1,99 @@
+"""What a world is: its parameters, which stay, and its state, which moves."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from .. import coupling, fields, filaments, fluid
+from ..groups import Groups
+
+Vectors = Float[Array, "node 2"]
+
+
+@dataclass(frozen=True)
+class Form:
+    """How bodies and fluid act on each other; fixed when a program is compiled."""
+
+    projection: Callable = coupling.torque_free
+    force_factor: float = 2.0
+    theta_feedback: float = 1.0
+    forcing_iterations: int = 3
+    constraint_iterations: int = 10
+    layers: int = 1
+    kernel: coupling.Kernel = coupling.PESKIN
+    magic: Callable = fluid.capped_magic
+
+    def __post_init__(self):
+        if self.projection is coupling.torque_free and self.theta_feedback == 0:
+            raise ValueError(
+                "`projection` must not be torque_free where `theta_feedback` is 0: edge angles "
+                "that ignore the geometry exert a torque of their own."
+            )
+
+
+class Limits(eqx.Module):
+    """What keeps random controllers finite, in cells a step; None: nothing does."""
+
+    displacement: Float[Array, ""] | None = None
+    force: Float[Array, ""] | None = None
+
+
+class World(eqx.Module):
+    """What stays fixed during a run; array fields can be differentiated."""
+
+    viscosity: Float[Array, ""]
+    rods: filaments.Rods
+    groups: Groups
+    """Which body each node belongs to."""
+    size: tuple[int, int] = eqx.field(static=True)
+    form: Form = eqx.field(static=True, default_factory=Form)
+    limits: Limits = Limits()
+    nu_c: Float[Array, ""] | None = None
+    """Viscosity at which actuators have half of their strength; None: they never tire."""
+    steric: fields.Steric | None = None
+    energy: fields.Energy | None = None
+    surroundings: fluid.Surroundings = fluid.Surroundings()
+
+
+class State(eqx.Module):
+    """What changes at every step."""
+
+    populations: fluid.Populations
+    positions: Vectors
+    angles: Float[Array, "edge"]
+    energy: Float[Array, "x y"] | None = None
+    collected: Float[Array, "node"] | None = None
+    """Energy that each node has taken since the start."""
+
+
+class Measures(eqx.Module):
+    """What a step shows of itself; what nobody asks for is not computed."""
+
+    speed: Float[Array, ""]
+    """Of the fastest fluid at a node, cells a step."""
+    pace: Float[Array, ""]
+    """Mean speed of the nodes, cells a step."""
+    held: Float[Array, ""]
+    """Share of nodes whose displacement, or whose body's force, was at its limit."""
+    force: Float[Array, "group 2"]
+    """What each body exerts on the fluid."""
+    rest: filaments.Rest
+    """The rest shape that was asked for."""
+
+
+def at_rest(world: World, positions: Vectors) -> State:
+    """A fluid at rest with bodies at `positions`, and the energy of the start."""
+    planes = tuple(jnp.zeros(world.size, positions.dtype) for _ in range(9))
+    angles = filaments.edge_angles(positions, world.rods)
+    if world.energy is None:
+        return State(planes, positions, angles)
+    return State(planes, positions, angles, world.energy.start, jnp.zeros_like(positions[:, 0]))
+
+
+def flow(world: World, state: State) -> fluid.Vectors:
+    """The fluid's velocity in cells a step, without the half step of force."""
+    momentum = fluid.momentum(state.populations)
+    return jnp.stack(momentum) / fluid.density(state.populations)[None]

@@ -1,0 +1,100 @@
+"""One step of a world, in the order of the method."""
+
+from dataclasses import replace
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from .. import coupling, filaments, fluid
+from ..groups import Groups
+from .model import Measures, State, World
+from .nodes import collect, repel
+
+Vectors = Float[Array, "node 2"]
+
+
+class Motion(eqx.Module):
+    """The bodies on their way through a step: before the fluid's answer."""
+
+    target: Vectors
+    angles: Float[Array, "edge"]
+    shortened: Float[Array, "node"]
+    """What each displacement was multiplied by to stay within the limit."""
+
+
+def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
+    """One step: the fluid carries the bodies, constraints move them, the fluid answers."""
+    rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
+    at = _windows(world, state)
+    velocity = coupling.interpolate(momentum, coupling.divided(at, rho))
+    layers, groups = world.form.layers, world.groups.repeated(world.form.layers)
+    push, drift = repel(world, state.positions)
+    motion = move(world, state, rest, coupling.at_nodes(velocity, layers) + push)
+    forced = coupling.multi_direct_forcing(
+        velocity,
+        coupling.at_points(motion.target, layers),
+        _points(world, state),
+        rho,
+        at,
+        groups=groups,
+        iterations=world.form.forcing_iterations,
+        projection=world.form.projection,
+        limit=world.limits.force,
+    )
+    forcing = world.form.force_factor * forced.forcing
+    force = coupling.spread(forcing, at, world.size)
+    rates = fluid.rates(world.viscosity, world.form.magic)
+    populations = fluid.advance(
+        state.populations, rho, momentum, force, rates, world.surroundings
+    )
+    positions = state.positions + coupling.at_nodes(forced.target, layers) + drift
+    end = replace(state, populations=populations, positions=positions, angles=motion.angles)
+    measures = _measure(velocity, forcing, motion, forced, groups, rest)
+    return collect(world, end, at), measures
+
+
+def move(world: World, state: State, rest: filaments.Rest, velocity: Vectors) -> Motion:
+    """Carry the bodies with the fluid, project onto constraints, limit the speed."""
+    positions = state.positions + velocity
+    followed = filaments.follow_geometry(state.angles, positions, world.rods)
+    angles = state.angles + world.form.theta_feedback * (followed - state.angles)
+    rods = world.rods
+    if world.nu_c is not None:
+        rods = replace(rods, bend=rods.bend / (1 + world.viscosity / world.nu_c))
+    positions, angles = filaments.project(
+        positions, angles, rods, rest, iterations=world.form.constraint_iterations
+    )
+    target = positions - state.positions
+    if world.limits.displacement is None:
+        return Motion(target, angles, jnp.ones_like(target[:, 0]))
+    speed = jnp.sqrt(jnp.sum(target * target, 1) + 1e-24)
+    shortened = jnp.minimum(1.0, world.limits.displacement / speed)
+    return Motion(target * shortened[:, None], angles, shortened)
+
+
+def _points(world: World, state: State) -> Float[Array, "point 2"]:
+    """Where the bodies act on the fluid."""
+    if world.form.layers == 1:
+        return state.positions
+    normals = filaments.normals(state.angles, world.rods, len(state.positions))
+    return coupling.points(state.positions, normals, world.form.layers)
+
+
+def _windows(world: World, state: State) -> coupling.Windows:
+    return coupling.windows(_points(world, state), world.size, world.form.kernel)
+
+
+def _measure(
+    velocity, forcing, motion: Motion, forced: coupling.Forced, groups: Groups, rest
+) -> Measures:
+    layers = len(velocity) // len(motion.target)
+    pressed = groups.each((forced.scale < 1).astype(velocity.dtype))[::layers]
+    held = jnp.maximum(pressed, (motion.shortened < 1).astype(velocity.dtype))
+    return Measures(
+        speed=jnp.sqrt(jnp.max(jnp.sum(velocity * velocity, 1))),
+        pace=jnp.mean(jnp.sqrt(jnp.sum(motion.target * motion.target, 1) + 1e-24)),
+        held=jnp.mean(held),
+        force=groups.total(forcing),
+        rest=rest,
+    )

@@ -1,0 +1,1 @@
+"""The engine against theory and literature; `python -m validation` writes the document."""

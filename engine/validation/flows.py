@@ -1,0 +1,197 @@
+"""Flows without bodies that are known in closed form."""
+
+from collections.abc import Callable
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from microcosmos import fluid
+
+from .precision import Precision, precision
+from .rows import Found, Line, Plot, at_least, at_most
+
+EXACT = "closed form"
+VISCOUS_TIMES = 5
+
+
+def distance(u, exact) -> float:
+    """Relative L2 distance of two fields."""
+    u, exact = np.asarray(u, float), np.asarray(exact, float)
+    return float(np.sqrt(np.sum((u - exact) ** 2) / np.sum(exact**2)))
+
+
+def after(
+    f: fluid.Populations,
+    steps: int,
+    rates: fluid.Rates,
+    force: fluid.Vectors,
+    surroundings: fluid.Surroundings,
+) -> fluid.Populations:
+    """The fluid after a number of steps."""
+
+    def step(_, f):
+        rho, momentum = fluid.density(f), fluid.momentum(f)
+        return fluid.advance(f, rho, momentum, force, rates, surroundings)
+
+    return jax.jit(lambda f: jax.lax.fori_loop(0, steps, step, f))(f)
+
+
+def velocity(f: fluid.Populations, force: fluid.Vectors) -> fluid.Vectors:
+    """With the half step of force that Guo's scheme adds."""
+    return (jnp.stack(fluid.momentum(f)) + 0.5 * force) / fluid.density(f)[None]
+
+
+def _run(u, rho, viscosity, magic, steps, dtype, force=None):
+    """Velocity after `steps` from equilibrium at density `rho` and velocity `u`."""
+    f = fluid.equilibrium(jnp.asarray(rho, dtype), jnp.asarray(u, dtype))
+    force = jnp.zeros_like(jnp.asarray(u, dtype)) if force is None else force
+    rates = fluid.rates(jnp.asarray(viscosity, dtype), magic)
+    return velocity(after(f, steps, rates, force, fluid.Surroundings()), force)
+
+
+def shear_wave_rate(tau: float, magic: Callable, dtype, n: int = 64) -> float:
+    """Rate at which a transverse wave decays, over ν k².
+
+    The flow is the same along y, so that a box two cells high is as good as a square. The
+    wave is measured from one tenth of its life on, when the stress has formed.
+    """
+    k, viscosity = 2 * np.pi / n, (tau - 0.5) / 3
+    wave = np.broadcast_to(np.sin(k * np.arange(n))[:, None], (n, 2))
+    u, rho = 0.01 * np.stack([0 * wave, wave]), np.ones((n, 2))
+    life = 1 / (viscosity * k**2)
+    early, late = (round(share * life) for share in (0.1, 1.1))
+    heights = [
+        np.sum(np.asarray(_run(u, rho, viscosity, magic, steps, dtype)[1], float) * wave)
+        for steps in (early, late)
+    ]
+    return float(np.log(heights[0] / heights[1]) / (late - early) * life)
+
+
+def kolmogorov_error(tau: float, magic: Callable, dtype, n: int = 64) -> float:
+    """Distance from the steady flow under a sine force, started on it."""
+    k, viscosity = 2 * np.pi / n, (tau - 0.5) / 3
+    wave = np.broadcast_to(np.sin(k * np.arange(n)), (2, n))
+    exact = 0.01 * np.stack([wave, 0 * wave])
+    force = jnp.asarray(viscosity * k**2 * exact, dtype)
+    # At large τ the start without viscous stress decays more slowly than the flow.
+    steps = 2000 + round(VISCOUS_TIMES / (viscosity * k**2))
+    u = _run(exact, np.ones((2, n)), viscosity, magic, steps, dtype, force)
+    return distance(u, exact)
+
+
+def taylor_green_error(
+    n: int, tau: float, magic: Callable, dtype, speed: float = 0.01
+) -> float:
+    """Distance from decaying vortices, started with their pressure field."""
+    k, viscosity = 2 * np.pi / n, (tau - 0.5) / 3
+    x, y = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    u = np.stack([-np.cos(k * x) * np.sin(k * y), np.sin(k * x) * np.cos(k * y)]) * speed
+    rho = 1 - 0.75 * speed**2 * (np.cos(2 * k * x) + np.cos(2 * k * y))
+    steps = round(1 / (4 * viscosity * k**2))
+    end = _run(u, rho, viscosity, magic, steps, dtype)
+    return distance(end, u * np.exp(-2 * viscosity * k**2 * steps))
+
+
+def orders(dtype, sizes: tuple[int, ...] = (16, 32, 64)) -> list[float]:
+    """Order of convergence of Taylor-Green vortices between successive sizes.
+
+    The Mach number falls with the cell size, else its error would remain.
+    """
+    errors = [
+        taylor_green_error(n, 0.8, fluid.fixed_magic, dtype, speed=0.64 / n) for n in sizes
+    ]
+    return [float(x) for x in np.log2(np.array(errors[:-1]) / errors[1:])]
+
+
+def poiseuille(tau: float, magic: Callable, dtype, width: int = 31) -> tuple[float, float]:
+    """How far the walls are from halfway, in cells, and the relative L2 error of the flow.
+
+    Walls are where the parabola through the velocities vanishes. The fluid starts at rest.
+    """
+    size, viscosity = (2, width + 1), (tau - 0.5) / 3
+    push = 8 * viscosity * 0.01 / width**2
+    solid = jnp.zeros(size, bool).at[:, 0].set(True)
+    uniform = jnp.asarray([push, 0.0], dtype)
+    surroundings = fluid.Surroundings(uniform, solid)
+    still = tuple(jnp.zeros(size, dtype) for _ in range(9))
+    steps = 2000 + round(4 * width**2 / viscosity)
+    rates = fluid.rates(jnp.asarray(viscosity, dtype), magic)
+    f = after(still, steps, rates, jnp.zeros((2, *size), dtype), surroundings)
+    force = jnp.broadcast_to(uniform[:, None, None], (2, *size))
+    u = np.asarray(velocity(f, force), float)[0, 0, 1:]
+    y = np.arange(width) + 0.5
+    walls = np.sort(np.roots(np.polyfit(y, u, 2)).real)
+    exact = push / (2 * viscosity) * y * (width - y)
+    return float(np.max(np.abs(walls - [0, width]))), distance(u, exact)
+
+
+FIXED, CAPPED = ("fixed", fluid.fixed_magic), ("capped", fluid.capped_magic)
+TAUS = (0.53, 0.6, 0.8, 1.0, 2.0, 6.5)
+"""Viscosities from 0.01 to 2."""
+
+
+def check_shear_wave(taus: tuple[float, ...] = TAUS, name: Precision = "float32") -> Found:
+    """The scheme needs τ ν k² ≪ 1, which bounds the error at large τ."""
+    rows = []
+    for tau in taus:
+        with precision(name) as dtype:
+            error = abs(shear_wave_rate(tau, fluid.fixed_magic, dtype) - 1)
+        bar = max(1e-3, round(1.2 * tau * (tau - 0.5) / 3 * (2 * np.pi / 64) ** 2, 4))
+        rows.append(
+            at_most(f"shear wave, τ {tau:g}: relative error of decay", error, bar, EXACT)
+        )
+    return Found(rows)
+
+
+def check_kolmogorov(
+    taus: tuple[float, ...] = TAUS,
+    capped: tuple[float, ...] = (0.53, 0.6, 0.8),
+    name: Precision = "float32",
+) -> Found:
+    rows, lines = [], []
+    for (kind, magic), at, bar in ((FIXED, taus, 1e-3), (CAPPED, capped, 2e-3)):
+        with precision(name) as dtype:
+            errors = [kolmogorov_error(tau, magic, dtype) for tau in at]
+        rows += [
+            at_most(f"Kolmogorov flow, Λ {kind}, τ {tau:g}: relative L2", error, bar, EXACT)
+            for tau, error in zip(at, errors, strict=True)
+        ]
+        lines.append(Line(f"Λ {kind}", at, errors, "o-"))
+    return Found(rows, [Plot("kolmogorov", "τ", "relative L2 error", tuple(lines), None, "xy")])
+
+
+def check_taylor_green(
+    taus: tuple[float, ...] = (0.53, 0.6, 0.8, 1.0),
+    capped: tuple[float, ...] = (0.53, 0.6, 0.8),
+    name: Precision = "float32",
+) -> Found:
+    """The error falls with the square of the cell size."""
+    rows = []
+    with precision(name) as dtype:
+        for (kind, magic), at, bar in ((FIXED, taus, 1.5e-3), (CAPPED, capped, 2e-3)):
+            for tau in at:
+                error = taylor_green_error(64, tau, magic, dtype)
+                what = f"Taylor-Green vortices, Λ {kind}, τ {tau:g}: relative L2"
+                rows.append(at_most(what, error, bar, EXACT))
+        for order, sizes in zip(orders(dtype), ("16 to 32", "32 to 64"), strict=True):
+            what = f"order of convergence, {sizes} cells"
+            rows.append(at_least(what, order, 1.9, 2.0, "second-order scheme"))
+    return Found(rows)
+
+
+def check_poiseuille(
+    taus: tuple[float, ...] = (0.53, 0.6, 1.0, 2.0, 6.5),
+    capped: tuple[float, ...] = (0.53,),
+    width: int = 31,
+) -> Found:
+    """In float64: at Λ = 3/16 nothing but rounding is left."""
+    rows = []
+    for (kind, magic), at, bar in ((FIXED, taus, 1e-9), (CAPPED, capped, 1e-2)):
+        for tau in at:
+            with precision("float64") as dtype:
+                walls, error = poiseuille(tau, magic, dtype, width)
+            flow = f"Poiseuille flow, Λ {kind}, τ {tau:g}"
+            rows.append(at_most(f"{flow}: walls off halfway (cells)", walls, bar, EXACT))
+            rows.append(at_most(f"{flow}: relative L2", error, bar, EXACT))
+    return Found(rows)

@@ -1,0 +1,93 @@
+"""Bodies in the middle of a fluid at rest, and what they are asked to do."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from microcosmos import bodies, coupling, creatures, filaments, groups, world
+from microcosmos.build import build_rods
+
+LITERAL = world.Form(projection=coupling.unprojected, theta_feedback=0.0, forcing_iterations=1)
+"""The paper's form: nothing keeps a body from pushing itself, or from ignoring the flow."""
+
+
+def immersed(
+    body: bodies.Body,
+    viscosity: float,
+    dtype: Any,
+    *,
+    size: tuple[int, int] = (64, 64),
+    **options: Any,
+) -> tuple[world.World, world.State]:
+    """A world of `size` cells with a body at rest in its middle, and its first state."""
+    box = world.World(
+        viscosity=jnp.asarray(viscosity, dtype),
+        rods=build_rods(body, dtype),
+        groups=groups.Groups(jnp.asarray(body.member), body.count),
+        size=size,
+        **options,
+    )
+    positions = body.positions - body.positions.mean(0) + np.array(size) / 2
+    return box, world.at_rest(box, jnp.asarray(positions, dtype))
+
+
+def limits(viscosity: float, dtype: Any) -> world.Limits:
+    """Those with which random controllers stay finite."""
+    displacement, force = (0.1, 0.1) if viscosity >= 0.003 else (0.05, 0.03)
+    return world.Limits(jnp.asarray(displacement, dtype), jnp.asarray(force, dtype))
+
+
+def rest(
+    body: bodies.Body, turn: np.ndarray, dtype: Any, change: np.ndarray | float = 0.0
+) -> filaments.Rest:
+    """Rest shapes over time: `turn` added to angles, lengths grown by the share `change`."""
+    length = body.rest_length[None] * (1 + change * np.ones((len(turn), len(body.edges))))
+    angle = body.rest_angle[None] + turn
+    return filaments.Rest(jnp.asarray(angle, dtype), jnp.asarray(length, dtype))
+
+
+def held(body: bodies.Body, steps: int, dtype: Any) -> filaments.Rest:
+    """The body keeps its rest shape."""
+    return rest(body, np.zeros((steps, len(body.joints))), dtype)
+
+
+def stroke(swimmer: creatures.Swimmer, period: int, periods: int, dtype: Any) -> filaments.Rest:
+    """A swimmer's gait, growing over the first period."""
+    time = np.arange(period * periods) / period
+    angle, length = swimmer.gait(time)
+    rise = np.minimum(time, 1)[:, None]
+    return rest(swimmer.body, rise * angle, dtype, rise * length)
+
+
+def erratic(body: bodies.Body, steps: int, dtype: Any, seed: int) -> filaments.Rest:
+    """Large angles and lengths drawn anew every 20 steps."""
+    random = np.random.default_rng(seed)
+    draws = -(-steps // 20)
+    turn = random.uniform(-1, 1, (draws, len(body.joints)))
+    change = random.uniform(-0.3, 0.3, (draws, len(body.edges)))
+    shapes = rest(body, turn, dtype, change)
+    return jax.tree.map(lambda x: jnp.repeat(x, 20, 0)[:steps], shapes)
+
+
+@jax.jit
+def _positions(box, start, shapes):
+    return world.rollout(box, start, shapes, lambda state, _: state.positions)[1]
+
+
+def recorded(box: world.World, start: world.State, shapes: filaments.Rest) -> np.ndarray:
+    """Positions at the start and after every step, in float64."""
+    seen = _positions(box, start, shapes)
+    return np.concatenate([np.asarray(start.positions)[None], seen]).astype(float)
+
+
+def displacement(positions: np.ndarray) -> np.ndarray:
+    """Of the mean position, from the first to the last."""
+    return positions[-1].mean(0) - positions[0].mean(0)
+
+
+def mean_path(positions: np.ndarray) -> float:
+    """How far a node travels on its way, on average."""
+    moves = np.diff(positions, axis=0)
+    return float(np.mean(np.sum(np.hypot(moves[..., 0], moves[..., 1]), 0)))

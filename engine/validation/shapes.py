@@ -1,0 +1,69 @@
+"""Constraint projection without a fluid: bodies take the shape that they are asked for."""
+
+from dataclasses import replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from microcosmos import bodies, creatures, filaments
+from microcosmos.build import build_rods
+
+from .precision import precision
+from .rows import Found, at_most
+
+REST = "rest shape"
+
+
+def projected(
+    body: bodies.Body, positions: np.ndarray, iterations: int, dtype: Any
+) -> np.ndarray:
+    """Where the nodes are after so many sweeps from `positions` towards the rest shape."""
+    rods = build_rods(body, dtype)
+    rest = filaments.Rest(
+        jnp.asarray(body.rest_angle, dtype), jnp.asarray(body.rest_length, dtype)
+    )
+    start = jnp.asarray(positions, dtype)
+    project = jax.jit(filaments.project, static_argnames="iterations")
+    angles = filaments.edge_angles(start, rods)
+    return np.asarray(project(start, angles, rods, rest, iterations=iterations)[0], float)
+
+
+def errors(body: bodies.Body, positions: np.ndarray) -> tuple[float, float]:
+    """Root mean squares of what angles (radians) and lengths (shares) lack."""
+    v = positions[body.edges[:, 1]] - positions[body.edges[:, 0]]
+    theta = np.arctan2(v[:, 1], v[:, 0])
+    bend = theta[body.joints[:, 1]] - theta[body.joints[:, 0]] - body.rest_angle
+    bend = bend - 2 * np.pi * np.round(bend / (2 * np.pi))
+    length = np.hypot(v[:, 0], v[:, 1]) / body.rest_length - 1
+    return float(np.sqrt(np.mean(bend**2))), float(np.sqrt(np.mean(length**2)))
+
+
+def circle(nodes: int, iterations: int, dtype: Any) -> tuple[float, float]:
+    """Errors of a straight chain that is asked to close into a circle."""
+    straight = bodies.chain(nodes, 1.0)
+    round_body = replace(straight, rest_angle=np.full(nodes - 2, 2 * np.pi / nodes))
+    return errors(round_body, projected(round_body, straight.positions, iterations, dtype))
+
+
+def branched(noise: float, iterations: int, dtype: Any, seed: int = 0) -> tuple[float, float]:
+    """Errors of a ring with hairs whose nodes start off their places by `noise` cells."""
+    body = creatures.cilia().body
+    moved = np.random.default_rng(seed).normal(size=body.positions.shape)
+    return errors(body, projected(body, body.positions + noise * moved, iterations, dtype))
+
+
+def check(nodes: int = 32, iterations: int = 1000) -> Found:
+    with precision("float32") as dtype:
+        bend, _ = circle(nodes, iterations, dtype)
+    with precision("float64") as dtype:
+        angles, lengths = branched(0.3, iterations, dtype)
+    sweeps = f"after {iterations:,} sweeps"
+    return Found(
+        [
+            at_most(f"chain to circle, {sweeps}: joint error (rad)", bend, 2e-3, REST),
+            at_most(f"ring with branches, {sweeps}: angles (rad)", angles, 1e-5, REST),
+            at_most(f"ring with branches, {sweeps}: lengths", lengths, 1e-5, REST),
+        ]
+    )

@@ -1,0 +1,130 @@
+"""All checks at full size, in the order of the document."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from . import (
+    array,
+    conservation,
+    cylinder,
+    flows,
+    gradients,
+    passive,
+    repulsion,
+    shapes,
+    sheet,
+    stability,
+    sweep,
+    swimmers,
+)
+from .rows import Found
+
+
+@dataclass(frozen=True)
+class Section:
+    """A subject of the document: what is said about it, and what is measured."""
+
+    title: str
+    text: str
+    checks: tuple[Callable[[], Found], ...]
+
+
+SECTIONS = (
+    Section(
+        "Flows in closed form",
+        "The fluid alone. With Λ = 3/16 steady errors do not depend on viscosity; the "
+        "default caps Λ at (τ − 1/2)/2, which moving bodies need below ν of about 0.01, "
+        "and pays with errors that depend on τ below 0.875. A shear wave is unsteady: its"
+        " error is bounded by 1.2 τ ν k², because the method needs τ ν k² to be small.",
+        (flows.check_shear_wave, flows.check_kolmogorov, flows.check_taylor_green),
+    ),
+    Section(
+        "Walls",
+        "Halfway bounce-back, the fluid driven from rest by a uniform force until it is "
+        "steady, 31 cells between the walls, float64. The walls are where the parabola "
+        "through the velocities vanishes.",
+        (flows.check_poiseuille,),
+    ),
+    Section(
+        "Conservation",
+        "From random populations in 64 × 64 cells. Momentum is measured against the "
+        "number of cells times 0.01.",
+        (conservation.check,),
+    ),
+    Section(
+        "An array of cylinders",
+        "Nodes held still in a periodic box of 64 × 64 cells by multi-direct forcing, the"
+        " flow driven by a uniform force. The four-point delta makes a cylinder thicker "
+        "than the circle of its nodes, by 0.5 to 0.7 cells of radius, and this is the "
+        "whole error: it falls with the radius. Bars are 20 %, and 10 % for the largest.",
+        (array.check,),
+    ),
+    Section(
+        "A cylinder in a free stream",
+        "Sixteen cells across, in 40 × 30 diameters of periodic box, with a sponge across"
+        " the seam; Mach 0.14. The diameter in all numbers is that of the nodes and 0.8 "
+        "cells. Drag is high by what the images of the cylinder block: in 25 × 20 "
+        "diameters it is 8 % above the published value at Reynolds 20.",
+        (cylinder.check,),
+    ),
+    Section(
+        "Passive bodies",
+        "A ring and a rod that keep their shape, where the shear of a decaying sine flow is "
+        "strongest.",
+        (passive.check,),
+    ),
+    Section(
+        "Taylor's swimming sheet",
+        "A prescribed transverse wave along a sheet that spans the box, free of net "
+        "force; its speed against the fluid half a box away. Theory is the fourth order "
+        "of Taylor with Tuck's factor for inertia (R = 0.4). The delta makes the sheet "
+        "thicker: an error of first order in cells over wavelength.",
+        (sheet.check,),
+    ),
+    Section(
+        "Swimmers",
+        "The worm's second cycle against a Fourier solution of Stokes flow in the same "
+        "box by the same shapes; the ray, whose motion is reciprocal; and the five known "
+        "swimmers' net impulse, the largest sum of forces accumulated over two cycles, "
+        "limits on.",
+        (swimmers.check_worm, swimmers.check_scallop, swimmers.check_impulse),
+    ),
+    Section(
+        "Shapes",
+        "Constraint projection without a fluid: a straight chain of 32 nodes that is to "
+        "close into a circle, and the ciliate (a ring with six hairs) from nodes "
+        "displaced at random by 0.3 cells, in float64. Root mean squares over joints and "
+        "edges.",
+        (shapes.check,),
+    ),
+    Section(
+        "Repulsion",
+        "Two parallel chains of 20 nodes, free of force and torque each for itself; the "
+        "mean of a body's steric displacement moves it past the fluid.",
+        (repulsion.check,),
+    ),
+    Section(
+        "Gradients",
+        "Two chains of 16 nodes two cells apart, by the amplitudes of their joints and by"
+        " viscosity, in float64 with the limits off. With limits that act the outcome has"
+        " kinks, so gradients only have to be finite.",
+        (gradients.check,),
+    ),
+    Section(
+        "The five known swimmers",
+        "The Microcosmos paper's sweep, 1,200 steps a stroke, the third stroke of each: with "
+        "actuators of one strength for all (ours), with actuators that never tire (strong), "
+        "and in the paper's literal form, which is not force-free. Tireless actuators do not "
+        "slow towards ν = 2: in Stokes flow a prescribed stroke leads as far at any "
+        "viscosity. In the literal form bodies push themselves, by up to 170 in lattice "
+        "units, so nothing is asked of it; docs/reproduction.md says what it shows.",
+        (sweep.check,),
+    ),
+    Section(
+        "Random controllers",
+        "32 nodes asked for angles of ± 1 rad and lengths of ± 30 %, drawn anew every 20 "
+        "steps, with the limits that creatures live with. Counted are seeds after which "
+        "every number is finite and no fluid faster than sound.",
+        (stability.check,),
+    ),
+)

@@ -1,0 +1,69 @@
+"""Renderings of creatures: kept as files, made by the renderer when somebody wants them."""
+
+import re
+from typing import Any
+
+from rq.job import JobStatus
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
+
+from . import creatures
+from .artifacts import Stored, rendering_path
+from .models import REPLAY, Artifact, Creature
+from .records import insert_missing
+from .services import Services
+
+REFUSAL = re.compile(r"^[\w.]*CreatureError: ")
+"""Before the words in which the engine refuses a creature; other errors say what they are."""
+UNDERWAY = (JobStatus.QUEUED, JobStatus.STARTED, JobStatus.DEFERRED, JobStatus.SCHEDULED)
+
+
+class RenderingFailed(Exception):
+    """Why there is no such rendering."""
+
+
+def find(session: Session, creature: str, kind: str = REPLAY) -> Artifact | None:
+    mine = (Artifact.creature == creature) & (Artifact.kind == kind)
+    return session.scalars(select(Artifact).where(mine)).one_or_none()
+
+
+def order(services: Services, creature: str, kind: str = REPLAY) -> None:
+    """Have a rendering made, once; `RenderingFailed` says why the last try gave none."""
+    job = services.jobs.find(services.jobs.rendering_id(creature, kind))
+    status = job.get_status(refresh=False) if job else None
+    if status in UNDERWAY:
+        return
+    if job and status == JobStatus.FAILED:
+        result = job.latest_result()
+        text = (result.exc_string if result else None) or "the renderer ended without a word"
+        raise RenderingFailed(REFUSAL.sub("", text.strip().splitlines()[-1]))
+    services.jobs.render(creature, kind)
+
+
+def save(services: Services, creature: str, kind: str, data: bytes) -> None:
+    """Keep a rendering that was made, in place of an earlier one."""
+    stored = services.artifacts.write(rendering_path(creature, kind), data)
+    row = {
+        "path": stored.path,
+        "kind": kind,
+        "creature": creature,
+        "size": stored.size,
+        "sha256": stored.sha256,
+    }
+    with services.sessions.write.begin() as session:
+        mine = (Artifact.creature == creature) & (Artifact.kind == kind)
+        session.execute(delete(Artifact).where(mine))
+        insert_missing(session, Artifact, [row])
+
+
+def kept(services: Services, creature: str, kind: str) -> bytes | None:
+    """A rendering that is there already and sound."""
+    with services.sessions.read() as session:
+        row = find(session, creature, kind)
+    return services.artifacts.sound(Stored(row.path, row.size, row.sha256)) if row else None
+
+
+def creature(services: Services, name: str) -> dict[str, Any]:
+    """The creature file that renderings are made from."""
+    with services.sessions.read() as session:
+        return creatures.document(session.get_one(Creature, name))

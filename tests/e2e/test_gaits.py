@@ -1,0 +1,92 @@
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+
+FAST, SLOW = 10_000, 120_000
+
+
+@pytest.mark.e2e
+def test_a_sweep_is_submitted_plotted_and_one_of_its_swimmers_watched(page: Page, address: str):
+    submit_a_small_sweep(page, address)
+    watch_points_appear(page)
+    sort_the_table(page)
+    swimmer = open_a_point(page)
+    see_it_swim(page, swimmer)
+
+
+def submit_a_small_sweep(page: Page, address: str) -> None:
+    page.goto(f"{address}/new")
+    page.get_by_role("button", name=re.compile("Worm and ray")).click()
+    page.get_by_role("checkbox", name="paper", exact=True).check()
+    viscosities = page.get_by_label("Viscosities", exact=False)
+    viscosities.fill("0.1, 3")
+    expect(page.get_by_text("Needs at most 2.")).to_be_visible(timeout=FAST)
+    viscosities.fill("0.1, 1")
+    page.get_by_label("Period", exact=False).fill("40")
+    page.get_by_role("checkbox", name="Steric").check()
+    expect(page.get_by_label("Strength", exact=False)).to_have_value("4")
+    expect(page.get_by_label("Estimate")).to_contain_text("8", timeout=FAST)
+    page.get_by_role("button", name="Start the run").click()
+    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+
+
+def watch_points_appear(page: Page) -> None:
+    page.evaluate("window.neverReloaded = true")
+    expect(page.get_by_text("4 / 4")).to_be_visible(timeout=SLOW)
+    plot = page.get_by_role("group", name="Displacement against viscosity, Ours")
+    expect(plot.get_by_role("link")).to_have_count(4, timeout=FAST)
+    page.get_by_role("button", name="Side by side").click()
+    expect(page.get_by_role("link", name=re.compile("at ν ="))).to_have_count(8)
+    expect(page.get_by_text("not force-free", exact=True)).to_be_visible()
+    assert page.evaluate("window.neverReloaded")
+
+
+def sort_the_table(page: Page) -> None:
+    page.get_by_role("button", name="Viscosity").click()
+    page.get_by_role("button", name="Viscosity").click()
+    heading = page.get_by_role("columnheader", name=re.compile("^Viscosity"))
+    expect(heading).to_have_attribute("aria-sort", "descending")
+    rows = page.locator("table.results tbody tr")
+    expect(rows).to_have_count(8)
+    expect(rows.first).to_contain_text("1")
+    expect(rows.last).to_contain_text("0.1")
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Download CSV").click()
+    lines = download.value.path().read_text().splitlines()
+    assert lines[0].startswith("form,swimmer,viscosity,displacement")
+    assert len(lines) == 9
+
+
+def open_a_point(page: Page) -> str:
+    page.get_by_role("button", name="The paper’s").click()
+    point = page.get_by_role("link", name=re.compile("^Worm at ν = 1,"))
+    point.scroll_into_view_if_needed()
+    box = point.bounding_box()
+    assert box
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    expect(page.get_by_text("Worm at ν = 1", exact=True)).to_be_visible(timeout=FAST)
+    page.mouse.click(x, y)
+    page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"), timeout=FAST)
+    return "Worm"
+
+
+def see_it_swim(page: Page, swimmer: str) -> None:
+    expect(page.get_by_role("heading", name=swimmer)).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("not force-free", exact=True)).to_be_visible()
+    expect(page.get_by_role("img", name=re.compile("^Network"))).to_have_count(0)
+    canvas = page.get_by_role("img", name=re.compile("The creature swimming"))
+    expect(canvas).to_be_visible(timeout=SLOW)
+    page.wait_for_timeout(300)
+    before = pixels(page)
+    page.wait_for_timeout(600)
+    assert pixels(page) != before
+    with page.expect_download(timeout=SLOW) as download:
+        page.get_by_role("button", name="GIF").click()
+    assert re.fullmatch(r"creature-[0-9a-f]{12}\.gif", download.value.suggested_filename)
+    assert download.value.path().read_bytes().startswith(b"GIF89a")
+
+
+def pixels(page: Page) -> str:
+    return page.evaluate("document.querySelector('.stage canvas').toDataURL()")

@@ -1,0 +1,111 @@
+"""Bodies moved, put together and refined keep their shape."""
+
+import numpy as np
+import pytest
+
+from microcosmos import bodies
+
+PARTS = [
+    bodies.star(5, 4, 1.0, bend=0.5),
+    bodies.ring(9, 1.0),
+    bodies.chain(5, 1.0, stretch=0.3),
+    bodies.tree(3, 2, 4, 1.0, 0.9),
+]
+
+
+def world():
+    return bodies.together(
+        [bodies.placed(part, (20.0 * i, 7.0), 0.3 * i) for i, part in enumerate(PARTS)]
+    )
+
+
+def errors(body):
+    """Lengths of edges and angles of joints, less what they are at rest."""
+    v = body.positions[body.edges[:, 1]] - body.positions[body.edges[:, 0]]
+    z = v @ [1, 1j]
+    turn = z[body.joints[:, 1]] / z[body.joints[:, 0]]
+    return np.abs(z) - body.rest_length, np.angle(turn * np.exp(-1j * body.rest_angle))
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("part", PARTS)
+def test_a_placed_body_is_turned_about_its_centre(part):
+    body = bodies.placed(part, (3.0, -4.0), 0.7)
+    np.testing.assert_allclose(body.positions.mean(0), (3, -4), atol=1e-12)
+    before = (part.positions - part.positions.mean(0)) @ [1, 1j]
+    after = (body.positions - (3, -4)) @ [1, 1j]
+    np.testing.assert_allclose(after, before * np.exp(0.7j), atol=1e-12)
+    for error in errors(body):
+        np.testing.assert_allclose(error, 0, atol=1e-12)
+
+
+@pytest.mark.fast
+def test_bodies_together_keep_their_own_edges_joints_and_stiffness():
+    body = world()
+    assert body.count == len(PARTS)
+    np.testing.assert_array_equal(np.bincount(body.member), [len(p.positions) for p in PARTS])
+    owner = body.member[body.edges[:, 0]]
+    for number, part in enumerate(PARTS):
+        start = np.searchsorted(body.member, number)
+        first = np.searchsorted(owner, number)
+        own = owner[body.joints[:, 0]] == number
+        np.testing.assert_array_equal(body.edges[owner == number] - start, part.edges)
+        np.testing.assert_array_equal(body.joints[own] - first, part.joints)
+        np.testing.assert_array_equal(body.bend[own], part.bend)
+        np.testing.assert_array_equal(body.stretch[owner == number], part.stretch)
+        np.testing.assert_array_equal(body.arc[body.member == number], part.arc)
+    for error in errors(body):
+        np.testing.assert_allclose(error, 0, atol=1e-12)
+
+
+@pytest.mark.fast
+def test_groups_of_creatures_are_numbered_on():
+    pair = bodies.together([PARTS[0], bodies.placed(PARTS[1], (20, 0))])
+    body = bodies.together(
+        [pair, bodies.placed(PARTS[2], (40, 0)), bodies.placed(pair, (70, 0))]
+    )
+    sizes = [len(PARTS[i].positions) for i in (0, 1, 2, 0, 1)]
+    np.testing.assert_array_equal(body.member, np.repeat(np.arange(5), sizes))
+
+
+@pytest.mark.fast
+def test_creatures_on_top_of_each_other_are_refused():
+    with pytest.raises(ValueError, match="nodes 0 and 5 are 0 apart"):
+        bodies.together([PARTS[2], PARTS[2]])
+
+
+@pytest.mark.fast
+def test_a_subdivided_body_has_the_same_shape_twice_as_large():
+    body = world()
+    fine = bodies.subdivided(body)
+    for error in errors(fine.body):
+        np.testing.assert_allclose(error, 0, atol=1e-12)
+    np.testing.assert_allclose(fine.body.positions[fine.nodes], 2 * body.positions)
+    np.testing.assert_array_equal(fine.body.member[fine.nodes], body.member)
+    np.testing.assert_array_equal(fine.body.rest_length, body.rest_length[fine.edges])
+    np.testing.assert_array_equal(fine.body.stretch, body.stretch[fine.edges])
+    np.testing.assert_array_equal(fine.body.arc[fine.nodes], body.arc)
+
+
+@pytest.mark.fast
+def test_joints_of_a_subdivided_body_are_the_original_ones_and_straight_new_ones():
+    body = world()
+    fine = bodies.subdivided(body)
+    np.testing.assert_array_equal(
+        fine.body.joint_nodes[fine.joints], fine.nodes[body.joint_nodes]
+    )
+    np.testing.assert_array_equal(fine.edges[fine.body.joints[fine.joints]], body.joints)
+    np.testing.assert_array_equal(fine.body.rest_angle[fine.joints], body.rest_angle)
+    np.testing.assert_array_equal(fine.body.bend[fine.joints], body.bend)
+    new = np.setdiff1d(np.arange(len(fine.body.joints)), fine.joints)
+    assert len(new) == len(body.edges)
+    np.testing.assert_array_equal(fine.body.rest_angle[new], 0)
+    np.testing.assert_array_equal(fine.body.bend[new], 1)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("closed", [True, False])
+def test_the_arc_of_a_subdivided_filament_is_even(closed):
+    body = bodies.ring(9, 1.0) if closed else bodies.chain(9, 1.0)
+    arc = np.sort(bodies.subdivided(body).body.arc)
+    np.testing.assert_allclose(arc, np.arange(len(arc)) / (18 if closed else 16))

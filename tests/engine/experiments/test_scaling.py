@@ -1,0 +1,131 @@
+"""A measurement of wall time: its rows, its fit, and that it stops when asked."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import search
+from microcosmos.build import build
+from microcosmos.build.tables import build_crowd
+from microcosmos.experiments.scaling import LINEAR_FROM, Scaling, summary
+from microcosmos.experiments.timing import _all_pairs
+from microcosmos.spec import parse
+from microcosmos.spec.scaling import SPACING
+
+SPEC = parse(
+    {
+        "experiment": "scaling",
+        "nodes": [40, 80],
+        "filament": 20,
+        "width": 32,
+        "height": 32,
+        "steps": 10,
+        "part_steps": 2,
+        "all_pairs": 40,
+    }
+)
+PARTS = ("fluid", "coupling", "constraints", "steric")
+
+
+@pytest.fixture(scope="module")
+def measured():
+    experiment = build(SPEC)
+    first, _ = experiment.advance(experiment.init())
+    return experiment, first, *experiment.advance(first)
+
+
+def row(nodes, seconds, **change):
+    told = {"method": "microcosmos", "nodes": nodes, "seconds": seconds, "fluid": 2.0}
+    return told | {"memory_bytes": 10 * nodes, "status": "ok"} | change
+
+
+def test_rows_tell_the_whole_and_its_parts(measured):
+    _, _, state, report = measured
+    ours, pairs, more = (row.values for row in state.rows)
+    assert [r["method"] for r in (ours, pairs, more)] == [
+        "microcosmos",
+        "all-pairs",
+        "microcosmos",
+    ]
+    assert (ours["nodes"], pairs["nodes"], more["nodes"]) == (40, 40, 80)
+    for values in (ours, more):
+        assert values["status"] == "ok"
+        assert values["steps"] == 10
+        assert all(values[part] > 0 for part in ("seconds", *PARTS))
+    assert all(pairs[part] is None for part in PARTS)
+    # Nine planes before and after a step are the least there is.
+    assert ours["memory_bytes"] >= 2 * 9 * 32 * 32 * 4
+    assert more["memory_bytes"] > ours["memory_bytes"]
+    assert report.summary["peak_memory_bytes"] == more["memory_bytes"]
+    assert report.diverged == 0
+
+
+def test_a_measurement_can_be_taken_up_again(measured):
+    experiment, first, state, _ = measured
+    assert experiment.restore(experiment.save(first)) == first
+    assert not experiment.done(first)
+    assert experiment.done(state)
+
+
+def test_a_wish_to_stop_is_obeyed_between_programs():
+    experiment = build(SPEC)
+    with pytest.raises(search.Stopped):
+        experiment.advance(experiment.init(), lambda: True)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("slope", [1.0, 1.3])
+def test_the_exponent_is_the_slope_of_what_depends_on_nodes(slope):
+    nodes = [1_000, 16_000, 32_000, 64_000]
+    rows = [row(n, 2.0 + 1e-4 * n**slope) for n in nodes]
+    rows[0]["seconds"] = 50.0  # Below the fit.
+    rows += [row(n, 1e-6 * n**2.0, method="all-pairs", fluid=None) for n in (2000, 4000, 8000)]
+    found = summary(rows)
+    assert found["exponent"] == pytest.approx(slope, rel=1e-9)
+    assert found["exponent_all_pairs"] == pytest.approx(2.0, rel=1e-9)
+    assert found["exponent_from"] == LINEAR_FROM == 16_000
+    assert found["peak_memory_bytes"] == 640_000
+
+
+@pytest.mark.fast
+def test_too_few_numbers_have_no_exponent():
+    found = summary([row(1_000, 3.0), row(16_000, 4.0)])
+    assert found["exponent"] is None
+    assert found["exponent_all_pairs"] is None
+
+
+@pytest.mark.fast
+def test_where_all_are_few_the_largest_three_are_fitted():
+    rows = [row(n, 2.0 + 1e-4 * n) for n in (1_000, 2_000, 4_000, 8_000)]
+    rows[0]["seconds"] = 50.0
+    found = summary(rows)
+    assert found["exponent"] == pytest.approx(1.0)
+    assert found["exponent_from"] == 2_000
+
+
+@pytest.mark.fast
+def test_what_did_not_stay_finite_counts_for_nothing():
+    rows = [row(16_000, 4.0), row(32_000, 6.0), row(64_000, 99.0, status="non-finite")]
+    assert summary(rows)["exponent"] == pytest.approx(1.0)
+    assert summary([row(16_000, 4.0, memory_bytes=None)])["peak_memory_bytes"] is None
+    experiment = Scaling("{}", (64_000,), lambda nodes, stop: (rows[2],), "cpu")
+    assert experiment.advance(experiment.init())[1].diverged == 1
+
+
+def test_filaments_of_the_crowd_are_apart():
+    columns, rows = SPEC.places
+    count = columns * rows * SPEC.filament
+    full = parse({**SPEC.model_dump(), "nodes": [20, count]})
+    _, start = build_crowd(full, count)
+    x = np.asarray(start.positions)
+    away = np.abs(x[:200, None] - x[None])
+    away = np.minimum(away, 32 - away)
+    distance = np.hypot(away[..., 0], away[..., 1])
+    distance[np.arange(200), np.arange(200)] = 1
+    assert distance.min() == pytest.approx(SPACING, rel=1e-4)
+
+
+def test_all_pairs_repel_by_the_gradient_of_a_gaussian(float64):
+    two = jnp.asarray([[1.0, 5.0], [31.5, 5.0]])
+    expected = 1.5 * np.exp(-(1.5**2) / 2)
+    np.testing.assert_allclose(_all_pairs(two, (32, 32)), [[expected, 0], [-expected, 0]])

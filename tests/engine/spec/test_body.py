@@ -1,0 +1,107 @@
+"""Bodies in a spec: every builder, what is refused, and how that is told."""
+
+from typing import get_args
+
+import networkx
+import numpy as np
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from microcosmos import spec
+from microcosmos.spec import field_path, identity, parse
+from microcosmos.spec.body import Body, Swimmer
+
+pytestmark = pytest.mark.fast
+
+TRIANGLE = [[0, 0], [3, 0], [0, 3]]
+BUILT = {
+    "chain": ({"nodes": 7}, 7, 6),
+    "ring": ({"nodes": 9}, 9, 9),
+    "arc": ({"nodes": 8, "gap": 0.3}, 8, 7),
+    "star": ({"arms": 3, "arm_nodes": 4}, 13, 12),
+    "tree": ({"levels": 2, "branches": 2, "segment_nodes": 3}, None, None),
+    "polyline": ({"points": [[0, 0], [4, 0], [4, 3]]}, 8, 7),
+    "graph": ({"nodes": TRIANGLE, "edges": [[0, 1], [1, 2], [2, 0]]}, 3, 3),
+}
+WHOLE = TypeAdapter(Body)
+
+
+def built(builder, **measures):
+    return spec.shape(WHOLE.validate_python({"builder": builder, **measures}))
+
+
+def refusal(body):
+    with pytest.raises(ValidationError) as caught:
+        parse({"experiment": "quality-diversity", "body": body})
+    return "\n".join(f"{field_path(e['loc'])}: {e['msg']}" for e in caught.value.errors())
+
+
+@pytest.mark.parametrize("builder", [*BUILT, *get_args(Swimmer)])
+def test_every_builder_makes_one_connected_body(builder):
+    measures, nodes, edges = BUILT.get(builder, ({}, None, None))
+    body = built(builder, **measures)
+    if nodes:
+        assert (len(body.positions), len(body.edges)) == (nodes, edges)
+    graph = networkx.Graph(body.edges.tolist())
+    assert len(graph) == len(body.positions)
+    assert networkx.is_connected(graph)
+
+
+@pytest.mark.parametrize("builder", list(BUILT))
+def test_stiffness_is_the_same_everywhere(builder):
+    body = built(builder, **BUILT[builder][0], stretch=0.9, shear=0.8, bend=0.7)
+    for name, stiffness in (("stretch", 0.9), ("shear", 0.8), ("bend", 0.7)):
+        np.testing.assert_array_equal(getattr(body, name), stiffness)
+
+
+def test_a_body_that_names_no_builder_is_a_chain():
+    chosen = parse({"experiment": "quality-diversity", "body": {"nodes": 12}})
+    assert chosen.body == spec.Chain(nodes=12)
+
+
+def test_an_unknown_builder_is_refused_with_the_known_ones():
+    text = refusal({"builder": "snake"})
+    assert text.startswith("body: `builder` must be one of chain, ring")
+    assert "jellyfish" in text
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ({"builder": "ring", "nodes": 3}, "body.nodes: Input should be greater"),
+        ({"builder": "arc", "gap": 1}, "body.gap: Input should be less than 1"),
+        ({"builder": "ring", "gap": 0.2}, "body.gap: Extra inputs"),
+        ({"builder": "worm", "stretch": 1}, "body.stretch: Extra inputs"),
+        ({"builder": "graph", "nodes": TRIANGLE, "edges": [[0, 1], [1, 5]]}, "0 to 2, got 5"),
+        ({"builder": "graph", "nodes": TRIANGLE, "edges": [[0, 1], [1, 0]]}, "0 and 1 twice"),
+        ({"builder": "star", "arms": 64, "spacing": 0.5}, "0.25 cells apart"),
+        ({"builder": "polyline", "points": [[0, 0], [0, 0]]}, "must not all be the same"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else value["builder"],
+)
+def test_a_body_that_cannot_be_is_refused_with_the_reason(body, said):
+    assert said in refusal(body)
+
+
+@pytest.mark.parametrize("body", [5, None, "ring", [1]])
+def test_a_body_that_is_no_document_is_refused(body):
+    assert refusal(body).startswith("body: `builder` must be one of")
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"builder": "tree", "levels": 8, "branches": 4, "segment_nodes": 256},
+        {"builder": "star", "arms": 64, "arm_nodes": 1024},
+        {"builder": "polyline", "points": [[0, 0], [1e300, 0]]},
+    ],
+    ids=lambda body: body["builder"],
+)
+def test_a_body_of_too_many_nodes_is_refused_before_it_is_made(body):
+    assert "at most 4096 nodes" in refusal(body)
+
+
+@pytest.mark.parametrize("builder", [*BUILT, *get_args(Swimmer)])
+def test_a_body_survives_its_identity(builder):
+    body = WHOLE.validate_python({"builder": builder, **BUILT.get(builder, ({},))[0]})
+    assert WHOLE.validate_python(identity(body)) == body

@@ -1,0 +1,65 @@
+"""The document says what was found, misses too."""
+
+import numpy as np
+import pytest
+
+from validation import __main__ as program
+from validation.rows import Found, Line, Plot, at_least, at_most, between, close, holds
+from validation.suite import SECTIONS, Section
+
+
+def section(found):
+    return Section("A subject", "What is measured.", (lambda: found,))
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("row", "passed"),
+    [
+        (at_most("q", 1e-3, 1e-3, "s"), True),
+        (at_most("q", 1.1e-3, 1e-3, "s"), False),
+        (at_most("q", float("nan"), 1e-3, "s"), False),
+        (at_least("q", 0.9, 0.8, 1.0, "s"), True),
+        (at_least("q", float("inf"), 0.8, 1.0, "s"), False),
+        (close("q", -1.04, -1.0, 0.05, "s"), True),
+        (close("q", 1.0, -1.0, 0.05, "s"), False),
+        (between("q", 1.03, 0.95, 1.02, 1.0, "s"), False),
+        (holds("q", True, "s"), True),
+        (holds("q", False, "s"), False),
+    ],
+    ids=str,
+)
+def test_a_row_passes_within_its_bar_alone(row, passed):
+    assert row.passed is passed
+
+
+def test_a_missed_bar_is_written_with_its_reason_and_fails_the_program(tmp_path, capsys):
+    rows = [
+        at_most("a small error", 2.0, 1.0, "Somebody 1900", note="the box is small"),
+        close("drag", 2.06, 2.05, 0.08, "Somebody 1970"),
+    ]
+    plots = [
+        Plot("lines", "time", "drag", (Line("here", [1, 2], [3, 4], "o-"),), None, "xy"),
+        Plot("field", "x", "y", image=np.eye(4)),
+    ]
+    assert program.main((section(Found(rows, plots)),), tmp_path) == 1
+    text = (tmp_path / "validation.md").read_text(encoding="utf-8")
+    assert "| a small error | 0 (Somebody 1900) | 2 | ≤ 1 | **FAIL** |" in text
+    assert "| drag | 2.05 (Somebody 1970) | 2.06 | ± 8 % | pass |" in text
+    assert "a small error: the box is small" in text
+    assert "**1 FAIL**" in text
+    assert "FAIL a small error" in capsys.readouterr().out
+    for plot in plots:
+        picture = f"pictures/validation-{plot.name}.png"
+        assert f"({picture})" in text
+        assert (tmp_path / picture).stat().st_size > 1000
+
+
+def test_where_every_line_passes_the_program_succeeds(tmp_path):
+    assert program.main((section(Found([holds("a fact", True, "logic")])),), tmp_path) == 0
+    assert "FAIL" not in (tmp_path / "validation.md").read_text(encoding="utf-8")
+
+
+def test_every_subject_of_the_document_has_its_own_title_and_checks():
+    assert len({one.title for one in SECTIONS}) == len(SECTIONS)
+    assert all(one.checks and one.text for one in SECTIONS)

@@ -1,0 +1,106 @@
+"""How renderings are made, with an engine that only says what it was asked for."""
+
+import json
+import struct
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from microcosmos.archive import creature
+from microcosmos.spec import EXPERIMENTS, Gaits, identity
+from server import creatures, renderings
+from server.models import AUDIT, GIF, MP4, REPLAY, STRIP
+from worker import pictures
+
+FRAMES, NODES, SIZE = 7, 3, (24, 16)
+
+
+def replay() -> bytes:
+    """Three nodes that move to the right over still fluid."""
+    header = {
+        "format": "microcosmos-replay/1",
+        "creature": "ab" * 32,
+        "frames": FRAMES,
+        "every": 2,
+        "steps": 12,
+        "nodes": NODES,
+        "edges": [[0, 1], [1, 2]],
+        "size": SIZE,
+        "vorticity": {"scale": 0.1},
+        "fitness": {"recorded": None, "replayed": 1.0, "difference": None},
+        "device": "a device",
+    }
+    text = json.dumps(header).encode()
+    time, node = np.arange(FRAMES)[:, None], np.arange(NODES)[None]
+    positions = np.stack(np.broadcast_arrays(8.0 + time + node, 8.0), -1).astype("<f4")
+    vorticity = np.zeros((FRAMES, *SIZE), np.int8)
+    return struct.pack("<I", len(text)) + text + positions.tobytes() + vorticity.tobytes()
+
+
+@pytest.fixture
+def known(services):
+    """A creature that swims by a gait."""
+    sweep = next(p.spec for p in EXPERIMENTS["gaits"].presets if isinstance(p.spec, Gaits))
+    scene = sweep.scene("ours", "worm", 0.5)
+    whole = {
+        "format": creature.FORMAT,
+        "genome": {"encoding": "gait", **identity(scene.control)},
+        "world": {**identity(scene.world), "coupling": identity(scene.coupling)},
+        "body": identity(scene.body),
+        "task": identity(scene.task),
+    }
+    file = creature.parse(creature.document(whole, None, None))
+    with services.sessions.write.begin() as session:
+        creatures.add(session, file)
+    return file["sha256"]
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """What the engine was asked for, in order."""
+    calls = []
+
+    def record(file):
+        calls.append(("record", file["sha256"]))
+        return replay()
+
+    def audit(file):
+        calls.append(("audit", file["sha256"]))
+        return {"verdict": {"survives": True, "reasons": []}, "rows": []}
+
+    monkeypatch.setattr(pictures, "render", SimpleNamespace(record=record, audit=audit))
+    return calls
+
+
+@pytest.mark.parametrize(
+    ("kind", "start"), [(STRIP, b"\x89PNG"), (GIF, b"GIF89a"), (MP4, b"\x00\x00\x00 ftyp")]
+)
+def test_films_and_pictures_are_drawn_of_the_replay_that_is_kept(
+    services, known, asked, kind, start
+):
+    assert pictures.make(services, known, kind).startswith(start)
+    assert asked == [("record", known)]
+    assert renderings.kept(services, known, REPLAY) == replay()
+    pictures.make(services, known, kind)
+    assert asked == [("record", known)], "the second one needs no simulation"
+
+
+def test_a_damaged_replay_is_made_again_for_a_film(services, known, asked):
+    renderings.save(services, known, REPLAY, replay())
+    path = renderings.rendering_path(known, REPLAY)
+    services.artifacts.write(path, b"damaged")
+    assert pictures.make(services, known, GIF).startswith(b"GIF89a")
+    assert asked == [("record", known)]
+
+
+def test_a_rendering_that_nobody_knows_is_refused(services, known, asked):
+    with pytest.raises(ValueError, match="`kind` of a rendering must be one of replay, audit"):
+        pictures.make(services, known, "film.avi")
+    assert asked == []
+
+
+def test_an_audit_is_kept_as_json(services, known, asked):
+    document = json.loads(pictures.make(services, known, AUDIT))
+    assert document["verdict"] == {"survives": True, "reasons": []}
+    assert asked == [("audit", known)]

@@ -1,0 +1,11 @@
+/** A mark on everything whose coupling is not force-free. */
+
+import { NOT_FREE } from "./coupling";
+
+export function NotFree({ some = false }: { some?: boolean }) {
+  return (
+    <span class="badge not-free" title={NOT_FREE}>
+      {some ? "partly not force-free" : "not force-free"}
+    </span>
+  );
+}

@@ -1,0 +1,63 @@
+/** Where values stand along an axis, and which of them are named. */
+
+export interface Scale {
+  log: boolean;
+  low: number;
+  high: number;
+}
+
+/** From 0 to 1 over the axis. */
+export function place({ log, low, high }: Scale, value: number): number {
+  const at = log ? Math.log10 : (x: number) => x;
+  return (at(value) - at(low)) / (at(high) - at(low));
+}
+
+/** Room for positive values on a logarithmic axis, with a little beside them. */
+export function logAround(values: readonly number[]): Scale {
+  const positive = values.filter((value) => value > 0);
+  if (positive.length === 0) return { log: true, low: 1, high: 10 };
+  const [low, high] = [Math.min(...positive), Math.max(...positive)];
+  const beside = Math.max(1.25, (high / low) ** 0.035);
+  return { log: true, low: low / beside, high: high * beside };
+}
+
+/** From zero up to the highest of the values, and a little above it. */
+export function fromZero(values: readonly number[]): Scale {
+  const high = Math.max(0, ...values);
+  const low = Math.min(0, ...values);
+  const beside = 0.07 * (high - low || 1);
+  return { log: false, low: low < 0 ? low - beside : 0, high: high + beside };
+}
+
+/** Values worth naming, at most about so many. */
+export function ticksOf(scale: Scale, most: number): number[] {
+  const ticks = scale.log ? logTicks(scale, most) : [];
+  // Within less than a decade there may be too few powers.
+  return ticks.length < Math.min(2, most) ? linearTicks(scale, most) : ticks;
+}
+
+const STEPS = [1, 2, 5, 10];
+
+function linearTicks({ low, high }: Scale, most: number): number[] {
+  const rough = (high - low) / Math.max(1, most);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * STEPS.find((each) => each * power >= rough * (1 - 1e-9))!;
+  const first = Math.ceil(low / step - 1e-9);
+  const count = Math.floor(high / step + 1e-9) - first + 1;
+  return Array.from({ length: count }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+}
+
+/** Powers of ten; where there is room 2 and 5 times them too, where there is little, fewer. */
+function logTicks({ low, high }: Scale, most: number): number[] {
+  const [first, last] = [Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
+  const powers = Array.from({ length: last - first + 1 }, (_, i) => first + i);
+  const inside = (factors: number[]) =>
+    powers
+      .flatMap((power) => factors.map((factor) => Number(`${factor}e${power}`)))
+      .filter((value) => value >= low && value <= high);
+  const fine = [[1, 2, 5], [1, 3], [1]].map(inside).find((found) => found.length <= most);
+  if (fine) return fine;
+  const tens = inside([1]);
+  const every = Math.ceil(tens.length / most);
+  return tens.filter((_, i) => i % every === 0);
+}

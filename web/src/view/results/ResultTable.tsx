@@ -1,0 +1,98 @@
+/** All figures of a run's result, in the order that one wants. */
+
+import type { ResultRow, Value } from "../../api/types";
+import { short } from "../format";
+import { type Column, type Order, columnsOf, sortRows } from "./columns";
+
+interface Props {
+  rows: ResultRow[];
+  order: Order;
+  onOrder: (order: Order) => void;
+  hrefOf: (creature: string) => string;
+}
+
+export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
+  const columns = columnsOf(rows);
+  // One form alone is named above the plot.
+  const shown = columns.filter(({ name }) => name !== "form" || several(rows, name));
+  const watchable = rows.some((row) => row.creature !== null);
+  return (
+    <div class="scroll">
+      <table class="results">
+        <thead>
+          <tr>
+            {watchable && <th scope="col">Replay</th>}
+            {shown.map((column) => (
+              <Heading key={column.name} {...{ column, order, onOrder }} />
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {sortRows(rows, order).map((row, i) => (
+            <tr key={row.creature ?? i} class={rowClass(row)}>
+              {watchable && (
+                <td>
+                  {row.creature && (
+                    <a href={hrefOf(row.creature)}>
+                      <code>{short(row.creature)}</code>
+                    </a>
+                  )}
+                </td>
+              )}
+              {shown.map((column) => (
+                <td key={column.name} class={column.numeric ? "numeric" : ""}>
+                  <Cell column={column} value={row[column.name] ?? null} />
+                </td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+function Heading({ column, order, onOrder }: { column: Column } & Pick<Props, "order" | "onOrder">) {
+  const mine = order.by === column.name;
+  const sorted = mine ? (order.down ? "descending" : "ascending") : "none";
+  const next = { by: column.name, down: mine ? !order.down : false };
+  return (
+    <th scope="col" aria-sort={sorted} class={column.numeric ? "numeric" : ""}>
+      <button type="button" class="plain" onClick={() => onOrder(next)}>
+        {column.title}
+        <span class="arrow" aria-hidden="true">
+          {mine ? (order.down ? "▾" : "▴") : ""}
+        </span>
+      </button>
+      {column.unit && <span class="unit">{column.unit}</span>}
+    </th>
+  );
+}
+
+function several(rows: ResultRow[], name: string): boolean {
+  return new Set(rows.map((row) => row[name])).size > 1;
+}
+
+function Cell({ column, value }: { column: Column; value: Value }) {
+  const text = column.write(value);
+  if (column.name === "warnings" && value) {
+    return (
+      <span class="long warning-text" title={text}>
+        {text}
+      </span>
+    );
+  }
+  const mark = markOf(column.name, value);
+  return mark ? <span class={`mark-word ${mark}`}>{text}</span> : <>{text}</>;
+}
+
+/** Values that people should not overlook. */
+function markOf(name: string, value: Value): "wrong" | "warned" | null {
+  if (name === "status" && value !== "ok") return "wrong";
+  const doubtful = (name === "force_free" && value === false) || (name === "limited" && Number(value) > 0);
+  return doubtful ? "warned" : null;
+}
+
+function rowClass({ status }: ResultRow): string {
+  return status !== undefined && status !== "ok" ? "failed" : "";
+}
