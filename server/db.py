@@ -72,7 +72,9 @@ def connect(url: str) -> Sessions:
 
 
 def _postgresql(url: Any) -> Engine:
-    limits = f"-c statement_timeout={4 * TIMEOUT_MS} -c lock_timeout={TIMEOUT_MS}"
+    # A writer whose machine freezes must not keep its rows locked for the rest.
+    idle = f"-c idle_in_transaction_session_timeout={2 * TIMEOUT_MS}"
+    limits = f"-c statement_timeout={4 * TIMEOUT_MS} -c lock_timeout={TIMEOUT_MS} {idle}"
     return create_engine(
         url.set(drivername="postgresql+psycopg"),
         pool_pre_ping=True,

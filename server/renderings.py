@@ -36,8 +36,15 @@ def order(services: Services, creature: str, kind: str = REPLAY) -> None:
     if job and status == JobStatus.FAILED:
         result = job.latest_result()
         text = (result.exc_string if result else None) or "the renderer ended without a word"
-        raise RenderingFailed(REFUSAL.sub("", text.strip().splitlines()[-1]))
+        raise RenderingFailed(REFUSAL.sub("", _reason(text)))
     services.jobs.render(creature, kind)
+
+
+def _reason(traceback: str) -> str:
+    """The first line of what was raised last; its message may go on for many more."""
+    said = traceback.strip().splitlines()
+    frames = [i for i, line in enumerate(said) if line.startswith("  ")]
+    return said[min(frames[-1] + 1, len(said) - 1)] if frames else said[-1]
 
 
 def save(services: Services, creature: str, kind: str, data: bytes) -> None:

@@ -3,10 +3,12 @@
 import os
 import signal
 import socket
+import sqlite3
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -163,6 +165,41 @@ class Installation:
             return None
 
         return wait_until(there, 10, f"a worker tells that it computes {run}")
+
+    @contextmanager
+    def frozen(self, processes: Sequence[psutil.Process]) -> Iterator[None]:
+        """Processes that stand still meanwhile, none of them in the midst of writing.
+
+        A frozen writer would keep SQLite's lock: nobody could write until it wakes, which
+        no server can help.
+        """
+
+        def freeze() -> bool:
+            for process in processes:
+                process.suspend()
+            if self.writable():
+                return True
+            for process in processes:
+                process.resume()
+            return False
+
+        wait_until(freeze, 60, "the processes are frozen outside of a transaction")
+        try:
+            yield
+        finally:
+            for process in processes:
+                process.resume()
+
+    def writable(self) -> bool:
+        """Whether the embedded database can be written to within a second."""
+        path = self.folder / "microcosmos.sqlite"
+        with closing(sqlite3.connect(path, timeout=1, isolation_level=None)) as database:
+            try:
+                database.execute("BEGIN IMMEDIATE")
+            except sqlite3.OperationalError:
+                return False
+            database.execute("ROLLBACK")
+            return True
 
     def named(self, module: str) -> list[psutil.Process]:
         """Living processes that run a Python module or a program."""

@@ -42,12 +42,8 @@ def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(place, spe
     run = place.submit(spec)
     attempt = place.reach(run, 2)
     owner = place.owner(run)
-    frozen = [owner, *owner.children(recursive=True)]
-    for process in frozen:
-        process.suspend()
-    successor = place.reach(run, 0, after=attempt)
-    for process in frozen:
-        process.resume()
+    with place.frozen([owner, *owner.children(recursive=True)]):
+        successor = place.reach(run, 0, after=attempt)
     assert place.wait(run, "finished")["attempt"] == successor == attempt + 1
     assert place.archive(run) == undisturbed.archive
     assert place.told(run) == undisturbed.told

@@ -93,3 +93,12 @@ def test_who_waits_to_watch_is_served_first(services, known):
     waiting = services.jobs.renderings.get_job_ids()
     kinds = [services.jobs.find(job_id).args[1] for job_id in waiting]
     assert kinds == ["replay", "film.mp4"], "and no audit before or among them"
+
+
+def test_what_failed_is_told_by_the_first_line_of_what_was_raised(api, services, known):
+    services.jobs.render(known, "audit")
+    job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
+    raised = "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)"
+    services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
+    detail = api.get(f"creatures/{known}/audit").json()["detail"]
+    assert "OperationalError: database is locked. It can" in detail
