@@ -1,6 +1,21 @@
 """NEAT: how networks arise and vary, and how their genes are numbered."""
 
-from .mutation import Novelty, Rates, minimal, mutate
+from ..genomes import minimal
+from .crossover import crossover
+from .distance import Coefficients, distance
+from .mutation import Novelty, mutate
 from .numbering import Counters, first_counters, number
+from .rates import Rates
 
-__all__ = ["Counters", "Novelty", "Rates", "first_counters", "minimal", "mutate", "number"]
+__all__ = [
+    "Coefficients",
+    "Counters",
+    "Novelty",
+    "Rates",
+    "crossover",
+    "distance",
+    "first_counters",
+    "minimal",
+    "mutate",
+    "number",
+]

@@ -8,7 +8,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Int
 
 from ..genomes import CPPN
-from .mutation import NONE, Novelty
+from .mutation import Novelty
+from .rows import NONE
 
 
 class Counters(eqx.Module):

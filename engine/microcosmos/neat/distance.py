@@ -1,0 +1,62 @@
+"""How far apart two networks are (Stanley and Miikkulainen 2002, section 3.3)."""
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..genomes import CPPN
+from .rows import match
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """What unlike genes count, and how the number of genes divides it."""
+
+    excess: float
+    disjoint: float
+    weight: float
+    small: int = 0
+    """Up to this many connections in the larger network the number divides nothing."""
+    totals: bool = False
+    """TensorNEAT's form: nodes count as well as connections, and differences of matching
+    genes are summed and divided by the number of genes, not averaged."""
+
+
+def distance(a: CPPN, b: CPPN, coefficients: Coefficients) -> Float[Array, ""]:
+    """c₁E/N + c₂D/N + c₃W̄ (their equation 1), or the form of `totals`.
+
+    E, D: excess and disjoint connection genes; W̄: mean weight difference of matching ones,
+    0 where none match; N: genes of the larger network.
+    """
+    row = match(a.innovation, a.connection_used, b.innovation, b.connection_used)
+    unlike = jnp.where(row >= 0, jnp.abs(a.weight - b.weight[row]), 0.0)
+    matching, size_a, size_b = (
+        jnp.sum(used) for used in (row >= 0, a.connection_used, b.connection_used)
+    )
+    larger = jnp.maximum(size_a, size_b)
+    unmatched = size_a + size_b - 2 * matching
+    if coefficients.totals:
+        links = coefficients.disjoint * unmatched + coefficients.weight * jnp.sum(unlike)
+        return links / jnp.maximum(1, larger) + _between_nodes(a, b, coefficients)
+    excess = _beyond(a, b) + _beyond(b, a)
+    many = jnp.where(larger <= coefficients.small, 1, jnp.maximum(1, larger))
+    structure = coefficients.excess * excess + coefficients.disjoint * (unmatched - excess)
+    mean = jnp.sum(unlike) / jnp.maximum(1, matching)
+    return structure / many + coefficients.weight * mean
+
+
+def _beyond(a: CPPN, b: CPPN):
+    """How many of a's connections have numbers above all of b's."""
+    last = jnp.max(jnp.where(b.connection_used, b.innovation, -1))
+    return jnp.sum(a.connection_used & (a.innovation > last))
+
+
+def _between_nodes(a: CPPN, b: CPPN, coefficients: Coefficients):
+    """Bias differences, and 1 for each other activation; inputs and outputs always match."""
+    row = match(a.node_id, a.node_used, b.node_id, b.node_used)
+    unlike = jnp.abs(a.bias - b.bias[row]) + (a.activation != b.activation[row])
+    unlike = jnp.sum(jnp.where(row >= 0, unlike, 0.0))
+    size_a, size_b, matching = (jnp.sum(u) for u in (a.node_used, b.node_used, row >= 0))
+    total = coefficients.disjoint * (size_a + size_b - 2 * matching)
+    return (total + coefficients.weight * unlike) / jnp.maximum(1, jnp.maximum(size_a, size_b))

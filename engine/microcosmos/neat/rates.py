@@ -1,0 +1,49 @@
+"""How often each mutation happens to a child, and what a new gene is like."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import jax
+from jaxtyping import Array
+
+from ..genomes import ACTIVATIONS
+
+Draw = Callable[..., Array]
+"""(key, shape, dtype) → random numbers around zero."""
+
+
+def uniform(key, shape, dtype) -> Array:
+    """Numbers between −1 and 1, each equally likely."""
+    return jax.random.uniform(key, shape, dtype, -1, 1)
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Probabilities a gene (values, activations, toggles) or a child (structure)."""
+
+    weight: float
+    """A weight or bias is perturbed."""
+    weight_step: float
+    """What a drawn number is multiplied by to perturb a weight or bias."""
+    replace: float
+    """A weight or bias is drawn anew."""
+    activation: float
+    toggle: float
+    add_node: float
+    add_connection: float
+    delete_node: float = 0.0
+    delete_connection: float = 0.0
+    values: float = 1.0
+    """A child's weights and biases vary at all."""
+    bound: float | None = None
+    """Weights and biases are kept within this of zero."""
+    draw: Draw = jax.random.normal
+    palette: tuple[int, ...] = tuple(range(len(ACTIVATIONS)))
+    """Activations that are drawn, by their place among `genomes.ACTIVATIONS`."""
+    recurrent: bool = False
+    """Added connections may close cycles and lead from a node to itself."""
+    blind: bool = False
+    """An added connection joins any two nodes, and fails where they are joined already or a
+    cycle would close, in place of being one of those that are possible."""
+    drop_split: bool = False
+    """A split connection is removed, not disabled."""

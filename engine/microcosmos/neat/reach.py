@@ -1,0 +1,83 @@
+"""Which nodes reach which, as sets of nodes in 32-bit words."""
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Int, UInt32
+
+WORD = 32
+
+Sets = tuple[UInt32[Array, "node"], ...]
+"""For each node a set of nodes: node n is bit n % 32 of word n // 32."""
+
+
+def neighbours(
+    owner: Int[Array, "connection"],
+    member: Int[Array, "connection"],
+    used: Bool[Array, "connection"],
+    nodes: int,
+) -> Sets:
+    """For each node the other ends of the connections that it owns; no pair comes twice."""
+    owner = jnp.where(used, owner, nodes)
+    bit = jnp.uint32(1) << (member % WORD).astype(jnp.uint32)
+    none = jnp.zeros(nodes, jnp.uint32)
+    return tuple(
+        none.at[owner].add(jnp.where(member // WORD == word, bit, 0), mode="drop")
+        for word in range(_words(nodes))
+    )
+
+
+def closure(sets: Sets) -> Sets:
+    """All that each node reaches, itself included (Warshall, J. ACM 9, 11, 1962)."""
+    nodes = sets[0].shape[0]
+    sets = union(sets, singletons(nodes))
+    for word in range(len(sets)):
+        first = word * WORD
+
+        def through(bit, sets, word=word, first=first):
+            reaches = (sets[word] >> bit.astype(jnp.uint32)) & 1
+            every = jnp.uint32(0) - reaches  # All bits where the node reaches this one.
+            return tuple(s | (every & s[first + bit][None]) for s in sets)
+
+        sets = jax.lax.fori_loop(0, min(WORD, nodes - first), through, sets)
+    return sets
+
+
+def singletons(nodes: int) -> Sets:
+    """Each node's set holds itself."""
+    node = jnp.arange(nodes)
+    return neighbours(node, node, jnp.ones(nodes, bool), nodes)
+
+
+def members(among: Bool[Array, "node"]) -> Sets:
+    """The same set for every node."""
+    nodes = among.shape[0]
+    bit = jnp.where(among, jnp.uint32(1) << (jnp.arange(nodes) % WORD).astype(jnp.uint32), 0)
+    words = [
+        jnp.sum(bit[w * WORD : (w + 1) * WORD], dtype=jnp.uint32) for w in range(_words(nodes))
+    ]
+    return tuple(jnp.broadcast_to(word, (nodes,)) for word in words)
+
+
+def union(one: Sets, other: Sets) -> Sets:
+    return tuple(a | b for a, b in zip(one, other, strict=True))
+
+
+def without(one: Sets, other: Sets) -> Sets:
+    return tuple(a & ~b for a, b in zip(one, other, strict=True))
+
+
+def sizes(sets: Sets) -> Int[Array, "node"]:
+    """How many nodes each set holds."""
+    return sum(jax.lax.population_count(s) for s in sets).astype(jnp.int32)
+
+
+def held(sets: Sets, node: Int[Array, ""]) -> Bool[Array, "node"]:
+    """The set of one node, as flags."""
+    nodes = sets[0].shape[0]
+    place = jnp.arange(nodes)
+    words = jnp.stack([s[node] for s in sets])
+    return ((words[place // WORD] >> (place % WORD).astype(jnp.uint32)) & 1).astype(bool)
+
+
+def _words(nodes: int) -> int:
+    return -(-nodes // WORD)

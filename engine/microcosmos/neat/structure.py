@@ -1,0 +1,116 @@
+"""Connections and nodes are added to networks, and removed from them."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Int, PRNGKeyArray
+
+from ..genomes import CPPN
+from . import reach
+from .rates import Rates
+from .rows import (
+    NONE,
+    choose,
+    connect,
+    draw_below,
+    drop_connection,
+    drop_node,
+    put,
+    ranked,
+)
+
+
+def add_connection(
+    network: CPPN, rates: Rates, inputs: int, *, key: PRNGKeyArray
+) -> tuple[CPPN, Int[Array, ""]]:
+    """Join two nodes that are not joined; also the new connection's row, or −1."""
+    if not rates.add_connection:
+        return network, jnp.asarray(NONE)
+    whether, which, weight_key = jax.random.split(key, 3)
+    source, target, exists = _free_pair(network, rates, inputs, key=which)
+    row = jnp.sum(network.connection_used)
+    happens = jax.random.bernoulli(whether, rates.add_connection) & exists
+    row = jnp.where(happens & (row < network.connection_used.shape[0]), row, NONE)
+    weight = rates.draw(weight_key, (), network.weight.dtype)
+    return connect(network, row, source, target, weight), row
+
+
+def add_node(
+    network: CPPN, splittable: Bool[Array, "connection"], rates: Rates, *, key: PRNGKeyArray
+) -> tuple[CPPN, Int[Array, ""], Int[Array, ""], Int[Array, ""]]:
+    """Split a connection: it is disabled (or removed), and a new node takes its place.
+
+    The way in has weight 1 and the way out the old weight, so that with the identity as
+    activation nothing would change. Also the row of the way in, the node's row, and the
+    number of the connection that was split, or −1 each.
+    """
+    whether, which, activation_key = jax.random.split(key, 3)
+    old, exists = choose(splittable, key=which)
+    node, row = jnp.sum(network.node_used), jnp.sum(network.connection_used)
+    row = row - rates.drop_split
+    happens = jax.random.bernoulli(whether, rates.add_node) & exists
+    happens = happens & (node < network.node_used.shape[0])
+    happens = happens & (row + 1 < network.connection_used.shape[0])
+    node_row, split_row = jnp.where(happens, node, NONE), jnp.where(happens, row, NONE)
+    activation = jax.random.choice(activation_key, jnp.asarray(rates.palette))
+    one = jnp.ones((), network.weight.dtype)
+    source, target, weight = network.source[old], network.target[old], network.weight[old]
+    innovation = jnp.where(happens, network.innovation[old], NONE)
+    network = replace(
+        network,
+        node_used=put(network.node_used, node_row, True),
+        activation=put(network.activation, node_row, activation),
+        enabled=put(network.enabled, jnp.where(happens, old, NONE), False),
+    )
+    if rates.drop_split:
+        network = drop_connection(network, jnp.where(happens, old, NONE))
+    network = connect(network, split_row, source, node, one)
+    second = jnp.where(happens, row + 1, NONE)
+    return connect(network, second, node, target, weight), split_row, node_row, innovation
+
+
+def delete_connection(network: CPPN, rate: float, *, key: PRNGKeyArray) -> CPPN:
+    """Remove a connection."""
+    whether, which = jax.random.split(key)
+    row, exists = choose(network.connection_used, key=which)
+    happens = jax.random.bernoulli(whether, rate) & exists
+    return drop_connection(network, jnp.where(happens, row, NONE))
+
+
+def delete_node(network: CPPN, rate: float, fixed: int, *, key: PRNGKeyArray) -> CPPN:
+    """Remove a hidden node and all its connections; the first `fixed` ones stay."""
+    whether, which = jax.random.split(key)
+    hidden = network.node_used & (jnp.arange(network.node_used.shape[0]) >= fixed)
+    node, exists = choose(hidden, key=which)
+    happens = jax.random.bernoulli(whether, rate) & exists
+    return drop_node(network, jnp.where(happens, node, NONE))
+
+
+def _free_pair(
+    network: CPPN, rates: Rates, inputs: int, *, key: PRNGKeyArray
+) -> tuple[Int[Array, ""], Int[Array, ""], Bool[Array, ""]]:
+    """The source and target of a possible connection, and whether there is one."""
+    free = _free_sources(network, rates.recurrent)
+    is_target = network.node_used & (jnp.arange(network.node_used.shape[0]) >= inputs)
+    if rates.blind:
+        source_key, target_key = jax.random.split(key)
+        source, _ = choose(network.node_used, key=source_key)
+        target, exists = choose(is_target, key=target_key)
+        return source, target, exists & reach.held(free, target)[source]
+    many = jnp.where(is_target, reach.sizes(free), 0)
+    rank = draw_below(jnp.sum(many), key=key)
+    target = ranked(many, rank)
+    before = jnp.sum(jnp.where(jnp.arange(len(many)) < target, many, 0))
+    return ranked(reach.held(free, target), rank - before), target, jnp.any(many > 0)
+
+
+def _free_sources(network: CPPN, recurrent: bool) -> reach.Sets:
+    """For each node those that it could be joined from."""
+    used, nodes = network.connection_used, network.node_used.shape[0]
+    joined = reach.neighbours(network.target, network.source, used, nodes)
+    free = reach.without(reach.members(network.node_used), joined)
+    if recurrent:
+        return free
+    onward = reach.neighbours(network.source, network.target, used, nodes)
+    return reach.without(free, reach.closure(onward))
