@@ -26,9 +26,10 @@ def test_programs_take_no_more_than_was_estimated(name):
     spec = parse({"experiment": "quality-diversity", **SPECS[name]})
     run = build(spec)
     state = run.init()
-    networks = jax.tree.map(lambda x: x[: spec.search.block], state.elites.networks)
-    task = build_task(spec)
+    networks = jax.tree.map(lambda x: x[: spec.search.block], state.elites.genotypes)
+    task = build_task(spec.scene, room=run.plan.encoding.room)
     batched = jax.jit(jax.vmap(lambda network: search.evaluate(task, network)))
-    together = taken(run.programs.vary, state.elites, state.counters, jnp.asarray(1))
+    given = (state.emitters, state.elites, state.counters, jnp.asarray(1))
+    together = taken(run.programs.emit, *given)
     together += max(taken(run.programs.evaluate_block, networks), taken(batched, networks))
     assert together <= estimate(spec).memory_bytes

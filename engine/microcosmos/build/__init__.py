@@ -1,9 +1,11 @@
 """From a spec to the objects that carry it out: the only place where pydantic meets JAX."""
 
 from .creatures import build_block, build_point, build_stroke_block, frame
-from .experiments import build, build_axes, build_genes, build_plan
+from .emitters import build_emitters, build_rates
+from .experiments import build, build_axes, build_plan
 from .scene import (
     build_controls,
+    build_encoding,
     build_energy,
     build_limits,
     build_rods,
@@ -20,12 +22,13 @@ __all__ = [
     "build_block",
     "build_controls",
     "build_crowd",
+    "build_encoding",
     "build_energy",
     "build_gaits",
-    "build_genes",
     "build_limits",
     "build_plan",
     "build_point",
+    "build_rates",
     "build_rods",
     "build_scaling",
     "build_steric",

@@ -35,9 +35,10 @@ def _genome(control: spec.Control | spec.Gait) -> dict[str, Any]:
     }
 
 
-def build_block(scene: spec.Scene):
-    """The compiled program that evaluates a block of networks in a scene."""
-    return search.block_program(build_task(scene), search.evaluate, device.compiler_options())
+def build_block(scene: spec.Scene, room: tuple[int, int] | None = None):
+    """The compiled program that evaluates a block of genotypes in a scene."""
+    task = build_task(scene, room=room)
+    return search.block_program(task, search.evaluate, device.compiler_options())
 
 
 def build_stroke_block(scene: spec.Scene):

@@ -29,22 +29,37 @@ KERNELS = {"peskin": coupling.PESKIN, "roma": coupling.ROMA, "hat": coupling.HAT
 MAGIC = {"capped": fluid.capped_magic, "fixed": fluid.fixed_magic}
 SMOOTHING = {"gaussian": fields.gaussian, "binomial": fields.binomial}
 TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
+ROOM = (8, 8)
+"""Of networks that nobody will vary."""
 GOALS = {"displacement": (1.0, 0.0), "energy": (0.0, 1.0), "displacement+energy": (1.0, 1.0)}
 
 
-def build_task(scene: spec.Scene, dtype: Any = jnp.float32) -> search.Task:
-    """The world with the body at rest in its middle, and the controls of all steps."""
+def build_task(
+    scene: spec.Scene, dtype: Any = jnp.float32, *, room: tuple[int, int] | None = None
+) -> search.Task:
+    """The world with the body at rest in its middle, and what genotypes mean there.
+
+    `room` is for the nodes and connections of networks.
+    """
     body = spec.shape(scene.body)
     place = build_world(scene.world, scene.coupling, body, dtype)
     middle = np.array([scene.world.width, scene.world.height]) / 2
     positions = body.positions - body.positions.mean(0) + middle
     start = world.at_rest(place, jnp.asarray(positions, dtype))
-    controls = None
-    if isinstance(scene.control, spec.Control):
-        controls = build_controls(scene.control, body, scene.task.steps)
+    gait = isinstance(scene.control, spec.Gait)
+    encoding = None if gait else build_encoding(scene, room or ROOM)
     displacement, energy = GOALS[scene.task.fitness]
     goal = search.Goal(displacement, energy * scene.task.energy_weight)
-    return search.Task(place, start, controls, goal, reach(body))
+    return search.Task(place, start, encoding, goal, reach(body))
+
+
+def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding:
+    """What genotypes mean for a scene's body; `room` is for nodes and connections."""
+    control = scene.control
+    if isinstance(control, spec.Gait):
+        raise ValueError("`control` must be inherited, got a hand-made gait")
+    controls = build_controls(control, spec.shape(scene.body), scene.task.steps)
+    return genomes.CPPNControl(controls, room)
 
 
 def build_world(

@@ -11,10 +11,11 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, PyTree
 
 from .. import neat, search
 from ..archive import file
-from ..genomes import CPPN
+from ..genomes import Genotype
 from ..version import VERSION
 from .state import CURVES, Diverged, Lineage, Plan, State, start
 
@@ -38,18 +39,20 @@ def save(plan: Plan, state: State) -> bytes:
             "creature": state.creatures[cells],
             "operator": state.operators[cells],
             "device": state.origins[cells],
-            "genomes": _columns(elites.networks),
+            "genomes": _columns(elites.genotypes),
             **{name: getattr(elites, name) for name in ROWS},
         },
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
         "lineage": _columns(state.lineage),
         "diverged": _columns(state.quarantine)
-        | {"networks": _columns(state.quarantine.networks)},
+        | {"genotypes": _columns(state.quarantine.genotypes)},
         "loop": {
             "generation": np.int64(state.generation),
             "evaluations": np.int64(state.evaluations),
             "diverged": np.int64(state.diverged),
             "counters": _columns(state.counters),
+            "kin": state.kin,
+            "emitters": _leaves(state.emitters),
         },
     }
     return file.dump(tree, _attributes(plan, state))
@@ -70,26 +73,28 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
     cells = archive["cell"]
     rows = search.Elites(
         occupied=jnp.ones(len(cells), bool),
-        networks=_networks(archive["genomes"]),
+        genotypes=_genotypes(state, archive["genomes"]),
         **{name: jnp.asarray(archive[name]) for name in ROWS},
     )
     creatures, operators, origins = state.creatures, state.operators, state.origins
     creatures[cells], operators[cells] = archive["creature"], archive["operator"]
     origins[cells] = archive["device"]
     diverged = tree["diverged"]
-    networks = jax.device_get(_networks(diverged.pop("networks")))
+    genotypes = jax.device_get(_genotypes(state, diverged.pop("genotypes")))
     return State(
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
         diverged=int(loop["diverged"]),
         elites=jax.tree.map(lambda none, x: none.at[cells].set(x), state.elites, rows),
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
+        emitters=_filled(state.emitters, loop["emitters"]),
+        kin=loop["kin"],
         creatures=creatures,
         operators=operators,
         origins=origins,
         curves=np.stack([tree["curves"][name] for name in CURVES], 1),
         lineage=Lineage(**tree["lineage"]),
-        quarantine=Diverged(**diverged, networks=networks),
+        quarantine=Diverged(**diverged, genotypes=genotypes),
         devices=devices,
     )
 
@@ -126,9 +131,27 @@ def devices_of(
     return tuple(devices if devices[-1] == device else [*devices, device])
 
 
-def _networks(columns: dict[str, np.ndarray]) -> CPPN:
-    return CPPN(**{name: jnp.asarray(values) for name, values in columns.items()})
+def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
+    kind = type(state.elites.genotypes)
+    return kind(**{name: jnp.asarray(values) for name, values in columns.items()})
 
 
 def _columns(module: eqx.Module) -> dict[str, Any]:
     return dict(vars(module))
+
+
+def _leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:
+    """Arrays of any tree by the way to them."""
+    found = jax.tree_util.tree_leaves_with_path(tree)
+    return {_way(path): np.asarray(leaf) for path, leaf in found}
+
+
+def _filled(tree: PyTree[Array], leaves: dict[str, np.ndarray]) -> PyTree[Array]:
+    """A tree of the same form with the arrays that `_leaves` wrote."""
+    return jax.tree_util.tree_map_with_path(
+        lambda path, old: jnp.asarray(leaves[_way(path)], old.dtype), tree
+    )
+
+
+def _way(path: tuple) -> str:
+    return jax.tree_util.keystr(path, simple=True, separator=".")

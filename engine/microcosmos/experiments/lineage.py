@@ -10,12 +10,13 @@ import numpy as np
 
 from .. import search
 from ..archive import naming
-from ..genomes import CPPN, take, to_genes
+from ..genomes import Encoding, Genotype, take
 from ..version import VERSION
 from .report import Elite
 from .state import Lineage, Plan, State
 
 NOBODY = np.zeros(32, np.uint8)
+"""The name of nobody."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class News:
     creatures: np.ndarray
     operators: np.ndarray
     origins: np.ndarray
+    kin: np.ndarray
     lineage: Lineage
 
 
@@ -39,20 +41,21 @@ def record(
 ) -> News:
     """The elites of the slots that entered, and the records with them added."""
     generation = state.generation + 1
-    operator, origin = np.asarray(children.operator)[slots], np.asarray(children.parent)[slots]
+    operator = np.asarray(children.operator)[slots]
+    forebears = _forebears(state, np.asarray(children.parents))
+    parents = forebears[slots]
     fitness, features = np.asarray(evaluation.fitness)[slots], np.asarray(evaluation.features)
     features = features[slots]
-    parents = np.where((origin != search.NO_PARENT)[:, None], state.creatures[origin], NOBODY)
     elites = tuple(
         _elite(
             plan,
-            take(children.networks, slot),
+            take(children.genotypes, slot),
             float(fitness[i]),
             features[i],
             cell=int(cells[i]),
             generation=generation,
             operator=int(operator[i]),
-            parent=parents[i],
+            parents=parents[i],
             device=plan.device,
         )
         for i, slot in enumerate(slots.tolist())
@@ -63,7 +66,7 @@ def record(
     operators[cells], origins[cells] = operator, len(state.devices) - 1
     new = Lineage(
         creature=np.array(names, np.uint8).reshape(-1, 32),
-        parent=parents,
+        parents=parents,
         operator=operator.astype(np.int32),
         generation=np.full(len(slots), generation, np.int32),
         cell=cells.astype(np.int32),
@@ -71,8 +74,11 @@ def record(
         descriptors=features[:, [axis.feature for axis in plan.axes]],
     )
     creatures[cells] = new.creature
+    kin = forebears.copy()
+    kin[slots] = 0
+    kin[slots, 0] = new.creature
     lineage = jax.tree.map(lambda a, b: np.concatenate([a, b]), state.lineage, new)
-    return News(elites, creatures, operators, origins, lineage)
+    return News(elites, creatures, operators, origins, kin, lineage)
 
 
 def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
@@ -81,13 +87,13 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
     entry = np.flatnonzero(state.lineage.cell == cell)[-1]
     elite = _elite(
         plan,
-        elites.networks,
+        elites.genotypes,
         float(elites.fitness),
         elites.features,
         cell=cell,
         generation=int(elites.generation),
         operator=int(state.operators[cell]),
-        parent=state.lineage.parent[entry],
+        parents=state.lineage.parents[entry],
         device=state.devices[state.origins[cell]],
     )
     return {
@@ -99,37 +105,55 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
     }
 
 
-def identity(frame: Mapping[str, Any], network: CPPN) -> dict[str, Any]:
-    """What a network is in the world, body and task of `frame`."""
-    return {**frame, "genome": {**frame["genome"], **to_genes(network)}}
+def identity(
+    frame: Mapping[str, Any], encoding: Encoding, genotype: Genotype
+) -> dict[str, Any]:
+    """What a genotype is in the world, body and task of `frame`."""
+    return {**frame, "genome": {**frame["genome"], **encoding.write(genotype)}}
+
+
+def _forebears(state: State, parents: np.ndarray) -> np.ndarray:
+    """Recorded creatures (slot, 2, 32) that the children of parents (slot, 2) descend from.
+
+    A parent in the archive is recorded itself; one of the last generation may not be: then
+    it is the nearest of its own forebears that is.
+    """
+    nearest = np.concatenate([state.creatures, state.kin[:, 0], NOBODY[None]])
+    found = nearest[parents]  # −1, for no parent, finds nobody.
+    alone = (parents[:, 1] == search.NO_PARENT) & (parents[:, 0] >= len(state.creatures))
+    # An only parent that was not recorded passes both of its own forebears on.
+    found[alone] = state.kin[parents[alone, 0] - len(state.creatures)]
+    same = (found[:, 0] == found[:, 1]).all(-1)
+    found[same, 1] = 0
+    return found
 
 
 def _elite(
     plan: Plan,
-    network: CPPN,
+    genotype: Genotype,
     fitness: float,
     values: np.ndarray,
     *,
     cell: int,
     generation: int,
     operator: int,
-    parent: np.ndarray,
+    parents: np.ndarray,
     device: str,
 ) -> Elite:
-    whole = identity(plan.frame, network)
+    whole = identity(plan.frame, plan.encoding, genotype)
     features: dict[str, float] = dict(zip(search.FEATURES, values.tolist(), strict=True))
     descriptors = {name: features[name] for name in plan.descriptors}
-    parents = (bytes(parent).hex(),) if parent.any() else ()
+    named = tuple(bytes(parent).hex() for parent in parents if parent.any())
     measured = {
         "fitness": fitness,
         "descriptors": descriptors,
         "features": features,
         "block": plan.block,
-        "room": list(plan.room),
+        "room": list(plan.encoding.room) if plan.encoding.room else None,
         "device": device,
     }
     provenance = {
-        "parents": list(parents),
+        "parents": list(named),
         "operator": search.OPERATORS[operator],
         "generation": generation,
         "seed": plan.seed,
@@ -142,7 +166,7 @@ def _elite(
         features=features,
         creature=naming.name(whole),
         identity=naming.canonical(whole),
-        parents=parents,
+        parents=named,
         operator=search.OPERATORS[operator],
         generation=generation,
         measured=measured,

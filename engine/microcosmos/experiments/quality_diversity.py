@@ -1,4 +1,4 @@
-"""MAP-Elites (Mouret and Clune, arXiv:1504.04909, 2015) over CPPN-controlled swimmers."""
+"""MAP-Elites (Mouret and Clune, arXiv:1504.04909, 2015): emit, evaluate, insert, tell."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import neat, search
-from ..genomes import CPPN
+from ..genomes import Genotype
 from . import archive_file, lineage
 from .report import Report
 from .state import CURVES, KEPT, Diverged, Plan, State, start
@@ -19,10 +19,10 @@ from .state import CURVES, KEPT, Diverged, Plan, State, start
 class Programs:
     """The compiled parts of a generation."""
 
-    newcomers: Callable[..., search.Children]
-    vary: Callable[..., tuple[search.Children, neat.Counters]]
-    evaluate_block: Callable[[CPPN], search.Evaluation]
-    insert: Callable[[search.Elites, search.Elites], tuple]
+    emit: Callable[..., tuple[search.Children, neat.Counters]]
+    evaluate_block: Callable[[Genotype], search.Evaluation]
+    insert: Callable[[search.Elites, search.Elites], tuple[search.Elites, search.Inserted]]
+    tell: Callable[[tuple, search.Outcome], tuple]
 
 
 @dataclass(frozen=True)
@@ -47,20 +47,25 @@ class QualityDiversity:
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
     ) -> tuple[State, Report]:
-        """One generation: vary, evaluate by blocks, insert.
+        """One generation: emit children, evaluate them by blocks, insert, tell the emitters.
 
         Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
         """
-        children, counters = self._vary(state)
+        programs = self.programs
+        children, counters = programs.emit(
+            state.emitters, state.elites, state.counters, jnp.asarray(state.generation)
+        )
         children = jax.device_get(children)
         evaluation = search.evaluate_blocks(
-            self.programs.evaluate_block, children.networks, block=self.plan.block, stop=stop
+            programs.evaluate_block, children.genotypes, block=self.plan.block, stop=stop
         )
         candidates = _candidates(state.generation + 1, children, evaluation)
-        elites, entered, cells = self.programs.insert(state.elites, candidates)
-        slots = np.flatnonzero(np.asarray(entered))
+        elites, inserted = programs.insert(state.elites, candidates)
+        emitters = programs.tell(state.emitters, _outcome(candidates, inserted))
+        inserted = jax.device_get(inserted)
+        slots = np.flatnonzero(inserted.entered)
         news = lineage.record(
-            self.plan, state, children, evaluation, np.asarray(cells)[slots], slots
+            self.plan, state, children, evaluation, inserted.cell[slots], slots
         )
         state = replace(
             state,
@@ -69,11 +74,13 @@ class QualityDiversity:
             diverged=state.diverged + int(np.count_nonzero(evaluation.status)),
             elites=elites,
             counters=counters,
+            emitters=emitters,
+            kin=news.kin,
             creatures=news.creatures,
             operators=news.operators,
             origins=news.origins,
             lineage=news.lineage,
-            quarantine=_set_apart(state, children.networks, np.asarray(evaluation.status)),
+            quarantine=_set_apart(state, children.genotypes, np.asarray(evaluation.status)),
         )
         row = _summary(state)
         state = replace(state, curves=np.concatenate([state.curves, row[None]]))
@@ -104,12 +111,6 @@ class QualityDiversity:
         """
         return archive_file.restore(self.plan, data, other_device=other_device)
 
-    def _vary(self, state: State) -> tuple[search.Children, neat.Counters]:
-        generation = jnp.asarray(state.generation)
-        if state.generation == 0 or self.plan.variation == "random":
-            return self.programs.newcomers(generation), state.counters
-        return self.programs.vary(state.elites, state.counters, generation)
-
 
 def _candidates(
     generation: int, children: search.Children, evaluation: search.Evaluation
@@ -122,17 +123,30 @@ def _candidates(
         generation=jnp.full(batch, generation, jnp.int32),
         slot=jnp.arange(batch, dtype=jnp.int32),
         digest=jnp.zeros((batch, 2), jnp.uint32),  # `insert` computes it.
-        networks=children.networks,
+        genotypes=children.genotypes,
     )
 
 
-def _set_apart(state: State, networks: CPPN, status: np.ndarray) -> Diverged:
+def _outcome(candidates: search.Elites, inserted: search.Inserted) -> search.Outcome:
+    return search.Outcome(
+        genotypes=candidates.genotypes,
+        fitness=candidates.fitness,
+        features=candidates.features,
+        sound=candidates.occupied,
+        cell=inserted.cell,
+        entered=inserted.entered,
+        fresh=inserted.fresh,
+        improvement=inserted.improvement,
+    )
+
+
+def _set_apart(state: State, genotypes: Genotype, status: np.ndarray) -> Diverged:
     failed = np.flatnonzero(status)
     new = Diverged(
         generation=np.full(len(failed), state.generation + 1, np.int32),
         slot=failed.astype(np.int32),
         status=status[failed].astype(np.int32),
-        networks=jax.tree.map(lambda x: np.asarray(x)[failed], networks),
+        genotypes=jax.tree.map(lambda x: np.asarray(x)[failed], genotypes),
     )
     return jax.tree.map(lambda a, b: np.concatenate([a, b])[-KEPT:], state.quarantine, new)
 

@@ -5,14 +5,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import equinox as eqx
+import jax
 import numpy as np
-from jaxtyping import Float, Int, UInt8
+from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 
 from .. import neat, search
-from ..genomes import CPPN, empty
+from ..genomes import Encoding, Genotype
 
 CURVES = ("qd_score", "coverage", "best", "mean", "evaluations", "diverged")
 """Columns of the record of generations, in this order."""
+
+BEFORE = 2**32 - 1
+"""Stands for the generation before the first where keys are derived."""
 
 KEPT = 256
 """How many diverged creatures are kept, the newest."""
@@ -28,28 +32,39 @@ class Plan:
     """The identity that all creatures of the run share; only genes are missing."""
     seed: int
     generations: int
-    batch: int
     block: int
-    variation: str
     cells: int
     descriptors: tuple[str, ...]
     axes: tuple[search.Axis, ...]
-    genes: search.Genes
+    encoding: Encoding
+    emitters: tuple[search.Emitter, ...]
+    counters: neat.Counters
+    """Numbers after the genes of newcomers."""
     device: str
     force_free: bool = True
     """Whether bodies cannot push themselves; if not, their swimming may be the solver's."""
 
     @property
-    def room(self) -> tuple[int, int]:
-        """Nodes and connections that a genome's arrays have room for."""
-        return self.genes.max_nodes, self.genes.max_connections
+    def batch(self) -> int:
+        """Creatures of a generation."""
+        return sum(emitter.slots for emitter in self.emitters)
+
+    @property
+    def key(self) -> PRNGKeyArray:
+        """What all randomness is derived from."""
+        return jax.random.key(self.seed, impl="threefry2x32")
+
+    @property
+    def genotype(self) -> Genotype:
+        """Shapes and types of one genotype."""
+        return jax.eval_shape(lambda: self.encoding.newcomer(key=self.key))
 
 
 class Lineage(eqx.Module):
     """One row for each entry into the archive, in order: who descends from whom."""
 
     creature: UInt8[np.ndarray, "entry 32"]
-    parent: UInt8[np.ndarray, "entry 32"]
+    parents: UInt8[np.ndarray, "entry 2 32"]
     """Zeros where there is none."""
     operator: Int[np.ndarray, "entry"]
     generation: Int[np.ndarray, "entry"]
@@ -64,7 +79,7 @@ class Diverged(eqx.Module):
     generation: Int[np.ndarray, "row"]
     slot: Int[np.ndarray, "row"]
     status: Int[np.ndarray, "row"]
-    networks: CPPN
+    genotypes: Genotype
 
 
 class State(eqx.Module):
@@ -76,6 +91,11 @@ class State(eqx.Module):
     diverged: int
     elites: search.Elites
     counters: neat.Counters
+    emitters: tuple[PyTree[Array], ...]
+    """What each emitter has learnt."""
+    kin: UInt8[np.ndarray, "slot 2 32"]
+    """Of each slot of the last generation, the recorded creatures nearest to it: itself where
+    it entered, else its forebears; zeros where there are none."""
     creatures: UInt8[np.ndarray, "cell 32"]
     """The SHA-256 of each cell's elite."""
     operators: Int[np.ndarray, "cell"]
@@ -92,17 +112,29 @@ def start(plan: Plan) -> State:
     """Before the first generation."""
     none, names = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8)
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
+    nobody = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
+    keys = jax.random.split(jax.random.fold_in(plan.key, BEFORE), len(plan.emitters))
     return State(
         generation=0,
         evaluations=0,
         diverged=0,
-        elites=search.no_elites(plan.cells, len(search.FEATURES), *plan.room),
-        counters=neat.first_counters(plan.genes.inputs, plan.genes.outputs),
+        elites=search.no_elites(plan.cells, len(search.FEATURES), plan.genotype),
+        counters=plan.counters,
+        emitters=tuple(e.init(key=key) for e, key in zip(plan.emitters, keys, strict=True)),
+        kin=np.zeros((plan.batch, 2, 32), np.uint8),
         creatures=np.zeros((plan.cells, 32), np.uint8),
         operators=np.zeros(plan.cells, np.int32),
         origins=np.zeros(plan.cells, np.int32),
         curves=np.zeros((0, len(CURVES))),
-        lineage=Lineage(names, names, none, none, none, np.zeros(0, np.float32), descriptors),
-        quarantine=Diverged(none, none, none, empty(*plan.room, (0,))),
+        lineage=Lineage(
+            creature=names,
+            parents=np.zeros((0, 2, 32), np.uint8),
+            operator=none,
+            generation=none,
+            cell=none,
+            fitness=np.zeros(0, np.float32),
+            descriptors=descriptors,
+        ),
+        quarantine=Diverged(none, none, none, nobody),
         devices=(plan.device,),
     )

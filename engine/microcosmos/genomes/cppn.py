@@ -9,7 +9,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 Points = Float[Array, "_ point"]
 
@@ -44,6 +44,29 @@ class CPPN(eqx.Module):
     target: Int[Array, "*batch connection"]
     enabled: Bool[Array, "*batch connection"]
     weight: Float[Array, "*batch connection"]
+
+
+def minimal(
+    key: PRNGKeyArray, inputs: int, outputs: int, max_nodes: int, max_connections: int
+) -> CPPN:
+    """Every input connected to every output; weights and biases have deviation 1."""
+    weight_key, bias_key, activation_key = jax.random.split(key, 3)
+    node, row = jnp.arange(max_nodes), jnp.arange(max_connections)
+    node_used, row_used = node < inputs + outputs, row < inputs * outputs
+    is_output = node_used & (node >= inputs)
+    drawn = jax.random.randint(activation_key, (max_nodes,), 0, len(ACTIVATIONS))
+    return CPPN(
+        node_used=node_used,
+        node_id=jnp.where(node_used, node, 0),
+        activation=jnp.where(is_output, drawn, 0),
+        bias=jnp.where(is_output, jax.random.normal(bias_key, (max_nodes,)), 0.0),
+        connection_used=row_used,
+        innovation=jnp.where(row_used, row, 0),
+        source=jnp.where(row_used, row % inputs, 0),
+        target=jnp.where(row_used, inputs + row // inputs, 0),
+        enabled=row_used,
+        weight=jnp.where(row_used, jax.random.normal(weight_key, (max_connections,)), 0.0),
+    )
 
 
 def depths(network: CPPN) -> Int[Array, "node"]:

@@ -23,7 +23,7 @@ class Controls:
     """
 
     position: np.ndarray
-    timer: np.ndarray
+    timer: np.ndarray | Array
     ramp: np.ndarray
     edges: np.ndarray
     joint_nodes: np.ndarray
@@ -58,9 +58,10 @@ def develop(network: CPPN, controls: Controls) -> Rest:
     """
     steps, nodes = len(controls.ramp), len(controls.position)
     position = np.tile(controls.position, steps)[None]
-    inputs = np.concatenate([position, np.repeat(controls.timer, nodes, 1)])
     dtype = network.bias.dtype
-    outputs = evaluate(network, jnp.asarray(inputs, dtype), OUTPUTS)
+    clock = jnp.repeat(jnp.asarray(controls.timer, dtype), nodes, 1)
+    inputs = jnp.concatenate([jnp.asarray(position, dtype), clock])
+    outputs = evaluate(network, inputs, OUTPUTS)
     return _rest(
         outputs.reshape(OUTPUTS, steps, nodes), jnp.asarray(controls.ramp, dtype), controls
     )

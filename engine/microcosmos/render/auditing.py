@@ -70,8 +70,8 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
         raise creature.CreatureError("task.steps", needed, work // WORK)
     task = build.build_task(scene)
     actuator = jax.tree.map(jnp.asarray, actuator_of(file, scene))
-    inputs, control = search.drive(task, actuator)
-    nominal, rest = _simulate(task, inputs, control)
+    driven = search.drive(task, actuator)
+    nominal, rest = _simulate(task, driven.inputs, driven.control)
     if not np.isfinite(nominal.distance):
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")

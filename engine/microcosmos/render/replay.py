@@ -7,6 +7,7 @@ chaotic, so a replay says how far its fitness is from the recorded one.
 import json
 import struct
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from math import ceil
 from typing import Any
@@ -17,10 +18,9 @@ import numpy as np
 
 from .. import search, world
 from ..archive import creature
-from ..build import build_stroke, build_task
+from ..build import build_encoding, build_stroke, build_task
 from ..device import device_kind
 from ..fluid import vorticity
-from ..genomes import from_genes
 from ..spec import Gait, Scene, shape
 from ..spec.estimate import simulation
 
@@ -30,6 +30,9 @@ FRAMES = 250
 
 FRAME_BYTES = 2**28
 """At most about so many bytes of vorticity are held while a replay is made."""
+
+ROOM = (8, 8)
+"""Where there is no network."""
 
 CELL_STEPS = 3 * 10**10
 """Fluid cells times steps that a replay may take: minutes."""
@@ -101,10 +104,11 @@ def interval(scene: Scene, network_nodes: int) -> int:
 
 
 def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
-    """What moves the body of a parsed creature file: its network, or its gait's rest shapes."""
+    """What moves the body of a parsed creature file: its genotype, or a gait's rest shapes."""
     if isinstance(scene.control, Gait):
         return build_stroke(scene.control, scene.task.steps)
-    return from_genes(file["identity"]["genome"], *(creature.room(file) or (8, 8)))
+    encoding = build_encoding(scene, creature.room(file) or ROOM)
+    return encoding.read(file["identity"]["genome"])
 
 
 @lru_cache(maxsize=16)
@@ -122,25 +126,29 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
         return state.positions, vorticity(world.flow(task.world, state))
 
     def run(actuator):
-        inputs, control = search.drive(task, actuator)
+        driven = search.drive(task, actuator)
+
+        def go_on(state, given):
+            see, control = search.observe, driven.control
+            return world.rollout(driven.world, state, given, see, control)
 
         def advance(state, given):
-            end, seen = world.rollout(task.world, state, given, search.observe, control)
+            end, seen = go_on(state, given)
             return end, (frame(end), seen)
 
         whole = jax.tree.map(
-            lambda x: x[: frames * every].reshape(frames, every, *x.shape[1:]), inputs
+            lambda x: x[: frames * every].reshape(frames, every, *x.shape[1:]), driven.inputs
         )
-        left = jax.tree.map(lambda x: x[frames * every :], inputs)
-        end, (shown, seen) = jax.lax.scan(advance, task.start, whole)
-        end, last = world.rollout(task.world, end, left, search.observe, control)
+        left = jax.tree.map(lambda x: x[frames * every :], driven.inputs)
+        end, (shown, seen) = jax.lax.scan(advance, driven.start, whole)
+        end, last = go_on(end, left)
         seen = jax.tree.map(
             lambda x, y: jnp.concatenate([x.reshape(-1, *x.shape[2:]), y]), seen, last
         )
         positions, curl = jax.tree.map(
-            lambda first, rest: jnp.concatenate([first[None], rest]), frame(task.start), shown
+            lambda first, rest: jnp.concatenate([first[None], rest]), frame(driven.start), shown
         )
-        return positions, curl, search.motion(task, end, seen)
+        return positions, curl, search.motion(replace(task, start=driven.start), end, seen)
 
     return jax.jit(run)
 

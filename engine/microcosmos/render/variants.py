@@ -74,7 +74,7 @@ def reciprocal(rest: Rest) -> Rest:
 def _with(scene: spec.Scene, **form: Any) -> search.Task:
     coupling = scene.coupling.model_copy(update=form)
     changed = scene.model_copy(update={"coupling": coupling})
-    return replace(build.build_task(changed), controls=None)
+    return replace(build.build_task(changed), encoding=None)
 
 
 def _between(values: np.ndarray) -> np.ndarray:

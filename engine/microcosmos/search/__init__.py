@@ -1,6 +1,8 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
+from . import emitters
 from .blocks import Stopped, evaluate_blocks, never
+from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
     FEATURES,
     STATUSES,
@@ -18,9 +20,8 @@ from .evaluation import (
     motion,
     observe,
 )
-from .insertion import Axis, Elites, cells_of, digest, insert, named, no_elites
+from .insertion import Axis, Elites, Inserted, cells_of, digest, insert, named, no_elites
 from .strokes import STROKE_FEATURES, Conditions, Watched, impulse, stroke_program, swim, watch
-from .variation import NO_PARENT, OPERATORS, Children, Genes, newcomers, vary
 
 __all__ = [
     "FEATURES",
@@ -33,9 +34,11 @@ __all__ = [
     "Children",
     "Conditions",
     "Elites",
+    "Emitter",
     "Evaluation",
-    "Genes",
     "Goal",
+    "Inserted",
+    "Outcome",
     "Seen",
     "Stopped",
     "Task",
@@ -45,6 +48,7 @@ __all__ = [
     "centre",
     "digest",
     "drive",
+    "emitters",
     "evaluate",
     "evaluate_blocks",
     "impulse",
@@ -54,11 +58,9 @@ __all__ = [
     "motion",
     "named",
     "never",
-    "newcomers",
     "no_elites",
     "observe",
     "stroke_program",
     "swim",
-    "vary",
     "watch",
 ]

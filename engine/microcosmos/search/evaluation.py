@@ -6,6 +6,7 @@ slot, neighbours or device, a creature goes through this same program.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import equinox as eqx
@@ -15,8 +16,8 @@ from jaxtyping import Array, Float, Int, PyTree
 
 from .. import units
 from ..filaments import Rest
-from ..genomes import CPPN, OUTPUTS, Controls, develop, respond
-from ..world import Measures, State, World, flow, follow, rollout, sense
+from ..genomes import Drive, Encoding, Genotype
+from ..world import Measures, State, World, flow, rollout
 
 MOTION = (
     "displacement",
@@ -32,8 +33,8 @@ FEATURES = (*MOTION, "hidden_nodes", "connections", "energy", "mach", "limited",
 STATUSES = ("ok", "non-finite", "supersonic")
 """Why an evaluation counts or does not, by status code."""
 
-Actuator = CPPN | Rest
-"""What moves a body: a network, or rest shapes over time."""
+Actuator = Genotype | Rest
+"""What moves a body: what is inherited, or rest shapes over time."""
 
 
 class Evaluation(eqx.Module):
@@ -52,14 +53,16 @@ class Goal(eqx.Module):
 
 
 class Task(eqx.Module):
-    """A world with a body at its start, what its controller's outputs mean, and the goal."""
+    """A world with a body at its start, what genotypes mean there, and the goal."""
 
     world: World
     start: State
-    controls: Controls | None = eqx.field(static=True)
+    encoding: Encoding | None = eqx.field(static=True, default=None)
     goal: Goal = Goal()
     length: float = eqx.field(static=True, default=1.0)
     """How far the body reaches, in cells: the length in the Reynolds number."""
+    phase: Float[Array, ""] | None = None
+    """How far a periodic timer is ahead, in rad."""
 
 
 class Seen(eqx.Module):
@@ -72,27 +75,19 @@ class Seen(eqx.Module):
     held: Float[Array, "*time"]
 
 
-def evaluate(task: Task, network: CPPN) -> Evaluation:
+def evaluate(task: Task, genotype: Genotype) -> Evaluation:
     """Simulate one creature and measure it."""
-    inputs, control = drive(task, network)
-    end, seen = rollout(task.world, task.start, inputs, observe, control)
-    features = measure(task, network, end, seen)
-    return Evaluation(fitness(task, features), features, status(task.world, end, features))
+    driven = drive(task, genotype)
+    end, seen = rollout(driven.world, driven.start, driven.inputs, observe, driven.control)
+    features = measure(task, genotype, driven.start, end, seen)
+    return Evaluation(fitness(task, features), features, status(driven.world, end, features))
 
 
-def drive(task: Task, actuator: Actuator) -> tuple[PyTree[Array], Callable]:
-    """What `rollout` needs of a body's actuator: inputs over time, and its control."""
-    controls = task.controls
-    if isinstance(actuator, Rest) or controls is None:
-        return actuator, follow
-    if not controls.senses:
-        return develop(actuator, controls), follow
-
-    def control(world: World, state: State, given: tuple[Array, Array]) -> Rest:
-        return respond(actuator, controls, given[0], given[1], sense(world, state))
-
-    dtype = actuator.bias.dtype
-    return (jnp.asarray(controls.timer.T, dtype), jnp.asarray(controls.ramp, dtype)), control
+def drive(task: Task, actuator: Actuator) -> Drive:
+    """What is simulated of a genotype, or of a body that follows rest shapes."""
+    if isinstance(actuator, Rest) or task.encoding is None:
+        return Drive(task.world, task.start, actuator)
+    return task.encoding.drive(task.world, task.start, actuator, task.phase)
 
 
 def observe(state: State, measures: Measures) -> Seen:
@@ -111,12 +106,14 @@ def centre(state: State) -> Float[Array, "2"]:
     return jnp.mean(state.positions, 0)
 
 
-def measure(task: Task, network: CPPN, end: State, seen: Seen) -> Float[Array, "feature"]:
+def measure(
+    task: Task, genotype: Genotype, start: State, end: State, seen: Seen
+) -> Float[Array, "feature"]:
     """The features of a simulated creature, in the order of `FEATURES`."""
-    values = motion(task, end, seen)
-    fixed = (task.controls.inputs if task.controls else 0) + OUTPUTS
-    values["hidden_nodes"] = jnp.sum(network.node_used) - fixed
-    values["connections"] = jnp.sum(network.connection_used & network.enabled)
+    values = motion(replace(task, start=start), end, seen)
+    if task.encoding is None:
+        raise ValueError("`task.encoding` must say what the genotype means; got None.")
+    values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
     dtype = seen.centre.dtype
     return jnp.stack([values[name].astype(dtype) for name in FEATURES])
 
@@ -168,10 +165,10 @@ def status(world: World, end: State, features: Float[Array, "feature"]) -> Int[A
 
 def block_program(
     task: Task, evaluate: Callable, options: dict
-) -> Callable[[CPPN], Evaluation]:
-    """One compiled program that evaluates a block of networks."""
+) -> Callable[[Genotype], Evaluation]:
+    """One compiled program that evaluates a block of genotypes."""
     return jax.jit(
-        lambda networks: mapped(lambda network: evaluate(task, network), networks),
+        lambda genotypes: mapped(lambda genotype: evaluate(task, genotype), genotypes),
         compiler_options=options,
     )
 

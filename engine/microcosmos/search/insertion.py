@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int, UInt32
 
-from ..genomes import CPPN, empty
+from ..genomes import Genotype, words
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,11 @@ class Elites(eqx.Module):
     generation: Int[Array, "row"]
     slot: Int[Array, "row"]
     digest: UInt32[Array, "row 2"]
-    networks: CPPN
+    genotypes: Genotype
 
 
-def no_elites(cells: int, features: int, max_nodes: int, max_connections: int) -> Elites:
-    """An archive without any elite."""
+def no_elites(cells: int, features: int, genotype: Genotype) -> Elites:
+    """An archive without any elite, for genotypes shaped as the one given."""
     return Elites(
         occupied=jnp.zeros(cells, bool),
         fitness=jnp.zeros(cells, jnp.float32),
@@ -52,7 +52,7 @@ def no_elites(cells: int, features: int, max_nodes: int, max_connections: int) -
         generation=jnp.zeros(cells, jnp.int32),
         slot=jnp.zeros(cells, jnp.int32),
         digest=jnp.zeros((cells, 2), jnp.uint32),
-        networks=jax.tree.map(jnp.asarray, empty(max_nodes, max_connections, (cells,))),
+        genotypes=jax.tree.map(lambda x: jnp.zeros((cells, *x.shape), x.dtype), genotype),
     )
 
 
@@ -66,10 +66,22 @@ def cells_of(
     return cell
 
 
+class Inserted(eqx.Module):
+    """What became of candidates."""
+
+    cell: Int[Array, "row"]
+    """Their cells; the number of cells for rows that are not `occupied`."""
+    entered: Bool[Array, "row"]
+    fresh: Bool[Array, "row"]
+    """Whether the cell was empty before."""
+    improvement: Float[Array, "row"]
+    """Fitness above the cell's earlier elite; above 0 where there was none."""
+
+
 def insert(
     archive: Elites, candidates: Elites, axes: tuple[Axis, ...]
-) -> tuple[Elites, Bool[Array, "row"], Int[Array, "row"]]:
-    """The archive with each cell's best, whether each candidate entered, and its cell.
+) -> tuple[Elites, Inserted]:
+    """The archive with each cell's best, and what became of each candidate.
 
     The order is total: fitness, then the smaller digest of the genome, then the earlier
     generation and slot. So equal creatures and equal fitness give the same archive on every
@@ -82,33 +94,26 @@ def insert(
     first = (ordered != jnp.roll(ordered, 1)).at[0].set(True) & (ordered < cells)
     best = jnp.zeros(rows, bool).at[order].set(first)
     incumbent = jax.tree.map(lambda x: x[jnp.minimum(cell, cells - 1)], archive)
-    entered = best & (~incumbent.occupied | _before(_rank(candidates), _rank(incumbent)))
+    fresh = ~incumbent.occupied & candidates.occupied
+    entered = best & (fresh | _before(_rank(candidates), _rank(incumbent)))
     place = jnp.where(entered, cell, cells)
     archive = jax.tree.map(
         lambda old, new: old.at[place].set(new, mode="drop"), archive, candidates
     )
-    return archive, entered, cell
+    before = jnp.where(fresh, 0.0, incumbent.fitness)
+    improvement = jnp.where(candidates.occupied, candidates.fitness - before, -jnp.inf)
+    return archive, Inserted(cell, entered, fresh, improvement)
 
 
 def named(elites: Elites) -> Elites:
-    """The same rows with the digests of their networks."""
-    return replace(elites, digest=digest(elites.networks))
+    """The same rows with the digests of their genotypes."""
+    return replace(elites, digest=digest(elites.genotypes))
 
 
-def digest(networks: CPPN) -> UInt32[Array, "row 2"]:
+def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:
     """64 bits that depend on every used gene, −0 counting as 0."""
-    columns = [
-        networks.node_id,
-        networks.activation,
-        jax.lax.bitcast_convert_type(networks.bias + 0.0, jnp.uint32),
-        networks.innovation,
-        networks.source,
-        networks.target,
-        networks.enabled,
-        jax.lax.bitcast_convert_type(networks.weight + 0.0, jnp.uint32),
-    ]
-    words = jnp.concatenate([column.astype(jnp.uint32) for column in columns], 1)
-    return jnp.stack([_mix(words, salt) for salt in (0x9E3779B9, 0x85EBCA6B)], 1)
+    said = words(genotypes)
+    return jnp.stack([_mix(said, salt) for salt in (0x9E3779B9, 0x85EBCA6B)], 1)
 
 
 def _mix(words: UInt32[Array, "row word"], salt: int) -> UInt32[Array, "row"]:

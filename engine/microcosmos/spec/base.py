@@ -22,17 +22,23 @@ class Part(BaseModel):
     )
 
 
-TAGS: dict[str | int, tuple[str, ...]] = {
+TAGS: dict[str, tuple[str, ...]] = {
     "body": ("chain", "ring", "arc", "star", "tree", "polyline", "graph", "known"),
     "genome": ("cppn", "gait"),
+    "emitters": ("random", "neat", "iso+line", "gaussian", "cma-mae", "cma-me"),
 }
 """Fields that are one of several parts, and what pydantic puts behind them in errors."""
 
 
 def field_path(location: Sequence[str | int]) -> str:
     """Where pydantic found an error, as people write it: without tags of unions."""
-    pairs = zip(("", *location), location, strict=False)
-    return ".".join(str(part) for owner, part in pairs if part not in TAGS.get(owner, ()))
+    kept, owner = [], ""
+    for part in location:
+        if part in TAGS.get(owner, ()):
+            continue
+        kept.append(str(part))
+        owner = part if isinstance(part, str) else owner
+    return ".".join(kept)
 
 
 def unit(name: str) -> JsonDict:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from .base import LATER, Part, unit
+from .emitters import Emitter, NeatEmitter, slots
 
 
 class Task(Part):
@@ -76,5 +77,27 @@ class Search(Part):
     """Creatures evaluated in a generation."""
     block: int = Field(default=16, ge=1, le=4096)
     """Creatures evaluated by one call of the compiled program; results depend on its bits."""
-    variation: Literal["neat", "random"] = "neat"
-    """Children of elites by NEAT's mutations, or new random genomes (a baseline)."""
+    emitters: Annotated[tuple[Emitter, ...], Field(min_length=1, max_length=16)] = (
+        NeatEmitter(),
+    )
+    """Where children come from."""
+
+    @property
+    def slots(self) -> tuple[int, ...]:
+        """Children of each emitter in a generation."""
+        return slots(self.batch, tuple(emitter.share for emitter in self.emitters))
+
+    @model_validator(mode="after")
+    def refuse_idle(self) -> Self:
+        if 0 in self.slots:
+            idle = self.emitters[self.slots.index(0)].operator
+            raise ValueError(
+                f"`batch` must leave a creature for each of the `emitters`, got "
+                f"{self.batch}, none of them for {idle!r}"
+            )
+        if [emitter.operator for emitter in self.emitters].count("neat") > 1:
+            raise ValueError(
+                '`emitters` must hold "neat" once, so that equal mutations of a generation '
+                "get equal numbers; got it twice"
+            )
+        return self

@@ -91,7 +91,7 @@ def test_nobody_is_best_in_an_empty_archive(experiment):
 
 
 def test_random_variation_has_no_parents(small):
-    experiment = build(small(search={"variation": "random", "generations": 2}))
+    experiment = build(small(search={"emitters": [{"operator": "random"}], "generations": 2}))
     state = experiment.init()
     while not experiment.done(state):
         state, report = experiment.advance(state)

@@ -52,7 +52,8 @@ def task(float64):
         box, start = scenes.immersed(body, 0.1, float64, size=SIZE, energy=energy, **options)
         control = Control(period=30, angle_scale=0.2, length_scale=0.1, sense_energy=senses)
         controls = build_controls(control, body, STEPS)
-        return search.Task(box, start, controls, search.Goal(1.0, 0.1))
+        encoding = genomes.CPPNControl(controls, (8, 16))
+        return search.Task(box, start, encoding, search.Goal(1.0, 0.1))
 
     return make
 

@@ -13,7 +13,7 @@ import jax  # noqa: E402
 import numpy as np  # noqa: E402
 
 from microcosmos import search  # noqa: E402
-from microcosmos.build import build_block, build_genes  # noqa: E402
+from microcosmos.build import build_block, build_plan  # noqa: E402
 from microcosmos.spec import parse  # noqa: E402
 
 SPEC = parse(
@@ -34,9 +34,11 @@ def bits(evaluation: search.Evaluation, slot: int) -> str:
 
 
 def main() -> None:
-    program, genes = build_block(SPEC.scene), build_genes(SPEC)
-    children = search.newcomers(np.int32(0), genes, key=jax.random.key(0), batch=64)
-    networks = jax.device_get(children.networks)
+    plan = build_plan(SPEC)
+    program = build_block(SPEC.scene, plan.encoding.room)
+    keys = jax.random.split(jax.random.key(0), 64)
+    children = search.emitters.newcomers(plan.encoding.newcomer, keys)
+    networks = jax.device_get(children.genotypes)
 
     def evaluate(order):
         chosen = jax.tree.map(lambda x: x[np.array(order)], networks)

@@ -30,7 +30,7 @@ def candidates(count, seed, generation=0, levels=4):
         generation=jnp.full(count, generation, jnp.int32),
         slot=jnp.arange(count, dtype=jnp.int32),
         digest=jnp.zeros((count, 2), jnp.uint32),
-        networks=jax.tree.map(jnp.asarray, networks),
+        genotypes=jax.tree.map(jnp.asarray, networks),
     )
     return search.named(rows)
 
@@ -39,7 +39,7 @@ insert = jax.jit(lambda archive, rows: search.insert(archive, rows, AXES))
 
 
 def nothing():
-    return search.no_elites(CELLS, 2, 4, 4)
+    return search.no_elites(CELLS, 2, jax.tree.map(jnp.asarray, genomes.empty(4, 4)))
 
 
 def same(a, b):
@@ -69,7 +69,7 @@ def test_the_archive_holds_what_the_rule_says():
     batches = [candidates(64, seed, generation=seed) for seed in range(6)]
     archive = nothing()
     for rows in batches:
-        archive, _, _ = insert(archive, rows)
+        archive, _ = insert(archive, rows)
     expected = by_dictionary(batches)
     assert set(np.flatnonzero(archive.occupied)) == set(expected)
     for cell, key in expected.items():
@@ -85,20 +85,20 @@ def test_the_order_of_arrival_makes_no_difference(seed):
     rows = candidates(64, seed)
     order = np.random.default_rng(seed).permutation(64)
     shuffled = jax.tree.map(lambda x: x[order], rows)
-    together, entered, _ = insert(nothing(), rows)
-    other, entered_too, _ = insert(nothing(), shuffled)
-    first, _, _ = insert(nothing(), jax.tree.map(lambda x: x[:30], shuffled))
-    apart, _, _ = insert(first, jax.tree.map(lambda x: x[30:], shuffled))
+    together, inserted = insert(nothing(), rows)
+    other, inserted_too = insert(nothing(), shuffled)
+    first, _ = insert(nothing(), jax.tree.map(lambda x: x[:30], shuffled))
+    apart, _ = insert(first, jax.tree.map(lambda x: x[30:], shuffled))
     assert same(together, other)
     assert same(together, apart)
-    assert np.array_equal(np.asarray(entered)[order], entered_too)
+    assert np.array_equal(np.asarray(inserted.entered)[order], inserted_too.entered)
 
 
 def test_the_same_creature_again_does_not_enter():
     rows = candidates(64, 7)
-    archive, _, _ = insert(nothing(), rows)
-    again, entered, _ = insert(archive, rows)
-    assert not entered.any()
+    archive, _ = insert(nothing(), rows)
+    again, inserted = insert(archive, rows)
+    assert not inserted.entered.any()
     assert same(archive, again)
 
 
@@ -112,10 +112,10 @@ def test_what_diverged_never_touches_the_archive():
             "features": jnp.full((16, 2), jnp.nan),
         }
     )
-    archive, _, _ = insert(nothing(), rows)
-    after, entered, _ = insert(archive, broken)
+    archive, _ = insert(nothing(), rows)
+    after, inserted = insert(archive, broken)
     assert same(archive, after)
-    assert not entered.any()
+    assert not inserted.entered.any()
 
 
 def test_bins_are_half_open_and_their_ends_are_counted():

@@ -1,7 +1,7 @@
 """Genes as they stand in a creature file, from and to arrays."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -9,6 +9,8 @@ import numpy as np
 
 from ..archive.encoding import ACTIVATIONS, decode, encode
 from .cppn import CPPN
+
+T = TypeVar("T")
 
 
 def to_genes(network: CPPN) -> dict[str, Any]:
@@ -68,6 +70,6 @@ def empty(max_nodes: int, max_connections: int, batch: tuple[int, ...] = ()) -> 
     return jax.tree.map(np.array, network)
 
 
-def take(networks: CPPN, index: int) -> CPPN:
-    """One network of a batch, as NumPy arrays."""
-    return jax.tree.map(lambda x: np.asarray(x)[index], networks)
+def take(genotypes: T, index: int) -> T:
+    """One genotype of a batch, as NumPy arrays."""
+    return jax.tree.map(lambda x: np.asarray(x)[index], genotypes)

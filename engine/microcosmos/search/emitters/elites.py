@@ -1,0 +1,47 @@
+"""Drawing parents from an archive."""
+
+from collections.abc import Callable
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Int, PRNGKeyArray
+
+from ...genomes import Genotype
+from ..insertion import Elites
+from .emitter import NO_PARENT, OPERATORS, Children, Keys
+
+Newcomer = Callable[..., Genotype]
+"""`newcomer(key=...)` makes a random genotype."""
+
+
+def draw(archive: Elites, *, key: PRNGKeyArray) -> Int[Array, ""]:
+    """An occupied cell, each equally likely; 0 where there is none."""
+    total = jnp.sum(archive.occupied)
+    rank = jax.random.randint(key, (), 0, jnp.maximum(1, total))
+    return jnp.argmax(jnp.cumsum(archive.occupied) > rank)
+
+
+def genotype(archive: Elites, cell: Int[Array, ""]) -> Genotype:
+    """The genotype of a cell's elite."""
+    return jax.tree.map(lambda x: x[cell], archive.genotypes)
+
+
+def newcomers(newcomer: Newcomer, keys: Keys) -> Children:
+    """Random genotypes, a key for each slot."""
+    slots = keys.shape[0]
+    genotypes = jax.vmap(lambda key: newcomer(key=key))(keys)
+    parents = jnp.full((slots, 2), NO_PARENT, jnp.int32)
+    return Children(genotypes, parents, jnp.zeros(slots, jnp.int32))
+
+
+def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) -> Children:
+    """What an operator has made of one or two parents, given as cells."""
+    first, second = (*parents, jnp.full_like(parents[0], NO_PARENT))[:2]
+    pairs = jnp.stack([first, second], 1).astype(jnp.int32)
+    return Children(genotypes, pairs, jnp.full(len(first), OPERATORS.index(name), jnp.int32))
+
+
+def either(archive: Elites, varied: Children, fresh: Children) -> Children:
+    """What was varied, or newcomers where nobody lives in the archive."""
+    any_elite = jnp.any(archive.occupied)
+    return jax.tree.map(lambda one, other: jnp.where(any_elite, one, other), varied, fresh)

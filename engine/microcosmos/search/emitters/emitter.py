@@ -1,0 +1,124 @@
+"""What an emitter is: a source of children that learns what became of them."""
+
+from typing import Protocol, runtime_checkable
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int, Key, PRNGKeyArray, PyTree
+
+from ...genomes import Genotype
+from ...neat import Counters
+from ..insertion import Elites
+
+OPERATORS = (
+    "random",
+    "neat",
+    "crossover",
+    "iso+line",
+    "gaussian",
+    "cma-me",
+    "cma-mae",
+    "tensorneat",
+)
+"""How a child arose, by operator code."""
+
+NO_PARENT = -1
+
+Keys = Key[Array, "slot"]
+"""A key for each slot."""
+
+
+class Children(eqx.Module):
+    """Genotypes to be evaluated.
+
+    A parent is a cell of the archive, or a slot of the generation before plus the number of
+    cells, or −1.
+    """
+
+    genotypes: Genotype
+    parents: Int[Array, "slot 2"]
+    operator: Int[Array, "slot"]
+
+
+class Outcome(eqx.Module):
+    """What became of children."""
+
+    genotypes: Genotype
+    fitness: Float[Array, "slot"]
+    features: Float[Array, "slot feature"]
+    sound: Bool[Array, "slot"]
+    """Whether the evaluation counts."""
+    cell: Int[Array, "slot"]
+    entered: Bool[Array, "slot"]
+    fresh: Bool[Array, "slot"]
+    """Whether the cell was empty before."""
+    improvement: Float[Array, "slot"]
+    """Fitness above the elite that the cell had before; above 0 where it had none."""
+
+
+@runtime_checkable
+class Emitter(Protocol):
+    """A source of children in a fixed number of slots; its state is arrays."""
+
+    @property
+    def slots(self) -> int:
+        """Children a generation."""
+        ...
+
+    def init(self, *, key: PRNGKeyArray) -> PyTree[Array]:
+        """Before the first generation."""
+        ...
+
+    def emit(
+        self,
+        state: PyTree[Array],
+        archive: Elites,
+        counters: Counters,
+        generation: Int[Array, ""],
+        *,
+        keys: Keys,
+    ) -> tuple[Children, Counters]:
+        """Children, with a key for each slot; new genes are numbered by `counters`."""
+        ...
+
+    def tell(self, state: PyTree[Array], outcome: Outcome) -> PyTree[Array]:
+        """The state once its children are measured and inserted."""
+        ...
+
+
+def emit(
+    emitters: tuple[Emitter, ...],
+    states: tuple[PyTree[Array], ...],
+    archive: Elites,
+    counters: Counters,
+    generation: Int[Array, ""],
+    *,
+    key: PRNGKeyArray,
+) -> tuple[Children, Counters]:
+    """The children of all emitters, one after another.
+
+    Every slot has a key of its own, derived from the seed, the generation and the slot.
+    """
+    batch = sum(emitter.slots for emitter in emitters)
+    turn = jax.random.fold_in(key, generation)
+    keys = jax.vmap(lambda slot: jax.random.fold_in(turn, slot))(jnp.arange(batch))
+    broods, first = [], 0
+    for emitter, state in zip(emitters, states, strict=True):
+        own = keys[first : first + emitter.slots]
+        brood, counters = emitter.emit(state, archive, counters, generation, keys=own)
+        broods.append(brood)
+        first += emitter.slots
+    return jax.tree.map(lambda *parts: jnp.concatenate(parts), *broods), counters
+
+
+def tell(
+    emitters: tuple[Emitter, ...], states: tuple[PyTree[Array], ...], outcome: Outcome
+) -> tuple[PyTree[Array], ...]:
+    """Each emitter's state once it has seen what became of its own children."""
+    told, first = [], 0
+    for emitter, state in zip(emitters, states, strict=True):
+        rows = slice(first, first + emitter.slots)
+        told.append(emitter.tell(state, jax.tree.map(lambda x, rows=rows: x[rows], outcome)))
+        first += emitter.slots
+    return tuple(told)

@@ -1,0 +1,78 @@
+"""NEAT's mutations, and its crossover, as variation inside an archive."""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Int, PRNGKeyArray
+
+from ... import neat
+from ...genomes import CPPN
+from ..insertion import Elites
+from .elites import Newcomer, children, draw, either, genotype, newcomers
+from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+
+
+@dataclass(frozen=True)
+class Neat:
+    """Mutated elites, some of them crossed with another one first."""
+
+    slots: int
+    newcomer: Newcomer
+    rates: neat.Rates
+    inputs: int
+    crossover: float = 0.0
+    """Probability that a child has two parents."""
+
+    def init(self, *, key: PRNGKeyArray) -> None:
+        """Nothing is kept: numbers of genes are counted for all emitters together."""
+
+    def emit(
+        self,
+        state: None,
+        archive: Elites,
+        counters: neat.Counters,
+        generation: Int[Array, ""],
+        *,
+        keys: Keys,
+    ) -> tuple[Children, neat.Counters]:
+        """Children of elites drawn with equal probability; newcomers where there are none."""
+
+        def child(key):
+            select_key, mutate_key = jax.random.split(key)
+            cell = draw(archive, key=select_key)
+            parent, other = _network(archive, cell), jnp.asarray(NO_PARENT)
+            if self.crossover:
+                parent, other = self._crossed(archive, cell, key=key)
+            network, novelty = neat.mutate(parent, self.rates, self.inputs, key=mutate_key)
+            return network, novelty, cell, other
+
+        networks, novelty, first, second = jax.vmap(child)(keys)
+        networks, numbered = neat.number(networks, novelty, counters)
+        varied = children(networks, [first, second], "neat")
+        crossed = OPERATORS.index("crossover")
+        operator = jnp.where(second == NO_PARENT, varied.operator, crossed)
+        varied = Children(varied.genotypes, varied.parents, operator)
+        any_elite = jnp.any(archive.occupied)
+        counters = jax.tree.map(lambda a, b: jnp.where(any_elite, a, b), numbered, counters)
+        return either(archive, varied, newcomers(self.newcomer, keys)), counters
+
+    def tell(self, state: None, outcome: Outcome) -> None:
+        """Nothing is learnt but what the archive holds."""
+
+    def _crossed(self, archive: Elites, cell: Int[Array, ""], *, key: PRNGKeyArray):
+        whether, which, cross_key = jax.random.split(jax.random.fold_in(key, 1), 3)
+        other = draw(archive, key=which)
+        happens = jax.random.bernoulli(whether, self.crossover) & (other != cell)
+        fitter = archive.fitness[cell] >= archive.fitness[other]
+        pair = jnp.where(fitter, cell, other), jnp.where(fitter, other, cell)
+        crossed = neat.crossover(*(_network(archive, one) for one in pair), key=cross_key)
+        parent = _network(archive, cell)
+        parent = jax.tree.map(lambda a, b: jnp.where(happens, a, b), crossed, parent)
+        return parent, jnp.where(happens, other, NO_PARENT)
+
+
+def _network(archive: Elites, cell: Int[Array, ""]) -> CPPN:
+    network = genotype(archive, cell)
+    assert isinstance(network, CPPN)
+    return network

@@ -1,0 +1,60 @@
+"""Variation of vectors of numbers: isotropic steps, and steps along the line between elites."""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int, PRNGKeyArray
+
+from ...genomes import Vector
+from ...neat import Counters
+from ..insertion import Elites
+from .elites import Newcomer, children, draw, either, newcomers
+from .emitter import Children, Keys, Outcome
+
+
+@dataclass(frozen=True)
+class IsoLine:
+    """x + σ₁ N(0, I) + σ₂ (y − x) N(0, 1): Vassiliades and Mouret, GECCO 2018, eq. 3.
+
+    Genes stay within −1 and 1. Without a line it is a Gaussian mutation.
+    """
+
+    slots: int
+    newcomer: Newcomer
+    iso: float
+    line: float = 0.0
+
+    def init(self, *, key: PRNGKeyArray) -> None:
+        """Nothing is kept."""
+
+    def emit(
+        self,
+        state: None,
+        archive: Elites,
+        counters: Counters,
+        generation: Int[Array, ""],
+        *,
+        keys: Keys,
+    ) -> tuple[Children, Counters]:
+        """Children of elites drawn with equal probability; newcomers where there are none."""
+        values, *cells = jax.vmap(lambda key: self._child(archive, key=key))(keys)
+        parents = cells if self.line else cells[:1]
+        name = "iso+line" if self.line else "gaussian"
+        varied = children(Vector(values), parents, name)
+        return either(archive, varied, newcomers(self.newcomer, keys)), counters
+
+    def tell(self, state: None, outcome: Outcome) -> None:
+        """Nothing is learnt but what the archive holds."""
+
+    def _child(
+        self, archive: Elites, *, key: PRNGKeyArray
+    ) -> tuple[Float[Array, "gene"], Int[Array, ""], Int[Array, ""]]:
+        one_key, other_key, iso_key, line_key = jax.random.split(key, 4)
+        genes = archive.genotypes
+        assert isinstance(genes, Vector)
+        one, other = draw(archive, key=one_key), draw(archive, key=other_key)
+        x, y = genes.values[one], genes.values[other]
+        step = self.iso * jax.random.normal(iso_key, x.shape, x.dtype)
+        along = self.line * jax.random.normal(line_key, (), x.dtype)
+        return jnp.clip(x + step + along * (y - x), -1.0, 1.0), one, other

@@ -1,0 +1,96 @@
+"""Emitters: where the children of a search come from."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from .base import Part
+
+Share = Annotated[int, Field(ge=1, le=1000)]
+Rate = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class RandomEmitter(Part):
+    """New random genomes: a baseline that learns nothing."""
+
+    operator: Literal["random"] = "random"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+
+
+class NeatEmitter(Part):
+    """Elites varied by NEAT's mutations, some of them crossed with another elite first."""
+
+    operator: Literal["neat"] = "neat"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+    crossover: Rate = 0.0
+    """Probability that a child has two parents."""
+
+
+class LineEmitter(Part):
+    """An elite, a step of its own, and a step along the line to another elite."""
+
+    operator: Literal["iso+line"] = "iso+line"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+    iso: float = Field(default=0.02, gt=0.0, le=2.0)
+    """Standard deviation of each gene's own step; genes run from −1 to 1."""
+    line: float = Field(default=0.2, gt=0.0, le=2.0)
+    """Standard deviation of the step along the line, in lengths of the line."""
+
+
+class GaussianEmitter(Part):
+    """An elite and a step of its own."""
+
+    operator: Literal["gaussian"] = "gaussian"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+    step: float = Field(default=0.1, gt=0.0, le=2.0)
+    """Standard deviation of each gene's step; genes run from −1 to 1."""
+
+
+class CmaMaeEmitter(Part):
+    """CMA-MAE: an evolution strategy climbs above thresholds that follow what was found."""
+
+    operator: Literal["cma-mae"] = "cma-mae"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+    step: float = Field(default=0.2, gt=0.0, le=2.0)
+    """Initial standard deviation of each gene; genes run from −1 to 1."""
+    learning_rate: Rate = 0.01
+    """How fast a cell's threshold follows the fitness found there, from 0 (CMA-ES) to 1."""
+    threshold: float = 0.0
+    """Threshold of cells where nothing was found."""
+
+
+class CmaMeEmitter(Part):
+    """CMA-ME's improvement emitters, as QDax has them; the package has to be installed."""
+
+    operator: Literal["cma-me"] = "cma-me"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+    step: float = Field(default=0.2, gt=0.0, le=2.0)
+    """Initial standard deviation of each gene; genes run from −1 to 1."""
+    emitters: int = Field(default=1, ge=1, le=64)
+    """Emitters among which the slots are divided."""
+
+
+Emitter = Annotated[
+    RandomEmitter | NeatEmitter | LineEmitter | GaussianEmitter | CmaMaeEmitter | CmaMeEmitter,
+    Field(discriminator="operator"),
+]
+"""One source of children."""
+
+OF_VECTORS = ("iso+line", "gaussian", "cma-mae", "cma-me")
+"""Operators that vary vectors of numbers; the others need networks, random ones neither."""
+
+
+def slots(batch: int, shares: tuple[int, ...]) -> tuple[int, ...]:
+    """How a batch is divided among shares: whole numbers, the largest remainders rounded up."""
+    exact = [batch * share / sum(shares) for share in shares]
+    whole = [int(part) for part in exact]
+    order = sorted(range(len(shares)), key=lambda i: (whole[i] - exact[i], i))
+    for i in order[: batch - sum(whole)]:
+        whole[i] += 1
+    return tuple(whole)
