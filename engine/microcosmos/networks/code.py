@@ -1,0 +1,182 @@
+"""A network as a Python module that needs NumPy alone."""
+
+import inspect
+import re
+from collections.abc import Callable
+from math import isfinite
+from textwrap import wrap
+
+import numpy as np
+
+from .evaluation import agree, evaluate, probes
+from .functions import ACTIVATIONS, AGGREGATIONS, WITHIN_ONE
+from .graph import order, reached
+from .network import Network
+
+TOLERANCE = 1e-12
+
+
+def messages(*values):
+    values = np.stack(values)
+    return values, ~np.isnan(values)
+
+
+def kept(old, new, *sources):
+    return np.where(np.any(~np.isnan(np.stack(sources)), 0), new, old)
+
+
+def numpy_code(network: Network) -> str:
+    """The text of a module with a function `network(inputs)`, (input, …) to (output, …).
+
+    Checked: carried out on random inputs, it gives what the network gives, or `ValueError`.
+    """
+    body = _recurrent(network) if network.steps else _feed_forward(network)
+    function = _function(network, body)
+    text = "\n".join([_head(network, "\n".join(function)), *function, ""])
+    _check(network, text)
+    return text
+
+
+def _check(network: Network, text: str) -> None:
+    space: dict[str, Callable] = {}
+    exec(compile(text, "<network>", "exec"), space)
+    inputs = probes(network.inputs)
+    with np.errstate(all="ignore"):
+        came = space["network"](inputs)
+    if not agree(evaluate(network, inputs), came, TOLERANCE):
+        raise ValueError(
+            f"standalone code must compute the same within {TOLERANCE:g}, got other values: "
+            "the network's own overflow"
+        )
+
+
+def _head(network: Network, body: str) -> str:
+    """What the module is, and the functions that it uses."""
+    functions = {f.__name__: f for f in (*ACTIVATIONS.values(), *AGGREGATIONS.values())}
+    functions |= {"messages": messages, "kept": kept}
+    used = [name for name in functions if re.search(rf"\b{name}\(", body)]
+    if "mean" in used and "total" not in used:
+        used.insert(0, "total")
+    lines = [
+        f'"""A network of {network.inputs} inputs, {len(network.outputs)} outputs and '
+        f"{len(network.hidden)} hidden nodes, written by Microcosmos.",
+        "",
+        f"Inputs: {_listed(network, range(network.inputs))}.",
+        f"Outputs: {_listed(network, network.outputs)}.",
+        '"""',
+        "",
+        *(["from functools import reduce", ""] if {"total", "product"} & set(used) else []),
+        "import numpy as np",
+        "",
+    ]
+    for name in used:
+        lines += ["", *inspect.getsource(functions[name]).splitlines(), ""]
+    return "\n".join(lines)
+
+
+def _function(network: Network, body: list[str]) -> list[str]:
+    inputs = ", ".join(f"x{i}" for i in range(network.inputs))
+    result = f"np.stack([{', '.join(_variable(network, key) for key in network.outputs)}])"
+    if network.output_transform not in (None, "identity"):
+        result = f"{ACTIVATIONS[network.output_transform].__name__}({result})"
+    return [
+        "",
+        "def network(inputs):",
+        *_wrapped(f"({inputs},) = np.asarray(inputs, float)"),
+        *body,
+        *_wrapped(f"return {result}"),
+    ]
+
+
+def _feed_forward(network: Network) -> list[str]:
+    live = set(network.keys)
+    if network.rule == "live":
+        live = reached(range(network.inputs), network.pairs)
+    lines = []
+    for key in order(network.keys, network.pairs):
+        if key not in live and key in network.outputs:
+            lines += _wrapped(f"n{key} = np.full_like(x0, np.nan)")
+        elif key >= network.inputs and key in live:
+            lines += _wrapped(f"n{key} = {_node(network, key, live)}")
+    return lines
+
+
+def _recurrent(network: Network) -> list[str]:
+    """Every node from the values before, `steps` times over."""
+    keys = [key for key in network.keys if key >= network.inputs]
+    start = "np.nan" if network.rule == "live" else "0.0"
+    lines = [f"    n{key} = np.full_like(x0, {start})" for key in keys]
+    lines.append(f"    for _ in range({network.steps}):")
+    for key in keys:
+        new = _node(network, key, set(network.keys))
+        sources = [_variable(network, source) for source, _ in _incoming(network, key)]
+        if network.rule == "live":
+            new = f"kept(n{key}, {new}, {', '.join(sources)})" if sources else f"n{key}"
+        lines += _wrapped(f"m{key} = {new}", 8)
+    return lines + [f"        n{key} = m{key}" for key in keys]
+
+
+def _node(network: Network, key: int, live: set[int]) -> str:
+    """The expression of a node's value, adding in the order in which `evaluate` does."""
+    row = network.keys.index(key)
+    terms = [
+        f"{weight!r} * {_variable(network, source)}"
+        for source, weight in _incoming(network, key)
+        if source in live
+    ]
+    name = AGGREGATIONS[network.aggregation[row]].__name__
+    plain = network.steps is None or network.rule == "always"
+    if not terms:
+        gathered = "np.zeros_like(x0)"
+    elif plain and (len(terms) == 1 or name == "total"):
+        gathered = " + ".join(terms)
+    else:
+        gathered = f"{name}(*messages({', '.join(terms)}))"
+    bias, response = network.bias[row], network.response[row]
+    if response != 1:
+        gathered = f"{response!r} * ({gathered})"
+    if bias:
+        gathered = f"{bias!r} + ({gathered})"
+    return _activated(network, network.activation[row], gathered)
+
+
+def _activated(network: Network, activation: str, z: str) -> str:
+    value = z if activation == "identity" else f"{ACTIVATIONS[activation].__name__}({z})"
+    if isfinite(network.bound) and activation not in WITHIN_ONE:
+        return f"np.clip({value}, -{network.bound!r}, {network.bound!r})"
+    return value
+
+
+def _incoming(network: Network, key: int) -> list[tuple[int, float]]:
+    row = {key: place for place, key in enumerate(network.keys)}
+    links = zip(network.source, network.target, network.weight, strict=True)
+    return sorted(
+        ((source, weight) for source, target, weight in links if target == key),
+        key=lambda link: row[link[0]],
+    )
+
+
+def _variable(network: Network, key: int) -> str:
+    return f"x{key}" if key < network.inputs else f"n{key}"
+
+
+def _listed(network: Network, keys) -> str:
+    """Names for people; nothing in them can end the text that they stand in."""
+    names = network.names
+    return ", ".join(re.sub(r"[^\w .()-]", "", names[key]) or str(key) for key in keys)
+
+
+def _wrapped(line: str, indent: int = 4) -> list[str]:
+    """A statement in lines of at most 96 columns, broken inside of its brackets."""
+    name, equals, value = line.partition(" = ")
+    if len(line) + indent > 96 and equals:
+        line = f"{name}\u00a0=\u00a0({value})"  # No break beside the sign.
+    lines = wrap(
+        line,
+        96,
+        initial_indent=" " * indent,
+        subsequent_indent=" " * (indent + 4),
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return [part.replace("\u00a0", " ") for part in lines]

@@ -1,0 +1,131 @@
+"""Networks as SVG pictures that can be read in light and in dark."""
+
+from html import escape
+from itertools import pairwise
+
+from .colours import NEGATIVE, POSITIVE, described, fill, label, thickness, told
+from .layout import Layout, layout
+from .network import Network
+
+LETTER = 7.2
+"""Width of a letter, about."""
+
+HEIGHT = 28.0
+MARGIN = 20.0
+
+STYLE = f"""
+.network {{ font: 13px system-ui, sans-serif; }}
+.network:root {{ color: #1b1f24; }}
+@media (prefers-color-scheme: dark) {{ .network:root {{ color: #e8ebef; }} }}
+.network .link {{ fill: none; stroke-linecap: round; opacity: 0.85; }}
+.network .positive {{ stroke: {POSITIVE}; }}
+.network .negative {{ stroke: {NEGATIVE}; }}
+.network .zero {{ stroke: currentColor; stroke-dasharray: 1 5; }}
+.network rect {{ stroke: #5c6670; }}
+.network .node text {{ fill: #16191d; text-anchor: middle; }}
+.network .name, .network .legend {{ fill: currentColor; }}
+.network .legend {{ font-size: 11px; }}
+"""
+
+
+def svg(network: Network) -> str:
+    """Layers from left to right, nodes coloured by activation, connections by weight.
+
+    Inside a page, `currentColor` is the page's; alone, it follows the reader's scheme.
+    """
+    drawn = layout(network)
+    left, top, width, height = _frame(network, drawn)
+    title = escape(described(network))
+    box = f"{left:.1f} {top:.1f} {width:.1f} {height:.1f}"
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" class="network" role="img" '
+            f'viewBox="{box}" width="{width:.0f}" height="{height:.0f}" aria-label="{title}">',
+            f"<title>{title}</title>",
+            f"<style>{STYLE}</style>",
+            *_links(network, drawn),
+            *(_node(network, key, drawn) for key in network.keys),
+            *_legend(left + MARGIN, top + height - MARGIN),
+            "</svg>",
+            "",
+        ]
+    )
+
+
+def _frame(network: Network, drawn: Layout) -> tuple[float, float, float, float]:
+    """Left, top, width and height of everything, names and legend included."""
+    points = [point for way in drawn.ways.values() for point in way]
+    points += drawn.place.values()
+    loops = any(len(way) > 1 and way[-1][0] <= way[0][0] for way in drawn.ways.values())
+    names = [network.names[key] for key in network.outputs]
+    left = min(x - _width(network, key) / 2 for key, (x, _) in drawn.place.items()) - MARGIN
+    right = max(x + _width(network, key) / 2 for key, (x, _) in drawn.place.items())
+    right = max(right + 12 + LETTER * max(map(len, names)) + MARGIN, left + 330)
+    top = min(y for _, y in points) - HEIGHT / 2 - MARGIN - (40 if loops else 0)
+    bottom = max(y for _, y in points) + HEIGHT / 2 + 2.4 * MARGIN
+    return left, top, right - left, bottom - top
+
+
+def _width(network: Network, key: int) -> float:
+    return max(64.0, LETTER * len(label(network, key)) + 24)
+
+
+def _links(network: Network, drawn: Layout) -> list[str]:
+    """The thin ones last, so that no thick one hides them."""
+    links = zip(network.pairs, network.weight, strict=True)
+    return [
+        _link(network, pair, weight, drawn)
+        for pair, weight in sorted(links, key=lambda link: -abs(link[1]))
+    ]
+
+
+def _link(network: Network, pair: tuple[int, int], weight: float, drawn: Layout) -> str:
+    sign = "positive" if weight > 0 else "negative" if weight < 0 else "zero"
+    ends = " → ".join(network.names.get(key, f"node {key}") for key in pair)
+    return (
+        f'<path class="link {sign}" d="{_path(network, pair, drawn)}" '
+        f'stroke-width="{thickness(network, weight, 0.8, 5.0):.2f}">'
+        f"<title>{escape(ends)}: weight {weight:.4g}</title></path>"
+    )
+
+
+def _path(network: Network, pair: tuple[int, int], drawn: Layout) -> str:
+    """A smooth way from a node's right side to another's left, level at every column."""
+    way = list(drawn.ways[pair])
+    source, target = pair
+    way[0] = (way[0][0] + _width(network, source) / 2, way[0][1])
+    way[-1] = (way[-1][0] - _width(network, target) / 2, way[-1][1])
+    text = f"M{way[0][0]:.1f} {way[0][1]:.1f}"
+    for (x, y), (end, level) in pairwise(way):
+        if end <= x:  # Back over the nodes in between.
+            text += f" C{x + 60:.1f} {y - 60:.1f} {end - 60:.1f} {level - 60:.1f}"
+        else:
+            bend = (end - x) / 2
+            text += f" C{x + bend:.1f} {y:.1f} {end - bend:.1f} {level:.1f}"
+        text += f" {end:.1f} {level:.1f}"
+    return text
+
+
+def _node(network: Network, key: int, drawn: Layout) -> str:
+    x, y = drawn.place[key]
+    width = _width(network, key)
+    name = ""
+    if key in network.outputs:
+        at = f'x="{x + width / 2 + 10:.1f}" y="{y + 4.5:.1f}"'
+        name = f'<text class="name" {at}>{escape(network.names[key])}</text>'
+    return (
+        f'<g class="node"><title>{escape(told(network, key))}</title>'
+        f'<rect x="{x - width / 2:.1f}" y="{y - HEIGHT / 2:.1f}" width="{width:.1f}" '
+        f'height="{HEIGHT:.1f}" rx="{HEIGHT / 2:.1f}" fill="{fill(network, key)}"/>'
+        f'<text x="{x:.1f}" y="{y + 4.5:.1f}">{escape(label(network, key))}</text></g>{name}'
+    )
+
+
+def _legend(x: float, y: float) -> list[str]:
+    """What colours and widths of connections mean."""
+    entries = (("positive", 0.0, "positive weight"), ("negative", 135.0, "negative weight"))
+    return [
+        f'<path class="link {sign}" d="M{x + at:.1f} {y:.1f} h22" stroke-width="3"/>'
+        f'<text class="legend" x="{x + at + 29:.1f}" y="{y + 4:.1f}">{words}</text>'
+        for sign, at, words in entries
+    ]

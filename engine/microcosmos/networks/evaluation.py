@@ -1,0 +1,124 @@
+"""The values of a network in double precision, and whether two networks agree."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .functions import ACTIVATIONS, AGGREGATIONS
+from .graph import order
+from .network import Network
+
+TOLERANCE = 1e-6
+"""Of max(1, |value|): within this, two networks compute the same."""
+
+
+@dataclass(frozen=True)
+class _Node:
+    key: int
+    sources: tuple[int, ...]
+    weights: np.ndarray
+    bias: float
+    response: float
+    aggregate: Callable
+    activate: Callable
+
+
+def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
+    """The outputs (output, point) for inputs (input, point), NaN where there is no value."""
+    inputs = np.asarray(inputs, float)
+    if inputs.ndim != 2 or len(inputs) != network.inputs:
+        raise ValueError(f"`inputs` must be ({network.inputs}, points), got {inputs.shape}")
+    start = np.nan if network.rule == "live" else 0.0
+    values = {key: np.full(inputs.shape[1], start) for key in network.keys}
+    values.update(enumerate(inputs))
+    nodes = _nodes(network)
+    with np.errstate(all="ignore"):
+        if network.steps is None:
+            for node in nodes:
+                values[node.key] = _value(network, node, values)
+        for _ in range(network.steps or 0):
+            values |= {node.key: _value(network, node, values) for node in nodes}
+        outputs = np.stack([values[key] for key in network.outputs])
+        return ACTIVATIONS[network.output_transform or "identity"](outputs)
+
+
+def probes(inputs: int, points: int = 256) -> np.ndarray:
+    """Inputs (input, point) for comparisons: all 0, all 1, otherwise normal, always the same."""
+    drawn = np.random.default_rng(0).normal(size=(inputs, points))
+    drawn[:, 0], drawn[:, 1] = 0.0, 1.0
+    return drawn
+
+
+def agree(one: np.ndarray, other: np.ndarray, tolerance: float = TOLERANCE) -> bool:
+    """Whether values are the same within the tolerance, NaN and infinity at the same places."""
+    with np.errstate(invalid="ignore"):
+        close = np.abs(one - other) <= tolerance * np.maximum(1, np.abs(one))
+    same = (one == other) | (np.isnan(one) & np.isnan(other))
+    return bool(np.all(same | (close & np.isfinite(one))))
+
+
+def require_agreement(what: str, one: Network, other: Network) -> None:
+    """Raise `ValueError` unless both networks compute the same for 256 random inputs."""
+    inputs = probes(one.inputs)
+    before, after = evaluate(one, inputs), evaluate(other, inputs)
+    if not agree(before, after):
+        with np.errstate(all="ignore"):
+            worst = np.nanmax(np.abs(before - after) / np.maximum(1, np.abs(before)))
+        raise ValueError(
+            f"{what} must compute the same within {TOLERANCE:g} of max(1, |value|), "
+            f"got a difference of {worst:.3g}{_beyond(one, other)}"
+        )
+
+
+def _beyond(one: Network, other: Network) -> str:
+    if one.bound == other.bound:
+        return ""
+    return f" (only one of the two keeps values within ±{min(one.bound, other.bound):g})"
+
+
+def _nodes(network: Network) -> list[_Node]:
+    """What is computed, in the order in which it is; sources by their rows."""
+    row = {key: place for place, key in enumerate(network.keys)}
+    incoming: dict[int, list[tuple[int, float]]] = {key: [] for key in network.keys}
+    for (source, target), weight in zip(network.pairs, network.weight, strict=True):
+        incoming[target].append((source, weight))
+    keys = network.keys
+    if network.steps is None:
+        keys = order(network.keys, network.pairs)
+    nodes = []
+    for key in keys:
+        if key < network.inputs:
+            continue
+        place = row[key]
+        arriving = sorted(incoming[key], key=lambda pair: row[pair[0]])
+        nodes.append(
+            _Node(
+                key,
+                tuple(source for source, _ in arriving),
+                np.array([weight for _, weight in arriving])[:, None],
+                network.bias[place],
+                network.response[place],
+                AGGREGATIONS[network.aggregation[place]],
+                ACTIVATIONS[network.activation[place]],
+            )
+        )
+    return nodes
+
+
+def _value(network: Network, node: _Node, values: dict[int, np.ndarray]) -> np.ndarray:
+    """A node's new value at every point; where no message is live, the one it had."""
+    old = values[node.key]
+    if not node.sources:
+        return _emitted(network, node, np.zeros_like(old)) if network.rule == "always" else old
+    sources = np.stack([values[source] for source in node.sources])
+    live = np.ones(sources.shape, bool)
+    if network.rule == "live":
+        live = ~np.isnan(sources)
+    new = _emitted(network, node, node.aggregate(node.weights * sources, live))
+    return np.where(live.any(0), new, old)
+
+
+def _emitted(network: Network, node: _Node, gathered: np.ndarray) -> np.ndarray:
+    z = node.bias + node.response * gathered
+    return np.clip(node.activate(z), -network.bound, network.bound)

@@ -1,0 +1,98 @@
+"""The exchange file: a NumPy archive of `nodes`, `conns`, `fitness` and `meta` (JSON text)."""
+
+import json
+import zlib
+from collections.abc import Mapping
+from io import BytesIO
+from math import prod
+from typing import Any
+from zipfile import BadZipFile, LargeZipFile, ZipFile
+
+import numpy as np
+
+from .network import Network
+from .reading import read_tensorneat
+from .writing import Genome
+
+LARGEST = 64 * 2**20
+"""Bytes of an array in a file, so that a small file cannot ask for all memory."""
+
+
+def dump_tensorneat(genome: Genome, fitness: float = float("nan")) -> bytes:
+    """A genome as TensorNEAT saves one, with its names beside it."""
+    stream = BytesIO()
+    np.savez(
+        stream,
+        nodes=genome.nodes,
+        conns=genome.conns,
+        fitness=np.float32(fitness),
+        meta=np.array(json.dumps(genome.meta)),
+    )
+    return stream.getvalue()
+
+
+def load_tensorneat(
+    data: bytes, meta: Mapping[str, Any] | None = None
+) -> tuple[Network, float]:
+    """The network in a file, and its fitness or NaN.
+
+    A file that TensorNEAT itself wrote holds no names: give them as `meta`. Raises
+    `ValueError` for whatever is not such a file.
+    """
+    arrays = _arrays(data)
+    if meta is None:
+        meta = _meta(arrays)
+    for name in ("nodes", "conns"):
+        if name not in arrays:
+            raise ValueError(f"the file must hold `{name}`, got {sorted(arrays)}")
+    fitness = arrays.get("fitness", np.array(np.nan))
+    if fitness.size != 1 or fitness.dtype.kind not in "fiu":
+        raise ValueError(f"`fitness` must be one number, got {fitness.dtype}{fitness.shape}")
+    network = read_tensorneat(arrays["nodes"], arrays["conns"], meta)
+    return network, float(fitness.reshape(()))
+
+
+def _meta(arrays: Mapping[str, np.ndarray]) -> Any:
+    if "meta" not in arrays:
+        raise ValueError(
+            f"the file must hold `meta`, or its names must be given; got {sorted(arrays)}"
+        )
+    try:
+        return json.loads(str(arrays["meta"]))
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"`meta` must be JSON, got {str(arrays['meta'])!r:.60}") from error
+
+
+def _arrays(data: bytes) -> dict[str, np.ndarray]:
+    try:
+        with ZipFile(BytesIO(data)) as file:
+            names = [n for n in file.namelist() if n.endswith(".npy")]
+            return {name.removesuffix(".npy"): _array(name, file) for name in names}
+    except (
+        BadZipFile,
+        LargeZipFile,
+        EOFError,
+        OSError,
+        RuntimeError,
+        NotImplementedError,
+        zlib.error,
+    ) as error:
+        raise ValueError(f"a genome must be a NumPy archive (.npz), got {error}") from error
+
+
+def _array(name: str, file: ZipFile) -> np.ndarray:
+    """One array; its header is held against the bytes before there is memory for it."""
+    with file.open(name) as member:
+        data = member.read(LARGEST + 1)
+    if len(data) > LARGEST:
+        raise ValueError(f"`{name}` must be at most {LARGEST:,} bytes, got more")
+    stream = BytesIO(data)
+    version = np.lib.format.read_magic(stream)
+    if version != (1, 0):
+        raise ValueError(f"`{name}` must be of NumPy's format 1.0, got {version}")
+    shape, fortran, dtype = np.lib.format.read_array_header_1_0(stream)
+    rest = data[stream.tell() :]
+    if dtype.hasobject or prod(shape) * dtype.itemsize != len(rest) or not rest:
+        raise ValueError(f"`{name}` must hold {shape} of {dtype}, got {len(rest)} bytes")
+    order = "F" if fortran else "C"
+    return np.frombuffer(rest, dtype).reshape(shape, order=order)

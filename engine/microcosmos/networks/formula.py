@@ -1,0 +1,55 @@
+"""A network as lines that a person can read: one for each node."""
+
+from .graph import order
+from .network import Network
+
+
+def formula(network: Network) -> str:
+    """Every node's value to four digits, sources before their targets."""
+    names = {key: f"n{key}" for key in network.keys}
+    names |= {key: name.replace(" ", "_") for key, name in network.names.items()}
+    keys = network.keys if network.steps else order(network.keys, network.pairs)
+    computed = [key for key in keys if key >= network.inputs]
+    lines = [f"{names[key]} = {_value(network, key, names)}" for key in computed]
+    if network.steps:
+        lines.insert(0, f"{network.steps} times, all at once from the values before:")
+    if network.output_transform not in (None, "identity"):
+        outputs = ", ".join(names[key] for key in network.outputs)
+        lines.append(f"at the end {network.output_transform} of {outputs}")
+    return "\n".join(lines) + "\n"
+
+
+def _value(network: Network, key: int, names: dict[int, str]) -> str:
+    row = network.keys.index(key)
+    links = zip(network.source, network.target, network.weight, strict=True)
+    terms = [(weight, names[source]) for source, target, weight in links if target == key]
+    bias, response = network.bias[row], network.response[row]
+    if not terms and network.rule == "live":
+        return "no value"
+    if network.aggregation[row] != "sum" and len(terms) > 1:
+        listed = ", ".join(_term(weight, name) for weight, name in terms)
+        terms = [(response, f"{network.aggregation[row]}({listed})")]
+    else:
+        terms = [(response * weight, name) for weight, name in terms]
+    z = _sum(bias, terms)
+    activation = network.activation[row]
+    return z if activation == "identity" else f"{activation}({z})"
+
+
+def _sum(bias: float, terms: list[tuple[float, str]]) -> str:
+    """Terms joined by their signs."""
+    parts = [(bias, _number(bias))] if bias or not terms else []
+    parts += [(weight, _term(abs(weight), name)) for weight, name in terms]
+    first = parts[0]
+    text = first[1] if first[1].startswith("−") or first[0] >= 0 else f"−{first[1]}"
+    for weight, part in parts[1:]:
+        text += f" {'−' if weight < 0 else '+'} {part}"
+    return text
+
+
+def _term(weight: float, name: str) -> str:
+    return name if weight == 1 else f"{_number(weight)}·{name}"
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}".replace("-", "−")

@@ -1,0 +1,131 @@
+"""What nodes of networks compute: activations and aggregations by name, on NumPy arrays.
+
+The names that TensorNEAT has built in are its own; the formulas are in `docs/networks.md`.
+`code` writes the source of these functions into standalone modules, so each needs NumPy only.
+"""
+
+from functools import reduce
+
+import numpy as np
+
+
+def identity(z):
+    return z
+
+
+def sigmoid(z):
+    return 1 / (1 + np.exp(-np.maximum(z, -700.0)))
+
+
+def tanh(z):
+    return np.tanh(z)
+
+
+def relu(z):
+    return np.maximum(z, 0.0)
+
+
+def sin(z):
+    return np.sin(z)
+
+
+def cos(z):
+    return np.cos(z)
+
+
+def gaussian(z):
+    return np.exp(-z * z)
+
+
+def absolute(z):
+    return np.abs(z)
+
+
+def square(z):
+    return z * z
+
+
+def scaled_sigmoid(z):
+    return 3 / (1 + np.exp(-np.maximum(z, -700.0)))
+
+
+def scaled_tanh(z):
+    return 3 * np.tanh(z)
+
+
+def lelu(z):
+    return np.where(z > 0, z, 0.005 * z)
+
+
+def inv(z):
+    return 1 / np.where(z > 0, np.maximum(z, 1e-7), np.minimum(z, -1e-7))
+
+
+def log(z):
+    return np.log(np.maximum(z, 1e-7))
+
+
+def exp(z):
+    return np.exp(z)
+
+
+ACTIVATIONS = {
+    "identity": identity,
+    "sigmoid": sigmoid,
+    "tanh": tanh,
+    "relu": relu,
+    "sin": sin,
+    "cos": cos,
+    "gaussian": gaussian,
+    "abs": absolute,
+    "square": square,
+    "scaled_sigmoid": scaled_sigmoid,
+    "scaled_tanh": scaled_tanh,
+    "lelu": lelu,
+    "inv": inv,
+    "log": log,
+    "exp": exp,
+}
+
+TO_REGISTER = ("cos", "gaussian", "square")
+"""Those which TensorNEAT lacks: its users give it these by name."""
+
+WITHIN_ONE = ("sigmoid", "tanh", "sin", "cos", "gaussian")
+"""Those whose values need no bound."""
+
+
+# Aggregations take messages and whether each is live, both (message, point).
+def total(messages, live):
+    # One after another: the order in which standalone code adds.
+    return reduce(np.add, np.where(live, messages, 0.0))
+
+
+def product(messages, live):
+    return reduce(np.multiply, np.where(live, messages, 1.0))
+
+
+def largest(messages, live):
+    return np.max(np.where(live, messages, -np.inf), 0)
+
+
+def smallest(messages, live):
+    return np.min(np.where(live, messages, np.inf), 0)
+
+
+def farthest(messages, live):
+    place = np.argmax(np.where(live, np.abs(messages), -1.0), 0)
+    return np.take_along_axis(messages, place[None], 0)[0]
+
+
+def mean(messages, live):
+    return total(messages, live) / np.maximum(np.sum(live, 0), 1)
+
+
+AGGREGATIONS = {
+    "sum": total,
+    "product": product,
+    "max": largest,
+    "min": smallest,
+    "maxabs": farthest,
+    "mean": mean,
+}

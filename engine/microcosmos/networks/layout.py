@@ -1,0 +1,125 @@
+"""Where the nodes of a drawn network stand: columns by depth, few crossings.
+
+Columns, places held for long connections and ordering by means of neighbours follow
+Sugiyama, Tagawa and Toda, IEEE Trans. Syst. Man Cybern. 11, 109 (1981).
+"""
+
+from dataclasses import dataclass
+
+from .graph import depths
+from .network import Network
+
+Item = int | tuple[int, int, int]
+"""A node's key, or the place in a column that a long connection passes through."""
+
+COLUMN, ROW, PASSAGE = 150.0, 46.0, 20.0
+"""Distances of columns, and what nodes and passing connections take in a column."""
+
+SWEEPS = 12
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Positions of nodes by key, and the points that each connection passes."""
+
+    place: dict[int, tuple[float, float]]
+    ways: dict[tuple[int, int], tuple[tuple[float, float], ...]]
+
+
+def layout(network: Network) -> Layout:
+    """Inputs on the left, outputs on the right, hidden nodes by the longest way to them."""
+    column = _columns(network)
+    chains = {pair: _chain(pair, column) for pair in network.pairs}
+    columns: list[list[Item]] = [[] for _ in range(max(column.values()) + 1)]
+    for key in network.keys:
+        columns[column[key]].append(key)
+    for chain in chains.values():
+        for item in chain[1:-1]:
+            columns[_column(item, column)].append(item)
+    near = _neighbours(chains)
+    height = _ordered(columns, near)
+    places = {
+        item: (COLUMN * number, height[item])
+        for number, items in enumerate(columns)
+        for item in items
+    }
+    return Layout(
+        {key: places[key] for key in network.keys},
+        {pair: tuple(places[item] for item in chain) for pair, chain in chains.items()},
+    )
+
+
+def _columns(network: Network) -> dict[int, int]:
+    depth = depths(network.keys, network.pairs)
+    column = {key: 0 if key < network.inputs else max(1, depth[key]) for key in network.keys}
+    hidden = [column[key] for key in network.hidden]
+    last = max([1, *(level + 1 for level in hidden)])
+    return column | dict.fromkeys(network.outputs, last)
+
+
+def _chain(pair: tuple[int, int], column: dict[int, int]) -> list[Item]:
+    """A connection's ends, and the places between them in the columns that it crosses."""
+    source, target = pair
+    between = range(column[source] + 1, column[target])
+    return [source, *((source, target, level) for level in between), target]
+
+
+def _column(item: Item, column: dict[int, int]) -> int:
+    return item[2] if isinstance(item, tuple) else column[item]
+
+
+def _neighbours(chains: dict[tuple[int, int], list[Item]]) -> dict[Item, list[Item]]:
+    near: dict[Item, list[Item]] = {}
+    for chain in chains.values():
+        for one, other in zip(chain, chain[1:], strict=False):
+            near.setdefault(one, []).append(other)
+            near.setdefault(other, []).append(one)
+    return near
+
+
+def _ordered(columns: list[list[Item]], near: dict[Item, list[Item]]) -> dict[Item, float]:
+    """Heights, found by drawing every item towards its neighbours again and again.
+
+    Inputs and outputs keep their order; the others change places with their wishes.
+    """
+    height: dict[Item, float] = {}
+    for items in columns:
+        height |= _apart(items, [0.0] * len(items))
+    for sweep in range(SWEEPS):
+        forward = sweep % 2 == 0
+        for number in range(len(columns)) if forward else reversed(range(len(columns))):
+            items = columns[number]
+            wish = {item: _mean(height, near.get(item, [item])) for item in items}
+            if 0 < number < len(columns) - 1:
+                items.sort(key=lambda item, wish=wish: wish[item])
+            height |= _apart(items, [wish[item] for item in items])
+    return height
+
+
+def _mean(height: dict[Item, float], items: list[Item]) -> float:
+    return sum(height[item] for item in items) / len(items)
+
+
+def _apart(items: list[Item], wishes: list[float]) -> dict[Item, float]:
+    """Heights in this order and far enough apart, nearest to the wishes in least squares.
+
+    The offsets taken away, this is isotonic regression by pooling neighbours.
+    """
+    offset, offsets = 0.0, []
+    for place, item in enumerate(items):
+        if place:
+            offset += (_size(item) + _size(items[place - 1])) / 2
+        offsets.append(offset)
+    pools: list[tuple[float, int]] = []
+    for wish, offset in zip(wishes, offsets, strict=True):
+        total, count = wish - offset, 1
+        while pools and pools[-1][0] / pools[-1][1] >= total / count:
+            total, count = total + pools[-1][0], count + pools[-1][1]
+            pools.pop()
+        pools.append((total, count))
+    levels = [total / count for total, count in pools for _ in range(count)]
+    return {i: level + o for i, level, o in zip(items, levels, offsets, strict=True)}
+
+
+def _size(item: Item) -> float:
+    return PASSAGE if isinstance(item, tuple) else ROW
