@@ -1,6 +1,6 @@
 """The command line. JAX is loaded only to compute."""
 
-from . import creature, draw, run
+from . import creature, draw, network, run
 from .app import app
 
-__all__ = ["app", "creature", "draw", "run"]
+__all__ = ["app", "creature", "draw", "network", "run"]

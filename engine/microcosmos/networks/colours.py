@@ -60,7 +60,12 @@ def thickness(network: Network, weight: float, least: float, most: float) -> flo
 def described(network: Network) -> str:
     """A network in one sentence."""
     kind = f"recurrent network ({network.steps} steps)" if network.steps else "network"
-    return (
-        f"A {kind} with {network.inputs} inputs, {len(network.outputs)} outputs, "
-        f"{len(network.hidden)} hidden nodes and {len(network.source)} connections"
+    inputs, outputs = _count(network.inputs, "input"), _count(len(network.outputs), "output")
+    hidden = _count(len(network.hidden), "hidden node")
+    return f"A {kind} with {inputs}, {outputs}, {hidden} and " + _count(
+        len(network.source), "connection"
     )
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" + ("" if number == 1 else "s")

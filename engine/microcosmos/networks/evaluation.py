@@ -44,7 +44,7 @@ def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
 
 
 def probes(inputs: int, points: int = 256) -> np.ndarray:
-    """Inputs (input, point) for comparisons: all 0, all 1, otherwise normal, always the same."""
+    """Inputs (input, point) for comparisons, always the same: all 0, all 1, the rest normal."""
     drawn = np.random.default_rng(0).normal(size=(inputs, points))
     drawn[:, 0], drawn[:, 1] = 0.0, 1.0
     return drawn

@@ -40,15 +40,14 @@ def load_tensorneat(
     `ValueError` for whatever is not such a file.
     """
     arrays = _arrays(data)
-    if meta is None:
-        meta = _meta(arrays)
+    names = _meta(arrays) if meta is None else meta
     for name in ("nodes", "conns"):
         if name not in arrays:
             raise ValueError(f"the file must hold `{name}`, got {sorted(arrays)}")
     fitness = arrays.get("fitness", np.array(np.nan))
     if fitness.size != 1 or fitness.dtype.kind not in "fiu":
         raise ValueError(f"`fitness` must be one number, got {fitness.dtype}{fitness.shape}")
-    network = read_tensorneat(arrays["nodes"], arrays["conns"], meta)
+    network = read_tensorneat(arrays["nodes"], arrays["conns"], names)
     return network, float(fitness.reshape(()))
 
 

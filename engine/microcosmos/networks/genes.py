@@ -23,7 +23,7 @@ def from_genes(
 ) -> Network:
     """The network of a creature's genes, whose disabled connections are left out."""
     nodes, connections = genes["nodes"], genes["connections"]
-    on = np.flatnonzero(connections["enabled"])
+    on = np.flatnonzero(connections["enabled"]).tolist()
     ids = tuple(nodes["id"])
 
     def enabled(values: Sequence) -> tuple:
@@ -59,7 +59,7 @@ def to_genes(network: Network, *, check: bool = True) -> dict[str, Any]:
     ours = outputs_first(_transformed(_summing(_live_part(_unrolled(network)))))
     genes = _genes(ours)
     if check:
-        back = from_genes(genes, ours.input_names or _numbered(ours.inputs), ours.outputs)
+        back = from_genes(genes, [""] * ours.inputs, [""] * len(ours.outputs))
         require_agreement("the imported network", network, back)
     return genes
 
@@ -180,7 +180,3 @@ def _encoded(field: str, values: Sequence[float]) -> str:
         worst = max((abs(v) for v in values if not isinf(v)), default=float("inf"))
         raise ValueError(f"`{field}` must be within float32, got {worst:g}")
     return encode(numbers)
-
-
-def _numbered(count: int) -> tuple[str, ...]:
-    return tuple(f"input {i}" for i in range(count))

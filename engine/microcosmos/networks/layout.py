@@ -5,6 +5,7 @@ Sugiyama, Tagawa and Toda, IEEE Trans. Syst. Man Cybern. 11, 109 (1981).
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from .graph import depths
 from .network import Network
@@ -50,10 +51,10 @@ def layout(network: Network) -> Layout:
 
 
 def _columns(network: Network) -> dict[int, int]:
-    depth = depths(network.keys, network.pairs)
-    column = {key: 0 if key < network.inputs else max(1, depth[key]) for key in network.keys}
-    hidden = [column[key] for key in network.hidden]
-    last = max([1, *(level + 1 for level in hidden)])
+    fed = {*range(network.inputs), *network.target}
+    bare = [(0, key) for key in network.keys if key not in fed]  # As if an input led there.
+    column = depths(network.keys, [*network.pairs, *bare])
+    last = max([1, *(column[key] + 1 for key in network.hidden)])
     return column | dict.fromkeys(network.outputs, last)
 
 
@@ -71,7 +72,7 @@ def _column(item: Item, column: dict[int, int]) -> int:
 def _neighbours(chains: dict[tuple[int, int], list[Item]]) -> dict[Item, list[Item]]:
     near: dict[Item, list[Item]] = {}
     for chain in chains.values():
-        for one, other in zip(chain, chain[1:], strict=False):
+        for one, other in pairwise(chain):
             near.setdefault(one, []).append(other)
             near.setdefault(other, []).append(one)
     return near

@@ -128,9 +128,8 @@ def _check_connections(network: Network) -> None:
     if wrong := [target for target in network.target if target < network.inputs]:
         raise ValueError(f"`target` must not be an input, got {_first(wrong)}")
     if len(set(network.pairs)) < len(network.pairs):
-        raise ValueError(
-            f"connections must join a pair of nodes once, got {_first(_repeated(network.pairs))}"
-        )
+        twice = _first(_repeated(network.pairs))
+        raise ValueError(f"connections must join a pair of nodes once, got twice {twice}")
     _finite("weight", network.weight)
 
 

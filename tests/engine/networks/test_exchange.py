@@ -3,6 +3,7 @@
 import copy
 import json
 from collections import Counter
+from dataclasses import replace
 from io import BytesIO
 
 import numpy as np
@@ -22,17 +23,19 @@ def test_grown_genes_go_there_and_back_sound_and_with_the_same_values(grown):
     for genes in grown:
         network = networks.from_genes(genes, INPUTS, OUTPUTS)
         inputs = networks.probes(3)
-        try:
-            written = networks.write_tensorneat(network)
-            back = networks.read_tensorneat(written.nodes, written.conns, written.meta)
-            imported = networks.to_genes(back)
-        except ValueError as refusal:
-            assert "keeps values within ±1e+06" in str(refusal)
+        expected = networks.evaluate(network, inputs)
+        if not networks.agree(
+            expected, networks.evaluate(replace(network, bound=np.inf), inputs)
+        ):
+            with pytest.raises(ValueError, match="keeps values within ±1e\\+06"):
+                networks.write_tensorneat(network)
             continue
+        written = networks.write_tensorneat(network)
+        back = networks.read_tensorneat(written.nodes, written.conns, written.meta)
+        imported = networks.to_genes(back)
         exchanged += 1
         check_genes(3, 2, Nodes(**imported["nodes"]), Connections(**imported["connections"]))
         again = networks.from_genes(imported, INPUTS, OUTPUTS)
-        expected = networks.evaluate(network, inputs)
         assert np.isfinite(expected).all()
         for other in (back, again):
             difference = np.abs(networks.evaluate(other, inputs) - expected)
@@ -135,7 +138,7 @@ CONNS = [[0, 2, 1], [1, 9, 1], [9, 2, 1]]
         ("nodes", (1, 0), 5, "`nodes` must have the input or output 1 in row 1, got 5"),
         ("conns", (0, 0), 7, "connections must join existing nodes, got 7"),
         ("conns", (0, 1), 1, "`target` must not be an input, got 1"),
-        ("conns", (0, 0), 9, "once, got \\(9, 2\\)"),
+        ("conns", (0, 0), 9, "once, got twice \\(9, 2\\)"),
         ("conns", (0, 2), np.inf, "`conns` must be finite in used rows"),
         ("conns", (1, 0), 9, "must be free of cycles, got one that holds or leads to 2, 9"),
     ],
@@ -163,8 +166,7 @@ def test_whatever_is_no_genome_is_a_value_error(plain):
         try:
             networks.load_tensorneat(data)
             outcomes["read"] += 1
-        except ValueError as refusal:
-            assert str(refusal)
+        except ValueError:
             outcomes["refused"] += 1
     assert outcomes["refused"] > 1500
 

@@ -1,0 +1,78 @@
+"""The network of a creature as a picture, a formula, code, or a genome of TensorNEAT."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from .app import app, fail
+
+if TYPE_CHECKING:
+    from ..networks import Network
+
+ZIP = b"PK"
+"""How a TensorNEAT genome begins."""
+
+
+@app.command()
+def network(
+    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    svg: Annotated[bool, typer.Option("--svg", help="A picture.")] = False,
+    dot: Annotated[bool, typer.Option("--dot", help="For Graphviz.")] = False,
+    python: Annotated[bool, typer.Option("--python", help="A module of NumPy code.")] = False,
+    formula: Annotated[bool, typer.Option("--formula", help="Lines to read.")] = False,
+    tensorneat: Annotated[
+        bool, typer.Option("--tensorneat", help="A genome (.npz); see docs/networks.md.")
+    ] = False,
+    out: Annotated[Path | None, typer.Option(help="Default: standard output.")] = None,
+) -> None:
+    """The network of a creature file, or of a TensorNEAT genome, in one of these forms."""
+    forms = {
+        "svg": svg,
+        "dot": dot,
+        "python": python,
+        "formula": formula,
+        "tensorneat": tensorneat,
+    }
+    chosen = [name for name, wanted in forms.items() if wanted] or ["formula"]
+    if len(chosen) > 1:
+        fail(f"network needs one form, got --{' --'.join(chosen)}")
+    try:
+        data = _rendered(_read(file), chosen[0])
+        if out is None:
+            sys.stdout.buffer.write(data)
+        else:
+            from ..archive.store import write_whole
+
+            write_whole(out, data)
+            print(out)
+    except (ValueError, OSError) as error:
+        fail(f"{file}: {error}")
+
+
+def _read(file: Path) -> "Network":
+    from ..archive.creature import parse
+    from ..networks import from_genes, load_tensorneat
+
+    data = file.read_bytes()
+    if data[:2] == ZIP:
+        return load_tensorneat(data)[0]
+    genome = parse(data)["identity"]["genome"]
+    if "nodes" not in genome:
+        raise ValueError(f"`genome.encoding` must hold a network, got {genome['encoding']!r}")
+    return from_genes(genome, genome["inputs"], genome["outputs"])
+
+
+def _rendered(network: "Network", form: str) -> bytes:
+    from .. import networks
+
+    if form == "tensorneat":
+        return networks.dump_tensorneat(networks.write_tensorneat(network))
+    texts = {
+        "svg": networks.svg,
+        "dot": networks.dot,
+        "python": networks.numpy_code,
+        "formula": networks.formula,
+    }
+    return texts[form](network).encode()
