@@ -27,21 +27,21 @@ def crossover(
     parent. So the child has its structure, and holds a cycle only if it does. With
     probability `average` weights and biases of matching genes are means.
     """
-    keys = jax.random.split(key, 4)
+    mean_key, node_key, gene_key = jax.random.split(key, 3)
     connection = match(
         fitter.innovation, fitter.connection_used, other.innovation, other.connection_used
     )
     node = match(fitter.node_id, fitter.node_used, other.node_id, other.node_used)
-    mean = jax.random.bernoulli(keys[0], average)
-    swapped = jax.random.bernoulli(keys[1], 0.5, node.shape) & (node >= 0)
-    taken = jax.random.bernoulli(keys[2], 0.5, connection.shape)
+    mean = jax.random.bernoulli(mean_key, average)
+    swapped = jax.random.bits(node_key, node.shape, "uint8") < 128
+    bits = jax.random.bits(gene_key, connection.shape, "uint32")
+    taken, chance = bits & 1 == 1, (bits >> 1).astype(jnp.float32) / 2.0**31
     off = ~fitter.enabled | ((connection >= 0) & ~other.enabled[connection])
-    again = off & jax.random.bernoulli(keys[3], 1 - disabled, off.shape)
     return replace(
         fitter,
-        activation=jnp.where(swapped, other.activation[node], fitter.activation),
+        activation=jnp.where(swapped & (node >= 0), other.activation[node], fitter.activation),
         bias=_mixed(fitter.bias, other.bias, node, swapped, mean),
-        enabled=fitter.connection_used & (~off | again),
+        enabled=fitter.connection_used & (~off | (chance >= disabled)),
         weight=_mixed(fitter.weight, other.weight, connection, taken, mean),
     )
 

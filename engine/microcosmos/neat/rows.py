@@ -64,7 +64,8 @@ def match(
     table = jnp.where(others_used, others, jnp.iinfo(others.dtype).max)
     row = jnp.searchsorted(table, numbers, method="scan_unrolled")
     row = jnp.minimum(row, table.shape[0] - 1)
-    return jnp.where(used & others_used[row] & (others[row] == numbers), row, NONE)
+    row = jnp.where(used & (table[row] == numbers), row, NONE)
+    return jax.lax.optimization_barrier(row)  # XLA would search again for each use.
 
 
 def drop_connection(network: CPPN, row: Int[Array, ""]) -> CPPN:

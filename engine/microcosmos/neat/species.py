@@ -1,0 +1,197 @@
+"""Species: networks that are near one representative (Stanley and Miikkulainen 2002)."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int
+
+from ..genomes import CPPN
+from .distance import Coefficients, distance
+
+UNASSIGNED = -1
+
+
+class Species(eqx.Module):
+    """Rows of species, those that live first and the older before the younger."""
+
+    representatives: CPPN
+    alive: Bool[Array, "species"]
+    number: Int[Array, "species"]
+    """No other species ever has it."""
+    best: Float[Array, "species"]
+    """The highest fitness of any member so far; −inf before the first one is known."""
+    improved: Int[Array, "species"]
+    """The generation in which that was reached, or the species arose."""
+    members: Int[Array, "species"]
+    of: Int[Array, "individual"]
+    """The species' row of each network of the population."""
+    threshold: Float[Array, ""]
+    """Networks nearer than this to a representative belong to its species."""
+    next_number: Int[Array, ""]
+    peak: Float[Array, ""]
+    """The highest fitness in the population so far, and when it was reached."""
+    peak_generation: Int[Array, ""]
+
+
+class Assignment(NamedTuple):
+    """The species of each network while species are still being founded."""
+
+    representatives: CPPN
+    count: Int[Array, ""]
+    of: Int[Array, "individual"]
+    nearest: Int[Array, "individual"]
+    """The species whose representative is nearest, compatible or not."""
+    least: Float[Array, "individual"]
+    """The distance to it."""
+    closest: Int[Array, "species"]
+    """The member nearest to each representative."""
+
+
+def assign(
+    population: CPPN,
+    representatives: CPPN,
+    count: Int[Array, ""],
+    threshold: Float[Array, ""],
+    coefficients: Coefficients,
+) -> Assignment:
+    """Each network joins the first species that it is compatible with, or founds one.
+
+    That is the paper's rule. Once all rows are taken, what fits nowhere joins the species
+    whose representative is nearest.
+    """
+    individuals = population.weight.shape[0]
+    rows = representatives.weight.shape[0]
+    dtype = population.weight.dtype
+
+    def join(row, state: Assignment, founder=None) -> Assignment:
+        one = _row(state.representatives, row)
+        far = jax.vmap(lambda n: distance(n, one, coefficients))(population).astype(dtype)
+        fits = far < threshold if founder is None else (far < threshold) | founder
+        joins = (state.of == UNASSIGNED) & fits
+        return state._replace(
+            of=jnp.where(joins, row, state.of),
+            nearest=jnp.where(far < state.least, row, state.nearest),
+            least=jnp.minimum(far, state.least),
+            closest=state.closest.at[row].set(jnp.argmin(jnp.where(joins, far, jnp.inf))),
+        )
+
+    def found(state: Assignment) -> Assignment:
+        first = jnp.argmax(state.of == UNASSIGNED)
+        founded = jax.tree.map(
+            lambda all_, new: all_.at[state.count].set(new[first]),
+            state.representatives,
+            population,
+        )
+        state = state._replace(representatives=founded)
+        state = join(state.count, state, jnp.arange(individuals) == first)
+        return state._replace(count=state.count + 1)
+
+    def unfinished(state: Assignment) -> Bool[Array, ""]:
+        return (state.count < rows) & jnp.any(state.of == UNASSIGNED)
+
+    nobody = jnp.full(individuals, UNASSIGNED)
+    state = Assignment(
+        representatives=representatives,
+        count=count.astype(nobody.dtype),
+        of=nobody,
+        nearest=jnp.zeros_like(nobody),
+        least=jnp.full(individuals, jnp.inf, dtype),
+        closest=jnp.zeros(rows, nobody.dtype),
+    )
+    state = jax.lax.fori_loop(0, state.count, join, state)
+    state = jax.lax.while_loop(unfinished, found, state)
+    return state._replace(of=jnp.where(state.of == UNASSIGNED, state.nearest, state.of))
+
+
+def no_species(population: CPPN, rows: int, threshold: float) -> Species:
+    """Before the first population is divided."""
+    dtype = population.weight.dtype
+    individuals = population.weight.shape[0]
+    return Species(
+        representatives=jax.tree.map(
+            lambda x: jnp.zeros((rows, *x.shape[1:]), x.dtype), population
+        ),
+        alive=jnp.zeros(rows, bool),
+        number=jnp.full(rows, UNASSIGNED),
+        best=jnp.full(rows, -jnp.inf, dtype),
+        improved=jnp.zeros(rows, int),
+        members=jnp.zeros(rows, int),
+        of=jnp.full(individuals, UNASSIGNED),
+        threshold=jnp.asarray(threshold, dtype),
+        next_number=jnp.asarray(0),
+        peak=jnp.asarray(-jnp.inf, dtype),
+        peak_generation=jnp.asarray(0),
+    )
+
+
+def divide(
+    population: CPPN,
+    species: Species,
+    coefficients: Coefficients,
+    *,
+    nearest: bool,
+    generation: Int[Array, ""],
+) -> Species:
+    """The species of a population, whose members will be evaluated in `generation`.
+
+    Species without members end. With `nearest`, the member nearest to a representative is
+    the next one.
+    """
+    species = compacted(species)
+    before = jnp.sum(species.alive)
+    state = assign(population, species.representatives, before, species.threshold, coefficients)
+    row = jnp.arange(species.alive.shape[0])
+    new = (row >= before) & (row < state.count)
+    members = jnp.zeros_like(species.members).at[state.of].add(1)
+    representatives = state.representatives
+    if nearest:
+        representatives = jax.tree.map(
+            lambda old, all_: jnp.where(_column(members > 0, old), all_[state.closest], old),
+            representatives,
+            population,
+        )
+    return compacted(
+        replace(
+            species,
+            representatives=representatives,
+            alive=members > 0,
+            number=jnp.where(new, species.next_number + row - before, species.number),
+            best=jnp.where(new, -jnp.inf, species.best),
+            improved=jnp.where(new, generation, species.improved),
+            members=members,
+            of=state.of,
+            next_number=species.next_number + state.count - before,
+        )
+    )
+
+
+def compacted(species: Species) -> Species:
+    """The rows that live first, in their order; the others empty."""
+    order = jnp.argsort(~species.alive, stable=True)
+    place = jnp.zeros_like(order).at[order].set(jnp.arange(len(order)))
+    alive = species.alive[order]
+    return replace(
+        species,
+        representatives=jax.tree.map(
+            lambda x: jnp.where(_column(alive, x), x[order], jnp.zeros((), x.dtype)),
+            species.representatives,
+        ),
+        alive=alive,
+        number=jnp.where(alive, species.number[order], UNASSIGNED),
+        best=jnp.where(alive, species.best[order], -jnp.inf),
+        improved=jnp.where(alive, species.improved[order], 0),
+        members=jnp.where(alive, species.members[order], 0),
+        of=jnp.where(species.of < 0, UNASSIGNED, place[species.of]),
+    )
+
+
+def _row(networks: CPPN, row) -> CPPN:
+    return jax.tree.map(lambda x: x[row], networks)
+
+
+def _column(flags, values):
+    """Flags of rows, broadcast over whatever each row holds."""
+    return flags.reshape(-1, *[1] * (values.ndim - 1))

@@ -1,0 +1,146 @@
+"""Populations of networks, and NEAT's operators as plain Python over dictionaries."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import genomes, neat
+
+INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 60
+
+
+@pytest.fixture(scope="session")
+def settings():
+    """The paper's, with so much growth that small networks soon fill their room."""
+    paper = neat.PRESETS["paper"]
+    rates = replace(paper.rates, add_node=0.3, add_connection=0.4, toggle=0.05, weight_step=0.5)
+    coefficients = neat.Coefficients(1.0, 1.0, 0.4)
+    return replace(
+        paper,
+        rates=rates,
+        coefficients=coefficients,
+        threshold=0.7,
+        max_species=8,
+        interspecies=0.05,
+        stagnation=4,
+    )
+
+
+@pytest.fixture(scope="session")
+def shrinking(settings):
+    """The same with deletion, TensorNEAT's way of choosing and bounded weights."""
+    preset = neat.PRESETS["tensorneat"]
+    rates = replace(preset.rates, add_node=0.5, add_connection=0.6, bound=1.5)
+    return replace(preset, rates=rates, threshold=0.6, max_species=8, survival=0.4)
+
+
+@pytest.fixture(scope="session")
+def evolve():
+    """A function that runs a population with arbitrary fitness and keeps every generation."""
+
+    def run(settings, generations, seed=0, broken=0.1):
+        keys = jax.random.split(jax.random.key(seed), BATCH)
+        minimal = jax.vmap(lambda k: neat.minimal(k, INPUTS, OUTPUTS, NODES, CONNECTIONS))
+        networks = jax.jit(minimal)(keys)
+        species = jax.jit(lambda n: neat.first_species(n, settings))(networks)
+        counters = neat.first_counters(INPUTS, OUTPUTS)
+        random = np.random.default_rng(seed)
+        advance = jax.jit(
+            lambda n, f, s, c, g: neat.next_generation(
+                n,
+                f,
+                s,
+                c,
+                settings,
+                inputs=INPUTS,
+                outputs=OUTPUTS,
+                key=jax.random.key(seed),
+                generation=g,
+            )
+        )
+        history = []
+        for generation in range(generations):
+            fitness = random.normal(size=BATCH).astype(np.float32)
+            fitness[random.random(BATCH) < broken] = random.choice([np.nan, -np.inf])
+            after = advance(
+                networks, jnp.asarray(fitness), species, counters, jnp.asarray(generation)
+            )
+            history.append(
+                jax.device_get((networks, fitness, species, counters, after[3], after[4]))
+            )
+            networks, species, counters = after[:3]
+        history.append(jax.device_get((networks, None, species, counters, None, None)))
+        return history
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def grown(evolve, settings):
+    """Fourteen generations of the paper's NEAT."""
+    return evolve(settings, 14)
+
+
+@pytest.fixture(scope="session")
+def shrunk(evolve, shrinking):
+    """Fourteen generations in which genes are lost as well."""
+    return evolve(shrinking, 14)
+
+
+@pytest.fixture(scope="session")
+def genes_of():
+    """A function that gives the genes of one network, by their numbers."""
+
+    def read(network):
+        nodes = {
+            int(network.node_id[row]): (int(network.activation[row]), float(network.bias[row]))
+            for row in np.flatnonzero(network.node_used)
+        }
+        connections = {
+            int(network.innovation[row]): (
+                int(network.node_id[network.source[row]]),
+                int(network.node_id[network.target[row]]),
+                bool(network.enabled[row]),
+                float(network.weight[row]),
+            )
+            for row in np.flatnonzero(network.connection_used)
+        }
+        return nodes, connections
+
+    return read
+
+
+@pytest.fixture(scope="session")
+def plain_distance(genes_of):
+    """The paper's equation 1, over dictionaries."""
+
+    def measure(a, b, coefficients):
+        a, b = genes_of(a)[1], genes_of(b)[1]
+        shared = a.keys() & b.keys()
+        last = min(max(a, default=-1), max(b, default=-1))
+        alone = a.keys() ^ b.keys()
+        excess = sum(number > last for number in alone)
+        many = max(len(a), len(b), 1)
+        if many <= coefficients.small:
+            many = 1
+        unlike = [abs(a[n][3] - b[n][3]) for n in shared]
+        return (
+            coefficients.excess * excess / many
+            + coefficients.disjoint * (len(alone) - excess) / many
+            + coefficients.weight * (float(np.mean(unlike)) if shared else 0.0)
+        )
+
+    return measure
+
+
+@pytest.fixture(scope="session")
+def each():
+    """A function that splits a batch of networks."""
+
+    def split(networks):
+        return [genomes.take(networks, i) for i in range(networks.weight.shape[0])]
+
+    return split

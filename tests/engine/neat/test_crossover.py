@@ -1,0 +1,115 @@
+"""Crossover and distance do what their definitions say over dictionaries."""
+
+from functools import cache
+
+import jax
+import numpy as np
+import pytest
+
+from microcosmos import neat
+
+
+@pytest.fixture(scope="module")
+def parents(grown):
+    """Related networks, two by two."""
+    networks = grown[-1][0]
+    order = np.random.default_rng(1).permutation(networks.weight.shape[0])
+    return networks, jax.tree.map(lambda x: x[order], networks)
+
+
+def cross(parents, *, key, **options):
+    first, second = parents
+    keys = jax.random.split(jax.random.key(key), first.weight.shape[0])
+    return jax.device_get(program(**options)(first, second, keys))
+
+
+@cache
+def program(**options):
+    return jax.jit(jax.vmap(lambda a, b, k: neat.crossover(a, b, key=k, **options)))
+
+
+def test_a_child_has_the_genes_of_the_fitter_and_values_of_either(parents, each, genes_of):
+    mixed = 0
+    for a, b, child in zip(*map(each, (*parents, cross(parents, key=0))), strict=True):
+        (nodes_a, genes_a), (nodes_b, genes_b), (nodes, genes) = map(genes_of, (a, b, child))
+        assert nodes.keys() == nodes_a.keys()
+        assert genes.keys() == genes_a.keys()
+        for number, (source, target, _, weight) in genes.items():
+            assert (source, target) == genes_a[number][:2]
+            donors = [d[number][3] for d in (genes_a, genes_b) if number in d]
+            assert weight in donors
+            mixed += weight != genes_a[number][3]
+        for number, gene in nodes.items():
+            assert gene in [d[number] for d in (nodes_a, nodes_b) if number in d]
+    assert mixed > 50
+
+
+def test_matching_genes_come_from_either_parent_equally_often(parents, each, genes_of):
+    from_other = matching = 0
+    for key in range(10):
+        for a, b, child in zip(*map(each, (*parents, cross(parents, key=key))), strict=True):
+            genes_a, genes_b, genes = (genes_of(n)[1] for n in (a, b, child))
+            for number in genes_a.keys() & genes_b.keys():
+                if genes_a[number][3] != genes_b[number][3]:
+                    matching += 1
+                    from_other += genes[number][3] == genes_b[number][3]
+    assert from_other / matching == pytest.approx(0.5, abs=3 * 0.5 / matching**0.5)
+
+
+def test_genes_disabled_in_either_parent_are_disabled_three_times_in_four(
+    parents, each, genes_of
+):
+    disabled = off = 0
+    for key in range(10):
+        for a, b, child in zip(*map(each, (*parents, cross(parents, key=key))), strict=True):
+            genes_a, genes_b, genes = (genes_of(n)[1] for n in (a, b, child))
+            for number, gene in genes.items():
+                donors = [d[number] for d in (genes_a, genes_b) if number in d]
+                if all(donor[2] for donor in donors):
+                    assert gene[2]
+                else:
+                    disabled += 1
+                    off += not gene[2]
+    assert off / disabled == pytest.approx(0.75, abs=3 * 0.44 / disabled**0.5)
+
+
+def test_averaging_gives_the_mean_of_matching_weights(parents, each, genes_of):
+    children = cross(parents, key=0, average=1.0)
+    for a, b, child in zip(*map(each, (*parents, children)), strict=True):
+        genes_a, genes_b, genes = (genes_of(n)[1] for n in (a, b, child))
+        for number in genes:
+            mean = np.mean([d[number][3] for d in (genes_a, genes_b) if number in d])
+            assert genes[number][3] == pytest.approx(mean, rel=1e-5, abs=1e-6)
+
+
+@pytest.mark.parametrize("small", [0, 19])
+def test_distance_is_the_one_over_dictionaries(parents, each, plain_distance, small):
+    coefficients = neat.Coefficients(1.5, 0.5, 0.7, small=small)
+    measured = jax.jit(jax.vmap(lambda a, b: neat.distance(a, b, coefficients)))(*parents)
+    assert np.ptp(measured) > 0.1
+    for a, b, value in zip(*map(each, parents), measured, strict=True):
+        assert value == pytest.approx(plain_distance(a, b, coefficients), rel=1e-5, abs=1e-6)
+
+
+def test_tensorneats_distance_sums_over_nodes_and_connections(parents, each, genes_of):
+    coefficients = neat.PRESETS["tensorneat"].coefficients
+    measured = jax.jit(jax.vmap(lambda a, b: neat.distance(a, b, coefficients)))(*parents)
+    for a, b, value in zip(*map(each, parents), measured, strict=True):
+        (nodes_a, genes_a), (nodes_b, genes_b) = genes_of(a), genes_of(b)
+        expected = 0.0
+        for one, two, unlike in (
+            (nodes_a, nodes_b, lambda x, y: abs(x[1] - y[1]) + (x[0] != y[0])),
+            (genes_a, genes_b, lambda x, y: abs(x[3] - y[3])),
+        ):
+            total = 1.0 * len(one.keys() ^ two.keys())
+            total += 0.4 * sum(unlike(one[n], two[n]) for n in one.keys() & two.keys())
+            expected += total / max(len(one), len(two))
+        assert value == pytest.approx(expected, rel=1e-4)
+
+
+def test_distance_is_symmetric_and_zero_from_a_network_to_itself(parents):
+    coefficients = neat.Coefficients(1.0, 2.0, 0.4)
+    measure = jax.jit(jax.vmap(lambda a, b: neat.distance(a, b, coefficients)))
+    first, second = parents
+    np.testing.assert_allclose(measure(first, second), measure(second, first), rtol=1e-5)
+    assert (np.asarray(measure(first, first)) == 0).all()
