@@ -56,6 +56,18 @@ acceptance: install web
 validate: install
 	$(BIN)/python -m validation
 
+# TensorNEAT is under the GPL-3, and no part of this. Of what it asks for, its NEAT needs SymPy
+# beside what is installed; the rest (Brax, MuJoCo, Gymnax ...) is for its own tasks.
+.PHONY: tensorneat
+TENSORNEAT_COMMIT := ee204900e8e55ffe0ed756651ea871c70230dd34
+TENSORNEAT_SRC ?= git+https://github.com/EMI-Group/tensorneat@$(TENSORNEAT_COMMIT)
+
+tensorneat: install
+	@echo "Installing TensorNEAT (GPL-3) from $(TENSORNEAT_SRC) ..."
+	@$(BIN)/python -m pip install -q --disable-pip-version-check "sympy>=1.13,<2"
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps "$(TENSORNEAT_SRC)"
+	@$(BIN)/python -c 'import tensorneat.algorithm'
+
 lock:
 	@$(BIN)/python -m pip install -q --disable-pip-version-check uv
 	$(eval COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --no-annotate)

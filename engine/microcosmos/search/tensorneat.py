@@ -1,0 +1,200 @@
+"""TensorNEAT's own NEAT (Wang et al., arXiv:2404.01817) as a backend, where it is installed.
+
+This file alone imports it, and only to carry it out: it is under the GPL, version 3.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float
+
+from ..genomes import ACTIVATIONS, CPPN, empty, from_genes
+from ..neat import Settings
+from ..networks import read_tensorneat, to_genes
+
+COMMAND = "make tensorneat"
+
+State = Any
+"""TensorNEAT's: a pytree of arrays by name, one of them (`species`) such a state itself."""
+
+
+def available() -> bool:
+    """Whether the package can be imported."""
+    return find_spec("tensorneat") is not None
+
+
+def require() -> None:
+    """Raise `ValueError` with the command to install the package, unless it is there."""
+    if not available():
+        raise ValueError(
+            "`neat.backend` tensorneat needs the package tensorneat (GPL-3), which is not "
+            f"installed; install it with: {COMMAND}"
+        )
+
+
+@dataclass(frozen=True)
+class Backend:
+    """An ask-tell loop of TensorNEAT; `build` makes one."""
+
+    algorithm: Any
+    next_state: Callable[[State, Array], State]
+    meta: Mapping[str, Any]
+    """What its genomes mean, as `networks.read_tensorneat` needs it."""
+    max_nodes: int
+    max_connections: int
+
+    def setup(self, seed: int) -> State:
+        """The first population."""
+        key = import_module("tensorneat.common").State(randkey=jax.random.PRNGKey(seed))
+        # A program is compiled again for names in another order.
+        return self.from_arrays(self.to_arrays(self.algorithm.setup(key)))
+
+    def ask(self, state: State) -> tuple[np.ndarray, np.ndarray]:
+        """The genomes to be measured: nodes and connections, (individual, row, column)."""
+        nodes, connections = self.algorithm.ask(state)
+        return np.asarray(nodes), np.asarray(connections)
+
+    def tell(self, state: State, fitness: Float[np.ndarray, "individual"]) -> State:
+        """The next population; a fitness that is no number is the worst there is."""
+        values = np.asarray(fitness, np.float32)
+        return self.next_state(state, jnp.asarray(np.where(np.isnan(values), -np.inf, values)))
+
+    def to_arrays(self, state: State) -> dict[str, np.ndarray]:
+        """Everything in a state by name, those of species behind `species/`."""
+        return _flat(state, "")
+
+    def from_arrays(self, arrays: Mapping[str, np.ndarray]) -> State:
+        """The state of such arrays; it goes on bit for bit."""
+        states = import_module("tensorneat.common")
+        named = {name: jnp.asarray(arrays[name]) for name in sorted(arrays)}
+        own = {name: x for name, x in named.items() if "/" not in name}
+        species = {name.split("/")[1]: x for name, x in named.items() if "/" in name}
+        return states.State(**own, species=states.State(**species))
+
+    def population(self, state: State) -> tuple[CPPN, Bool[np.ndarray, "individual"]]:
+        """The genomes as our networks, and which of them compute every output.
+
+        In the place of another, whose outputs are NaN, stands a network without connections.
+        """
+        genomes = zip(*self.ask(state), strict=True)
+        found = [self._network(nodes, connections) for nodes, connections in genomes]
+        silent = empty(self.max_nodes, self.max_connections)
+        fixed = self.meta["num_inputs"] + self.meta["num_outputs"]
+        silent.node_used[:fixed] = True
+        silent.node_id[:fixed] = np.arange(fixed)
+        networks = [silent if network is None else network for network in found]
+        batch = jax.tree.map(lambda *leaves: np.stack(leaves), *networks)
+        return batch, np.array([network is not None for network in found])
+
+    def _network(self, nodes: np.ndarray, connections: np.ndarray) -> CPPN | None:
+        try:
+            genes = to_genes(read_tensorneat(nodes, connections, self.meta), check=False)
+        except ValueError:
+            return None
+        return from_genes(genes, self.max_nodes, self.max_connections)
+
+
+def build(
+    settings: Settings, inputs: int, outputs: int, max_nodes: int, max_connections: int
+) -> Backend:
+    """TensorNEAT with those of our settings that it has; it allots by rank.
+
+    Raises `ValueError` where it is not installed, or cannot do what the settings ask for.
+    """
+    require()
+    if settings.rates.recurrent:
+        raise ValueError("`neat.backend` tensorneat needs feed-forward networks, got recurrent")
+    names = tuple(ACTIVATIONS)
+    activations = [names[place] for place in settings.rates.palette]
+    genome = _genome(settings, inputs, outputs, max_nodes, max_connections, activations)
+    algorithm = import_module("tensorneat.algorithm").NEAT(
+        genome,
+        pop_size=settings.population,
+        species_size=settings.max_species,
+        max_stagnation=settings.stagnation,
+        species_elitism=settings.species_elitism,
+        spawn_number_change_rate=1 - settings.inertia,
+        genome_elitism=settings.elites,
+        survival_threshold=settings.survival,
+        min_species_size=settings.min_size,
+        compatibility_threshold=settings.threshold,
+    )
+    meta = {
+        "genome_class": "DefaultGenome",
+        "node_class": "BiasNode",
+        "conn_class": "DefaultConn",
+        "activation_names": activations,
+        "aggregation_names": ["sum"],
+        "num_inputs": inputs,
+        "num_outputs": outputs,
+    }
+    return Backend(algorithm, jax.jit(algorithm.tell), meta, max_nodes, max_connections)
+
+
+def _genome(
+    settings: Settings,
+    inputs: int,
+    outputs: int,
+    max_nodes: int,
+    max_connections: int,
+    activations: list[str],
+) -> Any:
+    kinds = import_module("tensorneat.genome")
+    rates, coefficients = settings.rates, settings.coefficients
+    bound = float("inf") if rates.bound is None else rates.bound
+    node = kinds.BiasNode(
+        bias_mutate_power=rates.weight_step,
+        bias_mutate_rate=rates.weight,
+        bias_replace_rate=rates.replace,
+        bias_lower_bound=-bound,
+        bias_upper_bound=bound,
+        activation_options=[_function(name) for name in activations],
+        activation_replace_rate=rates.activation,
+    )
+    connection = kinds.DefaultConn(
+        weight_mutate_power=rates.weight_step,
+        weight_mutate_rate=rates.weight,
+        weight_replace_rate=rates.replace,
+        weight_lower_bound=-bound,
+        weight_upper_bound=bound,
+    )
+    mutation = kinds.DefaultMutation(
+        conn_add=rates.add_connection,
+        conn_delete=rates.delete_connection,
+        node_add=rates.add_node,
+        node_delete=rates.delete_node,
+    )
+    distance = kinds.DefaultDistance(coefficients.disjoint, coefficients.weight)
+    return kinds.DefaultGenome(
+        inputs,
+        outputs,
+        max_nodes,
+        max_connections,
+        node_gene=node,
+        conn_gene=connection,
+        mutation=mutation,
+        distance=distance,
+    )
+
+
+def _function(name: str) -> Callable:
+    """TensorNEAT's function of that name; it is given ours where it has none."""
+    known = import_module("tensorneat.common").ACT
+    if name not in known.name2jnp:
+        known.add_func(name, ACTIVATIONS[name])
+    return getattr(known, name)
+
+
+def _flat(state: State, prefix: str) -> dict[str, np.ndarray]:
+    arrays = {}
+    for name in sorted(state.registered_keys()):
+        value = getattr(state, name)
+        nested = hasattr(value, "registered_keys")
+        arrays |= _flat(value, f"{name}/") if nested else {prefix + name: np.asarray(value)}
+    return arrays
