@@ -22,6 +22,7 @@ __all__ = [
     "build_block",
     "build_controls",
     "build_crowd",
+    "build_emitters",
     "build_encoding",
     "build_energy",
     "build_gaits",

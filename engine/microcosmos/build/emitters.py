@@ -1,5 +1,6 @@
 """From the words for emitters to what makes children."""
 
+from dataclasses import replace
 from functools import singledispatch
 
 from .. import neat, search, spec
@@ -7,18 +8,22 @@ from ..genomes import Encoding
 from ..search import emitters
 from ..spec import emitters as words
 
+Search = spec.QualityDiversity | spec.Neuroevolution
+"""Experiments that fill an archive."""
 
-def build_emitters(
-    chosen: spec.QualityDiversity, encoding: Encoding
-) -> tuple[search.Emitter, ...]:
+
+def build_emitters(chosen: Search, encoding: Encoding) -> tuple[search.Emitter, ...]:
     """The sources of children, each with its slots of a generation."""
-    pairs = zip(chosen.search.emitters, chosen.search.slots, strict=True)
+    pairs = zip(chosen.emitters, chosen.slots, strict=True)
     return tuple(_build(emitter, slots, chosen, encoding) for emitter, slots in pairs)
 
 
 @singledispatch
 def _build(
-    emitter: words.Emitter, slots: int, chosen: spec.QualityDiversity, encoding: Encoding
+    emitter: words.Emitter,
+    slots: int,
+    chosen: Search,
+    encoding: Encoding,
 ) -> search.Emitter:
     raise TypeError(f"`emitters` must be known ones, got {type(emitter).__name__}")
 
@@ -35,6 +40,13 @@ def _(emitter: words.NeatEmitter, slots, chosen, encoding):
 
 
 @_build.register
+def _(emitter: words.PopulationEmitter, slots, chosen, encoding):
+    settings = build_settings(emitter, chosen.genome, slots)
+    inputs, outputs = len(chosen.control.inputs), len(spec.OUTPUTS)
+    return emitters.population.Neat(slots, encoding.newcomer, settings, inputs, outputs)
+
+
+@_build.register
 def _(emitter: words.LineEmitter, slots, chosen, encoding):
     return emitters.IsoLine(slots, encoding.newcomer, emitter.iso, emitter.line)
 
@@ -42,6 +54,32 @@ def _(emitter: words.LineEmitter, slots, chosen, encoding):
 @_build.register
 def _(emitter: words.GaussianEmitter, slots, chosen, encoding):
     return emitters.IsoLine(slots, encoding.newcomer, emitter.step)
+
+
+@_build.register
+def _(emitter: words.CmaMaeEmitter, slots, chosen, encoding):
+    return emitters.CmaMae(
+        slots=slots,
+        newcomer=encoding.newcomer,
+        cells=chosen.archive.cells,
+        step=emitter.step,
+        learning_rate=emitter.learning_rate,
+        threshold=emitter.threshold,
+    )
+
+
+def build_settings(
+    emitter: words.PopulationEmitter, genome: spec.Genome, slots: int
+) -> neat.Settings:
+    """How a population is divided, selected and varied."""
+    whole = neat.PRESETS[emitter.preset]
+    rates = build_rates(genome)
+    if emitter.preset != "paper":  # Its own rates, among all activations.
+        rates = replace(whole.rates, palette=rates.palette)
+    names = ("threshold", "target_species", "stagnation", "survival", "crossover")
+    given = {name: getattr(emitter, name) for name in names}
+    given = {name: value for name, value in given.items() if value is not None}
+    return replace(whole, rates=rates, population=slots, **given)
 
 
 def build_rates(genome: spec.Genome) -> neat.Rates:

@@ -6,11 +6,11 @@ from functools import singledispatch
 import jax
 
 from .. import device, neat, search, spec
-from ..experiments import Experiment
-from ..experiments.quality_diversity import Programs, QualityDiversity
-from ..experiments.state import Plan
-from .creatures import build_block, frame
-from .emitters import build_emitters
+from ..experiments import Experiment, again
+from ..experiments.evolution import Evolution, Programs
+from ..experiments.state import Again, Limits, Plan
+from .creatures import build_block, build_disturbed_block, frame
+from .emitters import Search, build_emitters
 from .scene import build_encoding
 from .tables import build_gaits, build_scaling
 
@@ -25,8 +25,10 @@ build.register(build_gaits)
 build.register(build_scaling)
 
 
-@build.register
-def build_quality_diversity(chosen: spec.QualityDiversity) -> QualityDiversity:
+@build.register(spec.QualityDiversity)
+@build.register(spec.Neuroevolution)
+def build_evolution(chosen: Search) -> Evolution:
+    """A search with an archive."""
     plan = build_plan(chosen)
     emitters, axes, key = plan.emitters, plan.axes, plan.key
     # Bound one by one: a program is compiled for this run's sizes and seed.
@@ -35,11 +37,25 @@ def build_quality_diversity(chosen: spec.QualityDiversity) -> QualityDiversity:
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
         insert=jax.jit(lambda a, c: search.insert(a, search.named(c), axes)),
         tell=jax.jit(lambda states, told: search.emitters.tell(emitters, states, told)),
+        forget=jax.jit(search.reevaluation.forget),
     )
-    return QualityDiversity(plan, programs)
+    return Evolution(plan, programs, build_repeats(chosen, plan))
 
 
-def build_plan(chosen: spec.QualityDiversity) -> Plan:
+def build_repeats(chosen: Search, plan: Plan) -> again.Programs | None:
+    """What evaluates elites again, where they are."""
+    asked, axes = plan.again, plan.axes
+    if asked is None:
+        return None
+    return again.Programs(
+        disturb=jax.jit(lambda g, s: again.disturb(asked, plan.key, plan.cells, g, s)),
+        evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
+        add=jax.jit(lambda r, done, e: search.reevaluation.add(r, done, e, axes)),
+        correct=jax.jit(lambda e, r: search.reevaluation.corrected(e, r, axes)),
+    )
+
+
+def build_plan(chosen: Search) -> Plan:
     """What the experiment needs of the spec besides programs."""
     encoding = build_encoding(chosen.scene, room_of(chosen))
     fixed = len(chosen.control.inputs), len(spec.OUTPUTS)
@@ -54,18 +70,48 @@ def build_plan(chosen: spec.QualityDiversity) -> Plan:
         axes=build_axes(chosen),
         encoding=encoding,
         emitters=build_emitters(chosen, encoding),
+        names=names_of(chosen.emitters),
         counters=neat.first_counters(*fixed),
         device=device.device_kind(),
+        limits=build_limits(chosen.search.stop),
+        again=build_again(chosen),
         force_free=chosen.coupling.force_free,
     )
 
 
-def room_of(chosen: spec.QualityDiversity) -> tuple[int, int]:
+def build_limits(stop: spec.Stop) -> Limits:
+    """When the run ends before its generations are through."""
+    given = {name: value for name, value in stop.model_dump().items() if value is not None}
+    return Limits(**given)
+
+
+def build_again(chosen: Search) -> Again | None:
+    """When elites are evaluated again, and under which conditions."""
+    asked = chosen.search.reevaluation
+    if asked is None:
+        return None
+    spread = search.reevaluation.Spread(
+        asked.phase, asked.pose, asked.viscosity, asked.energy and bool(chosen.world.energy)
+    )
+    size = (chosen.world.width, chosen.world.height)
+    return Again(asked.every, asked.samples, spread, size)
+
+
+def names_of(emitters: tuple[spec.Emitter, ...]) -> tuple[str, ...]:
+    """Operators, numbered where there are several of a kind."""
+    kinds = [emitter.operator for emitter in emitters]
+    return tuple(
+        f"{kind} {kinds[: i + 1].count(kind)}" if kinds.count(kind) > 1 else kind
+        for i, kind in enumerate(kinds)
+    )
+
+
+def room_of(chosen: Search) -> tuple[int, int]:
     """Nodes and connections that networks have room for."""
     return chosen.genome.max_nodes, chosen.genome.max_connections
 
 
-def build_axes(chosen: spec.QualityDiversity) -> tuple[search.Axis, ...]:
+def build_axes(chosen: Search) -> tuple[search.Axis, ...]:
     """The archive's axes over recorded features."""
     return tuple(
         search.Axis(

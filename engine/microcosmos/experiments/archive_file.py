@@ -17,7 +17,7 @@ from .. import neat, search
 from ..archive import file
 from ..genomes import Genotype
 from ..version import VERSION
-from .state import CURVES, Diverged, Lineage, Plan, State, start
+from .state import CURVES, ENDS, FATES, Diverged, Lineage, Plan, State, start
 
 ROWS = ("fitness", "features", "generation", "slot", "digest")
 """Columns of elites that are written as they are."""
@@ -40,9 +40,11 @@ def save(plan: Plan, state: State) -> bytes:
             "operator": state.operators[cells],
             "device": state.origins[cells],
             "genomes": _columns(elites.genotypes),
+            "repeats": _columns(jax.tree.map(lambda x: x[cells], state.repeats)),
             **{name: getattr(elites, name) for name in ROWS},
         },
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
+        "emitters": {name: state.fates[:, :, i] for i, name in enumerate(FATES)},
         "lineage": _columns(state.lineage),
         "diverged": _columns(state.quarantine)
         | {"genotypes": _columns(state.quarantine.genotypes)},
@@ -50,6 +52,8 @@ def save(plan: Plan, state: State) -> bytes:
             "generation": np.int64(state.generation),
             "evaluations": np.int64(state.evaluations),
             "diverged": np.int64(state.diverged),
+            "ended": np.int64(state.ended),
+            **_clock(plan, state),
             "counters": _columns(state.counters),
             "kin": state.kin,
             "emitters": _leaves(state.emitters),
@@ -59,7 +63,7 @@ def save(plan: Plan, state: State) -> bytes:
 
 
 def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
-    """The state that `save` wrote; see `QualityDiversity.restore` for what it raises."""
+    """The state that `save` wrote; see `Evolution.restore` for what it raises."""
     tree, attributes = file.load(data)
     try:
         devices = devices_of(plan.spec, plan.device, attributes, other_device)
@@ -89,10 +93,14 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         emitters=_filled(state.emitters, loop["emitters"]),
         kin=loop["kin"],
+        repeats=_placed(state.repeats, cells, archive["repeats"]),
         creatures=creatures,
         operators=operators,
         origins=origins,
         curves=np.stack([tree["curves"][name] for name in CURVES], 1),
+        fates=np.stack([tree["emitters"][name] for name in FATES], 2),
+        ended=int(loop["ended"]),
+        device_seconds=float(loop.get("device_seconds", 0.0)),
         lineage=Lineage(**tree["lineage"]),
         quarantine=Diverged(**diverged, genotypes=genotypes),
         devices=devices,
@@ -109,6 +117,7 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
         "force_free": json.dumps(plan.force_free),
         "operators": json.dumps(search.OPERATORS),
         "statuses": json.dumps(search.STATUSES),
+        "ended": json.dumps(_end(plan, state)),
     }
 
 
@@ -129,6 +138,26 @@ def devices_of(
             f"bits; got {device!r}."
         )
     return tuple(devices if devices[-1] == device else [*devices, device])
+
+
+def _clock(plan: Plan, state: State) -> dict[str, Any]:
+    """What evaluation took, where that decides when the run ends; else no clock is kept."""
+    timed = np.isfinite(plan.limits.device_hours)
+    return {"device_seconds": np.float64(state.device_seconds)} if timed else {}
+
+
+def _end(plan: Plan, state: State) -> dict[str, Any] | None:
+    """Why and after which generation the run ended, None while it goes on."""
+    if not state.ended and state.generation < plan.generations:
+        return None
+    reason = ENDS[state.ended] or "generations"
+    return {"reason": reason, "generation": state.generation}
+
+
+def _placed(module: eqx.Module, cells: np.ndarray, columns: dict[str, np.ndarray]):
+    """The module with the rows of some cells as columns have them."""
+    new = type(module)(**columns)
+    return jax.tree.map(lambda none, x: none.at[cells].set(x), module, new)
 
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:

@@ -53,4 +53,4 @@ class Report:
     elites: tuple[Elite, ...] = ()
     rows: tuple[Row, ...] = ()
     summary: Mapping[str, Value] | None = None
-    """What the result comes to so far; the newest counts."""
+    """What the result comes to so far, or what else there is to tell of the generation."""

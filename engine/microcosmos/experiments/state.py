@@ -1,7 +1,8 @@
-"""What a quality-diversity run is: its plan, which never changes, and its state."""
+"""What a search is: its plan, which never changes, and its state."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import equinox as eqx
@@ -12,14 +13,53 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 from .. import neat, search
 from ..genomes import Encoding, Genotype
 
-CURVES = ("qd_score", "coverage", "best", "mean", "evaluations", "diverged")
-"""Columns of the record of generations, in this order."""
+CURVES = (
+    "qd_score",
+    "coverage",
+    "best",
+    "mean",
+    "evaluations",
+    "diverged",
+    "clipped",
+    "corrected_qd_score",
+    "corrected_coverage",
+    "hit_rate",
+)
+"""Columns of the record of generations, in this order; the last three are NaN until elites
+are evaluated again."""
+
+FATES = ("children", "inserted", "improved")
+"""What becomes of an emitter's children: how many there were, entered an empty cell, and
+replaced an elite."""
+
+ENDS = ("", "evaluations", "fitness", "device_hours")
+"""Why a run ended before its generations were through."""
 
 BEFORE = 2**32 - 1
 """Stands for the generation before the first where keys are derived."""
 
 KEPT = 256
 """How many diverged creatures are kept, the newest."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When a run ends before its generations are through; see `spec.Stop`."""
+
+    evaluations: float = inf
+    device_hours: float = inf
+    fitness: float = inf
+
+
+@dataclass(frozen=True)
+class Again:
+    """When elites are evaluated again, and under which conditions."""
+
+    every: int
+    samples: int
+    spread: search.reevaluation.Spread
+    size: tuple[int, int]
+    """Of the world, in cells."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +81,13 @@ class Plan:
     counters: neat.Counters
     """Numbers after the genes of newcomers."""
     device: str
+    limits: Limits = Limits()
+    again: Again | None = None
     force_free: bool = True
     """Whether bodies cannot push themselves; if not, their swimming may be the solver's."""
+
+    names: tuple[str, ...] = ()
+    """What the emitters are called, each by a name of its own."""
 
     @property
     def batch(self) -> int:
@@ -96,12 +141,18 @@ class State(eqx.Module):
     kin: UInt8[np.ndarray, "slot 2 32"]
     """Of each slot of the last generation, the recorded creatures nearest to it: itself where
     it entered, else its forebears; zeros where there are none."""
+    repeats: search.reevaluation.Repeats
     creatures: UInt8[np.ndarray, "cell 32"]
     """The SHA-256 of each cell's elite."""
     operators: Int[np.ndarray, "cell"]
     origins: Int[np.ndarray, "cell"]
     """Which of `devices` measured each cell's elite."""
     curves: Float[np.ndarray, "generation curve"]
+    fates: Int[np.ndarray, "generation emitter fate"]
+    ended: int
+    """The place in `ENDS` of why the run ended."""
+    device_seconds: float
+    """What evaluation took, all devices added up; never decides anything unless asked to."""
     lineage: Lineage
     quarantine: Diverged
     devices: tuple[str, ...] = eqx.field(static=True)
@@ -122,10 +173,14 @@ def start(plan: Plan) -> State:
         counters=plan.counters,
         emitters=tuple(e.init(key=key) for e, key in zip(plan.emitters, keys, strict=True)),
         kin=np.zeros((plan.batch, 2, 32), np.uint8),
+        repeats=search.reevaluation.no_repeats(plan.cells, len(search.FEATURES)),
         creatures=np.zeros((plan.cells, 32), np.uint8),
         operators=np.zeros(plan.cells, np.int32),
         origins=np.zeros(plan.cells, np.int32),
         curves=np.zeros((0, len(CURVES))),
+        fates=np.zeros((0, len(plan.emitters), len(FATES)), np.int64),
+        ended=0,
+        device_seconds=0.0,
         lineage=Lineage(
             creature=names,
             parents=np.zeros((0, 2, 32), np.uint8),

@@ -1,6 +1,6 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
-from . import emitters
+from . import emitters, reevaluation
 from .blocks import Stopped, evaluate_blocks, never
 from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
@@ -20,7 +20,17 @@ from .evaluation import (
     motion,
     observe,
 )
-from .insertion import Axis, Elites, Inserted, cells_of, digest, insert, named, no_elites
+from .insertion import (
+    Axis,
+    Elites,
+    Inserted,
+    cells_of,
+    clipped,
+    digest,
+    insert,
+    named,
+    no_elites,
+)
 from .strokes import STROKE_FEATURES, Conditions, Watched, impulse, stroke_program, swim, watch
 
 __all__ = [
@@ -46,6 +56,7 @@ __all__ = [
     "block_program",
     "cells_of",
     "centre",
+    "clipped",
     "digest",
     "drive",
     "emitters",
@@ -60,6 +71,7 @@ __all__ = [
     "never",
     "no_elites",
     "observe",
+    "reevaluation",
     "stroke_program",
     "swim",
     "watch",

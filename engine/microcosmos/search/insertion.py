@@ -78,6 +78,15 @@ class Inserted(eqx.Module):
     """Fitness above the cell's earlier elite; above 0 where there was none."""
 
 
+def clipped(candidates: Elites, axes: tuple[Axis, ...]) -> int:
+    """How many sound candidates lie beyond an end of an axis, and count in its last bin."""
+    beyond = np.zeros(len(candidates.occupied), bool)
+    for axis in axes:
+        value = np.asarray(candidates.features)[:, axis.feature]
+        beyond |= (value < axis.low) | (value > axis.high)
+    return int(np.count_nonzero(beyond & np.asarray(candidates.occupied)))
+
+
 def insert(
     archive: Elites, candidates: Elites, axes: tuple[Axis, ...]
 ) -> tuple[Elites, Inserted]:

@@ -4,14 +4,16 @@ from .base import Part, field_path, identity
 from .body import Body, Chain, Known, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
+from .emitters import Emitter
 from .estimate import Estimate, estimate
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
 from .fields import Energy, Steric
 from .gaits import FORMS, Gaits
+from .neuroevolution import Neuroevolution
 from .quality_diversity import QualityDiversity
 from .scaling import Scaling
 from .scene import Gait, Scene
-from .search import Archive, Descriptor, Search, Task
+from .search import Archive, Descriptor, Generations, Reevaluation, Search, Stop, Task
 from .world import World
 
 __all__ = [
@@ -24,21 +26,26 @@ __all__ = [
     "Control",
     "Coupling",
     "Descriptor",
+    "Emitter",
     "Energy",
     "Estimate",
     "Experiment",
     "Gait",
     "Gaits",
+    "Generations",
     "Genome",
     "Known",
+    "Neuroevolution",
     "Part",
     "Preset",
     "QualityDiversity",
+    "Reevaluation",
     "Scaling",
     "Scene",
     "Search",
     "Spec",
     "Steric",
+    "Stop",
     "Task",
     "World",
     "estimate",

@@ -24,8 +24,9 @@ class Part(BaseModel):
 
 TAGS: dict[str, tuple[str, ...]] = {
     "body": ("chain", "ring", "arc", "star", "tree", "polyline", "graph", "known"),
-    "genome": ("cppn", "gait"),
-    "emitters": ("random", "neat", "iso+line", "gaussian", "cma-mae", "cma-me"),
+    "genome": ("cppn", "direct", "weights", "cppn-body", "gait"),
+    "control": ("cppn", "direct", "weights", "cppn-body", "gait"),
+    "emitters": ("random", "neat", "population", "iso+line", "gaussian", "cma-mae", "cma-me"),
 }
 """Fields that are one of several parts, and what pydantic puts behind them in errors."""
 

@@ -10,28 +10,45 @@ INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", 
 OUTPUTS = ("rest_angle", "rest_length")
 
 
-class Control(Part):
-    """One CPPN, evaluated at every joint and edge, sets rest angles and rest lengths."""
+class Actuation(Part):
+    """How far, how fast and with which clock rest angles and rest lengths change."""
 
     timer: Literal["sine-cosine", "linear"] = "sine-cosine"
     """Time as sine and cosine of the phase, or rising linearly from 0 to 1."""
-    position: Literal["signed", "unit"] = "signed"
-    """Position along the filament from −1 to 1, or from 0 to 1."""
     period: float = Field(default=100.0, ge=4.0, le=1e6, json_schema_extra=unit("steps"))
     """Period of the sine and cosine."""
     ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
     """Over how many periods the actuation grows from nothing to its full size."""
     angle_scale: float = Field(default=0.1, gt=0.0, le=1.5, json_schema_extra=unit("rad"))
-    """Rest angles are this times tanh of the output, added to the body's own."""
+    """Rest angles are the body's own plus this times what the controller says, −1 to 1."""
     length_scale: float = Field(default=0.1, ge=0.0, le=0.8)
-    """Rest lengths are the body's own times 1 + this times tanh of the output."""
+    """Rest lengths are the body's own times 1 + this times what the controller says."""
 
+
+class Sight(Actuation):
+    """What a network is told at every node of the body."""
+
+    position: Literal["signed", "unit"] = "signed"
+    """Position along the filament from −1 to 1, or from 0 to 1."""
     sense_energy: Annotated[bool, LATER] = False
-    """Whether the CPPN also sees the energy at its node, which closes the loop."""
+    """Whether the network also sees the energy at its node, which closes the loop."""
 
     @property
     def inputs(self) -> tuple[str, ...]:
         return INPUTS[self.timer] + (("energy",) if self.sense_energy else ())
+
+
+class Control(Sight):
+    """One CPPN, evaluated at every joint and edge, sets rest angles and rest lengths."""
+
+    encoding: Annotated[Literal["cppn"], LATER] = "cppn"
+    recurrent: Annotated[bool, LATER] = False
+    """Whether the network may have cycles: its nodes are updated together, once a step, and
+    keep their values from step to step."""
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return OUTPUTS
 
 
 class Genome(Part):

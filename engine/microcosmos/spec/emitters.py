@@ -76,8 +76,40 @@ class CmaMeEmitter(Part):
     """Emitters among which the slots are divided."""
 
 
+class PopulationEmitter(Part):
+    """NEAT with a population of its own: species, sharing, crossover. The archive looks on.
+
+    Values that are left out are those of the preset.
+    """
+
+    operator: Literal["population"] = "population"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+    preset: Literal["paper", "tensorneat"] = "paper"
+    """Settings of Stanley and Miikkulainen (2002) with the mutation rates of `genome`, or the
+    defaults of TensorNEAT with its own rates."""
+    backend: Literal["microcosmos", "tensorneat"] = "microcosmos"
+    """Ours, or TensorNEAT's own program with its defaults, where that package is installed."""
+    threshold: float | None = Field(default=None, gt=0.0, le=1e3)
+    """Distance within which networks are of one species."""
+    target_species: int | None = Field(default=None, ge=0, le=1000)
+    """Number of species that the threshold moves towards; 0: it stays."""
+    stagnation: int | None = Field(default=None, ge=1)
+    """Generations without a better network after which a species has no children."""
+    survival: float | None = Field(default=None, gt=0.0, le=1.0)
+    """Best share of a species from which parents are drawn."""
+    crossover: float | None = Field(default=None, ge=0.0, le=1.0)
+    """Probability that a child has two parents."""
+
+
 Emitter = Annotated[
-    RandomEmitter | NeatEmitter | LineEmitter | GaussianEmitter | CmaMaeEmitter | CmaMeEmitter,
+    RandomEmitter
+    | NeatEmitter
+    | PopulationEmitter
+    | LineEmitter
+    | GaussianEmitter
+    | CmaMaeEmitter
+    | CmaMeEmitter,
     Field(discriminator="operator"),
 ]
 """One source of children."""

@@ -7,6 +7,7 @@ from math import ceil
 from .body import shape
 from .experiments import Spec
 from .gaits import Gaits
+from .neuroevolution import Neuroevolution
 from .quality_diversity import QualityDiversity
 from .scaling import Scaling
 from .scene import Scene
@@ -38,8 +39,9 @@ def estimate(spec: Spec) -> Estimate:
     raise TypeError(f"`spec` must be an experiment's, got {type(spec).__name__}")
 
 
-@estimate.register
-def _(spec: QualityDiversity) -> Estimate:
+@estimate.register(QualityDiversity)
+@estimate.register(Neuroevolution)
+def _(spec: QualityDiversity | Neuroevolution) -> Estimate:
     search = spec.search
     genome = FLOAT * (3 * spec.genome.max_nodes + 5 * spec.genome.max_connections)
     archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 128)

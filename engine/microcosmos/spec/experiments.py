@@ -7,13 +7,14 @@ from typing import Any, cast
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from . import gaits, quality_diversity, scaling
+from . import gaits, neuroevolution, quality_diversity, scaling
 from .base import Part
 from .gaits import Gaits
+from .neuroevolution import Neuroevolution
 from .quality_diversity import QualityDiversity
 from .scaling import Scaling
 
-Spec = QualityDiversity | Gaits | Scaling
+Spec = QualityDiversity | Neuroevolution | Gaits | Scaling
 """Any experiment's spec."""
 
 
@@ -43,6 +44,7 @@ _ALL = (
     _experiment(
         "Quality-diversity: the best swimmer of every kind", quality_diversity, QualityDiversity
     ),
+    _experiment("Neuroevolution: NEAT, one swimmer", neuroevolution, Neuroevolution),
     _experiment("Gaits: five known swimmers at every viscosity", gaits, Gaits),
     _experiment("Scaling: wall time against the number of nodes", scaling, Scaling),
 )

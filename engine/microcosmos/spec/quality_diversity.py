@@ -8,6 +8,7 @@ from .base import Part
 from .body import Body, Chain
 from .control import Control, Genome
 from .coupling import Coupling
+from .emitters import Emitter
 from .fields import Steric
 from .scene import Scene, refuse_senseless, refuse_too_large
 from .search import Archive, Descriptor, Search, Task
@@ -39,6 +40,16 @@ class QualityDiversity(Part):
     def generations(self) -> int:
         """Generations of the whole run."""
         return self.search.generations
+
+    @property
+    def emitters(self) -> tuple[Emitter, ...]:
+        """Where children come from."""
+        return self.search.emitters
+
+    @property
+    def slots(self) -> tuple[int, ...]:
+        """Children of each emitter in a generation."""
+        return self.search.slots
 
     @property
     def scene(self) -> Scene:

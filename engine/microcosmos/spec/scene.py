@@ -1,15 +1,16 @@
 """A creature's scene: the world, body, coupling, controller and task that it means."""
 
 from math import ceil
-from typing import Self
+from typing import Annotated, Any, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from ..bodies.extent import reach
 from .base import Part, unit
 from .body import SUPPORT, Body, Chain, Swimmer, shape
-from .control import Control
+from .control import Control, Sight
 from .coupling import Coupling
+from .encodings import Controller, Direct, Grown, Weights, kind, lengthening, refuse_unfit
 from .search import Task
 from .world import World
 
@@ -25,25 +26,48 @@ class Gait(Part):
     """Over how many periods the stroke grows from nothing to its full size; 0: at once."""
 
 
+def _kind(value: Any) -> Any:
+    """The tag of a controller or of a gait."""
+    if isinstance(value, Gait) or (isinstance(value, dict) and "swimmer" in value):
+        return "gait"
+    return kind(value)
+
+
 class Scene(Part):
     """What is simulated for one creature."""
 
     world: World = World()
     body: Body = Chain()
     coupling: Coupling = Coupling()
-    control: Control | Gait = Control()
+    control: Annotated[
+        Annotated[Control, Tag("cppn")]
+        | Annotated[Direct, Tag("direct")]
+        | Annotated[Weights, Tag("weights")]
+        | Annotated[Grown, Tag("cppn-body")]
+        | Annotated[Gait, Tag("gait")],
+        Discriminator(_kind),
+    ] = Control()
     task: Task = Task()
 
     @model_validator(mode="after")
     def check(self) -> Self:
-        refuse_too_large(self.world, self.body, getattr(self.control, "length_scale", 0.0))
         refuse_senseless(self.world, self.control, self.task)
-        if isinstance(self.control, Gait) and self.body.builder != self.control.swimmer:
+        if not isinstance(self.control, Gait):
+            refuse_misfit(self.world, self.body, self.control)
+            return self
+        refuse_too_large(self.world, self.body, 0.0)
+        if self.body.builder != self.control.swimmer:
             raise ValueError(
                 f"`body.builder` must be {self.control.swimmer!r} for its gait, "
                 f"got {self.body.builder!r}"
             )
         return self
+
+
+def refuse_misfit(world: World, body: Body, control: Controller) -> None:
+    """Body and controller must fit each other, and however it acts the body the world."""
+    refuse_unfit(control, body)
+    refuse_too_large(world, body, lengthening(control))
 
 
 def refuse_too_large(world: World, body: Body, stretch: float) -> None:
@@ -58,9 +82,9 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
         )
 
 
-def refuse_senseless(world: World, control: Control | Gait, task: Task) -> None:
+def refuse_senseless(world: World, control: Controller | Gait, task: Task) -> None:
     """Energy must be there to be sensed or to count."""
-    senses = isinstance(control, Control) and control.sense_energy
+    senses = isinstance(control, Sight) and control.sense_energy
     if world.energy is None and (senses or task.fitness != "displacement"):
         field = "control.sense_energy" if senses else "task.fitness"
         value = True if senses else task.fitness

@@ -68,8 +68,37 @@ class Archive(Part):
         return self
 
 
-class Search(Part):
-    """MAP-Elites over generations of equal size."""
+class Stop(Part):
+    """When a run ends before its generations are through; each may be left out."""
+
+    evaluations: int | None = Field(default=None, ge=1)
+    """After the generation in which so many creatures have been evaluated."""
+    device_hours: float | None = Field(default=None, gt=0.0, json_schema_extra=unit("hours"))
+    """After the generation in which evaluation has taken so long, all devices added up. What
+    was decided is recorded, but another run may end at another generation."""
+    fitness: float | None = None
+    """After the generation in which a creature was at least so fit."""
+
+
+class Reevaluation(Part):
+    """Elites evaluated again under disturbed conditions, to see how much of them was luck."""
+
+    every: int = Field(default=25, ge=1, le=1_000_000, json_schema_extra=unit("generations"))
+    """After every so many generations, and after the last."""
+    samples: int = Field(default=1, ge=1, le=100)
+    """Evaluations of each elite each time."""
+    phase: bool = True
+    """Whether a periodic timer starts anywhere in its period."""
+    pose: bool = True
+    """Whether the body starts anywhere, turned by any angle."""
+    viscosity: float = Field(default=0.05, ge=0.0, le=0.5)
+    """Up to which share of itself the viscosity changes."""
+    energy: bool = True
+    """Whether the packets of energy are moved, where there are any."""
+
+
+class Generations(Part):
+    """Generations of equal size, and when they end."""
 
     generations: int = Field(default=50, ge=1, le=1_000_000)
     """Generations of the run, the random first one among them."""
@@ -77,6 +106,15 @@ class Search(Part):
     """Creatures evaluated in a generation."""
     block: int = Field(default=16, ge=1, le=4096)
     """Creatures evaluated by one call of the compiled program; results depend on its bits."""
+    stop: Stop = Stop()
+    """When to end before the generations are through."""
+    reevaluation: Reevaluation | None = None
+    """How elites are evaluated again; none: they are not."""
+
+
+class Search(Generations):
+    """MAP-Elites: children of elites in generations of equal size."""
+
     emitters: Annotated[tuple[Emitter, ...], Field(min_length=1, max_length=16)] = (
         NeatEmitter(),
     )

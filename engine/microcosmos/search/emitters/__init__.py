@@ -1,5 +1,7 @@
 """Emitters: where children come from."""
 
+from . import population
+from .cma_mae import CmaMae
 from .elites import newcomers
 from .emitter import NO_PARENT, OPERATORS, Children, Emitter, Outcome, emit, tell
 from .neat import Neat
@@ -10,6 +12,7 @@ __all__ = [
     "NO_PARENT",
     "OPERATORS",
     "Children",
+    "CmaMae",
     "Emitter",
     "IsoLine",
     "Neat",
@@ -17,5 +20,6 @@ __all__ = [
     "Random",
     "emit",
     "newcomers",
+    "population",
     "tell",
 ]

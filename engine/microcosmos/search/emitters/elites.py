@@ -1,6 +1,7 @@
 """Drawing parents from an archive."""
 
 from collections.abc import Callable
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -10,7 +11,7 @@ from ...genomes import Genotype
 from ..insertion import Elites
 from .emitter import NO_PARENT, OPERATORS, Children, Keys
 
-Newcomer = Callable[..., Genotype]
+Newcomer = Callable[..., Any]
 """`newcomer(key=...)` makes a random genotype."""
 
 

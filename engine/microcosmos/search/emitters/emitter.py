@@ -15,6 +15,7 @@ OPERATORS = (
     "random",
     "neat",
     "crossover",
+    "copy",
     "iso+line",
     "gaussian",
     "cma-me",
@@ -78,7 +79,7 @@ class Emitter(Protocol):
         generation: Int[Array, ""],
         *,
         keys: Keys,
-    ) -> tuple[Children, Counters]:
+    ) -> tuple[Children, PyTree[Array], Counters]:
         """Children, with a key for each slot; new genes are numbered by `counters`."""
         ...
 
@@ -95,21 +96,23 @@ def emit(
     generation: Int[Array, ""],
     *,
     key: PRNGKeyArray,
-) -> tuple[Children, Counters]:
-    """The children of all emitters, one after another.
+) -> tuple[Children, tuple[PyTree[Array], ...], Counters]:
+    """The children of all emitters, one after another, and what the emitters keep of them.
 
     Every slot has a key of its own, derived from the seed, the generation and the slot.
     """
     batch = sum(emitter.slots for emitter in emitters)
     turn = jax.random.fold_in(key, generation)
     keys = jax.vmap(lambda slot: jax.random.fold_in(turn, slot))(jnp.arange(batch))
-    broods, first = [], 0
+    broods, kept, first = [], [], 0
     for emitter, state in zip(emitters, states, strict=True):
         own = keys[first : first + emitter.slots]
-        brood, counters = emitter.emit(state, archive, counters, generation, keys=own)
+        brood, state, counters = emitter.emit(state, archive, counters, generation, keys=own)
         broods.append(brood)
+        kept.append(state)
         first += emitter.slots
-    return jax.tree.map(lambda *parts: jnp.concatenate(parts), *broods), counters
+    children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *broods)
+    return children, tuple(kept), counters
 
 
 def tell(

@@ -35,7 +35,7 @@ class Neat:
         generation: Int[Array, ""],
         *,
         keys: Keys,
-    ) -> tuple[Children, neat.Counters]:
+    ) -> tuple[Children, None, neat.Counters]:
         """Children of elites drawn with equal probability; newcomers where there are none."""
 
         def child(key):
@@ -55,7 +55,7 @@ class Neat:
         varied = Children(varied.genotypes, varied.parents, operator)
         any_elite = jnp.any(archive.occupied)
         counters = jax.tree.map(lambda a, b: jnp.where(any_elite, a, b), numbered, counters)
-        return either(archive, varied, newcomers(self.newcomer, keys)), counters
+        return either(archive, varied, newcomers(self.newcomer, keys)), None, counters
 
     def tell(self, state: None, outcome: Outcome) -> None:
         """Nothing is learnt but what the archive holds."""
@@ -66,7 +66,8 @@ class Neat:
         happens = jax.random.bernoulli(whether, self.crossover) & (other != cell)
         fitter = archive.fitness[cell] >= archive.fitness[other]
         pair = jnp.where(fitter, cell, other), jnp.where(fitter, other, cell)
-        crossed = neat.crossover(*(_network(archive, one) for one in pair), key=cross_key)
+        one, two = (_network(archive, chosen) for chosen in pair)
+        crossed = neat.crossover(one, two, key=cross_key)
         parent = _network(archive, cell)
         parent = jax.tree.map(lambda a, b: jnp.where(happens, a, b), crossed, parent)
         return parent, jnp.where(happens, other, NO_PARENT)

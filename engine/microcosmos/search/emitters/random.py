@@ -28,9 +28,9 @@ class Random:
         generation: Int[Array, ""],
         *,
         keys: Keys,
-    ) -> tuple[Children, Counters]:
+    ) -> tuple[Children, None, Counters]:
         """A newcomer in each slot."""
-        return newcomers(self.newcomer, keys), counters
+        return newcomers(self.newcomer, keys), None, counters
 
     def tell(self, state: None, outcome: Outcome) -> None:
         """Nothing is learnt."""

@@ -36,13 +36,13 @@ class IsoLine:
         generation: Int[Array, ""],
         *,
         keys: Keys,
-    ) -> tuple[Children, Counters]:
+    ) -> tuple[Children, None, Counters]:
         """Children of elites drawn with equal probability; newcomers where there are none."""
         values, *cells = jax.vmap(lambda key: self._child(archive, key=key))(keys)
         parents = cells if self.line else cells[:1]
         name = "iso+line" if self.line else "gaussian"
         varied = children(Vector(values), parents, name)
-        return either(archive, varied, newcomers(self.newcomer, keys)), counters
+        return either(archive, varied, newcomers(self.newcomer, keys)), None, counters
 
     def tell(self, state: None, outcome: Outcome) -> None:
         """Nothing is learnt but what the archive holds."""

@@ -1,5 +1,10 @@
-"""MAP-Elites (Mouret and Clune, arXiv:1504.04909, 2015): emit, evaluate, insert, tell."""
+"""Search with an archive: emit, evaluate, insert, tell.
 
+With emitters that draw parents from the archive it is MAP-Elites (Mouret and Clune,
+arXiv:1504.04909, 2015); with a population of its own the archive only looks on.
+"""
+
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,35 +15,38 @@ import numpy as np
 
 from .. import neat, search
 from ..genomes import Genotype
-from . import archive_file, lineage
+from . import again, archive_file, lineage
 from .report import Report
-from .state import CURVES, KEPT, Diverged, Plan, State, start
+from .state import CURVES, ENDS, KEPT, Diverged, Plan, State, start
 
 
 @dataclass(frozen=True)
 class Programs:
     """The compiled parts of a generation."""
 
-    emit: Callable[..., tuple[search.Children, neat.Counters]]
+    emit: Callable[..., tuple[search.Children, tuple, neat.Counters]]
     evaluate_block: Callable[[Genotype], search.Evaluation]
     insert: Callable[[search.Elites, search.Elites], tuple[search.Elites, search.Inserted]]
     tell: Callable[[tuple, search.Outcome], tuple]
+    forget: Callable[..., search.reevaluation.Repeats]
 
 
 @dataclass(frozen=True)
-class QualityDiversity:
-    """A quality-diversity run, driven by whoever holds it."""
+class Evolution:
+    """A search that fills an archive, driven by whoever holds it."""
 
     plan: Plan
     programs: Programs
+    repeats: again.Programs | None = None
+    """What evaluates elites again, if they are."""
 
     def init(self) -> State:
         """Before the first generation."""
         return start(self.plan)
 
     def done(self, state: State) -> bool:
-        """Whether all generations are completed."""
-        return state.generation >= self.plan.generations
+        """Whether all generations are completed, or a limit was reached."""
+        return bool(state.ended) or state.generation >= self.plan.generations
 
     def generation(self, state: State) -> int:
         """Generations completed."""
@@ -52,17 +60,19 @@ class QualityDiversity:
         Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
         """
         programs = self.programs
-        children, counters = programs.emit(
+        children, emitters, counters = programs.emit(
             state.emitters, state.elites, state.counters, jnp.asarray(state.generation)
         )
-        children = jax.device_get(children)
+        children, began = jax.device_get(children), time.monotonic()
         evaluation = search.evaluate_blocks(
             programs.evaluate_block, children.genotypes, block=self.plan.block, stop=stop
         )
+        seconds = (time.monotonic() - began) * jax.local_device_count()
         candidates = _candidates(state.generation + 1, children, evaluation)
         elites, inserted = programs.insert(state.elites, candidates)
-        emitters = programs.tell(state.emitters, _outcome(candidates, inserted))
+        emitters = programs.tell(emitters, _outcome(candidates, inserted))
         inserted = jax.device_get(inserted)
+        clipped = search.clipped(candidates, self.plan.axes)
         slots = np.flatnonzero(inserted.entered)
         news = lineage.record(
             self.plan, state, children, evaluation, inserted.cell[slots], slots
@@ -75,6 +85,9 @@ class QualityDiversity:
             elites=elites,
             counters=counters,
             emitters=emitters,
+            repeats=programs.forget(state.repeats, inserted.cell, inserted.entered),
+            fates=np.concatenate([state.fates, self._fates(inserted)[None]]),
+            device_seconds=state.device_seconds + seconds,
             kin=news.kin,
             creatures=news.creatures,
             operators=news.operators,
@@ -82,9 +95,14 @@ class QualityDiversity:
             lineage=news.lineage,
             quarantine=_set_apart(state, children.genotypes, np.asarray(evaluation.status)),
         )
-        row = _summary(state)
+        state = replace(state, ended=_ended(self.plan, state))
+        corrected = (np.nan, np.nan, np.nan)
+        if self.repeats and again.due(self.plan, state):
+            state = again.evaluate(self.plan, self.repeats, state, stop)
+            corrected = again.figures(self.repeats, state)
+        row = np.array([*_figures(state), clipped, *corrected])
         state = replace(state, curves=np.concatenate([state.curves, row[None]]))
-        return state, _report(state, news.elites)
+        return state, _report(self.plan, state, news.elites, seconds)
 
     def creature(self, state: State, cell: int) -> dict[str, Any]:
         """The creature file of a cell's elite."""
@@ -110,6 +128,16 @@ class QualityDiversity:
         differ, and the file says so.
         """
         return archive_file.restore(self.plan, data, other_device=other_device)
+
+    def _fates(self, inserted: search.Inserted) -> np.ndarray:
+        """The row of `FATES` of each emitter."""
+        slots = [emitter.slots for emitter in self.plan.emitters]
+        ends = np.cumsum(slots)[:-1]
+        fresh = np.split(np.asarray(inserted.entered & inserted.fresh), ends)
+        better = np.split(np.asarray(inserted.entered & ~inserted.fresh), ends)
+        return np.array(
+            [[n, a.sum(), b.sum()] for n, a, b in zip(slots, fresh, better, strict=True)]
+        )
 
 
 def _candidates(
@@ -151,16 +179,28 @@ def _set_apart(state: State, genotypes: Genotype, status: np.ndarray) -> Diverge
     return jax.tree.map(lambda a, b: np.concatenate([a, b])[-KEPT:], state.quarantine, new)
 
 
-def _summary(state: State) -> np.ndarray:
-    """The row of `CURVES` for the present archive, summed in double precision."""
+def _ended(plan: Plan, state: State) -> int:
+    """The place in `ENDS` of the limit that the state has reached, 0 where it has none."""
+    limits, elites = plan.limits, state.elites
+    best = np.max(np.where(elites.occupied, elites.fitness, -np.inf))
+    reached = {
+        "evaluations": state.evaluations >= limits.evaluations,
+        "fitness": best >= limits.fitness,
+        "device_hours": state.device_seconds >= 3600 * limits.device_hours,
+    }
+    return next((ENDS.index(name) for name, there in reached.items() if there), 0)
+
+
+def _figures(state: State) -> tuple[float, ...]:
+    """The first columns of `CURVES` for the present archive, summed in double precision."""
     occupied = np.asarray(state.elites.occupied)
     fitness = np.asarray(state.elites.fitness, np.float64)[occupied]
     best, mean = (fitness.max(), fitness.mean()) if len(fitness) else (0.0, 0.0)
     coverage = len(fitness) / len(occupied)
-    return np.array([fitness.sum(), coverage, best, mean, state.evaluations, state.diverged])
+    return fitness.sum(), coverage, best, mean, state.evaluations, state.diverged
 
 
-def _report(state: State, elites: tuple) -> Report:
+def _report(plan: Plan, state: State, elites: tuple, seconds: float) -> Report:
     values = dict(zip(CURVES, state.curves[-1].tolist(), strict=True))
     return Report(
         generation=state.generation,
@@ -171,4 +211,19 @@ def _report(state: State, elites: tuple) -> Report:
         evaluations=state.evaluations,
         diverged=state.diverged,
         elites=elites,
+        summary=_told(plan, state, values, seconds),
     )
+
+
+def _told(plan: Plan, state: State, values: dict, seconds: float) -> dict:
+    """What else there is to tell of the generation."""
+    told: dict[str, Any] = {"device_seconds": seconds, "clipped": int(values["clipped"])}
+    for i, name in enumerate(plan.names):
+        _, inserted, improved = state.fates[-1, i].tolist()
+        told |= {f"{name}: inserted": inserted, f"{name}: improved": improved}
+    for name in ("corrected_qd_score", "corrected_coverage", "hit_rate"):
+        if np.isfinite(values[name]):
+            told[name] = values[name]
+    if state.ended:
+        told["ended"] = f"{ENDS[state.ended]} after generation {state.generation}"
+    return told

@@ -1,0 +1,77 @@
+"""Evaluating elites again, and what that makes of the archive."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int, PRNGKeyArray
+
+from .. import search
+from ..search.reevaluation import Disturbance, Repeats, disturbance
+from .state import Again, Plan, State
+
+SAMPLES = 2**30
+"""Numbers from here on stand for samples where keys are derived, below it for slots."""
+
+
+@dataclass(frozen=True)
+class Programs:
+    """The compiled parts of evaluating elites again."""
+
+    disturb: Callable[..., Disturbance]
+    """From a generation and a sample's number to the conditions in every cell."""
+    evaluate_block: Callable[..., search.Evaluation]
+    add: Callable[..., Repeats]
+    correct: Callable[[search.Elites, Repeats], Float[Array, "cell"]]
+
+
+def disturb(
+    again: Again, key: PRNGKeyArray, cells: int, generation: Int[Array, ""], sample: int
+) -> Disturbance:
+    """The conditions in every cell, derived from seed, generation, sample and cell."""
+    turn = jax.random.fold_in(jax.random.fold_in(key, generation), SAMPLES + sample)
+    keys = jax.vmap(lambda cell: jax.random.fold_in(turn, cell))(jnp.arange(cells))
+    return jax.vmap(lambda own: disturbance(again.spread, again.size, key=own))(keys)
+
+
+def due(plan: Plan, state: State) -> bool:
+    """Whether elites are evaluated again after the state's generation."""
+    last = bool(state.ended) or state.generation >= plan.generations
+    return plan.again is not None and (last or state.generation % plan.again.every == 0)
+
+
+def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> State:
+    """The state with every elite evaluated again; raises `Stopped` as `advance` does."""
+    assert plan.again is not None
+    done = np.asarray(state.elites.occupied)
+    cells, repeats = np.flatnonzero(done), state.repeats
+    genotypes = jax.tree.map(lambda x: np.asarray(x)[cells], state.elites.genotypes)
+    for sample in range(plan.again.samples):
+        changed = programs.disturb(jnp.asarray(state.generation), jnp.asarray(sample))
+        changed = jax.tree.map(lambda x: np.asarray(x)[cells], changed)
+        found = search.evaluate_blocks(
+            programs.evaluate_block, (genotypes, changed), block=plan.block, stop=stop
+        )
+        everywhere = jax.tree.map(lambda x: _spread(x, cells, plan.cells), found)
+        repeats = programs.add(repeats, jnp.asarray(done), everywhere)
+    return replace(state, repeats=repeats)
+
+
+def figures(programs: Programs, state: State) -> tuple[float, float, float]:
+    """Corrected QD score and coverage, and how often a repeat fell into its own cell."""
+    count = np.asarray(state.repeats.count)
+    if not count.any():
+        return np.nan, np.nan, np.nan
+    corrected = np.asarray(programs.correct(state.elites, state.repeats), np.float64)
+    there = corrected[np.isfinite(corrected)]
+    hits = np.asarray(state.repeats.hits).sum() / count.sum()
+    return float(there.sum()), len(there) / len(corrected), float(hits)
+
+
+def _spread(rows: np.ndarray, cells: np.ndarray, count: int) -> np.ndarray:
+    """Rows of some cells as rows of all, zeros elsewhere."""
+    everywhere = np.zeros((count, *rows.shape[1:]), rows.dtype)
+    everywhere[cells] = rows
+    return everywhere

@@ -1,0 +1,107 @@
+"""CMA-MAE (Fontaine and Nikolaidis, GECCO 2023): climbing above thresholds that follow.
+
+An evolution strategy ranks its children by how far they are above their cells' thresholds,
+which then move towards the fitness found there. The batch form of that is the one of
+Tjanaka et al., GECCO 2023 (pyribs), section on archives with learning rates.
+"""
+
+from dataclasses import dataclass, replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
+
+from ...genomes import Vector
+from ...neat import Counters
+from ..insertion import Elites
+from . import matrix_adaptation as es
+from .elites import Newcomer, draw
+from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+
+
+class Climb(eqx.Module):
+    """What the emitter knows."""
+
+    distribution: es.Distribution
+    z: Float[Array, "slot gene"]
+    """What the present children were drawn by."""
+    thresholds: Float[Array, "cell"]
+    restart: Bool[Array, ""]
+    """Whether to begin anew at some elite."""
+
+
+@dataclass(frozen=True)
+class CmaMae:
+    """One strategy whose children fill the emitter's slots."""
+
+    slots: int
+    newcomer: Newcomer
+    cells: int
+    step: float
+    learning_rate: float
+    threshold: float
+
+    def init(self, *, key: PRNGKeyArray) -> Climb:
+        """In the middle of all genes."""
+        mean = jnp.zeros_like(self.newcomer(key=key).values)
+        return Climb(
+            distribution=es.start(mean, self.step),
+            z=jnp.zeros((self.slots, mean.shape[0]), mean.dtype),
+            thresholds=jnp.full(self.cells, self.threshold, mean.dtype),
+            restart=jnp.zeros((), bool),
+        )
+
+    def emit(
+        self,
+        state: Climb,
+        archive: Elites,
+        counters: Counters,
+        generation: Int[Array, ""],
+        *,
+        keys: Keys,
+    ) -> tuple[Children, Climb, Counters]:
+        """Drawn from the distribution; genes are cut at −1 and 1."""
+        chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
+        genotypes = archive.genotypes
+        assert isinstance(genotypes, Vector)
+        # Where the archive is empty, its first row of zeros is the middle again.
+        anew = es.start(genotypes.values[chosen], self.step)
+        distribution = jax.tree.map(
+            lambda a, b: jnp.where(state.restart, a, b), anew, state.distribution
+        )
+        values, z = es.draw(distribution, keys=keys)
+        children = Children(
+            Vector(jnp.clip(values, -1.0, 1.0)),
+            jnp.full((self.slots, 2), NO_PARENT, jnp.int32),
+            jnp.full(self.slots, OPERATORS.index("cma-mae"), jnp.int32),
+        )
+        state = replace(state, distribution=distribution, z=z, restart=jnp.zeros((), bool))
+        return children, state, counters
+
+    def tell(self, state: Climb, outcome: Outcome) -> Climb:
+        """Rank by the height above thresholds, adapt, and let the thresholds follow."""
+        here = state.thresholds[jnp.minimum(outcome.cell, self.cells - 1)]
+        height = jnp.where(outcome.sound, outcome.fitness - here, -jnp.inf)
+        order = jnp.argsort(-height, stable=True)
+        strategy = es.Strategy(state.z.shape[1], self.slots)
+        distribution = es.update(state.distribution, state.z, order, strategy)
+        flat = (height[order[0]] - height[order[-1]]) < 1e-12
+        return replace(
+            state,
+            distribution=distribution,
+            thresholds=self._followed(state.thresholds, outcome, height > 0),
+            restart=es.spent(distribution) | flat,
+        )
+
+    def _followed(
+        self, thresholds: Float[Array, "cell"], outcome: Outcome, above: Bool[Array, "slot"]
+    ) -> Float[Array, "cell"]:
+        """After k children of mean fitness f in a cell: t + (1 − (1 − α)ᵏ) (f − t)."""
+        cell = jnp.where(above, outcome.cell, self.cells)
+        fitness = jnp.where(above, outcome.fitness, 0.0)
+        none = jnp.zeros_like(thresholds)
+        count = none.at[cell].add(1.0, mode="drop")
+        mean = none.at[cell].add(fitness, mode="drop") / jnp.maximum(count, 1.0)
+        kept = (1.0 - self.learning_rate) ** count
+        return jnp.where(count > 0, kept * thresholds + (1 - kept) * mean, thresholds)

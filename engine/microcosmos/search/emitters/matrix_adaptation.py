@@ -1,0 +1,121 @@
+"""The evolution strategy with matrix adaptation: CMA-ES without a decomposition.
+
+Beyer and Sendhoff, IEEE Trans. Evol. Comput. 21, 746 (2017), fig. 7, with the weights and
+rates of Hansen, arXiv:1604.00772 (2016), table 1. Letters are theirs: σ the step, M the
+matrix whose M Mᵀ is the covariance, s the path, z what is drawn and d = M z.
+"""
+
+from dataclasses import dataclass
+from math import log, sqrt
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int, PRNGKeyArray
+
+SMALLEST, LARGEST = 1e-10, 1e4
+"""Standard deviations beyond which a distribution has converged or run away."""
+
+
+class Distribution(eqx.Module):
+    """What children are drawn from."""
+
+    mean: Float[Array, "gene"]
+    sigma: Float[Array, ""]
+    m: Float[Array, "gene gene"]
+    s: Float[Array, "gene"]
+
+
+@dataclass(frozen=True)
+class Strategy:
+    """Weights and rates for so many genes and children."""
+
+    genes: int
+    children: int
+
+    @property
+    def weights(self) -> np.ndarray:
+        """Of the better half of the children, the best first; they sum to 1."""
+        half = max(1, self.children // 2)
+        raw = log((self.children + 1) / 2) - np.log(np.arange(1, half + 1))
+        raw = np.maximum(raw, 0.0)
+        return raw / raw.sum() if raw.sum() > 0 else np.ones(1)
+
+    @property
+    def mu_eff(self) -> float:
+        """How many children count, as far as variance goes."""
+        return float(1 / np.sum(self.weights**2))
+
+    @property
+    def c_s(self) -> float:
+        return (self.mu_eff + 2) / (self.genes + self.mu_eff + 5)
+
+    @property
+    def c_1(self) -> float:
+        return 2 / ((self.genes + 1.3) ** 2 + self.mu_eff)
+
+    @property
+    def c_w(self) -> float:
+        spread = 2 * (self.mu_eff - 2 + 1 / self.mu_eff)
+        return min(1 - self.c_1, spread / ((self.genes + 2) ** 2 + self.mu_eff))
+
+    @property
+    def d_s(self) -> float:
+        beyond = max(0.0, sqrt((self.mu_eff - 1) / (self.genes + 1)) - 1)
+        return 1 + self.c_s + 2 * beyond
+
+    @property
+    def expected_length(self) -> float:
+        """Of a vector drawn from N(0, I)."""
+        n = self.genes
+        return sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n**2))
+
+
+def start(mean: Float[Array, "gene"], sigma: float) -> Distribution:
+    """Equal in all directions."""
+    genes = mean.shape[0]
+    eye = jnp.eye(genes, dtype=mean.dtype)
+    return Distribution(mean, jnp.asarray(sigma, mean.dtype), eye, jnp.zeros_like(mean))
+
+
+def draw(
+    distribution: Distribution, *, keys: PRNGKeyArray
+) -> tuple[Float[Array, "child gene"], Float[Array, "child gene"]]:
+    """Children, and the z that each was drawn by."""
+    mean, m = distribution.mean, distribution.m
+    z = jax.vmap(lambda key: jax.random.normal(key, mean.shape, mean.dtype))(keys)
+    return mean[None] + distribution.sigma * (z @ m.T), z
+
+
+def update(
+    distribution: Distribution,
+    z: Float[Array, "child gene"],
+    order: Int[Array, "child"],
+    strategy: Strategy,
+) -> Distribution:
+    """The distribution after its children were ranked; `order` has the best first."""
+    w = jnp.asarray(strategy.weights, z.dtype)
+    best = z[order[: len(w)]]
+    d = best @ distribution.m.T
+    c_s, c_1, c_w = strategy.c_s, strategy.c_1, strategy.c_w
+    z_w = jnp.sum(w[:, None] * best, 0)
+    s = (1 - c_s) * distribution.s + sqrt(c_s * (2 - c_s) * strategy.mu_eff) * z_w
+    rank_one = jnp.outer(distribution.m @ s, s)
+    rank_mu = (w[:, None] * d).T @ best
+    m = (1 - (c_1 + c_w) / 2) * distribution.m + c_1 / 2 * rank_one + c_w / 2 * rank_mu
+    length = jnp.sqrt(jnp.sum(s * s)) / strategy.expected_length
+    return Distribution(
+        mean=distribution.mean + distribution.sigma * jnp.sum(w[:, None] * d, 0),
+        sigma=distribution.sigma * jnp.exp(c_s / strategy.d_s * (length - 1)),
+        m=m,
+        s=s,
+    )
+
+
+def spent(distribution: Distribution) -> Array:
+    """Whether nothing can come of it: converged, run away, or not finite."""
+    deviations = distribution.sigma * jnp.sqrt(jnp.sum(distribution.m**2, 1))
+    finite = jnp.all(jnp.isfinite(distribution.m)) & jnp.all(jnp.isfinite(distribution.mean))
+    useful = (jnp.max(deviations) > SMALLEST) & (jnp.max(deviations) < LARGEST)
+    return ~(finite & useful)

@@ -1,0 +1,91 @@
+"""A NEAT population of its own: parents are its networks, the archive only looks on."""
+
+from dataclasses import dataclass, replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int, PRNGKeyArray
+
+from ... import neat
+from ...genomes import CPPN
+from ..insertion import Elites
+from .elites import Newcomer
+from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+
+AROSE = np.array(
+    [OPERATORS.index(name) for name in ("copy", "neat", "crossover", "crossover")], np.int32
+)
+"""Our operator codes by NEAT's."""
+
+
+class Population(eqx.Module):
+    """The networks of a generation, their fitness once they have one, and their species."""
+
+    networks: CPPN
+    fitness: Float[Array, "slot"]
+    species: neat.Species
+    age: Int[Array, ""]
+    """Generations that were emitted."""
+
+
+@dataclass(frozen=True)
+class Neat:
+    """NEAT whole (Stanley and Miikkulainen 2002): species, sharing, crossover."""
+
+    slots: int
+    newcomer: Newcomer
+    settings: neat.Settings
+    inputs: int
+    outputs: int
+
+    def init(self, *, key: PRNGKeyArray) -> Population:
+        """Newcomers, which the first generation consists of."""
+        keys = jax.random.split(key, self.slots)
+        networks = jax.vmap(lambda own: self.newcomer(key=own))(keys)
+        return Population(
+            networks=networks,
+            fitness=jnp.full(self.slots, -jnp.inf, networks.weight.dtype),
+            species=neat.first_species(networks, self.settings),
+            age=jnp.zeros((), jnp.int32),
+        )
+
+    def emit(
+        self,
+        state: Population,
+        archive: Elites,
+        counters: neat.Counters,
+        generation: Int[Array, ""],
+        *,
+        keys: Keys,
+    ) -> tuple[Children, Population, neat.Counters]:
+        """The newcomers first, then the children of the generation before."""
+        cells = archive.occupied.shape[0]
+        alone = jnp.full((self.slots, 2), NO_PARENT, jnp.int32)
+        random = jnp.zeros(self.slots, jnp.int32)
+        first = Children(state.networks, alone, random), state.species, counters
+
+        def bear():
+            networks, species, numbered, parents, code = neat.next_generation(
+                state.networks,
+                state.fitness,
+                state.species,
+                counters,
+                self.settings,
+                inputs=self.inputs,
+                outputs=self.outputs,
+                key=keys[0],
+                generation=state.age - 1,
+            )
+            parents = jnp.where(parents < 0, NO_PARENT, parents + cells).astype(jnp.int32)
+            return Children(networks, parents, jnp.asarray(AROSE)[code]), species, numbered
+
+        children, species, counters = jax.lax.cond(state.age > 0, bear, lambda: first)
+        fitness = jnp.full_like(state.fitness, -jnp.inf)
+        grown = Population(children.genotypes, fitness, species, state.age + 1)
+        return children, grown, counters
+
+    def tell(self, state: Population, outcome: Outcome) -> Population:
+        """Fitness decides who has children; what diverged has none."""
+        return replace(state, fitness=jnp.where(outcome.sound, outcome.fitness, -jnp.inf))

@@ -1,0 +1,163 @@
+"""Evaluation again under disturbed conditions: how much of a result was luck.
+
+Elites are the best of many noisy or fragile evaluations; Flageat and Cully, Artificial Life
+32 (2020) and arXiv:2308.00463 correct an archive by evaluating its elites again.
+"""
+
+from dataclasses import replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
+
+from ..genomes import Genotype
+from ..world import State, rollout
+from .evaluation import Evaluation, Task, drive, fitness, mapped, measure, observe, status
+from .insertion import Axis, Elites, cells_of
+
+Scalar = Float[Array, "*block"]
+
+
+class Disturbance(eqx.Module):
+    """What differs from the conditions under which elites are chosen."""
+
+    phase: Scalar
+    """How far a periodic timer is ahead, in rad."""
+    turn: Scalar
+    """How far the body is turned about its middle, in rad."""
+    shift: Float[Array, "*block 2"]
+    """How far the body is moved, in cells."""
+    viscosity: Scalar
+    """A factor."""
+    energy: Int[Array, "*block 2"]
+    """How far the energy's packets are moved, in cells."""
+
+
+class Spread(eqx.Module):
+    """How far conditions are disturbed, each switched off by 0 or False."""
+
+    phase: bool = eqx.field(static=True, default=True)
+    pose: bool = eqx.field(static=True, default=True)
+    viscosity: float = eqx.field(static=True, default=0.05)
+    energy: bool = eqx.field(static=True, default=True)
+
+
+class Repeats(eqx.Module):
+    """What evaluating elites again has shown, a row for each cell."""
+
+    count: Int[Array, "cell"]
+    """Evaluations under disturbed conditions of the present elite."""
+    failed: Int[Array, "cell"]
+    """Those that diverged; they are in no mean."""
+    hits: Int[Array, "cell"]
+    """Those whose descriptors fell into the elite's own cell."""
+    fitness: Float[Array, "cell"]
+    """Mean."""
+    squares: Float[Array, "cell"]
+    """Sum of squared deviations of fitness from its mean."""
+    features: Float[Array, "cell feature"]
+    """Means."""
+
+
+def no_repeats(cells: int, features: int) -> Repeats:
+    """Nobody was evaluated again yet."""
+    none = jnp.zeros(cells, jnp.int32)
+    zeros = jnp.zeros(cells, jnp.float32)
+    return Repeats(none, none, none, zeros, zeros, jnp.zeros((cells, features), jnp.float32))
+
+
+def disturbance(spread: Spread, size: tuple[int, int], *, key: PRNGKeyArray) -> Disturbance:
+    """One draw, uniform within the spread."""
+    phase_key, turn_key, shift_key, viscosity_key, energy_key = jax.random.split(key, 5)
+    sides = jnp.asarray(size, jnp.float32)
+    whole = 2 * jnp.pi
+    posed = float(spread.pose)
+    change = jax.random.uniform(viscosity_key, minval=-1.0, maxval=1.0)
+    return Disturbance(
+        phase=whole * jax.random.uniform(phase_key) * float(spread.phase),
+        turn=whole * jax.random.uniform(turn_key) * posed,
+        shift=sides * jax.random.uniform(shift_key, (2,)) * posed,
+        viscosity=1.0 + spread.viscosity * change,
+        energy=jnp.floor(sides * jax.random.uniform(energy_key, (2,))).astype(jnp.int32)
+        * int(spread.energy),
+    )
+
+
+def evaluate_disturbed(task: Task, genotype: Genotype, changed: Disturbance) -> Evaluation:
+    """Simulate one creature under other conditions and measure it."""
+    world = replace(task.world, viscosity=task.world.viscosity * changed.viscosity)
+    task = replace(task, world=world, phase=changed.phase)
+    driven = drive(task, genotype)
+    driven = replace(driven, start=moved(driven.start, changed))
+    end, seen = rollout(driven.world, driven.start, driven.inputs, observe, driven.control)
+    features = measure(task, genotype, driven.start, end, seen)
+    return Evaluation(fitness(task, features), features, status(driven.world, end, features))
+
+
+def moved(start: State, changed: Disturbance) -> State:
+    """The body turned about its middle and moved, the energy elsewhere."""
+    c, s = jnp.cos(changed.turn), jnp.sin(changed.turn)
+    middle = jnp.mean(start.positions, 0)
+    x, y = (start.positions - middle[None]).T
+    turned = jnp.stack([c * x - s * y, s * x + c * y], 1) + middle[None]
+    energy = start.energy
+    if energy is not None:
+        energy = jnp.roll(energy, changed.energy, (0, 1))
+    return replace(
+        start,
+        positions=turned + changed.shift[None],
+        angles=start.angles + changed.turn,
+        energy=energy,
+    )
+
+
+def disturbed_program(task: Task, options: dict):
+    """One compiled program for a block of genotypes and disturbances."""
+    return jax.jit(
+        lambda block: mapped(lambda one: evaluate_disturbed(task, *one), block),
+        compiler_options=options,
+    )
+
+
+def forget(repeats: Repeats, cells: Int[Array, "row"], entered: Bool[Array, "row"]) -> Repeats:
+    """Cells with new elites begin anew."""
+    place = jnp.where(entered, cells, repeats.count.shape[0])
+    return jax.tree.map(lambda x: x.at[place].set(jnp.zeros((), x.dtype), mode="drop"), repeats)
+
+
+def add(
+    repeats: Repeats, done: Bool[Array, "cell"], found: Evaluation, axes: tuple[Axis, ...]
+) -> Repeats:
+    """Take one more evaluation of some cells' elites into account (Welford 1962).
+
+    `found` has a row for each cell; where it was not `done` the row means nothing.
+    """
+    old, sound = repeats, done & (found.status == 0)
+    n = old.count - old.failed + sound
+    share = jnp.where(sound, 1 / jnp.maximum(n, 1), 0.0)
+    step = jnp.where(sound, found.fitness - old.fitness, 0.0)
+    strayed = jnp.where(sound[:, None], found.features - old.features, 0.0)
+    mean = old.fitness + share * step
+    cell = jnp.arange(done.shape[0])
+    return Repeats(
+        count=old.count + done,
+        failed=old.failed + (done & ~sound),
+        hits=old.hits + (sound & (cells_of(found.features, axes) == cell)),
+        fitness=mean,
+        squares=old.squares + jnp.where(sound, step * (found.fitness - mean), 0.0),
+        features=old.features + share[:, None] * strayed,
+    )
+
+
+def corrected(elites: Elites, repeats: Repeats, axes: tuple[Axis, ...]) -> Float[Array, "cell"]:
+    """Fitness of the corrected archive, NaN where it has nobody.
+
+    It holds every elite that was evaluated again by its mean fitness, in the cell of its mean
+    descriptors, the best one of each cell.
+    """
+    cells = repeats.count.shape[0]
+    known = elites.occupied & (repeats.count > repeats.failed)
+    place = jnp.where(known, cells_of(repeats.features, axes), cells)
+    best = jnp.full(cells, -jnp.inf).at[place].max(repeats.fitness, mode="drop")
+    return jnp.where(jnp.isfinite(best), best, jnp.nan)
