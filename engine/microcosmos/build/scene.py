@@ -123,23 +123,29 @@ def build_energy(
 
 
 def build_rods(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Rods:
-    """The bodies' graph as device arrays."""
+    """The bodies' graph as device arrays; of many equal bodies the colours of a few."""
+    nodes, edges = filaments.first_chunk(body.member, body.edges, body.joints)
 
-    def pairings(colours: tuple[bodies.Colour, ...]) -> tuple[filaments.Pairing, ...]:
+    def pairings(
+        colours: tuple[bodies.Colour, ...], members: int
+    ) -> tuple[filaments.Pairing, ...]:
         return tuple(
             filaments.Pairing(
-                jnp.asarray(c.partner), jnp.asarray(c.constraint), jnp.asarray(c.sign, dtype)
+                jnp.asarray(c.partner[:members]),
+                jnp.asarray(c.constraint[:members]),
+                jnp.asarray(c.sign[:members], dtype),
             )
             for c in colours
         )
 
     return filaments.Rods(
         edges=jnp.asarray(body.edges),
-        edge_colours=pairings(body.edge_colours),
-        joint_colours=pairings(body.joint_colours),
+        edge_colours=pairings(body.edge_colours, nodes),
+        joint_colours=pairings(body.joint_colours, edges),
         stretch=jnp.asarray(body.stretch, dtype),
         shear=jnp.asarray(body.shear, dtype),
         bend=jnp.asarray(body.bend, dtype),
+        joints=jnp.asarray(body.joints, jnp.int32),
     )
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Bool, Float, Int
 
 Distances = Float[Array, "*shape"]
 Vectors = Float[Array, "node 2"]
@@ -65,6 +65,8 @@ class Windows(eqx.Module):
     weights: Float[Array, "chunk row p p"]
     """Zero for the points that fill up the last chunk."""
     points: int = eqx.field(static=True)
+    density: Float[Array, "cell"] | None = None
+    """What planes are divided by when they are read; None: by nothing."""
 
     def chunks(self, values: Float[Array, "node channel"]) -> Float[Array, "chunk row channel"]:
         """Values at points, in the same chunks."""
@@ -93,6 +95,8 @@ def interpolate(
 ) -> Float[Array, "node channel"]:
     """J: the values of planes at points."""
     flat = [plane.reshape(-1) for plane in planes]
+    if at.density is not None:
+        flat = [plane / at.density for plane in flat]
 
     def read(chunk):
         cells, weights = chunk
@@ -123,12 +127,20 @@ def spread(
 
 
 def divided(at: Windows, plane: Plane) -> Windows:
-    """Windows whose weights are divided by a plane: J (p/ρ) without forming p/ρ everywhere."""
-    flat = plane.reshape(-1)
+    """Windows that read J (p/ρ): weights are divided, or where points are many the planes."""
+    density = plane.reshape(-1)
     if len(at.cells) == 1:
-        return Windows(at.cells, at.weights / flat[at.cells], at.points)
-    weights = jax.lax.map(lambda chunk: chunk[1] / flat[chunk[0]], (at.cells, at.weights))
-    return Windows(at.cells, weights, at.points)
+        return Windows(at.cells, at.weights / density[at.cells], at.points)
+    return Windows(at.cells, at.weights, at.points, density)
+
+
+def only(at: Windows, present: Bool[Array, "node"] | None) -> Windows:
+    """Windows of which those of absent points are empty."""
+    if present is None:
+        return at
+    real = at.chunks(present.astype(at.weights.dtype)[:, None])
+    weights = jnp.where(real[:, :, :, None] > 0, at.weights, 0.0)
+    return Windows(at.cells, weights, at.points, at.density)
 
 
 def _around(positions, size, kernel):

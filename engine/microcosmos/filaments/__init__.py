@@ -1,5 +1,6 @@
 """Elastic filaments: planar Cosserat rods by constraint projection."""
 
+from .chunks import first_chunk
 from .projection import (
     Pairing,
     Rest,
@@ -16,6 +17,7 @@ __all__ = [
     "Rest",
     "Rods",
     "edge_angles",
+    "first_chunk",
     "follow_geometry",
     "normals",
     "project",

@@ -9,7 +9,9 @@ Gauss-Seidel, and every displacement has an equal and opposite one.
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Bool, Float, Int
+
+from .chunks import in_chunks
 
 Positions = Float[Array, "node 2"]
 Angles = Float[Array, "edge"]
@@ -31,11 +33,14 @@ class Rods(eqx.Module):
     """The graph of a body and its stiffnesses."""
 
     edges: Int[Array, "edge 2"]
+    """Of all bodies; colours may be those of a first chunk of bodies, which then are equal."""
     edge_colours: tuple[Pairing, ...]
     joint_colours: tuple[Pairing, ...]
     stretch: Float[Array, "edge"]
     shear: Float[Array, "edge"]
     bend: Float[Array, "joint"]
+    joints: Int[Array, "joint 2"] | None = None
+    """Pairs of edges; only measures need them."""
 
 
 class Rest(eqx.Module):
@@ -56,9 +61,13 @@ def edge_angles(positions: Positions, rods: Rods) -> Angles:
     return jnp.arctan2(v[:, 1], v[:, 0])
 
 
-def normals(angles: Angles, rods: Rods, nodes: int) -> Float[Array, "node 2"]:
+def normals(
+    angles: Angles, rods: Rods, nodes: int, present: Bool[Array, "edge"] | None = None
+) -> Float[Array, "node 2"]:
     """Unit vectors across the filament at its nodes; zero where edges cancel each other."""
     across = jnp.stack([-jnp.sin(angles), jnp.cos(angles)], 1)
+    if present is not None:
+        across = jnp.where(present[:, None], across, 0.0)
     total = jnp.zeros((nodes, 2), angles.dtype).at[rods.edges].add(across[:, None])
     return total / jnp.sqrt(jnp.sum(total * total, 1, keepdims=True) + 1e-12)
 
@@ -97,7 +106,22 @@ def project(
     positions: Positions, angles: Angles, rods: Rods, rest: Rest, *, iterations: int
 ) -> tuple[Positions, Angles]:
     """Positions and angles after `iterations` sweeps of bending, then stretching."""
+    nodes, chunk = len(positions), len(rods.edge_colours[0].partner)
+    if chunk == nodes:
+        return _sweeps(positions, angles, rods, rest, iterations)
 
+    def sweep_chunk(given):
+        positions, angles, stiffness, rest = given
+        edges = rods.edges[: len(angles)]
+        own = Rods(edges, rods.edge_colours, rods.joint_colours, *stiffness)
+        return _sweeps(positions, angles, own, rest, iterations)
+
+    given = (positions, angles, (rods.stretch, rods.shear, rods.bend), rest)
+    moved, turned = in_chunks(sweep_chunk, given, nodes, chunk)
+    return moved, turned
+
+
+def _sweeps(positions, angles, rods, rest, iterations):
     def sweep(carry, _):
         positions, angles = carry
         angles = bend(angles, rods, rest)

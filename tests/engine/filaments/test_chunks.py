@@ -1,0 +1,118 @@
+"""Projection of many equal bodies, a chunk of them at a time."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import bodies, filaments
+from microcosmos.build import build_rods
+from microcosmos.filaments import chunks
+
+ITERATIONS = 10
+
+
+@pytest.fixture(params=["chain", "star"])
+def crowd(request, monkeypatch):
+    """Seven equal creatures, of which a chunk holds three."""
+    one = bodies.chain(9, 1.0) if request.param == "chain" else bodies.star(3, 3, 1.0)
+    monkeypatch.setattr(chunks, "CHUNK", 3 * len(one.positions) + 1)
+    return bodies.together([bodies.placed(one, (20.0 * i, 0.0)) for i in range(7)])
+
+
+def all_at_once(body, rods):
+    """The rods with the colours of all bodies."""
+
+    def pairings(colours):
+        parts = [(c.partner, c.constraint, c.sign) for c in colours]
+        return tuple(filaments.Pairing(*map(jnp.asarray, part)) for part in parts)
+
+    return replace(
+        rods,
+        edge_colours=pairings(body.edge_colours),
+        joint_colours=pairings(body.joint_colours),
+    )
+
+
+def disturbed(body):
+    """Nodes and angles off their rest, and stiffnesses and rest shapes of their own."""
+    random = np.random.default_rng(3)
+    rods = build_rods(body, jnp.dtype("float64"))
+    positions = jnp.asarray(body.positions + 0.2 * random.normal(size=body.positions.shape))
+    soft = replace(
+        rods,
+        stretch=jnp.asarray(random.uniform(0.5, 1, len(body.edges))),
+        shear=jnp.asarray(random.uniform(0.5, 1, len(body.edges))),
+        bend=jnp.asarray(random.uniform(0.5, 1, len(body.joints))),
+    )
+    rest = filaments.Rest(
+        jnp.asarray(body.rest_angle + random.uniform(-0.3, 0.3, len(body.joints))),
+        jnp.asarray(body.rest_length * random.uniform(0.8, 1.2, len(body.edges))),
+    )
+    return positions, filaments.edge_angles(positions, soft), soft, rest
+
+
+def test_equal_bodies_share_the_colours_of_the_first_chunk(crowd):
+    rods = build_rods(crowd)
+    nodes, edges = len(crowd.positions) // 7, len(crowd.edges) // 7
+    assert {len(colour.partner) for colour in rods.edge_colours} == {3 * nodes}
+    assert {len(colour.partner) for colour in rods.joint_colours} == {3 * edges}
+
+
+def test_few_bodies_are_one_chunk(monkeypatch):
+    two = bodies.together([bodies.placed(bodies.chain(9, 1.0), (0.0, y)) for y in (0.0, 9.0)])
+    monkeypatch.setattr(chunks, "CHUNK", 18)
+    assert filaments.first_chunk(two.member, two.edges, two.joints) == (18, 16)
+
+
+def test_bodies_that_differ_are_one_chunk(crowd):
+    other = bodies.placed(bodies.chain(8, 1.0), (150.0, 0.0))
+    mixed = bodies.together([crowd, other])
+    found = filaments.first_chunk(mixed.member, mixed.edges, mixed.joints)
+    assert found == (len(mixed.positions), len(mixed.edges))
+
+
+def test_bodies_of_as_many_nodes_whose_edges_differ_are_one_chunk(crowd):
+    edges = crowd.edges.copy()
+    edges[-1] = edges[-1, ::-1]
+    found = filaments.first_chunk(crowd.member, edges, crowd.joints)
+    assert found == (len(crowd.positions), len(crowd.edges))
+
+
+def test_chunks_find_what_all_bodies_at_once_do(float64, crowd):
+    positions, angles, rods, rest = disturbed(crowd)
+    found = filaments.project(positions, angles, rods, rest, iterations=ITERATIONS)
+    whole = all_at_once(crowd, rods)
+    expected = filaments.project(positions, angles, whole, rest, iterations=ITERATIONS)
+    for by_chunks, plain in zip(found, expected, strict=True):
+        np.testing.assert_allclose(by_chunks, plain, rtol=0, atol=1e-13)
+
+
+def test_displacements_of_each_body_sum_to_zero_in_chunks(float64, crowd):
+    positions, angles, rods, rest = disturbed(crowd)
+    moved, _ = filaments.project(positions, angles, rods, rest, iterations=ITERATIONS)
+    assert np.abs(moved - positions).max() > 0.1
+    of_body = np.asarray(moved - positions).reshape(7, -1, 2).sum(1)
+    np.testing.assert_allclose(of_body, 0, atol=1e-13)
+
+
+def test_chunks_have_the_gradient_of_all_bodies_at_once(float64, crowd):
+    positions, angles, rods, rest = disturbed(crowd)
+    stiffness = (rods.stretch, rods.shear, rods.bend)
+
+    def slope(rods):
+        @jax.jit
+        def total(positions, angles, rest, stiffness):
+            stretch, shear, bend = stiffness
+            own = replace(rods, stretch=stretch, shear=shear, bend=bend)
+            x, theta = filaments.project(positions, angles, own, rest, iterations=3)
+            return jnp.sum(jnp.sin(x)) + jnp.sum(theta**2)
+
+        return jax.tree.leaves(
+            jax.grad(total, (0, 1, 2, 3))(positions, angles, rest, stiffness)
+        )
+
+    for by_chunks, plain in zip(slope(rods), slope(all_at_once(crowd, rods)), strict=True):
+        np.testing.assert_allclose(by_chunks, plain, rtol=0, atol=1e-12)
