@@ -19,9 +19,15 @@ BOUND = 1e6
 
 
 def from_genes(
-    genes: Mapping[str, Any], inputs: Sequence[str], outputs: Sequence[str]
+    genes: Mapping[str, Any],
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    steps: int | None = None,
 ) -> Network:
-    """The network of a creature's genes, whose disabled connections are left out."""
+    """The network of a creature's genes, whose disabled connections are left out.
+
+    Feed-forward, or recurrent over so many `steps` from values of 0.
+    """
     nodes, connections = genes["nodes"], genes["connections"]
     on = np.flatnonzero(connections["enabled"]).tolist()
     ids = tuple(nodes["id"])
@@ -42,6 +48,7 @@ def from_genes(
         weight=enabled(decode(connections["weight"]).tolist()),
         marker=enabled(connections["innovation"]),
         rule="always",
+        steps=steps,
         bound=BOUND,
         input_names=tuple(inputs),
         output_names=tuple(outputs),

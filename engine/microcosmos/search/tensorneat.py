@@ -14,9 +14,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from ..genomes import ACTIVATIONS, CPPN, empty, from_genes
+from ..genomes import ACTIVATIONS, CPPN
 from ..neat import Settings
-from ..networks import read_tensorneat, to_genes
+from .populations import cppns
 
 COMMAND = "make tensorneat"
 
@@ -46,8 +46,6 @@ class Backend:
     next_state: Callable[[State, Array], State]
     meta: Mapping[str, Any]
     """What its genomes mean, as `networks.read_tensorneat` needs it."""
-    max_nodes: int
-    max_connections: int
 
     def setup(self, seed: int) -> State:
         """The first population."""
@@ -82,22 +80,9 @@ class Backend:
 
         In the place of another, whose outputs are NaN, stands a network without connections.
         """
-        genomes = zip(*self.ask(state), strict=True)
-        found = [self._network(nodes, connections) for nodes, connections in genomes]
-        silent = empty(self.max_nodes, self.max_connections)
-        fixed = self.meta["num_inputs"] + self.meta["num_outputs"]
-        silent.node_used[:fixed] = True
-        silent.node_id[:fixed] = np.arange(fixed)
-        networks = [silent if network is None else network for network in found]
-        batch = jax.tree.map(lambda *leaves: np.stack(leaves), *networks)
-        return batch, np.array([network is not None for network in found])
-
-    def _network(self, nodes: np.ndarray, connections: np.ndarray) -> CPPN | None:
-        try:
-            genes = to_genes(read_tensorneat(nodes, connections, self.meta), check=False)
-        except ValueError:
-            return None
-        return from_genes(genes, self.max_nodes, self.max_connections)
+        nodes, connections = self.ask(state)
+        names, ends = self.meta["activation_names"], ("num_inputs", "num_outputs")
+        return cppns(nodes, connections, names, *(self.meta[end] for end in ends))
 
 
 def build(
@@ -134,7 +119,7 @@ def build(
         "num_inputs": inputs,
         "num_outputs": outputs,
     }
-    return Backend(algorithm, jax.jit(algorithm.tell), meta, max_nodes, max_connections)
+    return Backend(algorithm, jax.jit(algorithm.tell), meta)
 
 
 def _genome(
