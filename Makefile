@@ -9,7 +9,7 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
 
-.PHONY: run install web test check bench acceptance validate lock
+.PHONY: run install web test check peers bench acceptance validate lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -47,8 +47,13 @@ test: install web
 	$(BIN)/pytest -n auto --maxprocesses 4 --dist loadfile tests/engine
 	$(BIN)/pytest --ignore=tests/engine
 
-bench: install
+# What benchmarks compare with; not needed for anything else.
+peers: install
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-peers.lock
+
+bench: peers
 	$(BIN)/python engine/benchmarks/physics.py
+	$(BIN)/python engine/benchmarks/archive.py
 
 acceptance: install web
 	$(BIN)/python tests/faults/acceptance.py
@@ -74,4 +79,5 @@ lock:
 	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra shapes -o requirements.lock
 	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra shapes --extra cuda -c requirements.lock -o requirements-cuda.lock
 	$(COMPILE) --group pyproject.toml:server -c requirements.lock -o requirements-server.lock
+	$(COMPILE) --group pyproject.toml:peers -c requirements.lock -o requirements-peers.lock
 	$(COMPILE) --group pyproject.toml:node -o requirements-node.lock
