@@ -61,6 +61,7 @@ class Base(DeclarativeBase):
         float: Double(),
         dict[str, Any]: JSON(none_as_null=True),
         list[str]: JSON(),
+        list[float]: JSON(),
     }
 
 
@@ -159,8 +160,8 @@ class Elite(Base):
     cell: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     generation: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     fitness: Mapped[float]
-    descriptor_0: Mapped[float]
-    descriptor_1: Mapped[float]
+    descriptors: Mapped[list[float]]
+    """In raw units, in the order of the archive's axes."""
     creature: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
 
 

@@ -70,8 +70,7 @@ def elite_row(elite: NewElite) -> dict[str, Any]:
         "cell": int(elite.cell),
         "generation": int(elite.generation),
         "fitness": float(elite.fitness),
-        "descriptor_0": float(elite.descriptors[0]),
-        "descriptor_1": float(elite.descriptors[1]),
+        "descriptors": [float(value) for value in elite.descriptors],
         "creature": elite.creature,
     }
 
@@ -151,7 +150,7 @@ def count_results(session: Session, run_id: UUID) -> int:
 def events(run_id: UUID, rows: Rows) -> Iterator[tuple[str, dict[str, Any]]]:
     """What everybody is told of a generation."""
     run, generation = str(run_id), rows.curve["generation"]
-    yield "generation", {"run": run, **rows.curve}
+    yield "generation", {"run": run, **rows.curve, "summary": rows.summary}
     if rows.elites:
         yield "elites", elites_event(run_id, generation, rows.elites)
     if rows.results:
@@ -167,7 +166,7 @@ def elites_event(run_id: UUID, generation: int, rows: list[dict[str, Any]]) -> d
         "generation": generation,
         "cell": [row["cell"] for row in rows],
         "fitness": [row["fitness"] for row in rows],
-        "descriptors": [[row["descriptor_0"], row["descriptor_1"]] for row in rows],
+        "descriptors": [row["descriptors"] for row in rows],
         "elite_generation": [row["generation"] for row in rows],
         "creature": [row["creature"] for row in rows],
     }

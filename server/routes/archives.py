@@ -27,8 +27,7 @@ COLUMNS = (
     Elite.cell,
     Elite.generation,
     Elite.fitness,
-    Elite.descriptor_0,
-    Elite.descriptor_1,
+    Elite.descriptors,
     Elite.creature,
 )
 
@@ -48,7 +47,7 @@ def read_archive(
         axes=[Axis(**axis) for axis in run.spec["archive"]["descriptors"]],
         cell=[elite.cell for elite in elites],
         fitness=[elite.fitness for elite in elites],
-        descriptors=[[elite.descriptor_0, elite.descriptor_1] for elite in elites],
+        descriptors=[elite.descriptors for elite in elites],
         elite_generation=[elite.generation for elite in elites],
         creature=[elite.creature for elite in elites],
     )

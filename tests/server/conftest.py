@@ -282,7 +282,17 @@ def table(identity) -> Callable[..., Any]:
 def report(identity) -> Callable[..., Any]:
     """What an experiment reports of a generation: new elites by cell, with their fitness."""
 
-    def make(generation: int, elites: dict[int, float] | None = None) -> Any:
+    def make(
+        generation: int,
+        elites: dict[int, float] | None = None,
+        descriptors: tuple[float, ...] = (0.25, 0.5),
+        features: dict[str, float] | None = None,
+        summary: dict[str, Any] | None = None,
+    ) -> Any:
+        found = [
+            elite(generation, *item, descriptors, features or {})
+            for item in (elites or {}).items()
+        ]
         return SimpleNamespace(
             generation=generation,
             qd_score=10.0 * generation,
@@ -291,17 +301,23 @@ def report(identity) -> Callable[..., Any]:
             mean=0.5 * generation,
             evaluations=16 * generation,
             diverged=generation,
-            elites=tuple(elite(generation, *item) for item in (elites or {}).items()),
+            elites=tuple(found),
             rows=(),
-            summary=None,
+            summary=summary,
         )
 
-    def elite(generation: int, cell: int, fitness: float) -> Any:
+    def elite(
+        generation: int,
+        cell: int,
+        fitness: float,
+        descriptors: tuple[float, ...],
+        features: dict[str, float],
+    ) -> Any:
         found = identity(1000 * generation + cell)
         return SimpleNamespace(
             cell=cell,
             fitness=fitness,
-            descriptors=(0.25, 0.5),
+            descriptors=descriptors,
             creature=creature.name(found),
             identity=creature.canonical(found),
             generation=generation,
@@ -312,6 +328,7 @@ def report(identity) -> Callable[..., Any]:
                     "displacement": fitness,
                     "bending_effort": 0.25,
                     "stretching_effort": 0.5,
+                    **features,
                 },
                 "block": 16,
                 "room": [24, 64],

@@ -7,6 +7,7 @@ from alembic import command
 from sqlalchemy import inspect, text
 
 from server import migrations
+from server.claims import claim
 from server.db import connect
 
 
@@ -55,3 +56,17 @@ def test_the_tables_can_be_taken_down_again(tmp_path):
         command.downgrade(migrations.config(connection), "base")
     assert inspect(sessions.engine).get_table_names() == ["alembic_version"]
     sessions.engine.dispose()
+
+
+def test_descriptors_go_down_to_two_columns_and_come_back_with_every_bit(
+    services, run_id, report, api
+):
+    precise = (0.1 + 0.2, 1 / 3e20)
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}, precise), 1.0)
+    with services.sessions.engine.begin() as connection:
+        command.downgrade(migrations.config(connection), "0002")
+        rows = connection.execute(text("SELECT descriptor_0, descriptor_1 FROM elites")).all()
+    assert [tuple(row) for row in rows] == [precise]
+    migrations.upgrade(services.sessions)
+    migrations.check(services.sessions)
+    assert api.get(f"runs/{run_id}/archive").json()["descriptors"] == [list(precise)]
