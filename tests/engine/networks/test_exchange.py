@@ -12,8 +12,6 @@ import pytest
 from microcosmos import networks
 from microcosmos.archive.cppn_genes import Connections, Nodes, check_genes
 
-pytestmark = pytest.mark.fast
-
 INPUTS, OUTPUTS = ("position", "sine", "cosine"), ("rest_angle", "rest_length")
 
 
@@ -67,6 +65,7 @@ def test_a_genome_of_tensorneat_is_written_as_it_was_read(reference):
         )
 
 
+@pytest.mark.fast
 def test_outputs_that_follow_hidden_keys_are_renumbered():
     """As TensorNEAT has them with `init_hidden_layers`: the outputs have the last keys."""
     nodes = np.array([[0, 0, 0, 0], [1, 0.5, 0, 1], [2, -1, 0, 0]], np.float32)
@@ -79,6 +78,7 @@ def test_outputs_that_follow_hidden_keys_are_renumbered():
     assert genes["connections"]["target"] == [2, 1]
 
 
+@pytest.mark.fast
 def test_a_settled_recurrent_network_is_feed_forward():
     nodes = np.array([[0, 0, 0, 0], [1, -1, 0, 0], [2, 0.5, 0, 0]], np.float32)
     conns = np.array([[0, 2, 2], [2, 1, 3]], np.float32)
@@ -88,6 +88,7 @@ def test_a_settled_recurrent_network_is_feed_forward():
         networks.to_genes(networks.read_tensorneat(nodes, conns, meta | {"activate_time": 1}))
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
@@ -124,6 +125,7 @@ NODES = [[0, 0, 0, 0], [1, 0, 0, 0], [2, 1, 0, 0], [9, 1, 0, 1]]
 CONNS = [[0, 2, 1], [1, 9, 1], [9, 2, 1]]
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize(
     ("table", "place", "value", "reason"),
     [

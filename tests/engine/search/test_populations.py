@@ -10,8 +10,6 @@ import pytest
 from microcosmos import genomes, networks
 from microcosmos.search.populations import cppns
 
-pytestmark = pytest.mark.fast
-
 FILE = Path(__file__).parents[1] / "networks" / "tensorneat" / "ff_bias.npz"
 
 
