@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
-from .rates import Rates
+from .rates import Rates, one_of
 from .rows import NONE
 from .structure import add_connection, add_node, delete_connection, delete_node
 
@@ -44,7 +44,7 @@ def mutate(
     Raises `ValueError` where nodes can be deleted and the number of `outputs`, which never
     are, is not given.
     """
-    keys = jax.random.split(key, 7)
+    keys = jax.random.split(key, 8)
     if rates.delete_node:
         if outputs is None:
             raise ValueError("`outputs` must be given where `delete_node` is above 0, got None")
@@ -52,23 +52,29 @@ def mutate(
     if rates.delete_connection:
         network = delete_connection(network, rates.delete_connection, key=keys[6])
     splittable = network.connection_used & network.enabled
-    network = mutate_values(network, rates, inputs, key=keys[0])
+    values, link, node = jax.random.uniform(keys[7], (3,)) < jnp.asarray(
+        [rates.values, rates.add_connection, rates.add_node]
+    )
+    if rates.apart:
+        values = values & ~link & ~node
+    network = mutate_values(network, values, rates, inputs, key=keys[0])
     network = mutate_activations(network, rates, inputs, key=keys[1])
     network = toggle_connections(network, rates.toggle, key=keys[2])
-    network, connection_row = add_connection(network, rates, inputs, key=keys[3])
+    network, connection_row = add_connection(network, link, rates, inputs, key=keys[3])
     network, split_row, node_row, split = add_node(
-        network, splittable & network.enabled, rates, key=keys[4]
+        network, splittable & network.enabled, node, rates, key=keys[4]
     )
     if rates.drop_split:  # The split connection stood above the added one.
         connection_row = connection_row - ((connection_row >= 0) & (split_row >= 0))
     return network, Novelty(connection_row, split_row, node_row, split)
 
 
-def mutate_values(network: CPPN, rates: Rates, inputs: int, *, key: PRNGKeyArray) -> CPPN:
+def mutate_values(
+    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, *, key: PRNGKeyArray
+) -> CPPN:
     """Perturb or redraw weights, and the biases of nodes that are not inputs."""
-    weight_key, bias_key, whether = jax.random.split(key, 3)
+    weight_key, bias_key = jax.random.split(key)
     node = jnp.arange(network.node_used.shape[0])
-    happens = jax.random.bernoulli(whether, rates.values)
     weights = network.connection_used & happens
     biases = network.node_used & (node >= inputs) & happens
     return replace(
@@ -85,7 +91,7 @@ def mutate_activations(network: CPPN, rates: Rates, inputs: int, *, key: PRNGKey
     which, what = jax.random.split(key)
     node = jnp.arange(network.node_used.shape[0])
     chosen = jax.random.bernoulli(which, rates.activation, node.shape) & network.node_used
-    drawn = jax.random.choice(what, jnp.asarray(rates.palette), node.shape)
+    drawn = one_of(rates.palette, node.shape, key=what)
     chosen = chosen & (node >= inputs)
     return replace(network, activation=jnp.where(chosen, drawn, network.activation))
 

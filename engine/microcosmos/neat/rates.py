@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import jax
+import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array
 
 from ..genomes import ACTIVATIONS
@@ -15,6 +17,12 @@ Draw = Callable[..., Array]
 def uniform(key, shape, dtype) -> Array:
     """Numbers between −1 and 1, each equally likely."""
     return jax.random.uniform(key, shape, dtype, -1, 1)
+
+
+def one_of(palette: tuple[int, ...], shape: tuple[int, ...], *, key) -> Array:
+    """Activations, each of the palette equally likely."""
+    chosen = jax.random.bits(key, shape) % len(palette)
+    return jnp.asarray(np.asarray(palette))[chosen].astype(jnp.int32)
 
 
 @dataclass(frozen=True)
@@ -35,6 +43,8 @@ class Rates:
     delete_connection: float = 0.0
     values: float = 1.0
     """A child's weights and biases vary at all."""
+    apart: bool = False
+    """They do not where a node or connection is added, so that this alone is judged."""
     bound: float | None = None
     """Weights and biases are kept within this of zero."""
     draw: Draw = jax.random.normal

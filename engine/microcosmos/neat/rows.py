@@ -48,7 +48,8 @@ def ranked(weights: Array, rank: Int[Array, ""]) -> Int[Array, ""]:
 
 def draw_below(total: Int[Array, ""], *, key: PRNGKeyArray) -> Int[Array, ""]:
     """A whole number from 0 on below `total`, or 0 where that is 0."""
-    return jax.random.randint(key, (), 0, jnp.maximum(1, total))
+    limit = jnp.maximum(1, total).astype(jnp.uint32)
+    return (jax.random.bits(key) % limit).astype(jnp.int32)
 
 
 def match(

@@ -66,6 +66,7 @@ PAPER = Settings(
         add_node=0.03,
         add_connection=0.05,
         values=0.8,
+        apart=True,
         draw=uniform,
         palette=(SIGMOID,),
     ),
@@ -93,9 +94,9 @@ PAPER = Settings(
 )
 """The XOR experiment of Stanley and Miikkulainen (2002), section 4.1.
 
-Not in the paper, but in the authors' program: the step of weights, the share of survivors
-and of children that are only crossed. Ours: the best species never stagnates, and species
-are at most 50.
+Not in the paper, but in the authors' program: the step of weights, that they stay where
+structure is added, and the shares of survivors and of children that are only crossed.
+Ours: the best species never stagnates, and species are at most 50.
 """
 
 TENSORNEAT = Settings(

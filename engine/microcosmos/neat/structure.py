@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Int, PRNGKeyArray
 
 from ..genomes import CPPN
 from . import reach
-from .rates import Rates
+from .rates import Rates, one_of
 from .rows import (
     NONE,
     choose,
@@ -22,22 +22,26 @@ from .rows import (
 
 
 def add_connection(
-    network: CPPN, rates: Rates, inputs: int, *, key: PRNGKeyArray
+    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, *, key: PRNGKeyArray
 ) -> tuple[CPPN, Int[Array, ""]]:
     """Join two nodes that are not joined; also the new connection's row, or −1."""
     if not rates.add_connection:
         return network, jnp.asarray(NONE)
-    whether, which, weight_key = jax.random.split(key, 3)
+    which, weight_key = jax.random.split(key)
     source, target, exists = _free_pair(network, rates, inputs, key=which)
     row = jnp.sum(network.connection_used)
-    happens = jax.random.bernoulli(whether, rates.add_connection) & exists
-    row = jnp.where(happens & (row < network.connection_used.shape[0]), row, NONE)
+    row = jnp.where(happens & exists & (row < network.connection_used.shape[0]), row, NONE)
     weight = rates.draw(weight_key, (), network.weight.dtype)
     return connect(network, row, source, target, weight), row
 
 
 def add_node(
-    network: CPPN, splittable: Bool[Array, "connection"], rates: Rates, *, key: PRNGKeyArray
+    network: CPPN,
+    splittable: Bool[Array, "connection"],
+    happens: Bool[Array, ""],
+    rates: Rates,
+    *,
+    key: PRNGKeyArray,
 ) -> tuple[CPPN, Int[Array, ""], Int[Array, ""], Int[Array, ""]]:
     """Split a connection: it is disabled (or removed), and a new node takes its place.
 
@@ -45,15 +49,14 @@ def add_node(
     activation nothing would change. Also the row of the way in, the node's row, and the
     number of the connection that was split, or −1 each.
     """
-    whether, which, activation_key = jax.random.split(key, 3)
+    which, activation_key = jax.random.split(key)
     old, exists = choose(splittable, key=which)
     node, row = jnp.sum(network.node_used), jnp.sum(network.connection_used)
     row = row - rates.drop_split
-    happens = jax.random.bernoulli(whether, rates.add_node) & exists
-    happens = happens & (node < network.node_used.shape[0])
+    happens = happens & exists & (node < network.node_used.shape[0])
     happens = happens & (row + 1 < network.connection_used.shape[0])
     node_row, split_row = jnp.where(happens, node, NONE), jnp.where(happens, row, NONE)
-    activation = jax.random.choice(activation_key, jnp.asarray(rates.palette))
+    activation = one_of(rates.palette, (), key=activation_key)
     one = jnp.ones((), network.weight.dtype)
     source, target, weight = network.source[old], network.target[old], network.weight[old]
     innovation = jnp.where(happens, network.innovation[old], NONE)

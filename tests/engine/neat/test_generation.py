@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from microcosmos import neat
-from microcosmos.neat import offspring, species as division
+from microcosmos.neat import offspring
+from microcosmos.neat import species as division
 
 INPUTS, OUTPUTS = 3, 2
 
