@@ -47,8 +47,13 @@ class Connections(Part):
         return text
 
 
-def check_genes(inputs: int, outputs: int, nodes: Nodes, connections: Connections) -> None:
-    """Raise `ValueError` where genes do not make a feed-forward network in canonical order."""
+def check_genes(
+    inputs: int, outputs: int, nodes: Nodes, connections: Connections, cycles: bool = False
+) -> None:
+    """Raise `ValueError` where genes do not make a network in canonical order.
+
+    It must be feed-forward unless `cycles` are allowed.
+    """
     _same_length("nodes", nodes.id, nodes.activation, decode(nodes.bias))
     _same_length(
         "connections",
@@ -72,7 +77,8 @@ def check_genes(inputs: int, outputs: int, nodes: Nodes, connections: Connection
         raise ValueError(f"`connections` must join existing nodes, got {sorted(missing)[:5]}")
     if any(target < inputs for target in connections.target):
         raise ValueError("`connections.target` must not be an input")
-    _refuse_cycles(nodes.id, pairs)
+    if not cycles:
+        _refuse_cycles(nodes.id, pairs)
 
 
 def _same_length(where: str, *columns) -> None:

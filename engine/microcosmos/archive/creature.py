@@ -10,7 +10,8 @@ from pydantic import Field, ValidationError, model_validator
 
 from ..spec import Part, Scene, Task, field_path
 from ..spec import identity as identity_of
-from .identity import CPPN, Identity, Stroke
+from .genomes import Network
+from .identity import Identity
 from .naming import FORMAT, LICENCE, canonical, name
 
 __all__ = [
@@ -146,9 +147,9 @@ def scene_of(file: Mapping[str, Any]) -> Scene:
     return Identity.model_validate(file["identity"]).scene
 
 
-def room_of(genome: CPPN | Stroke, recorded: tuple[int, int] | None) -> tuple[int, int] | None:
+def room_of(genome: Part, recorded: tuple[int, int] | None) -> tuple[int, int] | None:
     """The room that was recorded, else just enough: sums round differently in another."""
-    if isinstance(genome, Stroke):
+    if not isinstance(genome, Network):
         return None
     least = (max(8, len(genome.nodes.id)), max(8, len(genome.connections.innovation)))
     nodes, connections = recorded or (least[0], max(least))

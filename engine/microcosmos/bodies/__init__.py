@@ -12,15 +12,18 @@ from .inside import refuse_outside
 from .network import from_graph, graph
 from .refine import Refined, subdivided
 from .shape import from_edges
+from .unfolding import Unfolded, drawn, unfolded
 
 __all__ = [
     "MIN_GAP",
     "Body",
     "Colour",
     "Refined",
+    "Unfolded",
     "arc",
     "chain",
     "colour",
+    "drawn",
     "from_edges",
     "from_graph",
     "graph",
@@ -33,4 +36,5 @@ __all__ = [
     "svg",
     "together",
     "tree",
+    "unfolded",
 ]

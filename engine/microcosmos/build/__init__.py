@@ -2,10 +2,9 @@
 
 from .creatures import build_block, build_point, build_stroke_block, frame
 from .emitters import build_emitters, build_rates
+from .encodings import build_controls, build_encoding
 from .experiments import build, build_axes, build_plan
 from .scene import (
-    build_controls,
-    build_encoding,
     build_energy,
     build_limits,
     build_rods,

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 
 from .. import device, search, spec
 from ..archive import naming
+from ..spec.control import Sight
 from .scene import build_limits, build_stroke, build_task
 
 
@@ -24,21 +25,25 @@ def frame(scene: spec.Scene) -> dict[str, Any]:
     }
 
 
-def _genome(control: spec.Control | spec.Gait) -> dict[str, Any]:
+def _genome(control: spec.Controller | spec.Gait) -> dict[str, Any]:
     if isinstance(control, spec.Gait):
         return {"encoding": "gait", **spec.identity(control)}
-    return {
-        "encoding": "cppn",
-        "inputs": list(control.inputs),
-        "outputs": list(spec.OUTPUTS),
-        "control": spec.identity(control),
-    }
+    told: dict[str, Any] = {"encoding": control.encoding, "control": spec.identity(control)}
+    if isinstance(control, Sight):
+        told |= {"inputs": list(control.inputs), "outputs": list(control.outputs)}
+    return told
 
 
 def build_block(scene: spec.Scene, room: tuple[int, int] | None = None):
     """The compiled program that evaluates a block of genotypes in a scene."""
     task = build_task(scene, room=room)
     return search.block_program(task, search.evaluate, device.compiler_options())
+
+
+def build_disturbed_block(scene: spec.Scene, room: tuple[int, int] | None = None):
+    """The compiled program that evaluates genotypes under disturbed conditions."""
+    task = build_task(scene, room=room)
+    return search.reevaluation.disturbed_program(task, device.compiler_options())
 
 
 def build_stroke_block(scene: spec.Scene):

@@ -12,13 +12,13 @@ from .. import (
     fields,
     filaments,
     fluid,
-    genomes,
     groups,
     search,
     spec,
     world,
 )
 from ..bodies.extent import reach
+from .encodings import build_encoding
 
 PROJECTIONS = {
     "none": coupling.unprojected,
@@ -28,20 +28,24 @@ PROJECTIONS = {
 KERNELS = {"peskin": coupling.PESKIN, "roma": coupling.ROMA, "hat": coupling.HAT}
 MAGIC = {"capped": fluid.capped_magic, "fixed": fluid.fixed_magic}
 SMOOTHING = {"gaussian": fields.gaussian, "binomial": fields.binomial}
-TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
 ROOM = (8, 8)
 """Of networks that nobody will vary."""
 GOALS = {"displacement": (1.0, 0.0), "energy": (0.0, 1.0), "displacement+energy": (1.0, 1.0)}
 
 
 def build_task(
-    scene: spec.Scene, dtype: Any = jnp.float32, *, room: tuple[int, int] | None = None
+    scene: spec.Scene,
+    dtype: Any = jnp.float32,
+    *,
+    room: tuple[int, int] | None = None,
+    body: bodies.Body | None = None,
 ) -> search.Task:
     """The world with the body at rest in its middle, and what genotypes mean there.
 
-    `room` is for the nodes and connections of networks.
+    `room` is for the nodes and connections of networks; another `body` than the scene's is
+    one that a genotype has made of it.
     """
-    body = spec.shape(scene.body)
+    body = spec.shape(scene.body) if body is None else body
     place = build_world(scene.world, scene.coupling, body, dtype)
     middle = np.array([scene.world.width, scene.world.height]) / 2
     positions = body.positions - body.positions.mean(0) + middle
@@ -51,15 +55,6 @@ def build_task(
     displacement, energy = GOALS[scene.task.fitness]
     goal = search.Goal(displacement, energy * scene.task.energy_weight)
     return search.Task(place, start, encoding, goal, reach(body))
-
-
-def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding:
-    """What genotypes mean for a scene's body; `room` is for nodes and connections."""
-    control = scene.control
-    if isinstance(control, spec.Gait):
-        raise ValueError("`control` must be inherited, got a hand-made gait")
-    controls = build_controls(control, spec.shape(scene.body), scene.task.steps)
-    return genomes.CPPNControl(controls, room)
 
 
 def build_world(
@@ -146,23 +141,6 @@ def build_rods(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Rods:
         shear=jnp.asarray(body.shear, dtype),
         bend=jnp.asarray(body.bend, dtype),
         joints=jnp.asarray(body.joints, jnp.int32),
-    )
-
-
-def build_controls(control: spec.Control, body: bodies.Body, steps: int) -> genomes.Controls:
-    """Inputs of the CPPN at all nodes and times, and what its outputs mean."""
-    rise = np.maximum(control.ramp * control.period, 1)
-    return genomes.Controls(
-        position=body.arc if control.position == "unit" else 2 * body.arc - 1,
-        timer=TIMERS[control.timer](steps, control.period),
-        ramp=np.minimum(1, (np.arange(steps) + (control.ramp == 0)) / rise),
-        edges=body.edges,
-        joint_nodes=body.joint_nodes,
-        rest_angle=body.rest_angle,
-        rest_length=body.rest_length,
-        angle_scale=control.angle_scale,
-        length_scale=control.length_scale,
-        senses=control.sense_energy,
     )
 
 

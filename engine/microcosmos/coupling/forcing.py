@@ -12,7 +12,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ..groups import Groups
 from .delta import Windows, divided, interpolate, spread
@@ -66,16 +66,18 @@ def multi_direct_forcing(
     iterations: int,
     projection: Projection,
     limit: Float[Array, ""] | float | None,
+    present: Bool[Array, "node"] | None = None,
 ) -> Forced:
     """The forcing at nodes for a fluid at `velocity` there to move with `target`.
 
     Forcing and velocities are in cells a step; the force on the fluid is a multiple of the
     forcing, spread. With `limit`, the largest forcing of a body is at most that, by one
-    factor for all of its nodes, so that sums stay zero.
+    factor for all of its nodes, so that sums stay zero. Nodes that are not `present`, whose
+    windows are empty, have none.
     """
     by_density = divided(at, rho)
     coverage = spread(jnp.ones_like(target[:, :1]), at, rho.shape)
-    beta = 1.0 / interpolate(coverage, at)[:, 0]
+    beta = _reciprocal(interpolate(coverage, at)[:, 0], present)
 
     def improve(q, target, reached):
         error = target - velocity - reached
@@ -94,3 +96,10 @@ def multi_direct_forcing(
     largest = jnp.sqrt(groups.largest(jnp.sum(q * q, 1)) + 1e-24)
     scale = jnp.minimum(1.0, limit / largest)
     return Forced(q * groups.each(scale)[:, None], target, scale)
+
+
+def _reciprocal(values: Scalars, present: Bool[Array, "node"] | None) -> Scalars:
+    """1 over the values, 0 for nodes that are absent."""
+    if present is None:
+        return 1.0 / values
+    return jnp.where(present, 1.0 / jnp.where(present, values, 1.0), 0.0)

@@ -3,9 +3,16 @@
 from .control import CPPNControl
 from .cppn import ACTIVATIONS, CPPN, depths, evaluate, minimal
 from .development import OUTPUTS, Controls, develop, linear, respond, sine_cosine
+from .direct import Direct
 from .encoding import Drive, Encoding
 from .genes import empty, from_genes, take, to_genes
 from .genotype import Genotype, Vector, words
+from .grown import Grown
+from .layers import Layers, forward
+from .recurrent import advance
+from .shaping import Plan
+from .waves import fourier, phases, table, wave
+from .weights import Weights
 
 __all__ = [
     "ACTIVATIONS",
@@ -13,20 +20,31 @@ __all__ = [
     "OUTPUTS",
     "CPPNControl",
     "Controls",
+    "Direct",
     "Drive",
     "Encoding",
     "Genotype",
+    "Grown",
+    "Layers",
+    "Plan",
     "Vector",
+    "Weights",
+    "advance",
     "depths",
     "develop",
     "empty",
     "evaluate",
+    "forward",
+    "fourier",
     "from_genes",
     "linear",
     "minimal",
+    "phases",
     "respond",
     "sine_cosine",
+    "table",
     "take",
     "to_genes",
+    "wave",
     "words",
 ]

@@ -5,6 +5,8 @@ Miikkulainen, Evol. Comput. 10, 99 (2002). Used rows come first, in the order in
 genes arose, so that their numbers increase along the rows.
 """
 
+from typing import Any
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -80,13 +82,19 @@ def depths(network: CPPN) -> Int[Array, "node"]:
     return jax.lax.fori_loop(0, nodes, relax, jnp.zeros(nodes, jnp.int32))
 
 
+def matrix(network: CPPN, dtype: Any) -> Float[Array, "target source"]:
+    """The weights of enabled connections, 0 where there is none."""
+    nodes = network.node_used.shape[0]
+    live = network.connection_used & network.enabled
+    target = jnp.where(live, network.target, nodes)
+    weights = jnp.zeros((nodes, nodes), dtype)
+    return weights.at[target, network.source].set(network.weight.astype(dtype), mode="drop")
+
+
 def evaluate(network: CPPN, inputs: Points, outputs: int) -> Points:
     """The values of the output nodes, (outputs, point), for inputs (inputs, point)."""
     nodes, given = network.node_used.shape[0], inputs.shape[0]
-    live = network.connection_used & network.enabled
-    target = jnp.where(live, network.target, nodes)
-    weights = jnp.zeros((nodes, nodes), inputs.dtype)
-    weights = weights.at[target, network.source].set(network.weight, mode="drop")
+    weights = matrix(network, inputs.dtype)
     order = jnp.argsort(depths(network), stable=True)
     # Inputs and unused rows keep what they have; branch 0 does nothing.
     computed = network.node_used & (np.arange(nodes) >= given)

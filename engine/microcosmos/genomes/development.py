@@ -1,24 +1,30 @@
-"""From a CPPN to what it controls: rest angles and rest lengths over time."""
+"""From what a controller says to rest angles and rest lengths over time."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from ..filaments import Rest
-from .cppn import CPPN, evaluate
+from .cppn import CPPN, Points, evaluate
 
 OUTPUTS = 2
-"""Rest angle and rest length."""
+"""Rest angle and rest length; a network that grows the body has more behind them."""
+
+Said = Float[Array, "2 time node"]
+Read = Callable[[Points], Points]
+"""A network: from inputs (input, point) to outputs (output, point)."""
 
 
 @dataclass(frozen=True)
 class Controls:
-    """What a CPPN's inputs and outputs mean.
+    """What a controller's inputs and outputs mean.
 
     `position` is (node,), `timer` (input, time), `ramp` (time,); rest angles and lengths are
-    the body's own, in rad and cells. A CPPN that `senses` has one more input, which is known
+    the body's own, in rad and cells. A network that `senses` has one more input, which is known
     only while the world moves; any other's outputs for all times are one batch.
     """
 
@@ -27,15 +33,15 @@ class Controls:
     ramp: np.ndarray
     edges: np.ndarray
     joint_nodes: np.ndarray
-    rest_angle: np.ndarray
-    rest_length: np.ndarray
+    rest_angle: np.ndarray | Array
+    rest_length: np.ndarray | Array
     angle_scale: float
     length_scale: float
     senses: bool = False
 
     @property
     def inputs(self) -> int:
-        """Inputs of the CPPN."""
+        """Inputs of a network."""
         return 1 + len(self.timer) + self.senses
 
 
@@ -51,20 +57,8 @@ def linear(steps: int, period: float) -> np.ndarray:
 
 
 def develop(network: CPPN, controls: Controls) -> Rest:
-    """Rest angles (time, joint) and rest lengths (time, edge) as applied, in one batch.
-
-    A joint takes the output at its node; an edge the mean of its two ends, so that a
-    mirrored network makes a mirrored body.
-    """
-    steps, nodes = len(controls.ramp), len(controls.position)
-    position = np.tile(controls.position, steps)[None]
-    dtype = network.bias.dtype
-    clock = jnp.repeat(jnp.asarray(controls.timer, dtype), nodes, 1)
-    inputs = jnp.concatenate([jnp.asarray(position, dtype), clock])
-    outputs = evaluate(network, inputs, OUTPUTS)
-    return _rest(
-        outputs.reshape(OUTPUTS, steps, nodes), jnp.asarray(controls.ramp, dtype), controls
-    )
+    """Rest angles (time, joint) and rest lengths (time, edge) that a CPPN asks for."""
+    return played(reading(network), controls, network.bias.dtype)
 
 
 def respond(
@@ -75,28 +69,76 @@ def respond(
     sensed: Float[Array, "node"],
 ) -> Rest:
     """Rest angles (joint,) and rest lengths (edge,) at one time, from what nodes sense."""
-    dtype = network.bias.dtype
-    clock = jnp.broadcast_to(timer[:, None], (len(timer), len(sensed)))
-    position = jnp.asarray(controls.position, dtype)[None]
-    inputs = jnp.concatenate([position, clock, sensed[None]])
-    outputs = evaluate(network, inputs, OUTPUTS)
-    rest = _rest(outputs[:, None], ramp[None], controls)
+    return answered(reading(network), controls, timer, ramp, sensed)
+
+
+def reading(network: CPPN) -> Read:
+    """A feed-forward network as a function."""
+    return lambda inputs: evaluate(network, inputs, OUTPUTS)
+
+
+def played(read: Read, controls: Controls, dtype: Any) -> Rest:
+    """Rest shapes as applied at all times, in one batch."""
+    steps, nodes = len(controls.ramp), len(controls.position)
+    position = np.tile(controls.position, steps)[None]
+    clock = jnp.repeat(jnp.asarray(controls.timer, dtype), nodes, 1)
+    said = read(jnp.concatenate([jnp.asarray(position, dtype), clock]))
+    return applied(said.reshape(OUTPUTS, steps, nodes), controls.ramp, controls)
+
+
+def answered(
+    read: Read,
+    controls: Controls,
+    timer: Float[Array, "input"],
+    ramp: Float[Array, ""],
+    sensed: Float[Array, "node"] | None,
+) -> Rest:
+    """The rest shape at one time."""
+    said = read(seen(controls, timer, sensed))
+    return at_once(said, ramp, controls)
+
+
+def seen(
+    controls: Controls, timer: Float[Array, "input"], sensed: Float[Array, "node"] | None
+) -> Points:
+    """A network's inputs at all nodes at one time."""
+    nodes = len(controls.position)
+    clock = jnp.broadcast_to(timer[:, None], (len(timer), nodes))
+    position = jnp.asarray(controls.position, timer.dtype)[None]
+    return jnp.concatenate([position, clock, *([] if sensed is None else [sensed[None]])])
+
+
+def at_once(said: Points, ramp: Float[Array, ""], controls: Controls) -> Rest:
+    """The rest shape that outputs (output, node) of one time stand for."""
+    rest = applied(said[:, None], ramp[None], controls)
     return Rest(rest.angle[0], rest.length[0])
 
 
-def _rest(
-    outputs: Float[Array, "2 time node"], ramp: Float[Array, "time"], controls: Controls
-) -> Rest:
-    angle, length = jnp.tanh(outputs)
-    ramp, dtype = ramp[:, None], outputs.dtype
+def applied(said: Said, ramp: Float[Array, "time"] | np.ndarray, controls: Controls) -> Rest:
+    """The rest shapes that a network's outputs stand for.
+
+    A joint takes the output at its node; an edge the mean of its two ends, so that a
+    mirrored network makes a mirrored body.
+    """
+    angle, length = jnp.tanh(said)
     length = 0.5 * (length[:, controls.edges[:, 0]] + length[:, controls.edges[:, 1]])
-    stretch = 1 + controls.length_scale * ramp * length
-    turn = controls.angle_scale * ramp * angle[:, controls.joint_nodes]
+    return actuated(angle[:, controls.joint_nodes], length, ramp, controls)
+
+
+def actuated(
+    angle: Float[Array, "time joint"],
+    length: Float[Array, "time edge"],
+    ramp: Float[Array, "time"] | np.ndarray,
+    controls: Controls,
+) -> Rest:
+    """Rest shapes from what is asked of every joint and edge, −1 to 1."""
+    dtype = angle.dtype
+    ramp = jnp.asarray(ramp, dtype)[:, None]
     return Rest(
-        angle=_row(controls.rest_angle, dtype) + turn,
-        length=_row(controls.rest_length, dtype) * stretch,
+        angle=_row(controls.rest_angle, dtype) + controls.angle_scale * ramp * angle,
+        length=_row(controls.rest_length, dtype) * (1 + controls.length_scale * ramp * length),
     )
 
 
-def _row(values: np.ndarray, dtype) -> Float[Array, "1 _"]:
+def _row(values: np.ndarray | Array, dtype: Any) -> Float[Array, "1 _"]:
     return jnp.asarray(values, dtype)[None]

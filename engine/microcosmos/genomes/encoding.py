@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray, PyTree
 
 from ..filaments import Rest
-from ..world import State, World, follow
+from ..world import State, World, follow, keep
 
 Scalar = Float[Array, ""]
 
@@ -18,14 +18,17 @@ Scalar = Float[Array, ""]
 class Drive:
     """What is simulated of a creature: a world, its start, and what moves its body.
 
-    `inputs` have the time first; `control` makes the rest shape of a step from them, as
-    `world.rollout` takes it.
+    `inputs` have the time first; `control` makes the rest shape of a step from them and
+    `remember` the controller's memory, as `world.rollout` takes them.
     """
 
     world: World
     start: State
     inputs: PyTree[Array]
     control: Callable[[World, State, Any], Rest] = follow
+    remember: Callable[[World, State, Any], PyTree[Array]] = keep
+    length: Scalar | None = None
+    """How far the body reaches, in cells; None: as far as everybody's."""
 
 
 @runtime_checkable

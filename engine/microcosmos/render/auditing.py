@@ -6,7 +6,7 @@ delta) and in one that should (its gait made reciprocal: Purcell, Am. J. Phys. 4
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -14,12 +14,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .. import build, search, spec, units, world
+from .. import bodies, build, search, spec, units, world
 from ..archive import creature
 from ..device import compiler_options, device_kind
 from ..filaments import Rest
+from ..genomes import Drive
 from .replay import CELL_STEPS, actuator_of
-from .variants import other_delta, reciprocal, refine, tireless, with_other_delta
+from .variants import body_of, other_delta, reciprocal, refine, tireless, with_other_delta
 
 AGREES = (0.5, 2.0)
 """Displacement along the way that was recorded, as a share of it, that counts as the same
@@ -71,13 +72,14 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     task = build.build_task(scene)
     actuator = jax.tree.map(jnp.asarray, actuator_of(file, scene))
     driven = search.drive(task, actuator)
-    nominal, rest = _simulate(task, driven.inputs, driven.control)
+    nominal, rest = _simulate(task, driven)
     if not np.isfinite(nominal.distance):
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
-    refined, _ = _simulate(*refine(scene, rest))
-    other, _ = _simulate(with_other_delta(scene), rest)
-    back, _ = _simulate(tireless(scene), reciprocal(rest))
+    body, rest = _made(scene, driven, rest)
+    refined, _ = _follow(*refine(scene, rest, body))
+    other, _ = _follow(with_other_delta(scene, body), rest)
+    back, _ = _follow(tireless(scene, body), reciprocal(rest))
     rows = [
         *_soundness(scene, nominal),
         _again("refined", "at twice the resolution and half the step", nominal, refined, 0.5),
@@ -98,17 +100,29 @@ DECISIVE = ("refined", "delta", "impulse")
 """Rows without which it is not swimming."""
 
 
-def _simulate(
-    task: search.Task, inputs: Any, control: Any = world.follow
-) -> tuple[Found, Rest]:
+def _made(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Rest]:
+    """The body that a creature has, and the rest shapes of what there is of it."""
+    try:
+        body, joints, edges = body_of(scene, driven)
+    except ValueError as error:
+        needed = "a body that can be built anew"
+        raise creature.CreatureError("identity.genome", needed, str(error)) from error
+    return body, Rest(rest.angle[:, joints], rest.length[:, edges])
+
+
+def _follow(task: search.Task, rest: Rest) -> tuple[Found, Rest]:
+    return _simulate(task, search.drive(task, rest))
+
+
+def _simulate(task: search.Task, driven: Drive) -> tuple[Found, Rest]:
     """What came of it, and the rest shapes that were applied."""
 
     def run(start, inputs):
-        see = partial(search.watch, task.world)
-        end, watched = world.rollout(task.world, start, inputs, see, control)
-        values = search.motion(task, end, watched.seen)
+        begun = replace(driven, start=start, inputs=inputs)
+        end, watched = search.simulate(begun, partial(search.watch, driven.world))
+        values = search.motion_of(task, begun, end, watched.seen)
         path = jnp.sum(watched.seen.pace)
-        way = watched.seen.centre[-1] - search.centre(start)
+        way = watched.seen.centre[-1] - world.centre(driven.world, start)
         return (
             way,
             path,
@@ -119,7 +133,7 @@ def _simulate(
         )
 
     program = jax.jit(run, compiler_options=compiler_options())
-    way, path, mach, values, push, rest = jax.device_get(program(task.start, inputs))
+    way, path, mach, values, push, rest = jax.device_get(program(driven.start, driven.inputs))
     found = Found(
         way=np.asarray(way, float),
         path=float(path),

@@ -17,7 +17,7 @@ from .replay import actuator_of
 
 @dataclass(frozen=True)
 class Check:
-    """What the file says and what came out; `exact` where every bit of both is the same."""
+    """What the file says and what came out; `exact` where every recorded bit is the same."""
 
     recorded: dict[str, float]
     repeated: dict[str, float]
@@ -25,7 +25,7 @@ class Check:
 
     @property
     def exact(self) -> bool:
-        return self.recorded == self.repeated
+        return self.recorded == {name: self.repeated.get(name) for name in self.recorded}
 
 
 def check(file: Mapping[str, Any]) -> Check:
@@ -50,8 +50,8 @@ def _repeat(file: Mapping[str, Any]) -> dict[str, float]:
         program, point = build_stroke_block(scene), build_point(scene)
         found = search.evaluate_blocks(program, _alone(point), block=block)
         return dict(zip(search.STROKE_FEATURES, found.features[0].tolist(), strict=True))
-    network = actuator_of(file, scene)
-    found = search.evaluate_blocks(build_block(scene), _alone(network), block=block)
+    genotype = actuator_of(file, scene)
+    found = search.evaluate_blocks(build_block(scene), _alone(genotype), block=block)
     return dict(zip(search.FEATURES, found.features[0].tolist(), strict=True))
 
 

@@ -49,11 +49,11 @@ def record(file: Mapping[str, Any]) -> bytes:
     nodes, _ = creature.room(file) or (0, 0)
     every = interval(scene, nodes)
     program = _program(scene.model_dump_json(), every)
-    positions, curl, features = jax.device_get(program(actuator_of(file, scene)))
+    positions, curl, features, present = jax.device_get(program(actuator_of(file, scene)))
     if not (np.isfinite(positions).all() and np.isfinite(curl).all()):
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
-    positions = np.asarray(positions, "<f4")
+    positions = np.asarray(positions[:, present], "<f4")
     replayed = {name: float(value) for name, value in features.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
@@ -67,7 +67,7 @@ def record(file: Mapping[str, Any]) -> bytes:
         "every": every,
         "steps": scene.task.steps,
         "nodes": positions.shape[1],
-        "edges": shape(scene.body).edges.tolist(),
+        "edges": edges_among(shape(scene.body).edges, present).tolist(),
         "size": [scene.world.width, scene.world.height],
         "vorticity": {"scale": scale},
         "fitness": {
@@ -83,6 +83,11 @@ def record(file: Mapping[str, Any]) -> bytes:
         "device": device_kind(),
     }
     return _pack(header, positions, np.round(curl / scale * 127).astype(np.int8))
+
+
+def edges_among(edges: np.ndarray, present: np.ndarray) -> np.ndarray:
+    """The edges (edge, 2) between nodes that are present, as those are counted."""
+    return (np.cumsum(present) - 1)[edges[present[edges].all(1)]]
 
 
 def interval(scene: Scene, network_nodes: int) -> int:
@@ -113,7 +118,8 @@ def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
 
 @lru_cache(maxsize=16)
 def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
-    """From an actuator to positions (frame, node, 2), vorticity (frame, x, y) and features.
+    """From an actuator to positions (frame, node, 2), vorticity (frame, x, y), features and
+    which nodes are present.
 
     Frames are the start and the state after each `every` steps. Compiled programs are
     kept, so that the second creature of a run is shown at once.
@@ -129,8 +135,7 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
         driven = search.drive(task, actuator)
 
         def go_on(state, given):
-            see, control = search.observe, driven.control
-            return world.rollout(driven.world, state, given, see, control)
+            return search.simulate(replace(driven, start=state, inputs=given))
 
         def advance(state, given):
             end, seen = go_on(state, given)
@@ -148,7 +153,12 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
         positions, curl = jax.tree.map(
             lambda first, rest: jnp.concatenate([first[None], rest]), frame(driven.start), shown
         )
-        return positions, curl, search.motion(replace(task, start=driven.start), end, seen)
+        values = search.motion_of(task, driven, end, seen)
+        if task.encoding is not None:
+            values["hidden_nodes"], values["connections"] = task.encoding.size(actuator)
+        there = driven.world.present
+        everybody = jnp.ones(positions.shape[1], bool)
+        return positions, curl, values, everybody if there is None else there
 
     return jax.jit(run)
 

@@ -1,36 +1,25 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
-from . import emitters, reevaluation
+from . import cvt, emitters, reevaluation
 from .blocks import Stopped, evaluate_blocks, never
+from .cells import Axis, Cells, Grid, Voronoi, voronoi
 from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
-    FEATURES,
     STATUSES,
     Actuator,
     Evaluation,
     Goal,
-    Seen,
     Task,
     block_program,
-    centre,
     drive,
     evaluate,
     mapped,
-    measure,
-    motion,
-    observe,
+    measured,
+    motion_of,
+    simulate,
 )
-from .insertion import (
-    Axis,
-    Elites,
-    Inserted,
-    cells_of,
-    clipped,
-    digest,
-    insert,
-    named,
-    no_elites,
-)
+from .features import FEATURES, Seen, motion, observe
+from .insertion import Elites, Inserted, clipped, digest, insert, insert_program, no_elites
 from .strokes import STROKE_FEATURES, Conditions, Watched, impulse, stroke_program, swim, watch
 
 __all__ = [
@@ -41,22 +30,24 @@ __all__ = [
     "STROKE_FEATURES",
     "Actuator",
     "Axis",
+    "Cells",
     "Children",
     "Conditions",
     "Elites",
     "Emitter",
     "Evaluation",
     "Goal",
+    "Grid",
     "Inserted",
     "Outcome",
     "Seen",
     "Stopped",
     "Task",
+    "Voronoi",
     "Watched",
     "block_program",
-    "cells_of",
-    "centre",
     "clipped",
+    "cvt",
     "digest",
     "drive",
     "emitters",
@@ -64,15 +55,18 @@ __all__ = [
     "evaluate_blocks",
     "impulse",
     "insert",
+    "insert_program",
     "mapped",
-    "measure",
+    "measured",
     "motion",
-    "named",
+    "motion_of",
     "never",
     "no_elites",
     "observe",
     "reevaluation",
+    "simulate",
     "stroke_program",
     "swim",
+    "voronoi",
     "watch",
 ]

@@ -6,7 +6,7 @@ slot, neighbours or device, a creature goes through this same program.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -18,17 +18,7 @@ from .. import units
 from ..filaments import Rest
 from ..genomes import Drive, Encoding, Genotype
 from ..world import Measures, State, World, flow, rollout
-
-MOTION = (
-    "displacement",
-    "bending_effort",
-    "stretching_effort",
-    "path_length",
-    "straightness",
-    "rotation",
-)
-FEATURES = (*MOTION, "hidden_nodes", "connections", "energy", "mach", "limited", "reynolds")
-"""What is recorded of every elite, in this order; units in `docs/formats.md`."""
+from .features import FEATURES, Seen, motion, observe
 
 STATUSES = ("ok", "non-finite", "supersonic")
 """Why an evaluation counts or does not, by status code."""
@@ -65,21 +55,20 @@ class Task(eqx.Module):
     """How far a periodic timer is ahead, in rad."""
 
 
-class Seen(eqx.Module):
-    """What is observed in every step."""
-
-    centre: Float[Array, "*time 2"]
-    rest: Rest
-    speed: Float[Array, "*time"]
-    pace: Float[Array, "*time"]
-    held: Float[Array, "*time"]
-
-
 def evaluate(task: Task, genotype: Genotype) -> Evaluation:
     """Simulate one creature and measure it."""
-    driven = drive(task, genotype)
-    end, seen = rollout(driven.world, driven.start, driven.inputs, observe, driven.control)
-    features = measure(task, genotype, driven.start, end, seen)
+    return measured(task, genotype, drive(task, genotype))
+
+
+def measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
+    """Simulate what a genotype has become, and measure it."""
+    if task.encoding is None:
+        raise ValueError("`task.encoding` must say what the genotype means; got None.")
+    end, seen = simulate(driven)
+    values = motion_of(task, driven, end, seen)
+    values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
+    dtype = seen.centre.dtype
+    features = jnp.stack([values[name].astype(dtype) for name in FEATURES])
     return Evaluation(fitness(task, features), features, status(driven.world, end, features))
 
 
@@ -90,51 +79,18 @@ def drive(task: Task, actuator: Actuator) -> Drive:
     return task.encoding.drive(task.world, task.start, actuator, task.phase)
 
 
-def observe(state: State, measures: Measures) -> Seen:
-    """What features are made of."""
-    return Seen(
-        centre=centre(state),
-        rest=measures.rest,
-        speed=measures.speed,
-        pace=measures.pace,
-        held=measures.held,
-    )
+def simulate(
+    driven: Drive, see: Callable[[State, Measures], Any] = observe
+) -> tuple[State, Any]:
+    """The state at the end, and what was seen after each step."""
+    go_on = partial(rollout, control=driven.control, remember=driven.remember)
+    return go_on(driven.world, driven.start, driven.inputs, see)
 
 
-def centre(state: State) -> Float[Array, "2"]:
-    """The mean unwrapped node position, in cells."""
-    return jnp.mean(state.positions, 0)
-
-
-def measure(
-    task: Task, genotype: Genotype, start: State, end: State, seen: Seen
-) -> Float[Array, "feature"]:
-    """The features of a simulated creature, in the order of `FEATURES`."""
-    values = motion(replace(task, start=start), end, seen)
-    if task.encoding is None:
-        raise ValueError("`task.encoding` must say what the genotype means; got None.")
-    values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
-    dtype = seen.centre.dtype
-    return jnp.stack([values[name].astype(dtype) for name in FEATURES])
-
-
-def motion(task: Task, end: State, seen: Seen) -> dict[str, Any]:
+def motion_of(task: Task, driven: Drive, end: State, seen: Seen) -> dict[str, Any]:
     """What can be measured of any actuator's motion."""
-    start = centre(task.start)
-    moved = jnp.diff(jnp.concatenate([start[None], seen.centre]), axis=0)
-    displacement, path = _norm(seen.centre[-1] - start), jnp.sum(_norm(moved))
-    return {
-        "displacement": displacement,
-        "bending_effort": effort(seen.rest.angle),
-        "stretching_effort": effort(seen.rest.length),
-        "path_length": path,
-        "straightness": displacement / jnp.maximum(path, 1e-12),
-        "rotation": jnp.mean(end.angles - task.start.angles),
-        "energy": jnp.zeros(()) if end.collected is None else jnp.sum(end.collected),
-        "mach": units.mach(jnp.max(seen.speed)),
-        "limited": jnp.mean(seen.held),
-        "reynolds": units.reynolds(jnp.mean(seen.pace), task.length, task.world.viscosity),
-    }
+    length = task.length if driven.length is None else driven.length
+    return motion(driven.world, driven.start, end, seen, length)
 
 
 def fitness(task: Task, features: Float[Array, "feature"]) -> Float[Array, ""]:
@@ -146,11 +102,6 @@ def fitness(task: Task, features: Float[Array, "feature"]) -> Float[Array, ""]:
     if goal.displacement == 0:
         return energy
     return goal.displacement * features[FEATURES.index("displacement")] + energy
-
-
-def effort(rest: Float[Array, "time item"]) -> Float[Array, ""]:
-    """Σ over time and items of the squared change from one step to the next."""
-    return jnp.sum(jnp.diff(rest, axis=0) ** 2)
 
 
 def status(world: World, end: State, features: Float[Array, "feature"]) -> Int[Array, ""]:
@@ -182,7 +133,3 @@ def mapped(function: Callable, block: PyTree[Array]) -> Any:
     if jax.default_backend() == "cpu":
         return jax.lax.map(function, block)
     return jax.vmap(function)(block)
-
-
-def _norm(v: Float[Array, "*batch 2"]) -> Float[Array, "*batch"]:
-    return jnp.sqrt(jnp.sum(v * v, -1) + 1e-24)

@@ -12,9 +12,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import Genotype
-from ..world import State, rollout
-from .evaluation import Evaluation, Task, drive, fitness, mapped, measure, observe, status
-from .insertion import Axis, Elites, cells_of
+from ..world import State
+from .cells import Cells
+from .evaluation import Evaluation, Task, drive, mapped, measured
+from .insertion import Elites
 
 Scalar = Float[Array, "*block"]
 
@@ -89,10 +90,7 @@ def evaluate_disturbed(task: Task, genotype: Genotype, changed: Disturbance) -> 
     world = replace(task.world, viscosity=task.world.viscosity * changed.viscosity)
     task = replace(task, world=world, phase=changed.phase)
     driven = drive(task, genotype)
-    driven = replace(driven, start=moved(driven.start, changed))
-    end, seen = rollout(driven.world, driven.start, driven.inputs, observe, driven.control)
-    features = measure(task, genotype, driven.start, end, seen)
-    return Evaluation(fitness(task, features), features, status(driven.world, end, features))
+    return measured(task, genotype, replace(driven, start=moved(driven.start, changed)))
 
 
 def moved(start: State, changed: Disturbance) -> State:
@@ -127,7 +125,7 @@ def forget(repeats: Repeats, cells: Int[Array, "row"], entered: Bool[Array, "row
 
 
 def add(
-    repeats: Repeats, done: Bool[Array, "cell"], found: Evaluation, axes: tuple[Axis, ...]
+    repeats: Repeats, done: Bool[Array, "cell"], found: Evaluation, cells: Cells
 ) -> Repeats:
     """Take one more evaluation of some cells' elites into account (Welford 1962).
 
@@ -143,21 +141,21 @@ def add(
     return Repeats(
         count=old.count + done,
         failed=old.failed + (done & ~sound),
-        hits=old.hits + (sound & (cells_of(found.features, axes) == cell)),
+        hits=old.hits + (sound & (cells.of(found.features) == cell)),
         fitness=mean,
         squares=old.squares + jnp.where(sound, step * (found.fitness - mean), 0.0),
         features=old.features + share[:, None] * strayed,
     )
 
 
-def corrected(elites: Elites, repeats: Repeats, axes: tuple[Axis, ...]) -> Float[Array, "cell"]:
+def corrected(elites: Elites, repeats: Repeats, cells: Cells) -> Float[Array, "cell"]:
     """Fitness of the corrected archive, NaN where it has nobody.
 
     It holds every elite that was evaluated again by its mean fitness, in the cell of its mean
     descriptors, the best one of each cell.
     """
-    cells = repeats.count.shape[0]
+    count = repeats.count.shape[0]
     known = elites.occupied & (repeats.count > repeats.failed)
-    place = jnp.where(known, cells_of(repeats.features, axes), cells)
-    best = jnp.full(cells, -jnp.inf).at[place].max(repeats.fitness, mode="drop")
+    place = jnp.where(known, cells.of(repeats.features), count)
+    best = jnp.full(count, -jnp.inf).at[place].max(repeats.fitness, mode="drop")
     return jnp.where(jnp.isfinite(best), best, jnp.nan)

@@ -10,17 +10,9 @@ from jaxtyping import Array, Float
 
 from .. import units
 from ..filaments import Rest
-from ..world import Limits, Measures, State, World, flow, rollout
-from .evaluation import (
-    MOTION,
-    Evaluation,
-    Seen,
-    Task,
-    centre,
-    mapped,
-    motion,
-    observe,
-)
+from ..world import Limits, Measures, State, World, centre, flow, rollout
+from .evaluation import Evaluation, Task, mapped
+from .features import MOTION, Seen, motion, observe
 
 STROKE_FEATURES = (
     *MOTION,
@@ -66,11 +58,9 @@ def impulse(watched: Watched) -> Float[Array, ""]:
 def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluation:
     """Carry out a stroke under its conditions and measure its last cycle."""
     world = replace(task.world, viscosity=conditions.viscosity, limits=conditions.limits)
-    task = replace(task, world=world)
-
     end, watched = rollout(world, task.start, rest, partial(watch, world))
-    seen, values = watched.seen, motion(task, end, watched.seen)
-    before = seen.centre[-1 - period] if len(seen.pace) > period else centre(task.start)
+    seen, values = watched.seen, motion(world, task.start, end, watched.seen, task.length)
+    before = seen.centre[-1 - period] if len(seen.pace) > period else centre(world, task.start)
     cycle = seen.centre[-1] - before
     values["mach"] = jnp.max(watched.mach)
     values["cycle"] = jnp.sqrt(jnp.sum(cycle * cycle))

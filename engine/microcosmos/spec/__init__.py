@@ -5,6 +5,7 @@ from .body import Body, Chain, Known, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
 from .emitters import Emitter
+from .encodings import Controller, Direct, Free, Grown, Weights, genes, lengthening
 from .estimate import Estimate, estimate
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
 from .fields import Energy, Steric
@@ -24,16 +25,20 @@ __all__ = [
     "Body",
     "Chain",
     "Control",
+    "Controller",
     "Coupling",
     "Descriptor",
+    "Direct",
     "Emitter",
     "Energy",
     "Estimate",
     "Experiment",
+    "Free",
     "Gait",
     "Gaits",
     "Generations",
     "Genome",
+    "Grown",
     "Known",
     "Neuroevolution",
     "Part",
@@ -47,10 +52,13 @@ __all__ = [
     "Steric",
     "Stop",
     "Task",
+    "Weights",
     "World",
     "estimate",
     "field_path",
+    "genes",
     "identity",
+    "lengthening",
     "parse",
     "shape",
 ]

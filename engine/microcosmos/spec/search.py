@@ -1,10 +1,11 @@
 """The task, the archive and the search that fills it."""
 
 from math import prod
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from . import features
 from .base import LATER, Part, unit
 from .emitters import Emitter, NeatEmitter, slots
 
@@ -21,19 +22,34 @@ class Task(Part):
     """What a unit of collected energy is worth beside a cell of displacement."""
 
 
+def _by_name(schema: dict[str, Any]) -> None:
+    """The default is another for each measure."""
+    schema.pop("default")
+
+
 class Descriptor(Part):
     """One axis of the archive."""
 
-    name: Literal["bending_effort", "stretching_effort"]
-    """Sum over time and joints (edges) of the squared change of rest angles (lengths)."""
-    low: float = Field(default=1e-4, ge=0.0)
+    name: features.Name
+    """What is measured; ends and scale are the measure's own unless they are given."""
+    low: float = Field(default=0.0, ge=-1e30, le=1e30, json_schema_extra=_by_name)
     """Lower end of the axis, in raw units; what is below counts in the first bin."""
-    high: float = Field(default=1e2, gt=0.0, le=1e30)
+    high: float = Field(default=1.0, ge=-1e30, le=1e30, json_schema_extra=_by_name)
     """Upper end of the axis, in raw units; what is above counts in the last bin."""
     bins: int = Field(default=20, ge=1, le=1024)
     """Cells along the axis."""
-    scale: Literal["log10", "linear"] = "log10"
+    scale: features.Scale = Field(default="linear", json_schema_extra=_by_name)
     """Whether bins are equally wide in the logarithm or in the raw value."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def complete(cls, given: Any) -> Any:
+        """What is left out is the measure's own."""
+        known = isinstance(given, dict) and features.FEATURES.get(str(given.get("name")))
+        if not known:
+            return given
+        own = {name: getattr(known, name) for name in ("low", "high", "scale")}
+        return own | {name: value for name, value in given.items() if value is not None}
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
@@ -44,16 +60,27 @@ class Descriptor(Part):
         return self
 
 
-class Archive(Part):
-    """A grid of cells over two descriptors, one elite in each."""
+CELLS = 2**20
+"""The most that an archive may have."""
 
-    descriptors: Annotated[tuple[Descriptor, ...], Field(min_length=2, max_length=2)] = (
+
+class Archive(Part):
+    """Cells over up to eight descriptors, one elite in each: a grid of bins, or around centroids."""
+
+    descriptors: Annotated[tuple[Descriptor, ...], Field(min_length=1, max_length=8)] = (
         Descriptor(name="bending_effort"),
         Descriptor(name="stretching_effort"),
     )
+    centroids: int | None = Field(default=None, ge=2, le=CELLS)
+    """Cells of a centroidal Voronoi tessellation, equally large on the descriptors' own scales
+    and in place of their bins; none: the bins make a grid."""
+    seed: int = Field(default=0, ge=0, lt=2**32)
+    """Which of many tessellations that is."""
 
     @property
     def shape(self) -> tuple[int, ...]:
+        if self.centroids is not None:
+            return (self.centroids,)
         return tuple(d.bins for d in self.descriptors)
 
     @property
@@ -65,6 +92,17 @@ class Archive(Part):
         names = [d.name for d in self.descriptors]
         if len(set(names)) < len(names):
             raise ValueError(f"`descriptors` must differ, got {names}")
+        return self
+
+    @model_validator(mode="after")
+    def refuse_too_many(self) -> Self:
+        if self.cells > CELLS:
+            product = " × ".join(map(str, self.shape))
+            raise ValueError(
+                f"`descriptors` must make at most {CELLS:,} cells, which all are kept in memory "
+                f"with their genomes; got {product} = {self.cells:,}: `centroids` gives any "
+                f"number of cells over many descriptors"
+            )
         return self
 
 

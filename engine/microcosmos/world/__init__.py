@@ -2,7 +2,8 @@
 
 from .model import Form, Limits, Measures, State, World, at_rest, flow
 from .nodes import repel, sense
-from .rolling import follow, rollout
+from .present import centre, edges_there, grown_rods, joints_there, mean
+from .rolling import follow, keep, rollout
 from .stepping import Motion, move, step
 
 __all__ = [
@@ -13,8 +14,14 @@ __all__ = [
     "State",
     "World",
     "at_rest",
+    "centre",
+    "edges_there",
     "flow",
     "follow",
+    "grown_rods",
+    "joints_there",
+    "keep",
+    "mean",
     "move",
     "repel",
     "rollout",

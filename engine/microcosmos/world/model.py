@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float, PyTree
 
 from .. import coupling, fields, filaments, fluid
 from ..groups import Groups
@@ -56,6 +56,9 @@ class World(eqx.Module):
     steric: fields.Steric | None = None
     energy: fields.Energy | None = None
     surroundings: fluid.Surroundings = fluid.Surroundings()
+    present: Bool[Array, "node"] | None = None
+    """Nodes that have grown; None: all of them. The others rest where they are and do nothing,
+    and constraints between them and others have stiffness 0."""
 
 
 class State(eqx.Module):
@@ -67,6 +70,8 @@ class State(eqx.Module):
     energy: Float[Array, "x y"] | None = None
     collected: Float[Array, "node"] | None = None
     """Energy that each node has taken since the start."""
+    memory: PyTree[Array] = None
+    """What the controller remembers."""
 
 
 class Measures(eqx.Module):
@@ -82,6 +87,14 @@ class Measures(eqx.Module):
     """What each body exerts on the fluid."""
     rest: filaments.Rest
     """The rest shape that was asked for."""
+    centre: Float[Array, "2"]
+    """The mean unwrapped node position at the end of the step, in cells."""
+    heading: Float[Array, ""]
+    """The mean unwrapped angle of the edges, in rad."""
+    curvature: Float[Array, "joint"]
+    """The angle at each joint over the mean length of its edges, 1/cells; 0 where absent."""
+    power: Float[Array, ""]
+    """Force on the fluid times velocity, summed over nodes; a cell's mass is 1."""
 
 
 def at_rest(world: World, positions: Vectors) -> State:

@@ -47,7 +47,7 @@ def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
     """
     if world.steric is None:
         return jnp.zeros_like(positions), jnp.zeros_like(positions)
-    at = coupling.windows(positions, world.size, coupling.HAT)
+    at = coupling.only(coupling.windows(positions, world.size, coupling.HAT), world.present)
     density = coupling.spread(jnp.ones_like(positions[:, :1]), at, world.size)[0]
     push = -world.steric.strength * coupling.interpolate(world.steric.gradient(density), at)
     drift = _body_mean(world, push)
@@ -57,5 +57,9 @@ def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
 
 def _body_mean(world: World, values: Vectors) -> Vectors:
     """For every node the mean over its body."""
-    nodes = world.groups.total(jnp.ones_like(values))
+    ones = jnp.ones_like(values)
+    if world.present is not None:
+        ones = ones * world.present[:, None]
+        values = values * ones
+    nodes = world.groups.total(ones)
     return world.groups.each(world.groups.total(values) / nodes)

@@ -8,8 +8,10 @@ from jaxtyping import Array, Float
 
 from .. import coupling, filaments, fluid
 from ..groups import Groups
+from .measuring import Pushed, measure
 from .model import Measures, State, World
 from .nodes import collect, repel
+from .present import edges_there, there
 
 Vectors = Float[Array, "node 2"]
 
@@ -41,6 +43,7 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
         iterations=world.form.forcing_iterations,
         projection=world.form.projection,
         limit=world.limits.force,
+        present=there(world, layers),
     )
     forcing = world.form.force_factor * forced.forcing
     force = coupling.spread(forcing, at, world.size)
@@ -49,9 +52,12 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
         state.populations, rho, momentum, force, rates, world.surroundings
     )
     positions = state.positions + coupling.at_nodes(forced.target, layers) + drift
+    if world.present is not None:
+        positions = jnp.where(world.present[:, None], positions, state.positions)
     end = replace(state, populations=populations, positions=positions, angles=motion.angles)
-    measures = _measure(velocity, forcing, motion, forced, groups, rest)
-    return collect(world, end, at), measures
+    held = _held(motion, forced, groups)
+    pushed = Pushed(velocity, forcing, forced.target, motion.target, held)
+    return collect(world, end, at), measure(world, end, rest, pushed)
 
 
 def move(world: World, state: State, rest: filaments.Rest, velocity: Vectors) -> Motion:
@@ -77,24 +83,18 @@ def _points(world: World, state: State) -> Float[Array, "point 2"]:
     """Where the bodies act on the fluid."""
     if world.form.layers == 1:
         return state.positions
-    normals = filaments.normals(state.angles, world.rods, len(state.positions))
+    grown = edges_there(world)
+    normals = filaments.normals(state.angles, world.rods, len(state.positions), grown)
     return coupling.points(state.positions, normals, world.form.layers)
 
 
 def _windows(world: World, state: State) -> coupling.Windows:
-    return coupling.windows(_points(world, state), world.size, world.form.kernel)
+    at = coupling.windows(_points(world, state), world.size, world.form.kernel)
+    return coupling.only(at, there(world, world.form.layers))
 
 
-def _measure(
-    velocity, forcing, motion: Motion, forced: coupling.Forced, groups: Groups, rest
-) -> Measures:
-    layers = len(velocity) // len(motion.target)
-    pressed = groups.each((forced.scale < 1).astype(velocity.dtype))[::layers]
-    held = jnp.maximum(pressed, (motion.shortened < 1).astype(velocity.dtype))
-    return Measures(
-        speed=jnp.sqrt(jnp.max(jnp.sum(velocity * velocity, 1))),
-        pace=jnp.mean(jnp.sqrt(jnp.sum(motion.target * motion.target, 1) + 1e-24)),
-        held=jnp.mean(held),
-        force=groups.total(forcing),
-        rest=rest,
-    )
+def _held(motion: Motion, forced: coupling.Forced, groups: Groups) -> Float[Array, "node"]:
+    """1 for nodes whose displacement, or whose body's force, was cut."""
+    dtype, layers = motion.target.dtype, len(groups.member) // len(motion.target)
+    pressed = groups.each((forced.scale < 1).astype(dtype))[::layers]
+    return jnp.maximum(pressed, (motion.shortened < 1).astype(dtype))

@@ -1,0 +1,90 @@
+"""From the words for an encoding to what genotypes mean."""
+
+from functools import singledispatch
+
+import numpy as np
+
+from .. import bodies, genomes, spec
+
+TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
+BASES = {"fourier": genomes.fourier, "table": genomes.table}
+
+
+def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding:
+    """What genotypes mean for a scene's body; `room` is for nodes and connections."""
+    control, body = scene.control, spec.shape(scene.body)
+    if isinstance(control, spec.Gait):
+        raise ValueError("`control` must be inherited, got a hand-made gait")
+    controls = build_controls(control, body, scene.task.steps)
+    return _encoding(control, controls, body, room)
+
+
+def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> genomes.Controls:
+    """What a controller is told at all nodes and times, and what it says means."""
+    rise = np.maximum(control.ramp * control.period, 1)
+    unit = getattr(control, "position", "signed") == "unit"
+    return genomes.Controls(
+        position=body.arc if unit else 2 * body.arc - 1,
+        timer=TIMERS[control.timer](steps, control.period),
+        ramp=np.minimum(1, (np.arange(steps) + (control.ramp == 0)) / rise),
+        edges=body.edges,
+        joint_nodes=body.joint_nodes,
+        rest_angle=body.rest_angle,
+        rest_length=body.rest_length,
+        angle_scale=control.angle_scale,
+        length_scale=control.length_scale,
+        senses=getattr(control, "sense_energy", False),
+    )
+
+
+@singledispatch
+def _encoding(
+    control: spec.Controller,
+    controls: genomes.Controls,
+    body: bodies.Body,
+    room: tuple[int, int],
+) -> genomes.Encoding:
+    raise TypeError(f"`control` must have a known encoding, got {type(control).__name__}")
+
+
+@_encoding.register
+def _(control: spec.Control, controls, body, room):
+    return genomes.CPPNControl(controls, room, control.recurrent)
+
+
+@_encoding.register
+def _(control: spec.Weights, controls, body, room):
+    layers = genomes.Layers(control.sizes, control.activation, control.scale)
+    return genomes.Weights(controls, layers)
+
+
+@_encoding.register
+def _(control: spec.Direct, controls, body, room):
+    return genomes.Direct(
+        controls=controls,
+        parts=control.parts(body),
+        bounds=control.free,
+        basis=BASES[control.waveform],
+        terms=control.terms,
+        plan=build_layout(body) if {"rest_angle", "rest_length"} & set(control.free) else None,
+        spread=control.spread,
+    )
+
+
+@_encoding.register
+def _(control: spec.Grown, controls, body, room):
+    return genomes.Grown(controls, room, control.free, control.min_nodes, build_layout(body))
+
+
+def build_layout(body: bodies.Body) -> genomes.Plan:
+    """How a body without loops is laid out."""
+    unfolded = bodies.unfolded(body)
+    angle, length = bodies.drawn(body)
+    return genomes.Plan(
+        angle=angle,
+        length=length,
+        joints=body.joints,
+        turned=unfolded.turned,
+        ways=unfolded.ways,
+        free=unfolded.joints,
+    )

@@ -1,0 +1,60 @@
+"""Networks with cycles: all nodes are updated together, once in every step of the world.
+
+Every node of the body has a copy of the network, whose values live across steps.
+"""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..world import State, World, sense
+from .cppn import ACTIVATIONS, BOUND, CPPN, Points, matrix
+from .development import OUTPUTS, Controls, applied, at_once, seen
+from .encoding import Drive
+
+
+def advance(network: CPPN, values: Points, inputs: Points) -> Points:
+    """Values (node, point) one step later: f(b + W v), v being `values` with new inputs.
+
+    Inputs hold what was given; unused rows hold 0.
+    """
+    given = inputs.shape[0]
+    values = values.at[:given].set(inputs)
+    weights = matrix(network, values.dtype)
+    # A written-out sum: a matrix product may be split differently elsewhere.
+    z = network.bias[:, None] + jnp.sum(weights[:, :, None] * values[None], 1)
+    found = jnp.zeros_like(z)
+    for number, function in enumerate(ACTIVATIONS.values()):
+        found = jnp.where((network.activation == number)[:, None], function(z), found)
+    computed = network.node_used & (np.arange(len(found)) >= given)
+    return jnp.where(computed[:, None], jnp.clip(found, -BOUND, BOUND), values)
+
+
+def drive_recurrent(network: CPPN, controls: Controls, world: World, start: State) -> Drive:
+    """Open loop, computed before the world moves, or closed where the network senses."""
+    dtype = start.positions.dtype
+    rows = slice(controls.inputs, controls.inputs + OUTPUTS)
+    nothing = jnp.zeros((len(network.bias), len(controls.position)), dtype)
+    timer, ramp = jnp.asarray(controls.timer.T, dtype), jnp.asarray(controls.ramp, dtype)
+    if not controls.senses:
+
+        def step(values, timer):
+            values = advance(network, values, seen(controls, timer, None))
+            return values, values[rows]
+
+        _, said = jax.lax.scan(step, nothing, timer)
+        return Drive(world, start, applied(jnp.moveaxis(said, 0, 1), ramp, controls))
+
+    def remember(
+        world: World, state: State, given: tuple[Array, Array]
+    ) -> Float[Array, "row node"]:
+        return advance(network, state.memory, seen(controls, given[0], sense(world, state)))
+
+    def control(world: World, state: State, given: tuple[Array, Array]):
+        return at_once(state.memory[rows], given[1], controls)
+
+    start = replace(start, memory=nothing)
+    return Drive(world, start, (timer, ramp), control, remember)

@@ -1,0 +1,150 @@
+"""What is measured of a creature's motion; names, units and axes are in `spec.features`."""
+
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from .. import units
+from ..filaments import Rest
+from ..world import Measures, State, World, centre, edges_there, joints_there, mean
+
+MOTION = (
+    "displacement",
+    "bending_effort",
+    "stretching_effort",
+    "path_length",
+    "straightness",
+    "rotation",
+)
+FEATURES = (
+    *MOTION,
+    "hidden_nodes",
+    "connections",
+    "energy",
+    "mach",
+    "limited",
+    "reynolds",
+    "mean_speed",
+    "turning",
+    "curvature_mean",
+    "curvature_spread",
+    "symmetry",
+    "power",
+    "efficiency",
+    "nodes",
+)
+"""What is recorded of every elite, in this order; units in `docs/formats.md`."""
+
+Curvature = Float[Array, "time joint"]
+Scalar = Float[Array, ""]
+
+
+class Seen(eqx.Module):
+    """What is observed in every step."""
+
+    centre: Float[Array, "*time 2"]
+    rest: Rest
+    speed: Float[Array, "*time"]
+    pace: Float[Array, "*time"]
+    held: Float[Array, "*time"]
+    heading: Float[Array, "*time"]
+    curvature: Float[Array, "*time joint"]
+    power: Float[Array, "*time"]
+
+
+def observe(state: State, measures: Measures) -> Seen:
+    """What features are made of."""
+    return Seen(
+        centre=measures.centre,
+        rest=measures.rest,
+        speed=measures.speed,
+        pace=measures.pace,
+        held=measures.held,
+        heading=measures.heading,
+        curvature=measures.curvature,
+        power=measures.power,
+    )
+
+
+def motion(
+    world: World, start: State, end: State, seen: Seen, length: Scalar | float
+) -> dict[str, Any]:
+    """What can be measured of any actuator's motion; `length` is the body's, in cells."""
+    first, steps = centre(world, start), len(seen.pace)
+    moved = jnp.diff(jnp.concatenate([first[None], seen.centre]), axis=0)
+    displacement, path = _norm(seen.centre[-1] - first), jnp.sum(_norm(moved))
+    edges, joints = edges_there(world), joints_there(world)
+    power = jnp.mean(seen.power)
+    nodes = len(start.positions) if world.present is None else jnp.sum(world.present)
+    heading = jnp.concatenate([mean(start.angles, edges)[None], seen.heading])
+    curved, spread = curvature(seen.curvature, joints)
+    return {
+        "displacement": displacement,
+        "bending_effort": effort(seen.rest.angle, joints),
+        "stretching_effort": effort(seen.rest.length, edges),
+        "path_length": path,
+        "straightness": displacement / jnp.maximum(path, 1e-12),
+        "rotation": mean(end.angles - start.angles, edges),
+        "energy": jnp.zeros(()) if end.collected is None else jnp.sum(end.collected),
+        "mach": units.mach(jnp.max(seen.speed)),
+        "limited": jnp.mean(seen.held),
+        "reynolds": units.reynolds(jnp.mean(seen.pace), length, world.viscosity),
+        "mean_speed": path / steps,
+        "turning": jnp.sum(jnp.abs(jnp.diff(heading))),
+        "curvature_mean": curved,
+        "curvature_spread": spread,
+        "symmetry": symmetry(seen.curvature, joints),
+        "power": power,
+        "efficiency": efficiency(displacement / steps, power, world.viscosity),
+        "nodes": jnp.asarray(nodes),
+    }
+
+
+def effort(rest: Float[Array, "time item"], kept: Bool[Array, "item"] | None = None) -> Scalar:
+    """Σ over time and items of the squared change from one step to the next."""
+    changes = jnp.diff(rest, axis=0) ** 2
+    return jnp.sum(changes if kept is None else jnp.where(kept[None], changes, 0.0))
+
+
+def curvature(
+    found: Curvature, kept: Bool[Array, "joint"] | None = None
+) -> tuple[Scalar, Scalar]:
+    """Mean and standard deviation of |curvature| over time and joints, 1/cells."""
+    size = jnp.abs(found)
+    average = jnp.mean(mean(size.T, kept))
+    squares = jnp.mean(mean((size.T - average) ** 2, kept))
+    return average, jnp.sqrt(squares + 1e-24)
+
+
+def symmetry(found: Curvature, kept: Bool[Array, "joint"] | None = None) -> Scalar:
+    """How the joints' bending agrees with its mirror along the body, −1 to 1.
+
+    Σ c(t, j) c(t, J − 1 − j) / Σ c(t, j)², with the curvature c less its mean over time.
+    1: both halves bend alike at all times, like a jellyfish; −1: they bend oppositely, in S
+    shapes; about 0: a wave runs along the body. Joints count in their order, which is that
+    along a filament.
+    """
+    change = found - jnp.mean(found, 0)[None]
+    joints = found.shape[1]
+    count = joints if kept is None else jnp.sum(kept)
+    mirror = jnp.mod(count - 1 - jnp.arange(joints), joints)
+    product = change * change[:, mirror]
+    square = change * change
+    if kept is not None:
+        product = jnp.where(kept[None], product, 0.0)
+    return jnp.sum(product) / jnp.maximum(jnp.sum(square), 1e-20)
+
+
+def efficiency(speed: Scalar, power: Scalar, viscosity: Scalar) -> Scalar:
+    """ν U² / P: the power that drags a unit resistance along over the power that is spent.
+
+    0 where no power is spent on the whole.
+    """
+    spent = power > 1e-20
+    return jnp.where(spent, viscosity * speed**2 / jnp.where(spent, power, 1.0), 0.0)
+
+
+def _norm(v: Float[Array, "*batch 2"]) -> Float[Array, "*batch"]:
+    return jnp.sqrt(jnp.sum(v * v, -1) + 1e-24)

@@ -1,0 +1,56 @@
+"""What a step shows of itself."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from .. import filaments
+from .model import Measures, State, World
+from .present import centre, edges_there, joints_there, mean
+
+Points = Float[Array, "point 2"]
+
+
+class Pushed(eqx.Module):
+    """What happened between bodies and fluid in a step, at the points where they meet."""
+
+    velocity: Points
+    """Of the fluid, before the step."""
+    forcing: Points
+    """The force on the fluid."""
+    target: Points
+    """How the bodies move, but for what moves each as a whole against repulsion."""
+    moved: Float[Array, "node 2"]
+    """How nodes wished to move."""
+    held: Float[Array, "node"]
+    """1 where a limit acted."""
+
+
+def measure(world: World, end: State, rest: filaments.Rest, pushed: Pushed) -> Measures:
+    """The measures of a step that ended in `end`."""
+    groups = world.groups.repeated(world.form.layers)
+    speed = jnp.sqrt(jnp.sum(pushed.moved * pushed.moved, 1) + 1e-24)
+    return Measures(
+        speed=jnp.sqrt(jnp.max(jnp.sum(pushed.velocity * pushed.velocity, 1))),
+        pace=mean(speed, world.present),
+        held=mean(pushed.held, world.present),
+        force=groups.total(pushed.forcing),
+        rest=rest,
+        centre=centre(world, end),
+        heading=mean(end.angles, edges_there(world)),
+        curvature=_curvature(world, end),
+        power=jnp.sum(pushed.forcing * pushed.target),
+    )
+
+
+def _curvature(world: World, state: State) -> Float[Array, "joint"]:
+    rods = world.rods
+    if rods.joints is None:
+        return jnp.zeros_like(rods.bend)
+    first, second = rods.joints[:, 0], rods.joints[:, 1]
+    v = state.positions[rods.edges[:, 1]] - state.positions[rods.edges[:, 0]]
+    length = jnp.sqrt(jnp.sum(v * v, 1) + 1e-24)
+    angle = filaments.wrap(state.angles[second] - state.angles[first])
+    found = 2 * angle / (length[first] + length[second])
+    kept = joints_there(world)
+    return found if kept is None else jnp.where(kept, found, 0.0)

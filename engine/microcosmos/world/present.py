@@ -1,0 +1,52 @@
+"""Which nodes, edges and joints there are where a body has not grown whole."""
+
+from dataclasses import replace
+
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from .. import filaments
+from .model import State, World
+
+
+def there(world: World, layers: int = 1) -> Bool[Array, "point"] | None:
+    """The points of nodes that are present; None where all are."""
+    if world.present is None or layers == 1:
+        return world.present
+    return jnp.repeat(world.present, layers)
+
+
+def edges_there(world: World) -> Bool[Array, "edge"] | None:
+    """Edges with both ends."""
+    return None if world.present is None else jnp.all(world.present[world.rods.edges], 1)
+
+
+def joints_there(world: World) -> Bool[Array, "joint"] | None:
+    """Joints with both edges."""
+    edges, joints = edges_there(world), world.rods.joints
+    return None if edges is None or joints is None else jnp.all(edges[joints], 1)
+
+
+def grown_rods(rods: filaments.Rods, present: Bool[Array, "node"]) -> filaments.Rods:
+    """Rods without constraints on absent nodes."""
+    assert rods.joints is not None
+    edges = jnp.all(present[rods.edges], 1)
+    return replace(
+        rods,
+        stretch=jnp.where(edges, rods.stretch, 0.0),
+        shear=jnp.where(edges, rods.shear, 0.0),
+        bend=jnp.where(jnp.all(edges[rods.joints], 1), rods.bend, 0.0),
+    )
+
+
+def mean(values: Float[Array, "item *rest"], kept: Bool[Array, "item"] | None):
+    """The mean of what is there, over the first axis."""
+    if kept is None:
+        return jnp.mean(values, 0)
+    mask = kept.reshape(-1, *(1,) * (values.ndim - 1))
+    return jnp.sum(jnp.where(mask, values, 0.0), 0) / jnp.sum(kept)
+
+
+def centre(world: World, state: State) -> Float[Array, "2"]:
+    """The mean unwrapped node position, in cells."""
+    return mean(state.positions, world.present)

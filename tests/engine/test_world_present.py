@@ -1,0 +1,88 @@
+"""Nodes that are absent do nothing: a chain of some nodes of many is a shorter chain."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import bodies, fields, filaments, world
+
+STEPS, GROWN, ALL = 100, 9, 14
+
+
+@pytest.fixture
+def pair(immerse, float64):
+    """A function that makes a whole short chain, and as much of a longer one, in two worlds."""
+
+    def make(**options):
+        form = {name: options.pop(name) for name in ("layers",) if name in options}
+        boxes = []
+        for nodes in (GROWN, ALL):
+            body = bodies.chain(nodes, 1.0, bend=0.7)
+            box, start = immerse(body, float64, viscosity=0.05, size=(32, 32), **form)
+            positions = jnp.asarray(body.positions) + jnp.array([[11.0, 16.0]])
+            box = replace(box, **options)
+            if nodes == ALL:
+                present = jnp.arange(ALL) < GROWN
+                box = replace(box, rods=world.grown_rods(box.rods, present), present=present)
+            boxes.append((box, world.at_rest(box, positions)))
+        return boxes
+
+    return make
+
+
+def gait(nodes):
+    t, joint = np.arange(STEPS)[:, None], np.arange(nodes - 2)[None]
+    angle = 0.3 * np.sin(2 * np.pi * t / 40 - 0.7 * joint)
+    edge = np.arange(nodes - 1)[None]
+    length = 1 + 0.1 * np.sin(2 * np.pi * t / 30 + 0.4 * edge)
+    return filaments.Rest(jnp.asarray(angle), jnp.asarray(length))
+
+
+def see(state, measures):
+    return measures
+
+
+def both_fields():
+    packets = fields.packets((32, 32), fields.Packets(3, 3.0, 1.0, 2))
+    return {
+        "steric": fields.Steric(jnp.asarray(2.0), jnp.asarray(0.1), fields.binomial),
+        "energy": fields.Energy(jnp.asarray(packets), jnp.asarray(0.05), jnp.asarray(0.1)),
+    }
+
+
+@pytest.mark.parametrize("options", [dict, lambda: {"layers": 2}, both_fields])
+def test_some_nodes_of_a_chain_swim_as_a_shorter_chain(pair, options):
+    (short, start), (long, begun) = pair(**options())
+    run = jax.jit(lambda box, start, rest: world.rollout(box, start, rest, see))
+    whole, seen = run(short, start, gait(GROWN))
+    part, other = run(long, begun, gait(ALL))
+    np.testing.assert_allclose(part.positions[:GROWN], whole.positions, atol=1e-10)
+    np.testing.assert_array_equal(part.positions[GROWN:], begun.positions[GROWN:])
+    np.testing.assert_allclose(part.angles[: GROWN - 1], whole.angles, atol=1e-10)
+    np.testing.assert_allclose(part.populations[3], whole.populations[3], atol=1e-12)
+    if whole.collected is not None:
+        np.testing.assert_allclose(part.collected[:GROWN], whole.collected, atol=1e-12)
+        np.testing.assert_array_equal(part.collected[GROWN:], 0)
+    for name in ("speed", "pace", "held", "force", "centre", "heading", "power"):
+        ours, theirs = getattr(other, name), getattr(seen, name)
+        np.testing.assert_allclose(ours, theirs, atol=1e-10, err_msg=name)
+    np.testing.assert_allclose(other.curvature[:, : GROWN - 2], seen.curvature, atol=1e-10)
+    np.testing.assert_array_equal(other.curvature[:, GROWN - 2 :], 0)
+    np.testing.assert_allclose(other.force, 0, atol=1e-13)
+    assert jnp.linalg.norm(whole.positions[0] - start.positions[0]) > 0.01
+
+
+def test_gradients_of_a_part_are_those_of_a_shorter_chain(pair):
+    def slope(box, start, nodes):
+        def end(size):
+            rest = gait(nodes)
+            rest = replace(rest, angle=size * rest.angle[:30], length=rest.length[:30])
+            return jnp.sum(world.rollout(box, start, rest)[0].positions[:GROWN, 0])
+
+        return jax.grad(end)(1.0)
+
+    (short, start), (long, begun) = pair()
+    np.testing.assert_allclose(slope(long, begun, ALL), slope(short, start, GROWN), rtol=1e-8)
