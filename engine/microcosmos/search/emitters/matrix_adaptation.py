@@ -12,7 +12,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int, PRNGKeyArray
+from jaxtyping import Array, Float, Int, Key
 
 SMALLEST, LARGEST = 1e-10, 1e4
 """Standard deviations beyond which a distribution has converged or run away."""
@@ -80,7 +80,7 @@ def start(mean: Float[Array, "gene"], sigma: float) -> Distribution:
 
 
 def draw(
-    distribution: Distribution, *, keys: PRNGKeyArray
+    distribution: Distribution, *, keys: Key[Array, "child"]
 ) -> tuple[Float[Array, "child gene"], Float[Array, "child gene"]]:
     """Children, and the z that each was drawn by."""
     mean, m = distribution.mean, distribution.m
