@@ -67,6 +67,7 @@ PAPER = Settings(
         add_connection=0.05,
         values=0.8,
         apart=True,
+        bound=8.0,
         draw=uniform,
         palette=(SIGMOID,),
     ),
@@ -96,7 +97,7 @@ PAPER = Settings(
 
 Not in the paper, but in the authors' program: the step of weights, that they stay where
 structure is added, and the shares of survivors and of children that are only crossed.
-Ours: the best species never stagnates, and species are at most 50.
+Ours: weights stay within 8, the best species never stagnates, and species are at most 50.
 """
 
 TENSORNEAT = Settings(

@@ -160,7 +160,7 @@ def test_champions_of_large_species_that_breed_survive_unchanged(history, rules)
 
 
 def test_the_best_network_is_never_lost_where_its_species_is_large(evolve, settings):
-    for networks, fitness, species, _, parents, codes in evolve(settings, 8, seed=3)[:-1]:
+    for _, fitness, species, _, parents, codes in evolve(settings, 8, seed=3)[:-1]:
         best = np.nanargmax(np.where(np.isfinite(fitness), fitness, np.nan))
         if species.members[species.of[best]] >= settings.elite_size:
             assert best in parents[codes == 0, 0]

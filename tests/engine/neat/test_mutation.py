@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from microcosmos import genomes, neat
+from microcosmos.neat import reach
 
 INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 32
 
@@ -149,3 +150,41 @@ def test_ranks_number_distinct_pairs_and_skip_what_did_not_arise():
     assert many == 3
     assert place[0] == place[3] == 2
     assert {int(place[2]), int(place[4])} == {0, 1}
+
+
+def test_recurrent_networks_may_hold_cycles_and_loops():
+    rates = neat.Rates(0, 1, 0, 0, 0, add_node=0.3, add_connection=1.0, recurrent=True)
+    counters = neat.first_counters(INPUTS, OUTPUTS)
+    networks = first_generation(jax.random.key(0))
+    mutate = jax.jit(jax.vmap(lambda n, k: neat.mutate(n, rates, INPUTS, key=k)))
+    for step in range(12):
+        children, novelty = mutate(networks, jax.random.split(jax.random.key(step), BATCH))
+        networks, counters = neat.number(children, novelty, counters)
+    networks = jax.device_get(networks)
+    used = networks.connection_used
+    assert (networks.source == networks.target)[used].any()
+    assert (networks.source > networks.target)[used].any()
+    assert (networks.target[used] >= INPUTS).all()
+    for network in each(networks):
+        c = network.connection_used.sum()
+        assert len(set(zip(network.source[:c], network.target[:c], strict=True))) == c
+
+
+def test_reach_is_what_powers_of_the_adjacency_matrix_say():
+    random = np.random.default_rng(0)
+    for nodes in (5, 32, 33, 70):
+        source, target = random.integers(0, nodes, (2, nodes))
+        joined = np.zeros((nodes, nodes), bool)
+        joined[source, target] = True
+        source, target = np.nonzero(joined)
+        sets = reach.neighbours(
+            *map(jnp.asarray, (source, target, np.ones(len(source), bool))), nodes
+        )
+        closed = reach.closure(sets)
+        ways = (
+            np.linalg.matrix_power((joined | np.eye(nodes, dtype=bool)).astype(float), nodes)
+            > 0
+        )
+        for node in range(nodes):
+            np.testing.assert_array_equal(reach.held(closed, jnp.asarray(node)), ways[node])
+        np.testing.assert_array_equal(reach.sizes(closed), ways.sum(1))
