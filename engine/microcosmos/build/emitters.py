@@ -5,7 +5,8 @@ from functools import singledispatch
 
 from .. import neat, search, spec
 from ..genomes import Encoding
-from ..search import emitters
+from ..search import emitters, tensorneat
+from ..search.emitters.tensorneat import TensorNeat
 from ..spec import emitters as words
 
 Search = spec.QualityDiversity | spec.Neuroevolution
@@ -35,14 +36,17 @@ def _(emitter: words.RandomEmitter, slots, chosen, encoding):
 
 @_build.register
 def _(emitter: words.NeatEmitter, slots, chosen, encoding):
-    rates, inputs = build_rates(chosen.genome), len(chosen.control.inputs)
+    rates, inputs = build_rates(chosen), len(chosen.control.inputs)
     return emitters.Neat(slots, encoding.newcomer, rates, inputs, emitter.crossover)
 
 
 @_build.register
 def _(emitter: words.PopulationEmitter, slots, chosen, encoding):
-    settings = build_settings(emitter, chosen.genome, slots)
-    inputs, outputs = len(chosen.control.inputs), len(spec.OUTPUTS)
+    settings = build_settings(emitter, chosen, slots)
+    inputs, outputs = len(chosen.control.inputs), len(chosen.control.outputs)
+    if emitter.backend == "tensorneat":
+        backend = tensorneat.build(settings, inputs, outputs, *encoding.room)
+        return TensorNeat(slots, backend, chosen.seed)
     return emitters.population.Neat(slots, encoding.newcomer, settings, inputs, outputs)
 
 
@@ -69,21 +73,22 @@ def _(emitter: words.CmaMaeEmitter, slots, chosen, encoding):
 
 
 def build_settings(
-    emitter: words.PopulationEmitter, genome: spec.Genome, slots: int
+    emitter: words.PopulationEmitter, chosen: Search, slots: int
 ) -> neat.Settings:
     """How a population is divided, selected and varied."""
     whole = neat.PRESETS[emitter.preset]
-    rates = build_rates(genome)
+    rates = build_rates(chosen)
     if emitter.preset != "paper":  # Its own rates, among all activations.
-        rates = replace(whole.rates, palette=rates.palette)
+        rates = replace(whole.rates, palette=rates.palette, recurrent=rates.recurrent)
     names = ("threshold", "target_species", "stagnation", "survival", "crossover")
     given = {name: getattr(emitter, name) for name in names}
     given = {name: value for name, value in given.items() if value is not None}
     return replace(whole, rates=rates, population=slots, **given)
 
 
-def build_rates(genome: spec.Genome) -> neat.Rates:
+def build_rates(chosen: Search) -> neat.Rates:
     """How often each of NEAT's mutations happens."""
+    genome = chosen.genome
     return neat.Rates(
         weight=genome.weight_rate,
         weight_step=genome.weight_step,
@@ -92,4 +97,5 @@ def build_rates(genome: spec.Genome) -> neat.Rates:
         toggle=genome.toggle_rate,
         add_node=genome.add_node_rate,
         add_connection=genome.add_connection_rate,
+        recurrent=getattr(chosen.control, "recurrent", False),
     )

@@ -114,8 +114,31 @@ Emitter = Annotated[
 ]
 """One source of children."""
 
-OF_VECTORS = ("iso+line", "gaussian", "cma-mae", "cma-me")
-"""Operators that vary vectors of numbers; the others need networks, random ones neither."""
+OF_NUMBERS = ("iso+line", "gaussian", "cma-mae", "cma-me")
+"""Operators that vary numbers."""
+
+OF_NETWORKS = ("neat", "population")
+"""Operators that vary networks."""
+
+WITH_NUMBERS = ("direct", "weights")
+"""Encodings whose genes are numbers; those of the others are networks."""
+
+
+def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:
+    """Operators must vary what is inherited; TensorNEAT's program works alone."""
+    unfit = OF_NETWORKS if encoding in WITH_NUMBERS else OF_NUMBERS
+    for emitter in emitters:
+        if emitter.operator in unfit:
+            fit = OF_NUMBERS if unfit is OF_NETWORKS else OF_NETWORKS
+            raise ValueError(
+                f"`search.emitters` must be random or of {', '.join(fit)} where "
+                f"`control.encoding` is {encoding!r}, got {emitter.operator!r}"
+            )
+        if getattr(emitter, "backend", None) == "tensorneat" and len(emitters) > 1:
+            raise ValueError(
+                '`search.emitters` must hold nothing else beside backend "tensorneat", got '
+                f"{len(emitters)}"
+            )
 
 
 def slots(batch: int, shares: tuple[int, ...]) -> tuple[int, ...]:

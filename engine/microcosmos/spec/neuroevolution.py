@@ -8,9 +8,10 @@ from .base import Part
 from .body import Body, Chain
 from .control import Control, Genome
 from .coupling import Coupling
-from .emitters import PopulationEmitter
+from .emitters import PopulationEmitter, refuse_unfit_emitters
+from .encodings import Controller
 from .fields import Energy, Steric
-from .scene import Scene, refuse_senseless, refuse_too_large
+from .scene import Scene, refuse_misfit, refuse_senseless
 from .search import Archive, Generations, Task
 from .world import World
 
@@ -24,7 +25,7 @@ class Neuroevolution(Part):
     world: World = World()
     body: Body = Chain()
     coupling: Coupling = Coupling()
-    control: Control = Control()
+    control: Controller = Control()
     genome: Genome = Genome()
     task: Task = Task()
     archive: Archive = Archive()
@@ -35,8 +36,9 @@ class Neuroevolution(Part):
 
     @model_validator(mode="after")
     def check_scene(self) -> Self:
-        refuse_too_large(self.world, self.body, self.control.length_scale)
+        refuse_misfit(self.world, self.body, self.control)
         refuse_senseless(self.world, self.control, self.task)
+        refuse_unfit_emitters(self.emitters, self.control.encoding)
         return self
 
     @property

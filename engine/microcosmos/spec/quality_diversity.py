@@ -8,9 +8,10 @@ from .base import Part
 from .body import Body, Chain
 from .control import Control, Genome
 from .coupling import Coupling
-from .emitters import Emitter
+from .emitters import Emitter, refuse_unfit_emitters
+from .encodings import Controller
 from .fields import Steric
-from .scene import Scene, refuse_senseless, refuse_too_large
+from .scene import Scene, refuse_misfit, refuse_senseless
 from .search import Archive, Descriptor, Search, Task
 from .world import World
 
@@ -24,7 +25,7 @@ class QualityDiversity(Part):
     world: World = World()
     body: Body = Chain()
     coupling: Coupling = Coupling()
-    control: Control = Control()
+    control: Controller = Control()
     genome: Genome = Genome()
     task: Task = Task()
     archive: Archive = Archive()
@@ -32,8 +33,9 @@ class QualityDiversity(Part):
 
     @model_validator(mode="after")
     def check_scene(self) -> Self:
-        refuse_too_large(self.world, self.body, self.control.length_scale)
+        refuse_misfit(self.world, self.body, self.control)
         refuse_senseless(self.world, self.control, self.task)
+        refuse_unfit_emitters(self.search.emitters, self.control.encoding)
         return self
 
     @property
