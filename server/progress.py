@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import and_, or_, select
 from sqlalchemy.orm import Session
 
-from .models import FAILED, RUNNING, Generation, Run
+from .models import FAILED, FINISHED, RUNNING, Generation, Run
 from .schemas import RunRead
 
 POINTS = 32
@@ -54,11 +54,16 @@ def _read(run: Run, curve: list[Generation]) -> RunRead:
     columns["error"] = run.error if run.status == FAILED else None
     return RunRead(
         **{name: columns[name] for name in RunRead.model_fields if name in columns},
-        progress=min(1.0, run.generation / run.generations),
+        progress=_progress(run),
         eta_seconds=left / generations if generations and run.status == RUNNING else None,
         evaluations_per_second=evaluations,
         sparkline=[row.qd_score for row in curve if row.qd_score is not None],
     )
+
+
+def _progress(run: Run) -> float:
+    """A run may end before its generations are through: a finished one is done."""
+    return 1.0 if run.status == FINISHED else min(1.0, run.generation / run.generations)
 
 
 def _rates(curve: list[Generation]) -> tuple[float | None, float | None]:

@@ -87,6 +87,9 @@ class Curves(Wire):
     evaluations: list[int]
     diverged: list[int]
     seconds: list[float]
+    summary: dict[str, list[float | None]]
+    """Whatever other numbers the generations told: each the newest one since the point before,
+    None where none was told."""
 
 
 class Axis(Wire):
@@ -97,16 +100,36 @@ class Axis(Wire):
     scale: Literal["log10", "linear"]
 
 
+class Feature(Wire):
+    """What is recorded of every elite, and where an axis of it begins and ends by default."""
+
+    name: str
+    title: str
+    unit: str
+    low: float | None
+    high: float | None
+    scale: Literal["log10", "linear"]
+
+
 class ArchiveRead(Wire):
-    """Columns, one entry per filled cell; cells are numbered in C order."""
+    """Columns, one entry per filled cell.
+
+    The cells of a grid are numbered in C order over the bins of its axes; those of a CVT in
+    the order of their centroids, and the bins of its axes are none.
+    """
 
     generation: int
+    kind: Literal["grid", "cvt"]
+    cells: int
     axes: list[Axis]
+    recorded: list[Feature]
     cell: list[int]
     fitness: list[float]
     descriptors: list[list[float]]
     elite_generation: list[int]
     creature: list[str]
+    features: dict[str, list[float | None]]
+    """Columns of the features that were asked for."""
 
 
 class ResultsRead(Wire):

@@ -1,7 +1,9 @@
 """From a spec to a queued run."""
 
 import os
+from dataclasses import dataclass
 from hashlib import sha256
+from typing import Any
 
 import rfc8785
 from sqlalchemy.exc import IntegrityError
@@ -17,8 +19,21 @@ from .problems import FieldError, Refused
 from .reconcile import requeue
 from .services import Services
 
-DECISIVE = {"quality-diversity": "search.block", "gaits": "block", "scaling": "nodes"}
-"""The field of each experiment that decides most about its memory."""
+OF_SEARCHES = ("search.block", "search.batch", "archive.descriptors")
+DECISIVE = {
+    "quality-diversity": OF_SEARCHES,
+    "neuroevolution": OF_SEARCHES,
+    "gaits": ("block",),
+    "scaling": ("nodes",),
+}
+"""The fields of each experiment that may decide most about its memory."""
+
+
+@dataclass(frozen=True)
+class OneCell:
+    """The smallest archive, as far as an estimate looks at it."""
+
+    cells: int = 1
 
 
 def memory_limit(services: Services, session: Session) -> int:
@@ -38,11 +53,28 @@ def refuse_too_large(services: Services, spec: Spec) -> None:
     needed = estimate(spec).memory_bytes
     if needed > limit:
         detail = f"The run needs {needed:,} bytes of memory; {limit:,} bytes are available."
-        field = DECISIVE[spec.experiment]
+        field = decisive(spec)
         error = FieldError(
             field=field, message=detail, needed=f"at most {limit} bytes", got=needed
         )
         raise Refused(422, "More memory than there is", detail, [error])
+
+
+def decisive(spec: Spec) -> str:
+    """The field whose least value would save the most memory."""
+    fields = DECISIVE[spec.experiment]
+    if len(fields) == 1:
+        return fields[0]
+    return min(fields, key=lambda field: estimate(_least(spec, field)).memory_bytes)
+
+
+def _least(spec: Any, field: str) -> Spec:
+    """The spec with as little as possible in one of its fields."""
+    part, _, name = field.partition(".")
+    if part == "archive":
+        return spec.model_copy(update={part: OneCell()})
+    changed = getattr(spec, part).model_copy(update={name: 1})
+    return spec.model_copy(update={part: changed})
 
 
 def submit(

@@ -1,6 +1,7 @@
 """The archive of a run: as columns, now or as it was, and as files."""
 
 from collections.abc import Sequence
+from math import prod
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -10,12 +11,13 @@ from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
 
+from .. import features as of_elites
 from .. import ranges
 from ..checkpoints import last_checkpoint
 from ..deps import RunDep, ServicesDep, SessionDep
-from ..models import Artifact, Elite, Run
+from ..models import Artifact, Creature, Elite, Run
 from ..problems import Refused
-from ..schemas import ArchiveRead, Axis
+from ..schemas import ArchiveRead
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
 binary: dict[int | str, dict[str, Any]] = {
@@ -37,19 +39,34 @@ def read_archive(
     run: RunDep,
     session: SessionDep,
     generation: Annotated[int | None, Query(ge=0)] = None,
+    features: str = "",
 ) -> ArchiveRead:
-    """The elite of each cell, now or as of a generation."""
+    """The elite of each cell, now or as of a generation.
+
+    With `features`, names with commas between them, what was recorded of the elites under
+    those names too: an archive can be looked at along any of them.
+    """
     _refuse_without(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
-    elites = _elites(session, run, as_of)
+    recorded = of_elites.recorded(session, run)
+    names = list(dict.fromkeys(filter(None, features.split(","))))
+    of_elites.refuse_unknown(names, recorded)
+    elites = _elites(session, run, as_of, names)
+    axes = of_elites.axes(run)
     return ArchiveRead(
         generation=as_of,
-        axes=[Axis(**axis) for axis in run.spec["archive"]["descriptors"]],
+        kind="grid",
+        cells=prod(axis.bins for axis in axes),
+        axes=axes,
+        recorded=recorded,
         cell=[elite.cell for elite in elites],
         fitness=[elite.fitness for elite in elites],
         descriptors=[elite.descriptors for elite in elites],
         elite_generation=[elite.generation for elite in elites],
         creature=[elite.creature for elite in elites],
+        features={
+            name: [elite[len(COLUMNS) + i] for elite in elites] for i, name in enumerate(names)
+        },
     )
 
 
@@ -62,8 +79,8 @@ def _refuse_without(run: Run) -> None:
         raise Refused(404, "No archive", detail)
 
 
-def _elites(session: Session, run: Run, as_of: int) -> Sequence[Any]:
-    """The last of each cell that is not after a generation."""
+def _elites(session: Session, run: Run, as_of: int, names: Sequence[str]) -> Sequence[Any]:
+    """The last of each cell that is not after a generation, and their features by name."""
     last = (
         select(Elite.cell, func.max(Elite.generation).label("generation"))
         .where(Elite.run_id == run.id, Elite.generation <= as_of)
@@ -71,7 +88,10 @@ def _elites(session: Session, run: Run, as_of: int) -> Sequence[Any]:
         .subquery()
     )
     same = (Elite.cell == last.c.cell) & (Elite.generation == last.c.generation)
-    statement = select(*COLUMNS).join(last, same).where(Elite.run_id == run.id)
+    features = [of_elites.column(name) for name in names]
+    statement = select(*COLUMNS, *features).join(last, same).where(Elite.run_id == run.id)
+    if names:
+        statement = statement.join(Creature, Creature.sha256 == Elite.creature)
     return session.execute(statement.order_by(Elite.cell)).all()
 
 

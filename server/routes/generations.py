@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from sqlalchemy import select
 
+from ..curves import told
 from ..deps import RunDep, SessionDep
 from ..models import Generation
 from ..progress import evenly
@@ -19,12 +20,17 @@ def read_generations(
     session: SessionDep,
     points: Annotated[int | None, Query(ge=2, le=10_000)] = None,
 ) -> Curves:
-    """All generations, or about so many of them, evenly spaced."""
-    names = list(Curves.model_fields)
-    columns = [getattr(Generation, name) for name in names]
-    statement = select(*columns).where(Generation.run_id == run.id)
+    """All generations, or about so many of them, evenly spaced.
+
+    What `summary` tells is thinned to the newest value since the point before.
+    """
+    names = [name for name in Curves.model_fields if name != "summary"]
+    statement = select(*(getattr(Generation, name) for name in names)).where(
+        Generation.run_id == run.id
+    )
     if points:
         statement = statement.where(Generation.generation.in_(evenly(run.generation, points)))
     rows = session.execute(statement.order_by(Generation.generation)).all()
     values = [list(column) for column in zip(*rows, strict=True)] or [[] for _ in names]
-    return Curves(**dict(zip(names, values, strict=True)))
+    columns = dict(zip(names, values, strict=True))
+    return Curves(**columns, summary=told(session, run.id, columns["generation"]))

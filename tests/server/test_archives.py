@@ -132,3 +132,43 @@ def test_the_table_has_the_columns_of_pyribs(api, run_id, saved):
     assert float(table["objective"]) == 2.5
     assert [float(table["measures_0"]), float(table["measures_1"])] == [-2.0, 0.0]
     assert table["index"] == "17"
+
+
+SLIM = {"energy": 0.1 + 0.2, "turning": -1e-9}
+
+
+def test_an_archive_has_the_features_of_its_elites_that_are_asked_for(
+    api, services, run_id, report
+):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0}, features=SLIM), 1.0)
+    attempt.record(report(2, {3: 2.0}, features=dict.fromkeys(SLIM, 7.0)), 1.0)
+    found = api.get(f"runs/{run_id}/archive", params={"features": "turning,energy"}).json()
+    assert found["cell"] == [3, 5]
+    assert found["features"] == {"turning": [7.0, -1e-9], "energy": [7.0, 0.1 + 0.2]}
+    names = [feature["name"] for feature in found["recorded"]]
+    assert names == ["displacement", "bending_effort", "stretching_effort", *SLIM]
+    assert api.get(f"runs/{run_id}/archive").json()["features"] == {}
+    before = {"features": "energy", "generation": 1}
+    then = api.get(f"runs/{run_id}/archive", params=before).json()
+    assert then["features"] == {"energy": [0.1 + 0.2]}
+
+
+def test_features_that_were_not_recorded_are_refused_with_those_that_were(
+    api, services, run_id, report
+):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
+    answer = api.get(f"runs/{run_id}/archive", params={"features": "energy,displacement"})
+    assert answer.status_code == 422
+    (error,) = answer.json()["errors"]
+    assert (error["field"], error["got"]) == ("features", ["energy"])
+    assert "displacement" in error["needed"]
+
+
+@pytest.mark.parametrize("descriptors", [(0.5,), (1.0, 2.0, 3.0)])
+def test_elites_have_any_number_of_descriptors(api, services, run_id, report, descriptors):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}, descriptors), 1.0)
+    assert api.get(f"runs/{run_id}/archive").json()["descriptors"] == [list(descriptors)]
+    entries = services.redis.xrange(services.events.stream)
+    (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"elites"]
+    assert told["descriptors"] == [list(descriptors)]

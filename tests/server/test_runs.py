@@ -12,6 +12,8 @@ from server.routes import runs as routes
 
 PROBLEM = "application/problem+json"
 
+FINE = [{"name": name, "bins": 1024} for name in ("bending_effort", "stretching_effort")]
+
 
 def changed(spec, path, value):
     *parts, last = path.split(".")
@@ -25,7 +27,7 @@ def changed(spec, path, value):
 def test_experiments_carry_schema_and_presets_that_can_be_submitted(api):
     experiments = api.get("experiments").json()
     names = [found["experiment"] for found in experiments]
-    assert names == ["quality-diversity", "gaits", "scaling"]
+    assert names == ["quality-diversity", "neuroevolution", "gaits", "scaling"]
     for found in experiments:
         assert set(found) == {"experiment", "title", "schema", "presets"}
         assert found["schema"]["properties"]["experiment"]
@@ -77,14 +79,22 @@ def test_bad_input_is_refused_with_field_and_reason(
 
 
 @pytest.mark.parametrize(
-    ("experiment", "field"),
-    [("quality-diversity", "search.block"), ("gaits", "block"), ("scaling", "nodes")],
+    ("experiment", "change", "field"),
+    [
+        ("quality-diversity", {}, "search.block"),
+        ("quality-diversity", {"search": {"batch": 65_536}}, "search.batch"),
+        ("neuroevolution", {}, "search.block"),
+        ("neuroevolution", {"search": {"batch": 65_536}}, "search.batch"),
+        ("quality-diversity", {"archive": {"descriptors": FINE}}, "archive.descriptors"),
+        ("gaits", {}, "block"),
+        ("scaling", {}, "nodes"),
+    ],
 )
 def test_a_run_that_needs_too_much_memory_is_told_which_field_decides(
-    api, services, experiment, field
+    api, services, experiment, change, field
 ):
     workers.report(services.sessions, "small", "cpu", 1000, "idle")
-    answer = api.post("runs", json={"experiment": experiment})
+    answer = api.post("runs", json={"experiment": experiment, **change})
     assert answer.status_code == 422
     assert answer.json()["errors"][0]["field"] == field
 

@@ -50,7 +50,7 @@ def _update(change: str) -> None:
 
 
 def _prepared() -> str:
-    """The dialect; SQLite's own JSON may round the last digits of a number, Python's does not."""
+    """The dialect. SQLite's own JSON may round the last digits of a number, Python's not."""
     connection = op.get_bind()
     if connection.dialect.name == "sqlite":
         driver: Any = connection.connection.dbapi_connection

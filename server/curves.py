@@ -1,0 +1,39 @@
+"""Curves over the generations, thinned for a screen."""
+
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from .models import Generation
+
+
+def told(
+    session: Session, run_id: UUID, generations: Sequence[int]
+) -> dict[str, list[float | None]]:
+    """The numbers in the summaries, as columns with an entry for each of the generations.
+
+    Some are told now and then: each entry is the newest since the generation before it in
+    the list, so that nothing told between two points is lost.
+    """
+    mine = (Generation.run_id == run_id) & Generation.summary.is_not(None)
+    rows = select(Generation.generation, Generation.summary).where(mine)
+    points: list[dict[str, float]] = [{} for _ in generations]
+    ordered = rows.order_by(Generation.generation).execution_options(yield_per=1000)
+    for generation, summary in session.execute(ordered):
+        place = bisect_left(generations, generation)
+        if place < len(points):
+            points[place] |= _numbers(summary)
+    names = dict.fromkeys(name for point in points for name in point)
+    return {name: [point.get(name) for point in points] for name in names}
+
+
+def _numbers(summary: Mapping[str, Any]) -> dict[str, float]:
+    return {
+        name: value
+        for name, value in summary.items()
+        if isinstance(value, int | float) and not isinstance(value, bool)
+    }

@@ -1,0 +1,50 @@
+"""What is recorded of elites, by name, and the axes that an archive has of it."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from sqlalchemy import ColumnElement, select
+from sqlalchemy.orm import Session
+
+from microcosmos.spec.features import FEATURES
+
+from .models import Creature, Elite, Run
+from .problems import Refused
+from .schemas import Axis, Feature, FieldError
+
+
+def axes(run: Run) -> list[Axis]:
+    """The archive's own axes."""
+    return [Axis(**axis) for axis in run.spec["archive"]["descriptors"]]
+
+
+def recorded(session: Session, run: Run) -> list[Feature]:
+    """What was measured of the run's elites; of a run without any, the archive's axes."""
+    one = select(Creature.measured).join(Elite, Elite.creature == Creature.sha256)
+    measured = session.scalars(one.where(Elite.run_id == run.id).limit(1)).first()
+    names = measured["features"] if measured else [axis.name for axis in axes(run)]
+    return [_told(name) for name in names]
+
+
+def _told(name: str) -> Feature:
+    """A feature under its title; one that is not known any more is told by its name."""
+    known = FEATURES.get(name)
+    if known is None:
+        title = name.replace("_", " ").capitalize()
+        return Feature(name=name, title=title, unit="", low=None, high=None, scale="linear")
+    return Feature(name=name, **asdict(known))
+
+
+def column(name: str) -> ColumnElement[float | None]:
+    """A feature of a creature, read by the database: most of what was measured stays there."""
+    return Creature.measured["features", name].as_float()
+
+
+def refuse_unknown(names: Sequence[str], known: Sequence[Feature]) -> None:
+    """Raise `Refused` where a name is of nothing that was recorded."""
+    there = [feature.name for feature in known]
+    if wrong := [name for name in names if name not in there]:
+        needed = f"names among {', '.join(there)}"
+        detail = f"`features` must be {needed}; got {', '.join(map(repr, wrong))}."
+        error = FieldError(field="features", message=detail, needed=needed, got=wrong)
+        raise Refused(422, "Invalid input", detail, [error])
