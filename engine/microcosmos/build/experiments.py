@@ -9,6 +9,7 @@ from .. import device, neat, search, spec
 from ..experiments import Experiment, again
 from ..experiments.evolution import Evolution, Programs
 from ..experiments.state import Again, Limits, Plan
+from ..search.emitters.tensorneat import TensorNeat
 from .creatures import build_block, build_disturbed_block, frame
 from .emitters import Search, build_emitters
 from .scene import build_encoding
@@ -30,13 +31,15 @@ build.register(build_scaling)
 def build_evolution(chosen: Search) -> Evolution:
     """A search with an archive."""
     plan = build_plan(chosen)
-    emitters, axes, key = plan.emitters, plan.axes, plan.key
+    emitters, key = plan.emitters, plan.key
+    hosted = any(isinstance(emitter, TensorNeat) for emitter in emitters)
+    compiled = (lambda program: program) if hosted else jax.jit
     # Bound one by one: a program is compiled for this run's sizes and seed.
     programs = Programs(
-        emit=jax.jit(lambda *given: search.emitters.emit(emitters, *given, key=key)),
+        emit=compiled(lambda *given: search.emitters.emit(emitters, *given, key=key)),
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
-        insert=jax.jit(lambda a, c: search.insert(a, search.named(c), axes)),
-        tell=jax.jit(lambda states, told: search.emitters.tell(emitters, states, told)),
+        insert=search.insert_program(),
+        tell=compiled(lambda states, told: search.emitters.tell(emitters, states, told)),
         forget=jax.jit(search.reevaluation.forget),
     )
     return Evolution(plan, programs, build_repeats(chosen, plan))
@@ -44,30 +47,29 @@ def build_evolution(chosen: Search) -> Evolution:
 
 def build_repeats(chosen: Search, plan: Plan) -> again.Programs | None:
     """What evaluates elites again, where they are."""
-    asked, axes = plan.again, plan.axes
+    asked = plan.again
     if asked is None:
         return None
     return again.Programs(
         disturb=jax.jit(lambda g, s: again.disturb(asked, plan.key, plan.cells, g, s)),
         evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
-        add=jax.jit(lambda r, done, e: search.reevaluation.add(r, done, e, axes)),
-        correct=jax.jit(lambda e, r: search.reevaluation.corrected(e, r, axes)),
+        add=jax.jit(search.reevaluation.add),
+        correct=jax.jit(search.reevaluation.corrected),
     )
 
 
 def build_plan(chosen: Search) -> Plan:
     """What the experiment needs of the spec besides programs."""
     encoding = build_encoding(chosen.scene, room_of(chosen))
-    fixed = len(chosen.control.inputs), len(spec.OUTPUTS)
+    fixed = len(chosen.control.inputs), len(chosen.control.outputs)
     return Plan(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         frame=frame(chosen.scene),
         seed=chosen.seed,
         generations=chosen.search.generations,
         block=chosen.search.block,
-        cells=chosen.archive.cells,
         descriptors=tuple(axis.name for axis in chosen.archive.descriptors),
-        axes=build_axes(chosen),
+        niches=build_niches(chosen.archive),
         encoding=encoding,
         emitters=build_emitters(chosen, encoding),
         names=names_of(chosen.emitters),
@@ -111,8 +113,17 @@ def room_of(chosen: Search) -> tuple[int, int]:
     return chosen.genome.max_nodes, chosen.genome.max_connections
 
 
-def build_axes(chosen: Search) -> tuple[search.Axis, ...]:
-    """The archive's axes over recorded features."""
+def build_niches(archive: spec.Archive) -> search.Cells:
+    """The archive's cells over recorded features."""
+    axes = build_axes(archive)
+    if archive.centroids is None:
+        return search.Grid(axes)
+    found = search.cvt.centroids(archive.centroids, len(axes), archive.seed)
+    return search.voronoi(axes, found)
+
+
+def build_axes(archive: spec.Archive) -> tuple[search.Axis, ...]:
+    """The archive's descriptors among recorded features."""
     return tuple(
         search.Axis(
             feature=search.FEATURES.index(axis.name),
@@ -121,5 +132,5 @@ def build_axes(chosen: Search) -> tuple[search.Axis, ...]:
             bins=axis.bins,
             logarithmic=axis.scale == "log10",
         )
-        for axis in chosen.archive.descriptors
+        for axis in archive.descriptors
     )

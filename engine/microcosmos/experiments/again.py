@@ -24,7 +24,7 @@ class Programs:
     """From a generation and a sample's number to the conditions in every cell."""
     evaluate_block: Callable[..., search.Evaluation]
     add: Callable[..., Repeats]
-    correct: Callable[[search.Elites, Repeats], Float[Array, "cell"]]
+    correct: Callable[..., Float[Array, "cell"]]
 
 
 def disturb(
@@ -55,7 +55,7 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
             programs.evaluate_block, (genotypes, changed), block=plan.block, stop=stop
         )
         everywhere = jax.tree.map(lambda x: _spread(x, cells, plan.cells), found)
-        repeats = programs.add(repeats, jnp.asarray(done), everywhere)
+        repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.niches)
     return replace(state, repeats=repeats)
 
 
@@ -64,7 +64,8 @@ def figures(programs: Programs, state: State) -> tuple[float, float, float]:
     count = np.asarray(state.repeats.count)
     if not count.any():
         return np.nan, np.nan, np.nan
-    corrected = np.asarray(programs.correct(state.elites, state.repeats), np.float64)
+    corrected = programs.correct(state.elites, state.repeats, state.niches)
+    corrected = np.asarray(corrected, np.float64)
     there = corrected[np.isfinite(corrected)]
     hits = np.asarray(state.repeats.hits).sum() / count.sum()
     return float(there.sum()), len(there) / len(corrected), float(hits)

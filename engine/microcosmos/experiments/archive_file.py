@@ -19,7 +19,7 @@ from ..genomes import Genotype
 from ..version import VERSION
 from .state import CURVES, ENDS, FATES, Diverged, Lineage, Plan, State, start
 
-ROWS = ("fitness", "features", "generation", "slot", "digest")
+ROWS = ("fitness", "features", "generation", "slot")
 """Columns of elites that are written as they are."""
 
 
@@ -42,6 +42,7 @@ def save(plan: Plan, state: State) -> bytes:
             "genomes": _columns(elites.genotypes),
             "repeats": _columns(jax.tree.map(lambda x: x[cells], state.repeats)),
             **{name: getattr(elites, name) for name in ROWS},
+            **_centroids(state.niches),
         },
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
         "emitters": {name: state.fates[:, :, i] for i, name in enumerate(FATES)},
@@ -89,6 +90,7 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
         diverged=int(loop["diverged"]),
+        niches=_niches(plan, archive),
         elites=jax.tree.map(lambda none, x: none.at[cells].set(x), state.elites, rows),
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         emitters=_filled(state.emitters, loop["emitters"]),
@@ -140,6 +142,18 @@ def devices_of(
     return tuple(devices if devices[-1] == device else [*devices, device])
 
 
+def _centroids(niches: search.Cells) -> dict[str, Any]:
+    """What cells are around, where they are not a grid's."""
+    return {"centroids": niches.centroids} if isinstance(niches, search.Voronoi) else {}
+
+
+def _niches(plan: Plan, archive: dict[str, Any]) -> search.Cells:
+    """The run's own cells: another machine may have found slightly other centroids."""
+    if "centroids" not in archive:
+        return plan.niches
+    return search.voronoi(plan.axes, archive["centroids"])
+
+
 def _clock(plan: Plan, state: State) -> dict[str, Any]:
     """What evaluation took, where that decides when the run ends; else no clock is kept."""
     timed = np.isfinite(plan.limits.device_hours)
@@ -156,7 +170,7 @@ def _end(plan: Plan, state: State) -> dict[str, Any] | None:
 
 def _placed(module: eqx.Module, cells: np.ndarray, columns: dict[str, np.ndarray]):
     """The module with the rows of some cells as columns have them."""
-    new = type(module)(**columns)
+    new = type(module)(**{name: jnp.asarray(x) for name, x in columns.items()})
     return jax.tree.map(lambda none, x: none.at[cells].set(x), module, new)
 
 

@@ -26,7 +26,7 @@ class Programs:
 
     emit: Callable[..., tuple[search.Children, tuple, neat.Counters]]
     evaluate_block: Callable[[Genotype], search.Evaluation]
-    insert: Callable[[search.Elites, search.Elites], tuple[search.Elites, search.Inserted]]
+    insert: Callable[..., tuple[search.Elites, search.Inserted]]
     tell: Callable[[tuple, search.Outcome], tuple]
     forget: Callable[..., search.reevaluation.Repeats]
 
@@ -69,10 +69,10 @@ class Evolution:
         )
         seconds = (time.monotonic() - began) * jax.local_device_count()
         candidates = _candidates(state.generation + 1, children, evaluation)
-        elites, inserted = programs.insert(state.elites, candidates)
+        elites, inserted = programs.insert(state.elites, candidates, state.niches)
         emitters = programs.tell(emitters, _outcome(candidates, inserted))
         inserted = jax.device_get(inserted)
-        clipped = search.clipped(candidates, self.plan.axes)
+        clipped = search.clipped(candidates, state.niches)
         slots = np.flatnonzero(inserted.entered)
         news = lineage.record(
             self.plan, state, children, evaluation, inserted.cell[slots], slots
@@ -150,7 +150,6 @@ def _candidates(
         features=jnp.asarray(evaluation.features),
         generation=jnp.full(batch, generation, jnp.int32),
         slot=jnp.arange(batch, dtype=jnp.int32),
-        digest=jnp.zeros((batch, 2), jnp.uint32),  # `insert` computes it.
         genotypes=children.genotypes,
     )
 

@@ -73,9 +73,8 @@ class Plan:
     seed: int
     generations: int
     block: int
-    cells: int
     descriptors: tuple[str, ...]
-    axes: tuple[search.Axis, ...]
+    niches: search.Cells
     encoding: Encoding
     emitters: tuple[search.Emitter, ...]
     counters: neat.Counters
@@ -88,6 +87,16 @@ class Plan:
 
     names: tuple[str, ...] = ()
     """What the emitters are called, each by a name of its own."""
+
+    @property
+    def axes(self) -> tuple[search.Axis, ...]:
+        """The archive's descriptors."""
+        return self.niches.axes
+
+    @property
+    def cells(self) -> int:
+        """How many the archive has."""
+        return self.niches.count
 
     @property
     def batch(self) -> int:
@@ -134,6 +143,8 @@ class State(eqx.Module):
     """Generations completed."""
     evaluations: int
     diverged: int
+    niches: search.Cells
+    """The plan's, or as they were where the run began."""
     elites: search.Elites
     counters: neat.Counters
     emitters: tuple[PyTree[Array], ...]
@@ -169,6 +180,7 @@ def start(plan: Plan) -> State:
         generation=0,
         evaluations=0,
         diverged=0,
+        niches=plan.niches,
         elites=search.no_elites(plan.cells, len(search.FEATURES), plan.genotype),
         counters=plan.counters,
         emitters=tuple(e.init(key=key) for e, key in zip(plan.emitters, keys, strict=True)),

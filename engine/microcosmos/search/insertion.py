@@ -1,6 +1,6 @@
-"""Insertion into a grid of cells by a total order, independent of the order of arrival."""
+"""Insertion into cells by a total order, independent of the order of arrival."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
 
 import equinox as eqx
 import jax
@@ -9,26 +9,11 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, UInt32
 
 from ..genomes import Genotype, words
+from .cells import Cells, sound
 
-
-@dataclass(frozen=True)
-class Axis:
-    """One descriptor's bins; `feature` is its column among the features."""
-
-    feature: int
-    low: float
-    high: float
-    bins: int
-    logarithmic: bool
-
-    def bin(self, value: Float[Array, "*batch"]) -> Int[Array, "*batch"]:
-        """Half-open bins; what lies beyond an end counts in the last one there."""
-        low, high = self.low, self.high
-        value = jnp.clip(value, low, high)
-        if self.logarithmic:
-            low, high, value = np.log10(low), np.log10(high), jnp.log10(value)
-        place = jnp.floor((value - low) / (high - low) * self.bins)
-        return jnp.clip(place, 0, self.bins - 1).astype(jnp.int32)
+LAST = np.int32(np.iinfo(np.int32).max)
+TOP = np.uint32(1 << 31)
+"""Moves unsigned numbers, in their order, to where signed ones are."""
 
 
 class Elites(eqx.Module):
@@ -39,7 +24,6 @@ class Elites(eqx.Module):
     features: Float[Array, "row feature"]
     generation: Int[Array, "row"]
     slot: Int[Array, "row"]
-    digest: UInt32[Array, "row 2"]
     genotypes: Genotype
 
 
@@ -51,26 +35,15 @@ def no_elites(cells: int, features: int, genotype: Genotype) -> Elites:
         features=jnp.zeros((cells, features), jnp.float32),
         generation=jnp.zeros(cells, jnp.int32),
         slot=jnp.zeros(cells, jnp.int32),
-        digest=jnp.zeros((cells, 2), jnp.uint32),
         genotypes=jax.tree.map(lambda x: jnp.zeros((cells, *x.shape), x.dtype), genotype),
     )
-
-
-def cells_of(
-    features: Float[Array, "row feature"], axes: tuple[Axis, ...]
-) -> Int[Array, "row"]:
-    """Cell numbers in C order, the last descriptor fastest."""
-    cell = jnp.zeros(features.shape[0], jnp.int32)
-    for axis in axes:
-        cell = cell * axis.bins + axis.bin(features[:, axis.feature])
-    return cell
 
 
 class Inserted(eqx.Module):
     """What became of candidates."""
 
     cell: Int[Array, "row"]
-    """Their cells; the number of cells for rows that are not `occupied`."""
+    """Their cells; the number of cells for rows that cannot enter any."""
     entered: Bool[Array, "row"]
     fresh: Bool[Array, "row"]
     """Whether the cell was empty before."""
@@ -78,45 +51,45 @@ class Inserted(eqx.Module):
     """Fitness above the cell's earlier elite; above 0 where there was none."""
 
 
-def clipped(candidates: Elites, axes: tuple[Axis, ...]) -> int:
+def clipped(candidates: Elites, cells: Cells) -> int:
     """How many sound candidates lie beyond an end of an axis, and count in its last bin."""
     beyond = np.zeros(len(candidates.occupied), bool)
-    for axis in axes:
+    for axis in cells.axes:
         value = np.asarray(candidates.features)[:, axis.feature]
         beyond |= (value < axis.low) | (value > axis.high)
     return int(np.count_nonzero(beyond & np.asarray(candidates.occupied)))
 
 
-def insert(
-    archive: Elites, candidates: Elites, axes: tuple[Axis, ...]
-) -> tuple[Elites, Inserted]:
+def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, Inserted]:
     """The archive with each cell's best, and what became of each candidate.
 
     The order is total: fitness, then the smaller digest of the genome, then the earlier
     generation and slot. So equal creatures and equal fitness give the same archive on every
-    device. Candidates that are not `occupied` never enter.
+    device. Candidates that are not `occupied`, or whose fitness or descriptors are not finite,
+    never enter.
     """
-    cells, rows = archive.occupied.shape[0], candidates.occupied.shape[0]
-    cell = jnp.where(candidates.occupied, cells_of(candidates.features, axes), cells)
-    order = jnp.lexsort((*reversed(_rank(candidates)), cell))
-    ordered = cell[order]
-    first = (ordered != jnp.roll(ordered, 1)).at[0].set(True) & (ordered < cells)
-    best = jnp.zeros(rows, bool).at[order].set(first)
-    incumbent = jax.tree.map(lambda x: x[jnp.minimum(cell, cells - 1)], archive)
-    fresh = ~incumbent.occupied & candidates.occupied
-    entered = best & (fresh | _before(_rank(candidates), _rank(incumbent)))
-    place = jnp.where(entered, cell, cells)
+    count, rows = archive.occupied.shape[0], candidates.occupied.shape[0]
+    able = candidates.occupied & jnp.isfinite(candidates.fitness)
+    able &= sound(candidates.features, cells.axes)
+    cell = jnp.where(able, cells.of(candidates.features), count)
+    there = jnp.minimum(cell, count - 1)
+    fresh = able & ~archive.occupied[there]
+    entered = _winners(archive, candidates, cell, there, able)
+    # Rows that do not enter are sent to places of their own beyond the archive.
+    place = jnp.where(entered, cell, count + jnp.arange(rows))
+    before = jnp.where(fresh, 0.0, archive.fitness[there])
+    improvement = jnp.where(able, candidates.fitness - before, -jnp.inf)
     archive = jax.tree.map(
-        lambda old, new: old.at[place].set(new, mode="drop"), archive, candidates
+        lambda old, new: old.at[place].set(new, mode="drop", unique_indices=True),
+        archive,
+        candidates,
     )
-    before = jnp.where(fresh, 0.0, incumbent.fitness)
-    improvement = jnp.where(candidates.occupied, candidates.fitness - before, -jnp.inf)
     return archive, Inserted(cell, entered, fresh, improvement)
 
 
-def named(elites: Elites) -> Elites:
-    """The same rows with the digests of their genotypes."""
-    return replace(elites, digest=digest(elites.genotypes))
+def insert_program(*, donate: bool = False) -> Callable[..., tuple[Elites, Inserted]]:
+    """`insert`, compiled. With `donate` the old archive is overwritten and must not be used."""
+    return jax.jit(insert, donate_argnums=(0,) if donate else ())
 
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:
@@ -135,20 +108,64 @@ def _mix(words: UInt32[Array, "row word"], salt: int) -> UInt32[Array, "row"]:
     return jnp.sum(h, 1, dtype=jnp.uint32)
 
 
-def _rank(elites: Elites) -> tuple[Array, ...]:
-    """Keys of the total order, the most important first; smaller is better."""
-    return (
-        -elites.fitness,
-        elites.digest[:, 0],
-        elites.digest[:, 1],
-        elites.generation,
-        elites.slot,
+def _winners(
+    archive: Elites,
+    candidates: Elites,
+    cell: Int[Array, "row"],
+    there: Int[Array, "row"],
+    able: Bool[Array, "row"],
+) -> Bool[Array, "row"]:
+    """The candidates that come first in their cell, before its elite and each other.
+
+    Genes are looked at only where fitness does not decide.
+    """
+    count = archive.occupied.shape[0]
+    elite = jnp.where(archive.occupied, _height(archive.fitness), -LAST)
+    height = _height(candidates.fitness)
+    best = elite.at[cell].max(height, mode="drop")
+    leads = able & (height == best[there])
+    leaders = jnp.zeros(count, jnp.int32).at[cell].add(leads.astype(jnp.int32), mode="drop")
+    ties = leads & ((leaders[there] > 1) | (height == elite[there]))
+    return jax.lax.cond(
+        jnp.any(ties),
+        lambda: _untied(archive, candidates, cell, there, leads, height == elite[there]),
+        lambda: leads,
     )
 
 
-def _before(a: tuple[Array, ...], b: tuple[Array, ...]) -> Bool[Array, "row"]:
-    """Lexicographic a < b."""
-    less = jnp.zeros(a[0].shape, bool)
-    for x, y in zip(reversed(a), reversed(b), strict=True):
-        less = (x < y) | ((x == y) & less)
-    return less
+def _untied(
+    archive: Elites,
+    candidates: Elites,
+    cell: Int[Array, "row"],
+    there: Int[Array, "row"],
+    leads: Bool[Array, "row"],
+    level: Bool[Array, "row"],
+) -> Bool[Array, "row"]:
+    """Of leaders of equal fitness the first by digest, generation and slot.
+
+    `level` says where the cell's elite is one of those.
+    """
+    count = archive.occupied.shape[0]
+    incumbents = jax.tree.map(lambda x: x[there], archive)
+    rivals = level & leads
+    for mine, theirs in zip(_rank(candidates), _rank(incumbents), strict=True):
+        least = jnp.full(count, LAST).at[jnp.where(leads, cell, count)].min(mine, mode="drop")
+        least = least.at[jnp.where(rivals, cell, count)].min(theirs, mode="drop")
+        leads &= mine == least[there]
+        rivals &= theirs == least[there]
+    # Whoever is equal to the elite in everything is that elite; of equal rows one counts.
+    row = jnp.arange(len(leads), dtype=jnp.int32)
+    first = jnp.full(count, LAST).at[jnp.where(leads, cell, count)].min(row, mode="drop")
+    return leads & ~rivals & (row == first[there])
+
+
+def _rank(elites: Elites) -> tuple[Int[Array, "row"], ...]:
+    """What decides among equal fitness, the most important first; smaller is better."""
+    ordered = jax.lax.bitcast_convert_type(digest(elites.genotypes) ^ TOP, jnp.int32)
+    return ordered[:, 0], ordered[:, 1], elites.generation, elites.slot
+
+
+def _height(fitness: Float[Array, "row"]) -> Int[Array, "row"]:
+    """Integers in the order of finite float32 numbers, −0 as 0, denormal ones among them."""
+    bits = jax.lax.bitcast_convert_type(fitness.astype(jnp.float32), jnp.int32)
+    return jnp.where(bits < 0, -(bits & LAST), bits)

@@ -65,7 +65,7 @@ CELLS = 2**20
 
 
 class Archive(Part):
-    """Cells over up to eight descriptors, one elite in each: a grid of bins, or around centroids."""
+    """Cells over one to eight descriptors, one elite in each."""
 
     descriptors: Annotated[tuple[Descriptor, ...], Field(min_length=1, max_length=8)] = (
         Descriptor(name="bending_effort"),
@@ -99,8 +99,8 @@ class Archive(Part):
         if self.cells > CELLS:
             product = " × ".join(map(str, self.shape))
             raise ValueError(
-                f"`descriptors` must make at most {CELLS:,} cells, which all are kept in memory "
-                f"with their genomes; got {product} = {self.cells:,}: `centroids` gives any "
+                f"`descriptors` must make at most {CELLS:,} cells, all of which are kept in "
+                f"memory with their genomes; got {product} = {self.cells:,}: `centroids` gives any "
                 f"number of cells over many descriptors"
             )
         return self

@@ -11,123 +11,176 @@ AXES = (
     search.Axis(feature=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
     search.Axis(feature=1, low=0.0, high=1.0, bins=4, logarithmic=False),
 )
-CELLS = 24
+AROUND = np.random.default_rng(1).random((24, 2)).astype(np.float32)
+CELLS = {"grid": search.Grid(AXES), "cvt": search.voronoi(AXES, AROUND)}
+COUNT = 24
+AWKWARD = [np.nan, np.inf, -np.inf, 1e38, -1e38, -0.0, 0.0, 1e-40, -1e-40, 1.0, -1.0]
+
+insert = jax.jit(search.insert)
 
 
-def candidates(count, seed, generation=0, levels=4):
+@pytest.fixture(params=["grid", "cvt"])
+def cells(request):
+    """Cells of either kind, 24 over two descriptors."""
+    return CELLS[request.param]
+
+
+@pytest.fixture(params=["networks", "vectors"])
+def genotypes(request):
+    """A function that makes so many genotypes of either kind, few of them different."""
+
+    def networks(random, count):
+        found = genomes.empty(4, 4, (count,))
+        found.node_used[:] = True
+        found.bias[:] = random.integers(0, 3, (count, 4))
+        return jax.tree.map(jnp.asarray, found)
+
+    def vectors(random, count):
+        return genomes.Vector(jnp.asarray(random.integers(-1, 2, (count, 3)) / 1, jnp.float32))
+
+    return networks if request.param == "networks" else vectors
+
+
+def candidates(genotypes, count, seed, generation=0, levels=4):
     """Random rows in which equal fitness and equal cells are common."""
     random = np.random.default_rng(seed)
     features = np.stack(
         [10 ** random.uniform(-5, 3, count), random.uniform(-0.2, 1.2, count)], 1
     )
-    networks = genomes.empty(4, 4, (count,))
-    networks.node_used[:] = True
-    networks.bias[:] = random.integers(0, 3, (count, 4))
-    rows = search.Elites(
+    return search.Elites(
         occupied=jnp.asarray(random.random(count) < 0.9),
         fitness=jnp.asarray(random.integers(0, levels, count), jnp.float32),
         features=jnp.asarray(features, jnp.float32),
         generation=jnp.full(count, generation, jnp.int32),
         slot=jnp.arange(count, dtype=jnp.int32),
-        digest=jnp.zeros((count, 2), jnp.uint32),
-        genotypes=jax.tree.map(jnp.asarray, networks),
+        genotypes=genotypes(random, count),
     )
-    return search.named(rows)
 
 
-insert = jax.jit(lambda archive, rows: search.insert(archive, rows, AXES))
+def awkward(genotypes, count, seed):
+    """The same with every kind of odd number in fitness and descriptors."""
+    random, rows = np.random.default_rng(seed), candidates(genotypes, count, seed)
+    fitness, features = np.array(rows.fitness), np.array(rows.features)
+    odd = random.random(count) < 0.6
+    fitness[odd] = random.choice(AWKWARD, odd.sum())
+    odd = random.random((count, 2)) < 0.4
+    features[odd] = random.choice(AWKWARD, odd.sum())
+    return search.Elites(
+        **{**vars(rows), "fitness": jnp.asarray(fitness), "features": jnp.asarray(features)}
+    )
 
 
-def nothing():
-    return search.no_elites(CELLS, 2, jax.tree.map(jnp.asarray, genomes.empty(4, 4)))
+def nothing(genotypes):
+    one = jax.tree.map(lambda x: x[0], genotypes(np.random.default_rng(0), 1))
+    return search.no_elites(COUNT, 2, one)
+
+
+def all_of(batches, cells, archive):
+    for rows in batches:
+        archive, _ = insert(archive, rows, cells)
+    return archive
 
 
 def same(a, b):
     return all(
-        np.array_equal(x, y)
+        np.asarray(x).tobytes() == np.asarray(y).tobytes()
         for x, y in zip(jax.tree.leaves(a), jax.tree.leaves(b), strict=True)
     )
 
 
-def by_dictionary(batches):
+def by_dictionary(batches, cells):
     """The winners by the written rule, one candidate after another."""
     best = {}
     for rows in batches:
-        cells = np.asarray(search.cells_of(rows.features, AXES))
-        for i in np.flatnonzero(rows.occupied):
+        digests = np.asarray(search.digest(rows.genotypes))
+        place, fitness = np.asarray(cells.of(rows.features)), np.asarray(rows.fitness, float)
+        sound = np.isfinite(rows.features).all(1) & np.isfinite(fitness)
+        for i in np.flatnonzero(np.asarray(rows.occupied) & sound):
             key = (
-                -float(rows.fitness[i]),
-                *map(int, rows.digest[i]),
+                -fitness[i],
+                *map(int, digests[i]),
                 int(rows.generation[i]),
                 int(rows.slot[i]),
             )
-            best[cells[i]] = min(best.get(cells[i], key), key)
+            best[place[i]] = min(best.get(place[i], key), key)
     return best
 
 
-def test_the_archive_holds_what_the_rule_says():
-    batches = [candidates(64, seed, generation=seed) for seed in range(6)]
-    archive = nothing()
-    for rows in batches:
-        archive, _ = insert(archive, rows)
-    expected = by_dictionary(batches)
+@pytest.mark.parametrize("kind", [candidates, awkward])
+def test_the_archive_holds_what_the_rule_says(cells, genotypes, kind):
+    batches = [kind(genotypes, 64, seed) for seed in range(6)]
+    archive = all_of(batches, cells, nothing(genotypes))
+    expected = by_dictionary(batches, cells)
     assert set(np.flatnonzero(archive.occupied)) == set(expected)
     for cell, key in expected.items():
-        assert (-archive.fitness[cell], archive.generation[cell], archive.slot[cell]) == (
-            key[0],
-            key[3],
-            key[4],
-        )
+        found = (-float(archive.fitness[cell]), int(archive.slot[cell]))
+        assert found == (key[0], key[-1])
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_the_order_of_arrival_makes_no_difference(seed):
-    rows = candidates(64, seed)
+@pytest.mark.parametrize("kind", [candidates, awkward])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_order_of_arrival_makes_no_difference(cells, genotypes, kind, seed):
+    rows, empty = kind(genotypes, 64, seed), nothing(genotypes)
     order = np.random.default_rng(seed).permutation(64)
     shuffled = jax.tree.map(lambda x: x[order], rows)
-    together, inserted = insert(nothing(), rows)
-    other, inserted_too = insert(nothing(), shuffled)
-    first, _ = insert(nothing(), jax.tree.map(lambda x: x[:30], shuffled))
-    apart, _ = insert(first, jax.tree.map(lambda x: x[30:], shuffled))
+    together, inserted = insert(empty, rows, cells)
+    other, inserted_too = insert(empty, shuffled, cells)
+    parts = [jax.tree.map(lambda x, s=s: x[s], shuffled) for s in (slice(32), slice(32, 64))]
     assert same(together, other)
-    assert same(together, apart)
+    assert same(together, all_of(parts, cells, empty))
+    assert same(together, all_of(parts[::-1], cells, empty))
     assert np.array_equal(np.asarray(inserted.entered)[order], inserted_too.entered)
 
 
-def test_the_same_creature_again_does_not_enter():
-    rows = candidates(64, 7)
-    archive, _ = insert(nothing(), rows)
-    again, inserted = insert(archive, rows)
+def test_the_same_creature_again_does_not_enter(cells, genotypes):
+    rows = candidates(genotypes, 64, 7)
+    archive, _ = insert(nothing(genotypes), rows, cells)
+    again, inserted = insert(archive, rows, cells)
     assert not inserted.entered.any()
     assert same(archive, again)
 
 
-def test_what_diverged_never_touches_the_archive():
-    rows = candidates(16, 8)
-    broken = search.Elites(
-        **{
-            **vars(rows),
-            "occupied": jnp.zeros(16, bool),
-            "fitness": jnp.full(16, jnp.nan),
-            "features": jnp.full((16, 2), jnp.nan),
-        }
-    )
-    archive, _ = insert(nothing(), rows)
-    after, inserted = insert(archive, broken)
+def test_of_rows_that_are_equal_in_everything_one_enters(cells, genotypes):
+    rows = candidates(genotypes, 1, 3)
+    rows = jax.tree.map(lambda x: jnp.concatenate([x, x]), rows)
+    rows = search.Elites(**{**vars(rows), "occupied": jnp.ones(2, bool)})
+    _, inserted = insert(nothing(genotypes), rows, cells)
+    assert int(inserted.entered.sum()) == 1
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("place", ["fitness", "first", "second"])
+def test_what_is_not_finite_never_touches_the_archive(cells, genotypes, odd, place):
+    rows = candidates(genotypes, 32, 8)
+    fitness = jnp.full(32, odd if place == "fitness" else 9.0, jnp.float32)
+    features = np.array(rows.features)
+    if place != "fitness":
+        features[:, ("first", "second").index(place)] = odd
+    broken = {"occupied": jnp.ones(32, bool), "fitness": fitness, "features": features}
+    broken = search.Elites(**{**vars(rows), **broken, "features": jnp.asarray(features)})
+    archive, _ = insert(nothing(genotypes), rows, cells)
+    after, inserted = insert(archive, broken, cells)
     assert same(archive, after)
     assert not inserted.entered.any()
+    assert np.all(np.asarray(inserted.cell) == COUNT)
 
 
-def test_bins_are_half_open_and_their_ends_are_counted():
-    place = AXES[1].bin(jnp.array([-1.0, 0.0, 0.2499, 0.25, 0.999, 1.0, 7.0]))
-    assert place.tolist() == [0, 0, 0, 1, 3, 3, 3]
-    place = AXES[0].bin(jnp.array([0.0, 1e-4, 1.01e-3, 1.0, 99.0, 1e2, 1e9]))
-    assert place.tolist() == [0, 0, 1, 4, 5, 5, 5]
+@pytest.mark.parametrize("seed", range(3))
+def test_odd_numbers_change_no_cell_but_their_own(cells, genotypes, seed):
+    sober, odd = candidates(genotypes, 32, seed), awkward(genotypes, 32, seed + 50)
+    archive, _ = insert(nothing(genotypes), sober, cells)
+    after, inserted = insert(archive, odd, cells)
+    own = np.zeros(COUNT, bool)
+    own[np.asarray(inserted.cell)[np.asarray(inserted.entered)]] = True
+    kept = [jax.tree.map(lambda x: np.asarray(x)[~own], rows) for rows in (archive, after)]
+    assert same(*kept)
 
 
-def test_cells_are_numbered_with_the_last_descriptor_fastest():
-    features = jnp.array([[1.01e-3, 0.6]])
-    assert search.cells_of(features, AXES).tolist() == [1 * 4 + 2]
+def test_a_donated_archive_gives_the_same(cells, genotypes):
+    rows = candidates(genotypes, 64, 5)
+    expected, _ = insert(nothing(genotypes), rows, cells)
+    donated, _ = search.insert_program(donate=True)(nothing(genotypes), rows, cells)
+    assert same(expected, donated)
 
 
 def test_a_digest_depends_on_every_gene_and_on_its_place():

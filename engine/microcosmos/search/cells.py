@@ -1,0 +1,157 @@
+"""Which cell of an archive a creature falls into: a grid of bins, or nearest centroids."""
+
+from collections.abc import Callable
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
+from scipy.spatial import cKDTree
+
+Features = Float[Array, "row feature"]
+Places = Float[Array, "row axis"]
+
+LISTED = 2**22
+"""How many numbers of candidates may be kept; where there were more, all are looked at."""
+
+
+class Axis(eqx.Module):
+    """One descriptor; `feature` is its column among the features, `bins` are a grid's."""
+
+    feature: int = eqx.field(static=True)
+    low: float = eqx.field(static=True)
+    high: float = eqx.field(static=True)
+    bins: int = eqx.field(static=True)
+    logarithmic: bool = eqx.field(static=True)
+
+    def place(self, value: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
+        """From 0 to 1 on the axis' own scale; what lies beyond an end counts there."""
+        low, high = self.low, self.high
+        value = jnp.clip(value, low, high)
+        if self.logarithmic:
+            low, high, value = np.log10(low), np.log10(high), jnp.log10(value)
+        return (value - low) / (high - low)
+
+    def bin(self, value: Float[Array, "*batch"]) -> Int[Array, "*batch"]:
+        """Half-open bins; what lies beyond an end counts in the last one there."""
+        place = jnp.floor(self.place(value) * self.bins)
+        return jnp.clip(place, 0, self.bins - 1).astype(jnp.int32)
+
+
+class Grid(eqx.Module):
+    """Cells in C order, the last descriptor fastest."""
+
+    axes: tuple[Axis, ...]
+
+    @property
+    def count(self) -> int:
+        return int(np.prod([axis.bins for axis in self.axes]))
+
+    @property
+    def centres(self) -> Float[np.ndarray, "cell axis"]:
+        """The middle of each cell, on the axes' own scales from 0 to 1."""
+        ticks = [(np.arange(axis.bins) + 0.5) / axis.bins for axis in self.axes]
+        mesh = np.meshgrid(*ticks, indexing="ij")
+        return np.stack([x.ravel() for x in mesh], 1).astype(np.float32)
+
+    def of(self, features: Features) -> Int[Array, "row"]:
+        """The number of each row's cell."""
+        cell = jnp.zeros(features.shape[0], jnp.int32)
+        for axis in self.axes:
+            cell = cell * axis.bins + axis.bin(features[:, axis.feature])
+        return cell
+
+
+class Voronoi(eqx.Module):
+    """Each creature belongs to the nearest centroid, of equally near ones to the first.
+
+    Places are from 0 to 1 on the axes' own scales. Where few centroids can be nearest to a
+    place, only those are looked at: `near` lists them for every box of a coarse grid.
+    """
+
+    axes: tuple[Axis, ...]
+    centroids: Float[Array, "cell axis"]
+    near: Int[Array, "box candidate"] | None
+
+    @property
+    def count(self) -> int:
+        return self.centroids.shape[0]
+
+    @property
+    def centres(self) -> Float[np.ndarray, "cell axis"]:
+        """The centroids."""
+        return np.asarray(self.centroids)
+
+    def of(self, features: Features) -> Int[Array, "row"]:
+        """The number of each row's cell."""
+        place = places(features, self.axes)
+        if self.near is None:
+            return _first_least(place, lambda axis: self.centroids[None, :, axis])
+        side = boxes(self.count, len(self.axes))
+        box = jnp.zeros(features.shape[0], jnp.int32)
+        for axis in range(len(self.axes)):
+            step = jnp.clip(jnp.floor(place[:, axis] * side), 0, side - 1)
+            box = box * side + step.astype(jnp.int32)
+        listed = self.near[box]
+        chosen = _first_least(place, lambda axis: self.centroids[:, axis][listed])
+        return jnp.take_along_axis(listed, chosen[:, None], 1)[:, 0]
+
+
+Cells = Grid | Voronoi
+
+
+def voronoi(axes: tuple[Axis, ...], centroids: Float[np.ndarray, "cell axis"]) -> Voronoi:
+    """Cells around centroids. Raises `ValueError` where they do not fit the axes."""
+    centroids = np.asarray(centroids, np.float32)
+    if centroids.ndim != 2 or centroids.shape[1] != len(axes) or len(centroids) < 2:
+        raise ValueError(
+            f"`centroids` must be at least 2 rows of {len(axes)}, got shape {centroids.shape}"
+        )
+    if not np.all((centroids >= 0) & (centroids <= 1)):
+        raise ValueError("`centroids` must be from 0 to 1, got others")
+    near = candidates(centroids)
+    return Voronoi(axes, jnp.asarray(centroids), None if near is None else jnp.asarray(near))
+
+
+def places(features: Features, axes: tuple[Axis, ...]) -> Places:
+    """Descriptors from 0 to 1 on the axes' own scales."""
+    return jnp.stack([axis.place(features[:, axis.feature]) for axis in axes], 1)
+
+
+def sound(features: Features, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
+    """Whether all descriptors are finite."""
+    chosen = jnp.stack([features[:, axis.feature] for axis in axes], 1)
+    return jnp.all(jnp.isfinite(chosen), 1)
+
+
+def boxes(cells: int, axes: int) -> int:
+    """Boxes along each axis of the coarse grid: about one for each centroid."""
+    return max(1, int(cells ** (1 / axes) + 1e-9))
+
+
+def candidates(centroids: np.ndarray) -> np.ndarray | None:
+    """The centroids that can be nearest to a place in each box, ascending; the last repeated.
+
+    None where the lists would be too long. From the middle m of a box with half diagonal h, no
+    nearest centroid of a place in it is farther than |m − c| + 2 h, c being nearest to m.
+    """
+    cells, axes = centroids.shape
+    side = boxes(cells, axes)
+    middles = np.stack(np.meshgrid(*[(np.arange(side) + 0.5) / side] * axes, indexing="ij"), -1)
+    middles, half = middles.reshape(-1, axes), np.sqrt(axes) / 2 / side
+    tree = cKDTree(centroids.astype(np.float64))
+    reach = tree.query(middles)[0] + 2 * half + 1e-4  # More than what float32 rounds away.
+    counts = tree.query_ball_point(middles, reach, return_length=True)
+    if len(middles) * counts.max() > LISTED:
+        return None
+    lists = tree.query_ball_point(middles, reach, return_sorted=True)
+    flat = np.concatenate([np.asarray(one, np.int32) for one in lists])
+    last = np.cumsum(counts) - 1
+    column = np.arange(counts.max())[None]
+    return flat[np.minimum((last - counts + 1)[:, None] + column, last[:, None])]
+
+
+def _first_least(place: Places, of_axis: Callable[[int], Array]) -> Int[Array, "row"]:
+    """The first of the candidates at the least distance from each place."""
+    squares = [(place[:, i, None] - of_axis(i)) ** 2 for i in range(place.shape[1])]
+    return jnp.argmin(sum(squares[1:], squares[0]), 1).astype(jnp.int32)

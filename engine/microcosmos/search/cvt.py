@@ -1,0 +1,103 @@
+"""Centroidal Voronoi tessellations of the unit cube, kept on disk once they are computed.
+
+Vassiliades, Chatzilygeroudis and Mouret, IEEE Trans. Evol. Comput. 22, 623 (2018): Lloyd's
+algorithm on uniform samples. Samples and first centroids are low-discrepancy sequences in place
+of random points: cells come out more equal after fewer rounds.
+"""
+
+import hashlib
+import os
+import sys
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial import cKDTree
+
+from ..archive.store import write_whole
+
+METHOD = "lloyd/1"
+"""Part of the name on disk; to be counted up where the same numbers give other centroids."""
+
+SAMPLES = 10
+"""Samples a centroid, of which there are at least `LEAST`."""
+LEAST = 50_000
+ROUNDS = 10
+
+Points = Float[np.ndarray, "point axis"]
+
+
+def centroids(cells: int, axes: int, seed: int) -> Points:
+    """Float32 centroids, the same for the same numbers; from disk where they are there."""
+    path = folder() / f"{name(cells, axes, seed)}.npy"
+    kept = _kept(path, (cells, axes))
+    if kept is not None:
+        return kept
+    found = lloyd(cells, axes, seed).astype(np.float32)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, _npy(found))
+    except OSError:  # A folder that cannot be written costs time only.
+        pass
+    return found
+
+
+def lloyd(cells: int, axes: int, seed: int) -> Points:
+    """Each centroid becomes the mean of the samples nearest to it, again and again."""
+    random = np.random.Generator(np.random.PCG64(seed))
+    points = spread(cells, axes, random.random(axes))
+    samples = spread(max(LEAST, SAMPLES * cells), axes, random.random(axes))
+    samples = samples[np.lexsort(np.floor(samples * 64).T)]  # Near ones together, for caches.
+    for _ in range(ROUNDS):
+        tree = cKDTree(points, balanced_tree=False, compact_nodes=False)
+        nearest = tree.query(samples, workers=-1)[1]
+        count = np.bincount(nearest, minlength=cells)
+        sums = [np.bincount(nearest, column, cells) for column in samples.T]
+        means = np.stack(sums, 1) / np.maximum(count, 1)[:, None]
+        points = np.where(count[:, None] > 0, means, points)
+    return points
+
+
+def spread(count: int, axes: int, shift: Float[np.ndarray, "axis"]) -> Points:
+    """Evenly spread points: shift + n (1/φ, 1/φ² …) modulo 1, with φ^(axes + 1) = φ + 1.
+
+    The additive recurrence of Roberts (2018), "The unreasonable effectiveness of quasirandom
+    sequences"; on one axis it is that of the golden ratio.
+    """
+    phi = 2.0
+    for _ in range(60):
+        phi = (1 + phi) ** (1 / (axes + 1))
+    steps = phi ** -np.arange(1.0, axes + 1)
+    return (shift[None] + np.arange(count)[:, None] * steps[None]) % 1.0
+
+
+def folder() -> Path:
+    """Where centroids are kept: in XDG_CACHE_HOME, else where the platform keeps caches."""
+    places = {"darwin": Path.home() / "Library" / "Caches"}
+    if os.name == "nt" and "LOCALAPPDATA" in os.environ:
+        places["win32"] = Path(os.environ["LOCALAPPDATA"])
+    home = places.get(sys.platform, Path.home() / ".cache")
+    return Path(os.environ.get("XDG_CACHE_HOME") or home) / "microcosmos" / "centroids"
+
+
+def name(cells: int, axes: int, seed: int) -> str:
+    """The SHA-256 of what determines the centroids."""
+    told = f"{METHOD} {cells} {axes} {seed} {SAMPLES} {LEAST} {ROUNDS}"
+    return hashlib.sha256(told.encode()).hexdigest()
+
+
+def _kept(path: Path, shape: tuple[int, int]) -> Points | None:
+    """What is on disk, None where that is nothing or damaged."""
+    try:
+        found = np.load(path, allow_pickle=False)
+    except (OSError, ValueError, EOFError):
+        return None
+    right = found.shape == shape and found.dtype == np.float32
+    return found if right and np.all((found >= 0) & (found <= 1)) else None
+
+
+def _npy(values: np.ndarray) -> bytes:
+    file = BytesIO()
+    np.save(file, values)
+    return file.getvalue()

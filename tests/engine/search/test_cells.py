@@ -1,0 +1,100 @@
+"""Which cell: bins of a grid, and nearest centroids."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import search
+from microcosmos.search import cells
+
+AXES = (
+    search.Axis(feature=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
+    search.Axis(feature=1, low=0.0, high=1.0, bins=4, logarithmic=False),
+)
+
+
+def unit(axes):
+    """Axes from 0 to 1."""
+    return tuple(search.Axis(i, 0.0, 1.0, 4, False) for i in range(axes))
+
+
+def test_bins_are_half_open_and_their_ends_are_counted():
+    place = AXES[1].bin(jnp.array([-1.0, 0.0, 0.2499, 0.25, 0.999, 1.0, 7.0]))
+    assert place.tolist() == [0, 0, 0, 1, 3, 3, 3]
+    place = AXES[0].bin(jnp.array([0.0, 1e-4, 1.01e-3, 1.0, 99.0, 1e2, 1e9]))
+    assert place.tolist() == [0, 0, 1, 4, 5, 5, 5]
+
+
+def test_cells_are_numbered_with_the_last_descriptor_fastest():
+    assert search.Grid(AXES).of(jnp.array([[1.01e-3, 0.6]])).tolist() == [1 * 4 + 2]
+
+
+@pytest.mark.parametrize("axes", [1, 2, 3, 5, 8])
+def test_a_grid_of_any_dimension_is_numbered_as_numpy_numbers_arrays(axes):
+    grid = search.Grid(tuple(search.Axis(i, 0.0, 1.0, 2 + i % 2, False) for i in range(axes)))
+    shape = tuple(axis.bins for axis in grid.axes)
+    places = np.random.default_rng(axes).random((200, axes)).astype(np.float32)
+    expected = np.ravel_multi_index(tuple((places * shape).astype(int).T), shape)
+    assert np.array_equal(grid.of(jnp.asarray(places)), expected)
+    assert np.array_equal(grid.of(jnp.asarray(grid.centres)), np.arange(grid.count))
+
+
+@pytest.mark.parametrize(("count", "axes"), [(2, 1), (50, 1), (300, 2), (500, 3), (60, 6)])
+def test_the_nearest_centroid_is_found(count, axes):
+    random = np.random.default_rng(count)
+    around = random.random((count, axes)).astype(np.float32)
+    places = random.uniform(-0.1, 1.1, (500, axes)).astype(np.float32)
+    near = search.voronoi(unit(axes), around).of(jnp.asarray(places))
+    inside = np.clip(places, 0, 1).astype(float)
+    distance = ((inside[:, None] - around[None].astype(float)) ** 2).sum(2)
+    best = distance.min(1)
+    np.testing.assert_allclose(distance[np.arange(500), near], best, rtol=0, atol=1e-6)
+    clear = np.sort(distance, 1)[:, 1] - best > 1e-5
+    assert clear.mean() > 0.8
+    assert np.array_equal(np.asarray(near)[clear], distance.argmin(1)[clear])
+
+
+def test_lists_of_candidates_find_what_looking_at_all_finds():
+    around = np.random.default_rng(5).random((4096, 2)).astype(np.float32)
+    listed = search.voronoi(unit(2), around)
+    assert listed.near is not None
+    everywhere = search.Voronoi(listed.axes, listed.centroids, None)
+    places = jnp.asarray(np.random.default_rng(6).random((2000, 2)), jnp.float32)
+    assert np.array_equal(listed.of(places), everywhere.of(places))
+
+
+@pytest.mark.parametrize("listed", [True, False])
+def test_of_equally_near_centroids_the_first_counts(listed):
+    around = np.array([[0.75, 0.5], [0.25, 0.5], [0.25, 0.5], [0.5, 1.0]], np.float32)
+    found = search.voronoi(unit(2), around)
+    if not listed:
+        found = search.Voronoi(found.axes, found.centroids, None)
+    places = jnp.array([[0.5, 0.5], [0.1, 0.5], [0.25, 0.5]])
+    assert found.of(places).tolist() == [0, 1, 1]
+
+
+def test_distances_are_measured_on_the_axes_own_scales():
+    around = np.array([[0.5, 0.5], [0.9, 0.5]], np.float32)  # 10^-1 and 10^1.4.
+    places = jnp.array([[0.1, 0.5], [20.0, 0.5], [4.0, 0.5]])
+    assert search.voronoi(AXES, around).of(places).tolist() == [0, 1, 1]
+
+
+def test_too_many_candidates_are_not_listed(monkeypatch):
+    monkeypatch.setattr(cells, "LISTED", 10)
+    assert cells.candidates(np.random.default_rng(0).random((50, 2))) is None
+
+
+@pytest.mark.parametrize(
+    "around",
+    [np.zeros((1, 2)), np.zeros((5, 3)), np.full((5, 2), 1.5), np.full((5, 2), np.nan)],
+)
+def test_centroids_that_fit_nothing_are_refused(around):
+    with pytest.raises(ValueError, match="`centroids` must be"):
+        search.voronoi(unit(2), around)
+
+
+def test_cells_pass_through_jit_as_an_argument():
+    grid = search.Grid(AXES)
+    place = jnp.array([[1.01e-3, 0.6]])
+    assert jax.jit(lambda g, x: g.of(x))(grid, place).tolist() == [6]
