@@ -100,8 +100,8 @@ class Archive(Part):
             product = " × ".join(map(str, self.shape))
             raise ValueError(
                 f"`descriptors` must make at most {CELLS:,} cells, all of which are kept in "
-                f"memory with their genomes; got {product} = {self.cells:,}: `centroids` gives any "
-                f"number of cells over many descriptors"
+                f"memory with their genomes; got {product} = {self.cells:,} (`centroids` gives "
+                "any number of cells over many descriptors)"
             )
         return self
 
