@@ -8,6 +8,7 @@ import {
   typedJson,
   typedList,
   valueAt,
+  withChoice,
   withValue,
 } from "../src/view/form/document";
 import { type Field, type Section, formOf } from "../src/view/form/fields";
@@ -18,6 +19,7 @@ const SCHEMA: Schema = {
     World: {
       type: "object",
       description: "A box of fluid.",
+      required: ["width", "viscosity", "magic", "factor", "open"],
       properties: {
         width: { type: "integer", minimum: 16, maximum: 2048, unit: "cells", description: "Along x." },
         viscosity: { type: "number", exclusiveMinimum: 0, maximum: 2 },
@@ -58,7 +60,24 @@ const SCHEMA: Schema = {
     },
     Axis: {
       type: "object",
-      properties: { name: { enum: ["a", "b"] }, bins: { type: "integer", default: 20 } },
+      required: ["name"],
+      properties: {
+        name: { enum: ["a", "b"] },
+        bins: { type: "integer", default: 20 },
+        low: { type: "number", minimum: -5 },
+        scale: { enum: ["log10", "linear"], type: "string" },
+      },
+    },
+    Line2: {
+      type: "object",
+      properties: {
+        operator: { const: "line", default: "line", type: "string" },
+        step: { type: "number", default: 0.5, exclusiveMinimum: 0 },
+      },
+    },
+    Any: {
+      type: "object",
+      properties: { operator: { const: "any", default: "any", type: "string" } },
     },
   },
   properties: {
@@ -79,6 +98,13 @@ const SCHEMA: Schema = {
       maxItems: 3,
     },
     axes: { type: "array", items: { $ref: "#/$defs/Axis" }, minItems: 1, maxItems: 2 },
+    emitters: {
+      type: "array",
+      default: [],
+      items: { oneOf: [{ $ref: "#/$defs/Any" }, { $ref: "#/$defs/Line2" }] },
+      minItems: 1,
+      maxItems: 3,
+    },
   },
 };
 
@@ -143,8 +169,42 @@ describe("a form", () => {
   it("has rows for arrays of objects, and a fresh row from their defaults", () => {
     const rows = part(FORM, "axes");
     if (rows.kind !== "rows") throw new Error(rows.kind);
-    expect([rows.least, rows.most, rows.fresh]).toEqual([1, 2, { name: "a", bins: 20 }]);
-    expect(rows.row(1).fields.map(({ path }) => path)).toEqual(["axes.1.name", "axes.1.bins"]);
+    const fresh = { name: "a", bins: 20, low: null, scale: null };
+    expect([rows.least, rows.most, rows.fresh]).toEqual([1, 2, fresh]);
+    const row = rows.row(1) as Section;
+    const names = ["name", "bins", "low", "scale"];
+    expect(row.fields.map(({ path }) => path)).toEqual(names.map((name) => `axes.1.${name}`));
+  });
+
+  it("leaves out again what follows from a choice when another is made", () => {
+    const rows = part(FORM, "axes");
+    if (rows.kind !== "rows") throw new Error(rows.kind);
+    const row = rows.row(0) as Section;
+    const [name, bins, low, scale] = row.fields as [Field, Field, Field, Field];
+    expect(row.following).toEqual(["low", "scale"]);
+    expect([bins, low, scale]).toMatchObject([{ nullable: false }, { nullable: true }, { nullable: true }]);
+    const spec = { axes: [{ name: "a", bins: 4, low: -1, scale: "linear" }] };
+    const chosen = withChoice(spec, row, name, "b");
+    expect(chosen).toEqual({ axes: [{ name: "b", bins: 4, low: null, scale: null }] });
+    expect(valueAt(withChoice(spec, row, scale, "log10"), "axes.0.low")).toBe(-1);
+    expect(valueAt(withChoice(spec, row, bins, 9), "axes.0.low")).toBe(-1);
+  });
+
+  it("has rows of parts for arrays of a union, each row of its own kind", () => {
+    const rows = part(FORM, "emitters");
+    if (rows.kind !== "rows") throw new Error(rows.kind);
+    expect(rows.fresh).toEqual({ operator: "any" });
+    const row = rows.row(2);
+    if (row.kind !== "union") throw new Error(row.kind);
+    expect([row.path, row.tag]).toEqual(["emitters.2", "operator"]);
+    const chosen = row.parts.get("line")!;
+    expect(chosen.fresh).toEqual({ operator: "line", step: 0.5 });
+    expect(chosen.fields.map(({ path }) => path)).toEqual(["emitters.2.step"]);
+    const spec: Spec = { emitters: [{ operator: "any" }, { operator: "line", step: 0 }] };
+    const wrong = complaints(FORM, spec).filter(({ field }) => field.startsWith("emitters"));
+    expect(wrong).toEqual([{ field: "emitters.1.step", message: "Needs more than 0." }]);
+    const error = { field: "emitters.1.step", message: "no" };
+    expect([...messagesByPath([error], FORM, spec).keys()]).toEqual(["emitters.1.step"]);
   });
 });
 

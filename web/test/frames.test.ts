@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Genome } from "../src/api/types";
+import type { Genes } from "../src/api/types";
 import { decodeFloats } from "../src/frames/base64";
 import { networkOf } from "../src/frames/network";
 import { decodeReplay } from "../src/frames/replay";
@@ -56,8 +56,9 @@ describe("a replay", () => {
 });
 
 describe("a network", () => {
-  const genome: Genome = {
+  const genome: Genes = {
     encoding: "cppn",
+    control: {},
     inputs: ["position", "sine"],
     outputs: ["rest_angle", "rest_length"],
     nodes: {
@@ -81,6 +82,12 @@ describe("a network", () => {
     });
     expect(neurons.map(({ depth }) => depth)).toEqual([0, 0, 3, 3, 1, 2]);
     expect(networkOf(genome).depth).toBeLessThan(genome.nodes.id.length);
+  });
+
+  it("with cycles of any length has no more layers than its longest way without one", () => {
+    const ring = { ...genome.connections, source: [0, 4, 5, 4, 1], target: [4, 5, 4, 4, 3] };
+    const { neurons } = networkOf({ ...genome, connections: ring });
+    expect(neurons.map(({ depth }) => depth)).toEqual([0, 0, 2, 2, 1, 2]);
   });
 
   it("keeps weights, biases, names and what is switched off", () => {

@@ -16,7 +16,11 @@ const RUN = {
 
 const ARCHIVE: Archive = {
   generation: 2,
+  kind: "grid",
+  cells: 16,
   axes: [],
+  recorded: [],
+  features: {},
   cell: [0, 5],
   fitness: [1, 2],
   descriptors: [[0, 0], [1, 1]],
@@ -34,12 +38,14 @@ const GENERATIONS: Generations = {
   evaluations: [16, 32],
   diverged: [0, 0],
   seconds: [1, 2],
+  summary: { inserted: [5, 6], corrected: [null, 0.5] },
 };
 
 function generation(number: number): GenerationEvent {
   const [evaluations, seconds] = [16 * number, 2 * number];
   const values = { qd_score: number, coverage: number, best: number, mean: number, diverged: 0 };
-  return { run: "a", generation: number, evaluations, seconds, ...values };
+  const summary = { inserted: number, ended: "words", ...(number % 2 === 1 && { late: number }) };
+  return { run: "a", generation: number, evaluations, seconds, ...values, summary };
 }
 
 function elites(told: number, cell: number, creature: string): Action {
@@ -78,6 +84,20 @@ describe("events", () => {
     const next = reduce(reduce(opened, event), event);
     expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
     expect(next.runs.get("a")).toMatchObject({ generation: 3, progress: 0.3, qd_score: 3 });
+  });
+
+  it("add what else they tell to the curves, whenever it is told first", () => {
+    const next = [3, 4].reduce<State>(
+      (state, number) => reduce(state, { type: "generation", event: generation(number) }),
+      opened,
+    );
+    expect(next.details.get("a")!.curves!.summary).toEqual({
+      inserted: [5, 6, 3, 4],
+      corrected: [null, 0.5, null, null],
+      late: [null, null, 3, null],
+    });
+    const back = reduce(next, { type: "rewind", event: { run: "a", generation: 2 } });
+    expect(back.details.get("a")!.curves!.summary.inserted).toEqual([5, 6]);
   });
 
   it("tell the rate and the time left from two generations on", () => {
@@ -188,10 +208,14 @@ describe("a reset", () => {
 describe("long runs", () => {
   it("are thinned out instead of growing for ever", () => {
     const full = Array.from({ length: LONGEST }, (_, i) => i);
-    const curves = { generation: full, qd_score: full, coverage: full, best: full };
-    const next = appendCurves(curves, generation(LONGEST));
+    const rare = full.map((i) => (i === 7 || i === LONGEST - 1 ? i : null));
+    const columns = { generation: full, qd_score: full, coverage: full, best: full };
+    const next = appendCurves({ ...columns, summary: { rare } }, generation(LONGEST));
     expect(next.generation.length).toBe(LONGEST / 2 + 1);
     expect(next.generation.at(-1)).toBe(LONGEST);
+    const told = next.summary.rare!.flatMap((value, i) => (value === null ? [] : [[i, value]]));
+    expect(told).toEqual([[4, 7], [LONGEST / 2, LONGEST - 1]]);
+    expect(next.summary.inserted!.length).toBe(LONGEST / 2 + 1);
   });
 
   it("keep a straight sparkline straight", () => {

@@ -106,6 +106,7 @@ describe("a creature file", () => {
       Generation: "unknown",
       "Made by": "unknown",
       Seed: "unknown",
+      Genome: "a network that controls",
       Body: "Chain, 8 nodes",
       World: "64 × 32 cells, ν = 0.05",
       Device: "unknown",

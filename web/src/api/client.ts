@@ -39,8 +39,11 @@ export async function readRun(id: string): Promise<Run> {
   return (await success(client.GET(`${ROOT}/runs/{run_id}`, run(id)))) as Run;
 }
 
-export function readArchive(id: string) {
-  return success(client.GET(`${ROOT}/runs/{run_id}/archive`, run(id)));
+/** The archive, with columns of the features that are named. */
+export function readArchive(id: string, features: string[] = []) {
+  const query = features.length > 0 ? { features: features.join(",") } : {};
+  const params = { path: { run_id: id }, query };
+  return success(client.GET(`${ROOT}/runs/{run_id}/archive`, { params }));
 }
 
 export async function readResults(id: string): Promise<Results> {
@@ -114,4 +117,6 @@ export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
 export type Picture = "strip.png" | "film.gif" | "film.mp4";
 export const pictureUrl = (sha: string, kind: Picture) => `${ROOT}/creatures/${sha}/${kind}`;
+export type Form = "svg" | "dot" | "py" | "npz";
+export const networkUrl = (sha: string, form: Form) => `${ROOT}/creatures/${sha}/network.${form}`;
 export const creatureFileUrl = (sha: string) => `${ROOT}/creatures/${sha}?download=1`;

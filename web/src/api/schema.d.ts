@@ -104,6 +104,86 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/network.dot": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Network Dot
+         * @description The network for Graphviz.
+         */
+        get: operations["read_network_dot_api_v1_creatures__sha__network_dot_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/creatures/{sha}/network.npz": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Network Npz
+         * @description The network as a genome of TensorNEAT.
+         */
+        get: operations["read_network_npz_api_v1_creatures__sha__network_npz_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/creatures/{sha}/network.py": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Network Py
+         * @description The network as a Python module that needs NumPy alone.
+         */
+        get: operations["read_network_py_api_v1_creatures__sha__network_py_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/creatures/{sha}/network.svg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Network Svg
+         * @description The network as a picture.
+         */
+        get: operations["read_network_svg_api_v1_creatures__sha__network_svg_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/creatures/{sha}/replay": {
         parameters: {
             query?: never;
@@ -252,6 +332,9 @@ export interface paths {
         /**
          * Read Archive
          * @description The elite of each cell, now or as of a generation.
+         *
+         *     With `features`, names with commas between them, what was recorded of the elites under
+         *     those names too: an archive can be looked at along any of them.
          */
         get: operations["read_archive_api_v1_runs__run_id__archive_get"];
         put?: never;
@@ -329,6 +412,8 @@ export interface paths {
         /**
          * Read Generations
          * @description All generations, or about so many of them, evenly spaced.
+         *
+         *     What `summary` tells is thinned to the newest value since the point before.
          */
         get: operations["read_generations_api_v1_runs__run_id__generations_get"];
         put?: never;
@@ -470,23 +555,39 @@ export interface components {
     schemas: {
         /**
          * ArchiveRead
-         * @description Columns, one entry per filled cell; cells are numbered in C order.
+         * @description Columns, one entry per filled cell.
+         *
+         *     The cells of a grid are numbered in C order over the bins of its axes; those of a CVT in
+         *     the order of their centroids, and the bins of its axes are none.
          */
         ArchiveRead: {
             /** Axes */
             axes: components["schemas"]["Axis"][];
             /** Cell */
             cell: number[];
+            /** Cells */
+            cells: number;
             /** Creature */
             creature: string[];
             /** Descriptors */
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
+            /** Features */
+            features: {
+                [key: string]: (number | null)[];
+            };
             /** Fitness */
             fitness: number[];
             /** Generation */
             generation: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "grid" | "cvt";
+            /** Recorded */
+            recorded: components["schemas"]["Feature"][];
         };
         /** Axis */
         Axis: {
@@ -530,6 +631,10 @@ export interface components {
             qd_score: (number | null)[];
             /** Seconds */
             seconds: number[];
+            /** Summary */
+            summary: {
+                [key: string]: (number | null)[];
+            };
         };
         /** EstimateRead */
         EstimateRead: {
@@ -554,6 +659,27 @@ export interface components {
             };
             /** Title */
             title: string;
+        };
+        /**
+         * Feature
+         * @description What is recorded of every elite, and where an axis of it begins and ends by default.
+         */
+        Feature: {
+            /** High */
+            high: number | null;
+            /** Low */
+            low: number | null;
+            /** Name */
+            name: string;
+            /**
+             * Scale
+             * @enum {string}
+             */
+            scale: "log10" | "linear";
+            /** Title */
+            title: string;
+            /** Unit */
+            unit: string;
         };
         /** FieldError */
         FieldError: {
@@ -942,6 +1068,158 @@ export interface operations {
             };
         };
     };
+    read_network_dot_api_v1_creatures__sha__network_dot_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/vnd.graphviz": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_network_npz_api_v1_creatures__sha__network_npz_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_network_py_api_v1_creatures__sha__network_py_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/x-python": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_network_svg_api_v1_creatures__sha__network_svg_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_replay_api_v1_creatures__sha__replay_get: {
         parameters: {
             query?: never;
@@ -1220,6 +1498,7 @@ export interface operations {
         parameters: {
             query?: {
                 generation?: number | null;
+                features?: string;
             };
             header?: never;
             path: {

@@ -19,7 +19,10 @@ export type Experiment = With<Wire["ExperimentRead"], { schema: Schema; presets:
 export type Estimate = Wire["EstimateRead"];
 export type Axis = Wire["Axis"];
 export type Archive = Wire["ArchiveRead"];
-export type ArchiveColumns = Omit<Archive, "generation" | "axes">;
+export type ArchiveColumns = Pick<
+  Archive,
+  "cell" | "fitness" | "descriptors" | "elite_generation" | "creature"
+>;
 export type Generations = Wire["Curves"];
 
 export type Value = null | boolean | number | string;
@@ -28,9 +31,10 @@ export type Values = { [name: string]: Value };
 export type ResultRow = Values & { creature: string | null };
 export type Results = With<Wire["ResultsRead"], { rows: ResultRow[]; summary: Values | null }>;
 
-/** A network of nodes and connections. */
+/** A network of nodes and connections; one may grow the body too. */
 export interface Genes {
-  encoding: "cppn";
+  encoding: "cppn" | "cppn-body";
+  control: Spec;
   inputs: string[];
   outputs: string[];
   nodes: { id: number[]; activation: string[]; bias: string };
@@ -51,7 +55,14 @@ export interface Stroke {
   ramp: number;
 }
 
-export type Genome = Genes | Stroke;
+/** Genes that are numbers from −1 to 1: a controller itself, or a network's weights. */
+export interface Vector {
+  encoding: "direct" | "weights";
+  control: Spec;
+  values: string;
+}
+
+export type Genome = Genes | Vector | Stroke;
 
 export interface AuditRow {
   name: string;
@@ -102,9 +113,11 @@ export interface Creature {
 export type ProblemDocument = Partial<Wire["Problem"]>;
 export type FieldError = Pick<Wire["FieldError"], "field" | "message">;
 
-/** The last entry of each column of `Generations`. */
-export type GenerationEvent = { run: string } & {
-  [name in keyof Generations]: Generations[name][number];
+type GenerationColumns = Omit<Generations, "summary">;
+
+/** The last entry of each column of `Generations`, and everything else that was told. */
+export type GenerationEvent = { run: string; summary: Values | null } & {
+  [name in keyof GenerationColumns]: GenerationColumns[name][number];
 };
 
 export type ElitesEvent = ArchiveColumns & { run: string; generation: number };

@@ -35,7 +35,7 @@ export function networkOf(genome: Genes): Network {
     weight: weights[i]!,
     enabled: connections.enabled[i]!,
   }));
-  const depths = depthsOf(nodes.id, links, inputs.length, outputs.length);
+  const depths = depthsOf(nodes.id, forwardOf(nodes.id, links), inputs.length, outputs.length);
   const names = [...inputs, ...outputs];
   const neurons = nodes.id.map((id, i) => ({
     id,
@@ -53,6 +53,29 @@ function roleOf(id: number, inputs: number, outputs: number): Neuron["role"] {
   return id < inputs + outputs ? "output" : "hidden";
 }
 
+/** The links without those that lead back to where a way began: the rest has no cycle. */
+function forwardOf(ids: number[], links: Link[]): Link[] {
+  const leaving = new Map<number, Link[]>(ids.map((id) => [id, []]));
+  for (const link of links) leaving.get(link.source)?.push(link);
+  const entered = new Set<number>();
+  const done = new Set<number>();
+  const back = new Set<Link>();
+  for (const start of ids) {
+    const way = entered.has(start) ? [] : [start];
+    while (way.length > 0) {
+      const here = way.at(-1)!;
+      entered.add(here);
+      const link = leaving.get(here)?.pop();
+      if (!link) {
+        done.add(here);
+        way.pop();
+      } else if (!entered.has(link.target)) way.push(link.target);
+      else if (!done.has(link.target)) back.add(link);
+    }
+  }
+  return links.filter((link) => !back.has(link));
+}
+
 /** The longest way from an input to each node; outputs share the last layer. */
 function depthsOf(ids: number[], links: Link[], inputs: number, outputs: number) {
   const depths = new Map(ids.map((id) => [id, id < inputs ? 0 : 1]));
@@ -60,8 +83,7 @@ function depthsOf(ids: number[], links: Link[], inputs: number, outputs: number)
     let changed = false;
     for (const { source, target } of links) {
       const needed = (depths.get(source) ?? 0) + 1;
-      // A way through all nodes has fewer links than there are nodes: more is a cycle.
-      if (target >= inputs && needed > depths.get(target)! && needed < ids.length) {
+      if (target >= inputs && needed > (depths.get(target) ?? Infinity)) {
         depths.set(target, needed);
         changed = true;
       }

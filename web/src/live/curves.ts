@@ -1,47 +1,88 @@
 /** A run's history as columns, kept short enough to draw. */
 
-import type { GenerationEvent, Generations } from "../api/types";
+import type { GenerationEvent, Generations, Values } from "../api/types";
 
 export const LONGEST = 4000;
-const DRAWN: (keyof Curves)[] = ["generation", "qd_score", "coverage", "best"];
+const DRAWN = ["generation", "qd_score", "coverage", "best"] as const;
 
-type Column = readonly (number | null)[];
+export type Column = readonly (number | null)[];
 
 export interface Curves {
   readonly generation: readonly number[];
   readonly qd_score: Column;
   readonly coverage: Column;
   readonly best: Column;
+  /** Other numbers that generations told, some of them now and then. */
+  readonly summary: Told;
 }
 
-export const NO_CURVES: Curves = columns(() => []);
+type Told = { readonly [name: string]: Column };
+type Drawn = Pick<Curves, (typeof DRAWN)[number]>;
+
+export const NO_CURVES: Curves = { ...columns(() => []), summary: {} };
 
 export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
   const last = curves.generation.at(-1);
   if (last !== undefined && event.generation <= last) return curves;
-  const keep = curves.generation.length < LONGEST ? () => true : everySecond;
-  return columns((name) => [...curves[name].filter(keep), event[name]]);
+  const full = curves.generation.length >= LONGEST;
+  const kept = full ? columns((name) => curves[name].filter((_, i) => i % 2 === 0)) : curves;
+  const next = columns((name) => [...kept[name], event[name]]);
+  const told = mapped(numbersOf(event.summary), (value): Column => [value]);
+  const summary = joined(curves.summary, curves.generation.length, told, 1);
+  return { ...next, summary: full ? mapped(summary, halved) : summary };
 }
 
 /** A snapshot, and what events told of later generations while it was on its way. */
 export function mergeCurves(generations: Generations, known: Curves): Curves {
   const last = generations.generation.at(-1) ?? -1;
   const later = known.generation.map((generation) => generation > last);
-  return columns((name) => [
-    ...generations[name],
-    ...known[name].filter((_, i) => later[i]),
-  ]);
+  const news = filtered(known, (i) => later[i]!);
+  return {
+    ...columns((name) => [...generations[name], ...news[name]]),
+    summary: joined(
+      generations.summary,
+      generations.generation.length,
+      news.summary,
+      news.generation.length,
+    ),
+  };
 }
 
 export function cutCurves(curves: Curves, generation: number): Curves {
-  const kept = curves.generation.map((value) => value <= generation);
-  return columns((name) => curves[name].filter((_, i) => kept[i]));
+  return filtered(curves, (i) => curves.generation[i]! <= generation);
 }
 
-function everySecond(_: unknown, i: number): boolean {
-  return i % 2 === 0;
+function filtered(curves: Curves, keep: (i: number) => boolean): Curves {
+  const kept = (column: Column) => column.filter((_, i) => keep(i));
+  return { ...columns((name) => kept(curves[name])), summary: mapped(curves.summary, kept) };
 }
 
-function columns(column: (name: keyof Curves) => Column): Curves {
-  return Object.fromEntries(DRAWN.map((name) => [name, column(name)])) as unknown as Curves;
+/** Every second value and the last one; what was told between two of them is not lost. */
+function halved(column: Column): Column {
+  const last = column.length - 1;
+  const kept = Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k);
+  return [...kept, last].map((i) => column[i] ?? column[i - 1] ?? null);
+}
+
+function joined(one: Told, length: number, other: Told, more: number): Told {
+  const names = [...new Set([...Object.keys(one), ...Object.keys(other)])];
+  const none = (count: number): Column => Array.from({ length: count }, () => null);
+  const columns = names.map((name) => [
+    name,
+    [...(one[name] ?? none(length)), ...(other[name] ?? none(more))],
+  ]);
+  return Object.fromEntries(columns);
+}
+
+function numbersOf(values: Values | null): { [name: string]: number } {
+  const numbers = Object.entries(values ?? {}).filter(([, value]) => typeof value === "number");
+  return Object.fromEntries(numbers) as { [name: string]: number };
+}
+
+function mapped<A, B>(record: { readonly [name: string]: A }, change: (value: A) => B) {
+  return Object.fromEntries(Object.entries(record).map(([name, value]) => [name, change(value)]));
+}
+
+function columns(column: (name: (typeof DRAWN)[number]) => Column): Drawn {
+  return Object.fromEntries(DRAWN.map((name) => [name, column(name)])) as unknown as Drawn;
 }

@@ -1,9 +1,10 @@
 /** What components fetch: once when they appear, and again when the store asks for it. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Experiment, Results, Run } from "../api/types";
+import type { Archive, Experiment, Results, Run } from "../api/types";
+import type { Elites } from "./elites";
 import { current, dispatch, useLive } from "./live";
 import { epochOf } from "./store";
 
@@ -73,6 +74,51 @@ export function useRunDetail(id: string): Loaded<true> {
     dispatch({ type: "snapshot", run: id, epoch, archive, generations });
     return true as const;
   }, [id, epoch]);
+}
+
+/** How often features of a changing archive are asked for, at most. */
+const FRESH_MS = 2000;
+
+/** What was recorded of the elites under some names: by name, then by creature. */
+export function useFeatures(id: string, names: string[], elites: Elites): Features {
+  const epoch = useLive((state) => epochOf(state, id));
+  const asked = names.join(",");
+  const present = usePaced(asked ? elites : null);
+  const { value } = useFetched(
+    async () => (asked ? columnsOf(await api.readArchive(id, asked.split(","))) : NONE),
+    [id, epoch, asked, present],
+  );
+  return value ?? NONE;
+}
+
+type Features = ReadonlyMap<string, ReadonlyMap<string, number>>;
+
+const NONE: Features = new Map();
+
+function columnsOf({ creature, features }: Archive): Features {
+  const columns = Object.entries(features).map(([name, values]) => {
+    const known = values.flatMap((value, i): [string, number][] =>
+      value === null ? [] : [[creature[i]!, value]],
+    );
+    return [name, new Map(known)] as const;
+  });
+  return new Map(columns);
+}
+
+/** A value that is let through now and then, the last one always. */
+function usePaced<T>(value: T): T {
+  const [paced, setPaced] = useState(value);
+  const last = useRef(-Infinity);
+  useEffect(() => {
+    if (Object.is(value, paced)) return;
+    const wait = Math.max(0, last.current + FRESH_MS - performance.now());
+    const timer = setTimeout(() => {
+      last.current = performance.now();
+      setPaced(() => value);
+    }, wait);
+    return () => clearTimeout(timer);
+  }, [value, paced]);
+  return paced;
 }
 
 /** Keeps the table of a run fetched: anew after every row, rewind and reset. */

@@ -1,10 +1,9 @@
 /** One creature: its motion, its network, what was measured, where it comes from. */
 
-import { useEffect, useMemo, useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Genes, Spec } from "../api/types";
-import { networkOf } from "../frames/network";
+import type { Spec } from "../api/types";
 import { type Replay, decodeReplay } from "../frames/replay";
 import { useFetched } from "../live/fetching";
 import { poll } from "../live/polling";
@@ -12,10 +11,10 @@ import { tell } from "../live/toasts";
 import { number, short, words } from "../view/format";
 import { isFree } from "../view/coupling";
 import { NotFree } from "../view/NotFree";
-import { NetworkGraph } from "../view/network/NetworkGraph";
 import { ReplayPlayer } from "../view/replay/ReplayPlayer";
 import { AuditCard } from "./Audit";
 import { Facts } from "./Facts";
+import { Genome } from "./Genome";
 import { Pictures } from "./Pictures";
 
 interface Props {
@@ -52,9 +51,7 @@ export function CreaturePage({ sha, query }: Props) {
         <div class="creature-columns">
           <Motion key={sha} sha={sha} task={creature.identity.task} />
           <div class="stack">
-            {creature.identity.genome.encoding === "cppn" && (
-              <Brain genes={creature.identity.genome} />
-            )}
+            <Genome sha={sha} genome={creature.identity.genome} />
             <AuditCard key={sha} sha={sha} query={query} />
             <Facts creature={creature} run={run} />
           </div>
@@ -145,12 +142,3 @@ function Difference({ replay, task }: { replay: Replay; task: Spec }) {
   );
 }
 
-function Brain({ genes }: { genes: Genes }) {
-  const network = useMemo(() => networkOf(genes), [genes]);
-  return (
-    <section class="card" aria-labelledby="network-title">
-      <h2 id="network-title">Network</h2>
-      <NetworkGraph network={network} />
-    </section>
-  );
-}

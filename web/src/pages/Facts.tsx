@@ -20,14 +20,17 @@ export function Facts({ creature, run }: { creature: Creature; run: string | nul
       <dl class="rows">
         <Rows rows={originOf(creature)} />
         <div>
-          <dt>Parents</dt>
+          <dt>{parents?.length === 1 ? "Parent" : "Parents"}</dt>
           <dd>
             {!parents && UNKNOWN}
             {parents?.length === 0 && "none"}
-            {parents?.map((parent) => (
-              <a key={parent} href={`/creatures/${parent}${run ? `?run=${run}` : ""}`}>
-                <code>{short(parent)}</code>
-              </a>
+            {parents?.map((parent, i) => (
+              <span key={parent}>
+                {i > 0 && " and "}
+                <a href={`/creatures/${parent}${run ? `?run=${run}` : ""}`}>
+                  <code>{short(parent)}</code>
+                </a>
+              </span>
             ))}
           </dd>
         </div>

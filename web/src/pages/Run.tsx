@@ -5,6 +5,7 @@ import type { Run } from "../api/types";
 import { hasArchive, useExperiments, useRunDetail } from "../live/fetching";
 import { useLive } from "../live/live";
 import { freedomOf } from "../view/coupling";
+import { endingOf } from "../view/ending";
 import { count, short, titleOf } from "../view/format";
 import { NotFree } from "../view/NotFree";
 import { type Figure, figuresOf, generationsOf } from "../view/results/figures";
@@ -53,6 +54,7 @@ export function RunPage({ id, query }: Props) {
       {error && <p class="banner wrong">{error}</p>}
       <Banners run={run} />
       <Standing run={run} />
+      {run.status === "finished" && hasArchive(run) && <p class="quiet ending">{endingOf(run)}</p>}
       {run.experiment === "gaits" && <GaitsRun run={run} query={query} />}
       {run.experiment === "scaling" && <ScalingRun run={run} query={query} />}
       {hasArchive(run) && <ArchiveRun run={run} detail={detail} query={query} />}

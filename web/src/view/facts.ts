@@ -14,6 +14,15 @@ const FEATURES: Record<string, [name: string, write: (value: number) => string]>
   displacement: ["Displacement", (value) => `${number(value, 6)} cells`],
   cycle: ["In the last cycle", (value) => `${number(value, 6)} cells`],
   direction: ["Direction", (value) => `${number(value)} rad`],
+  bending_effort: ["Bending effort", (value) => `${number(value, 6)} rad²`],
+  stretching_effort: ["Stretching effort", (value) => `${number(value, 6)} cells²`],
+  path_length: ["Path length", (value) => `${number(value, 6)} cells`],
+  rotation: ["Rotation", (value) => `${number(value)} rad`],
+  turning: ["Turning", (value) => `${number(value)} rad`],
+  energy: ["Energy collected", number],
+  mean_speed: ["Mean speed", (value) => `${number(value)} cells/step`],
+  curvature_mean: ["Mean curvature", (value) => `${number(value)} / cell`],
+  curvature_spread: ["Spread of curvature", (value) => `${number(value)} / cell`],
   reynolds: ["Reynolds number", number],
   sperm: ["Sperm number", number],
   mach: ["Mach number", number],
@@ -37,6 +46,7 @@ export function measurementsOf({ identity, measured }: Creature): Row[] {
 export function originOf({ identity, measured, provenance, licence }: Creature): Row[] {
   return [
     ...gaitOf(identity.genome),
+    ...encodingOf(identity.genome),
     ["Body", bodyOf(identity.body)],
     ["World", worldOf(identity.world)],
     ...(identity.genome.encoding === "gait"
@@ -58,6 +68,19 @@ function gaitOf(genome: Genome): Row[] {
     ["Period", `${number(genome.period)} steps`],
     ["Ramp", `${number(genome.ramp)} ${genome.ramp === 1 ? "period" : "periods"}`],
   ];
+}
+
+const ENCODINGS: Record<string, string> = {
+  cppn: "a network that controls",
+  "cppn-body": "a network that grows the body and controls it",
+  direct: "the control of every joint and edge",
+  weights: "the weights of a given network",
+};
+
+function encodingOf({ encoding, ...genome }: Genome): Row[] {
+  const known = ENCODINGS[encoding];
+  const recurrent = "control" in genome && genome.control.recurrent === true;
+  return known ? [["Genome", recurrent ? `${known}, with memory` : known]] : [];
 }
 
 function bodyOf({ builder, nodes }: Spec): string {

@@ -2,18 +2,19 @@
 
 import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import type { Axis } from "../../api/types";
-import type { Elite, Elites } from "../../live/elites";
+import type { Elites } from "../../live/elites";
 import { useSize } from "../canvas";
-import { number, short, words } from "../format";
+import { count, number, short, words } from "../format";
 import { prefersStillness, useTheme } from "../theme";
 import { Horizontal, Vertical } from "./Axes";
+import { FITNESS, type MapAxis } from "./axes";
 import { type ColourBy, FLASH_MS, type Picture, drawCells, rangeOf } from "./draw";
 import { type Direction, type Shape, cellAt, nextCell } from "./geometry";
 import { Legend } from "./Legend";
+import { type Tile, type Tiles, project } from "./projection";
 
 interface Props {
-  axes: [Axis, Axis];
+  axes: readonly [MapAxis, MapAxis];
   elites: Elites;
   colourBy: ColourBy;
   marked: number | null;
@@ -26,26 +27,29 @@ const INKS = {
   dark: { ink: "#f4f8fa", ground: "#0b1216", empty: "rgb(180 215 235 / 0.055)" },
 };
 
+/** Cells are the archive's; bins are the map's, and each shows the best elite in it. */
 export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: Props) {
   const plot = useRef<HTMLDivElement>(null);
   const [hovered, setHovered] = useState<number | null>(null);
-  const shape = useMemo<Shape>(() => [axes[0].bins, axes[1].bins], [axes]);
-  const range = useMemo(() => rangeOf(elites, colourBy), [elites, colourBy]);
-  const looked = hovered ?? marked;
-  const elite = looked === null ? undefined : elites.get(looked);
-  const canvas = useDrawing(plot, { shape, elites, colourBy, range, marked: looked });
+  const { shape, tiles, bins } = useMemo(() => project(elites, axes), [elites, ...axes]);
+  const range = useMemo(() => rangeOf(tiles, colourBy), [tiles, colourBy]);
+  const from = marked === null ? null : (bins.get(marked) ?? null);
+  const looked = hovered ?? from;
+  const tile = looked === null ? undefined : tiles.get(looked);
+  const picture = { shape, tiles, colourBy, range, marked: looked };
+  const canvas = useDrawing(plot, picture, elites);
 
   const press = (event: KeyboardEvent) => {
-    if (event.key === "Enter" && marked !== null && elites.has(marked)) return onOpen(marked);
+    if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
     if (!event.key.startsWith("Arrow")) return;
     event.preventDefault();
     setHovered(null);
-    const next = cellByKey(event.key as Direction, marked, elites, shape);
-    if (next !== null) onMark(next);
+    const next = binByKey(event.key as Direction, from, tiles, shape);
+    if (next !== null) onMark(tiles.get(next)!.cell);
   };
   const open = (event: MouseEvent) => {
-    const cell = eliteUnder(event, shape, elites);
-    if (cell !== null) onOpen(cell);
+    const bin = tileUnder(event, shape, tiles);
+    if (bin !== null) onOpen(tiles.get(bin)!.cell);
   };
 
   return (
@@ -58,7 +62,7 @@ export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: P
         role="application"
         aria-label="Archive map. Arrow keys move between elites, Enter opens one."
         aria-describedby="map-reading"
-        onPointerMove={(event) => setHovered(eliteUnder(event, shape, elites))}
+        onPointerMove={(event) => setHovered(tileUnder(event, shape, tiles))}
         onPointerLeave={() => setHovered(null)}
         onClick={open}
         onKeyDown={press}
@@ -67,34 +71,34 @@ export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: P
       </div>
       <Horizontal axis={axes[0]} />
       <Legend label={words(colourBy)} range={range} whole={colourBy === "generation"} />
-      <Reading elite={elite} axes={axes} />
+      <Reading tile={tile} axes={axes} />
     </div>
   );
 }
 
-/** The cell under the pointer, where it holds an elite. */
-function eliteUnder(event: MouseEvent, shape: Shape, elites: Elites): number | null {
+/** The bin under the pointer, where it holds an elite. */
+function tileUnder(event: MouseEvent, shape: Shape, tiles: Tiles): number | null {
   const box = (event.currentTarget as Element).getBoundingClientRect();
   const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-  const cell = cellAt(x / box.width, y / box.height, shape);
-  return cell !== null && elites.has(cell) ? cell : null;
+  const bin = cellAt(x / box.width, y / box.height, shape);
+  return bin !== null && tiles.has(bin) ? bin : null;
 }
 
 /** Where an arrow key leads; from nowhere, to the best elite. */
-function cellByKey(key: Direction, from: number | null, elites: Elites, shape: Shape) {
-  if (from !== null) return nextCell(from, key, elites.keys(), shape);
-  const ranked = [...elites].sort(([, a], [, b]) => b.fitness - a.fitness);
+function binByKey(key: Direction, from: number | null, tiles: Tiles, shape: Shape) {
+  if (from !== null) return nextCell(from, key, tiles.keys(), shape);
+  const ranked = [...tiles].sort(([, a], [, b]) => b.elite.fitness - a.elite.fitness);
   return ranked[0]?.[0] ?? null;
 }
 
-type Drawn = Pick<Picture, "shape" | "elites" | "colourBy" | "range" | "marked">;
+type Drawn = Pick<Picture, "shape" | "tiles" | "colourBy" | "range" | "marked">;
 
 /** A canvas that always shows the picture, and flashes where it changed. */
-function useDrawing(plot: RefObject<HTMLElement | null>, drawn: Drawn) {
+function useDrawing(plot: RefObject<HTMLElement | null>, drawn: Drawn, elites: Elites) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const size = useSize(plot);
   const theme = useTheme();
-  const changed = useChanges(drawn.elites);
+  const changed = useChanges(elites);
   useEffect(() => {
     const element = canvas.current;
     if (!element || size.width === 0) return;
@@ -107,27 +111,36 @@ function useDrawing(plot: RefObject<HTMLElement | null>, drawn: Drawn) {
   return canvas;
 }
 
-function Reading({ elite, axes }: { elite: Elite | undefined; axes: [Axis, Axis] }) {
+function Reading({ tile, axes }: { tile: Tile | undefined; axes: readonly MapAxis[] }) {
+  if (!tile) {
+    return (
+      <p id="map-reading" class="map-reading" aria-live="polite">
+        <span class="quiet">Point at a cell to read it, click it to see its creature swim.</span>
+      </p>
+    );
+  }
+  const { elite, behind } = tile;
   return (
     <p id="map-reading" class="map-reading" aria-live="polite">
-      {elite ? (
-        <>
-          <span>
-            Fitness <b>{number(elite.fitness)}</b>
+      <span>
+        Fitness <b>{number(elite.fitness)}</b>
+      </span>
+      {axes
+        .filter(({ name }) => name !== FITNESS)
+        .map((axis) => (
+          <span key={axis.name}>
+            {axis.title} <b>{number(axis.valueOf(elite))}</b>
           </span>
-          {axes.map((axis, k) => (
-            <span key={axis.name}>
-              {words(axis.name)} <b>{number(elite.descriptors[k])}</b>
-            </span>
-          ))}
-          <span>
-            Generation <b>{elite.generation}</b>
-          </span>
-          <code>{short(elite.creature)}</code>
-        </>
-      ) : (
-        <span class="quiet">Point at a cell to read it, click it to see its creature swim.</span>
+        ))}
+      <span>
+        Generation <b>{elite.generation}</b>
+      </span>
+      {behind > 0 && (
+        <span>
+          best of <b>{count(behind + 1)}</b> here
+        </span>
       )}
+      <code>{short(elite.creature)}</code>
     </p>
   );
 }

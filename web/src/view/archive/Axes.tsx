@@ -1,10 +1,10 @@
 /** The axes of the map, labelled with raw values. */
 
-import type { Axis } from "../../api/types";
-import { number, scientific, words } from "../format";
+import { number, scientific } from "../format";
+import type { MapAxis } from "./axes";
 import { type Tick, ticks } from "./geometry";
 
-export function Horizontal({ axis }: { axis: Axis }) {
+export function Horizontal({ axis }: { axis: MapAxis }) {
   return (
     <div class="axis axis-x" aria-hidden="true">
       {ticks(axis).map((tick) => (
@@ -17,7 +17,7 @@ export function Horizontal({ axis }: { axis: Axis }) {
   );
 }
 
-export function Vertical({ axis }: { axis: Axis }) {
+export function Vertical({ axis }: { axis: MapAxis }) {
   return (
     <div class="axis axis-y" aria-hidden="true">
       {ticks(axis).map((tick) => (
@@ -30,11 +30,12 @@ export function Vertical({ axis }: { axis: Axis }) {
   );
 }
 
-function label(axis: Axis, { value }: Tick): string {
+function label(axis: MapAxis, { value }: Tick): string {
   const plain = axis.scale === "linear" || (value >= 1e-2 && value < 1e4);
   return plain ? number(value) : scientific(value, 0);
 }
 
-function name(axis: Axis): string {
-  return words(axis.name) + (axis.scale === "log10" ? " (log)" : "");
+function name({ title, unit, scale }: MapAxis): string {
+  const beside = [unit, scale === "log10" ? "log" : ""].filter(Boolean).join(", ");
+  return title + (beside && ` (${beside})`);
 }

@@ -1,9 +1,9 @@
 /** The cells of an archive on a canvas. */
 
-import type { Elites } from "../../live/elites";
 import { type Size, prepare } from "../canvas";
 import { css, viridis } from "../colours";
 import { type Shape, rectangle } from "./geometry";
+import type { Tiles } from "./projection";
 
 export const FLASH_MS = 1200;
 /** Cells narrower than this stand without a gap. */
@@ -13,20 +13,21 @@ export type ColourBy = "fitness" | "generation";
 
 export interface Picture {
   shape: Shape;
-  elites: Elites;
+  tiles: Tiles;
   colourBy: ColourBy;
   range: [number, number];
-  /** When cells last changed, in milliseconds. */
+  /** When elites last changed, by their cells in the archive, in milliseconds. */
   changed: ReadonlyMap<number, number>;
+  /** A bin. */
   marked: number | null;
   ink: string;
   ground: string;
   empty: string;
 }
 
-export function rangeOf(elites: Elites, colourBy: ColourBy): [number, number] {
+export function rangeOf(tiles: Tiles, colourBy: ColourBy): [number, number] {
   let [low, high] = [Infinity, -Infinity];
-  for (const elite of elites.values()) {
+  for (const { elite } of tiles.values()) {
     low = Math.min(low, elite[colourBy]);
     high = Math.max(high, elite[colourBy]);
   }
@@ -35,7 +36,7 @@ export function rangeOf(elites: Elites, colourBy: ColourBy): [number, number] {
 
 export function drawCells(canvas: HTMLCanvasElement, size: Size, picture: Picture, now: number) {
   const context = prepare(canvas, size);
-  const { shape, elites, colourBy, range } = picture;
+  const { shape, tiles, colourBy, range } = picture;
   const gap = Math.min(size.width / shape[0], size.height / shape[1]) >= ROOMY ? 0.5 : 0;
   const box = (cell: number, inset: number) => {
     const { x, y, w, h } = rectangle(cell, shape, size.width, size.height);
@@ -46,9 +47,9 @@ export function drawCells(canvas: HTMLCanvasElement, size: Size, picture: Pictur
     for (let cell = 0; cell < shape[0] * shape[1]; cell++) context.fillRect(...box(cell, gap));
   }
   const span = range[1] - range[0] || 1;
-  for (const [cell, elite] of elites) {
+  for (const [bin, { elite }] of tiles) {
     context.fillStyle = css(viridis((elite[colourBy] - range[0]) / span));
-    context.fillRect(...box(cell, gap));
+    context.fillRect(...box(bin, gap));
   }
   drawFlashes(context, picture, box, now);
   if (picture.marked !== null) drawMark(context, box(picture.marked, 0), picture);
@@ -56,17 +57,17 @@ export function drawCells(canvas: HTMLCanvasElement, size: Size, picture: Pictur
 
 function drawFlashes(
   context: CanvasRenderingContext2D,
-  { changed, ink }: Picture,
+  { changed, tiles, ink }: Picture,
   box: (cell: number, inset: number) => readonly [number, number, number, number],
   now: number,
 ) {
   context.strokeStyle = ink;
   context.lineWidth = 2;
-  for (const [cell, time] of changed) {
-    const age = (now - time) / FLASH_MS;
+  for (const [bin, { cell }] of changed.size > 0 ? tiles : []) {
+    const age = (now - (changed.get(cell) ?? -Infinity)) / FLASH_MS;
     if (age < 0 || age >= 1) continue;
     context.globalAlpha = (1 - age) ** 2;
-    context.strokeRect(...box(cell, 1));
+    context.strokeRect(...box(bin, 1));
   }
   context.globalAlpha = 1;
 }

@@ -1,7 +1,9 @@
 /** A form for a spec, generated from its schema. */
 
+import type { ComponentChildren } from "preact";
+import type { Json } from "../../api/types";
 import { words } from "../format";
-import { isOff, partOf, valueAt } from "./document";
+import { isOff, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
 import { Entry, type FormState, Messages } from "./Entry";
 
@@ -28,10 +30,11 @@ interface PartProps {
   part: Section | Union;
   state: FormState;
   kind: "card form-section" | "form-row";
+  children?: ComponentChildren;
 }
 
 /** A section, one that can be switched off, or one of several. */
-function Part({ part, state, kind }: PartProps) {
+function Part({ part, state, kind, children }: PartProps) {
   const off = part.kind === "section" && isOff(part, state.document);
   const section = part.kind === "union" ? partOf(part, state.document) : part;
   const switchable = part.kind === "section" && part.fresh !== undefined;
@@ -42,7 +45,8 @@ function Part({ part, state, kind }: PartProps) {
       {part.help && <p class="help">{part.help}</p>}
       {part.kind === "union" && <Kinds union={part} state={state} />}
       <Messages path={part.path} messages={state.messages} />
-      {section && !off && <Fields fields={section.fields} state={state} />}
+      {section && !off && <Fields section={section} state={state} />}
+      {children}
     </fieldset>
   );
 }
@@ -95,38 +99,35 @@ function Kinds({ union, state }: { union: Union; state: FormState }) {
   );
 }
 
-function Fields({ fields, state }: { fields: Field[]; state: FormState }) {
-  return fields.map((field) => {
+function Fields({ section, state }: { section: Section; state: FormState }) {
+  return section.fields.map((field) => {
     if (field.kind === "constant") return null;
     if (field.kind === "rows") return <RowList key={field.path} rows={field} state={state} />;
     if (field.kind === "section" || field.kind === "union") {
       return <Part key={field.path} part={field} state={state} kind="form-row" />;
     }
-    return <Entry key={field.path} field={field} state={state} />;
+    const change = (_: string, value: Json) =>
+      state.change("", withChoice(state.document, section, field, value));
+    return <Entry key={field.path} field={field} state={{ ...state, change }} />;
   });
 }
 
 function RowList({ rows, state }: { rows: Rows; state: FormState }) {
   const value = valueAt(state.document, rows.path);
   const items = Array.isArray(value) ? value : [];
+  const remove = (i: number) => state.change(rows.path, items.toSpliced(i, 1));
   return (
-    <div class="form-rows">
+    <div class="form-rows" role="group" aria-label={rows.title}>
       <Messages path={rows.path} messages={state.messages} />
+      {rows.help && <p class="help">{rows.help}</p>}
       {items.map((_, i) => (
-        <fieldset key={i} class="form-row">
-          <legend>{rows.row(i).title}</legend>
-          <Messages path={rows.row(i).path} messages={state.messages} />
-          <Fields fields={rows.row(i).fields} state={state} />
+        <Part key={`${i} of ${items.length}`} part={rows.row(i)} state={state} kind="form-row">
           {items.length > rows.least && (
-            <button
-              type="button"
-              class="plain"
-              onClick={() => state.change(rows.path, items.toSpliced(i, 1))}
-            >
-              Remove
+            <button type="button" class="plain" onClick={() => remove(i)}>
+              Remove {lower(rows.row(i).title)}
             </button>
           )}
-        </fieldset>
+        </Part>
       ))}
       {items.length < rows.most && (
         <button
@@ -134,9 +135,11 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
           class="plain"
           onClick={() => state.change(rows.path, [...items, rows.fresh])}
         >
-          Add
+          Add to {lower(rows.title)}
         </button>
       )}
     </div>
   );
 }
+
+const lower = (title: string) => title.charAt(0).toLowerCase() + title.slice(1);

@@ -2,6 +2,7 @@
 
 import type { FieldError, Json, Spec } from "../../api/types";
 import { number } from "../format";
+import { join } from "./schema";
 import type { Field, List, NumberField, Section, Several, Union } from "./fields";
 
 export function valueAt(document: Json, path: string): Json {
@@ -117,6 +118,14 @@ function severalComplaint({ least }: Several, value: Json): string | null {
 /** The part of a union that a document has. */
 export function partOf(union: Union, document: Json): Section | null {
   return union.parts.get(String(valueAt(document, `${union.path}.${union.tag}`))) ?? null;
+}
+
+/** The document with another value; what follows from a changed choice is left out again. */
+export function withChoice(document: Json, section: Section, field: Field, value: Json): Json {
+  const next = withValue(document, field.path, value);
+  const own = section.following.map((name) => join(section.path, name));
+  if (field.kind !== "choice" || own.includes(field.path)) return next;
+  return own.reduce((changed, path) => withValue(changed, path, null), next);
 }
 
 /** Whether a section that can be switched off is. */

@@ -16,6 +16,8 @@ interface Common {
 export interface Section extends Common {
   kind: "section";
   fields: Field[];
+  /** Names of fields that follow from the others where they are left out. */
+  following: string[];
   /** What it begins with when it is switched on; not there where it cannot be switched off. */
   fresh?: Json;
 }
@@ -29,7 +31,7 @@ export interface Union extends Common {
 
 export interface Rows extends Common {
   kind: "rows";
-  row: (index: number) => Section;
+  row: (index: number) => Section | Union;
   least: number;
   most: number;
   fresh: Json;
@@ -45,6 +47,7 @@ export interface NumberField extends Common {
 
 export interface Choice extends Common {
   kind: "choice";
+  nullable: boolean;
   options: Json[];
 }
 
@@ -89,24 +92,41 @@ export function formOf(schema: Schema): Section {
 
 function sectionOf(schema: Schema, root: Schema, common: Common): Section {
   const properties = (schema.properties ?? {}) as Record<string, Schema>;
+  const following = followingOf(schema, root);
   const fields = Object.entries(properties).map(([key, property]) =>
-    fieldOf(property, root, key, join(common.path, key)),
+    fieldOf(property, root, key, join(common.path, key), following.includes(key)),
   );
-  return { ...common, kind: "section", fields };
+  return { ...common, kind: "section", fields, following };
 }
 
-function fieldOf(property: Schema, root: Schema, key: string, path: string): Field {
+/** What may be left out and has no default of its own takes it from the other fields. */
+function followingOf(schema: Schema, root: Schema): string[] {
+  const needed = (schema.required ?? []) as string[];
+  const properties = Object.entries((schema.properties ?? {}) as Record<string, Schema>);
+  return properties
+    .filter(([key, part]) => !needed.includes(key) && !("default" in resolve(part, root)))
+    .map(([key]) => key);
+}
+
+function fieldOf(
+  property: Schema,
+  root: Schema,
+  key: string,
+  path: string,
+  follows: boolean,
+): Field {
   const schema = resolve(property, root);
   const inner = notNull(schema, root);
-  const nullable = inner !== schema;
+  const nullable = inner !== schema || follows;
   const common = { path, title: words(key), help: text(schema.description) };
   if (Array.isArray(inner.oneOf)) return unionOf(inner, root, common);
   if ("const" in inner) return { ...common, kind: "constant" };
-  if (Array.isArray(inner.enum)) return { ...common, kind: "choice", options: inner.enum };
+  if (Array.isArray(inner.enum)) return { ...common, kind: "choice", nullable, options: inner.enum };
   switch (inner.type) {
     case "object": {
       const section = sectionOf(inner, root, common);
-      return nullable ? { ...section, fresh: defaultOf(inner, root) } : section;
+      if (inner === schema) return section;
+      return { ...section, fresh: schema.default ?? defaultOf(inner, root) };
     }
     case "array":
       return arrayOf(inner, root, common);
@@ -129,13 +149,14 @@ function arrayOf(schema: Schema, root: Schema, common: Common): Field {
   const [least, most] = [Number(schema.minItems ?? 0), Number(schema.maxItems ?? Infinity)];
   if (Array.isArray(item.enum)) return { ...common, kind: "several", options: item.enum, least };
   if (item.type === "array") return { ...common, kind: "nested" };
+  if (Array.isArray(item.oneOf)) return rowsOf(schema, root, common);
   if (item.type !== "integer" && item.type !== "number") return rowsOf(schema, root, common);
   const number = numberOf(item, { ...common, nullable: false, unit: text(item.unit) });
   return { ...common, kind: "list", item: number, least, most };
 }
 
 /** The word that a part is known by is its constant, or any of several. */
-function unionOf(schema: Schema, root: Schema, common: Common): Field {
+function unionOf(schema: Schema, root: Schema, common: Common): Union {
   const parts = (schema.oneOf as Schema[]).map((part) => resolve(part, root));
   const tag = tagOf(parts);
   const named = parts.flatMap((part) => {
@@ -162,18 +183,23 @@ function tagOf(parts: Schema[]): string {
 
 function rowsOf(schema: Schema, root: Schema, common: Common): Rows {
   const item = resolve((schema.items ?? {}) as Schema, root);
-  const row = (index: number) =>
-    sectionOf(item, root, {
-      path: join(common.path, String(index)),
-      title: `${common.title} ${index + 1}`,
-      help: "",
-    });
+  const row = (index: number) => {
+    const path = join(common.path, String(index));
+    const known = { path, title: `${common.title} ${index + 1}`, help: "" };
+    return Array.isArray(item.oneOf) ? unionOf(item, root, known) : sectionOf(item, root, known);
+  };
+  const first = row(0);
   return {
     ...common,
     kind: "rows",
     row,
     least: Number(schema.minItems ?? 0),
     most: Number(schema.maxItems ?? Infinity),
-    fresh: defaultOf(item, root),
+    fresh: first.kind === "union" ? [...first.parts.values()][0]!.fresh! : freshOf(item, root, first),
   };
+}
+
+function freshOf(item: Schema, root: Schema, { following }: Section): Json {
+  const leftOut = Object.fromEntries(following.map((name) => [name, null]));
+  return { ...(defaultOf(item, root) as Spec | null), ...leftOut };
 }

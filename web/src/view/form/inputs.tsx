@@ -49,6 +49,7 @@ export function ChoiceInput({ id, value, invalid, onChange, field }: Common & { 
       aria-describedby={`${id}-about`}
       onChange={(event) => onChange(JSON.parse(event.currentTarget.value))}
     >
+      {field.nullable && <option value="null">auto</option>}
       {field.options.map((option) => (
         <option key={String(option)} value={JSON.stringify(option)}>
           {String(option).replaceAll("_", " ")}

@@ -52,15 +52,11 @@ interface WireProps {
 function Wire({ link, spots, strongest }: WireProps) {
   const [from, to] = [spots.get(link.source), spots.get(link.target)];
   if (!from || !to) return null;
-  // Where both stand in the same column, the wire leaves and arrives at the left.
-  const bend = to.x > from.x ? (to.x - from.x) / 2 : -4 * RADIUS;
-  const [a, b] = [from.x + bend, to.x - Math.abs(bend)];
-  const path = `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
   const sign = link.weight < 0 ? "negative" : "positive";
   return (
     <path
       class={`wire ${sign} ${link.enabled ? "" : "off"}`}
-      d={path}
+      d={pathOf(from, to)}
       stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / strongest}
     >
       <title>
@@ -69,6 +65,17 @@ function Wire({ link, spots, strongest }: WireProps) {
       </title>
     </path>
   );
+}
+
+function pathOf(from: Spot, to: Spot): string {
+  if (from === to) {
+    const [side, top] = [2.2 * RADIUS, from.y - 4 * RADIUS];
+    return `M${from.x},${from.y} C${from.x - side},${top} ${from.x + side},${top} ${to.x},${to.y}`;
+  }
+  // Where a wire leads back, or stays in its column, it leaves and arrives at the left.
+  const bend = to.x > from.x ? (to.x - from.x) / 2 : -4 * RADIUS;
+  const [a, b] = [from.x + bend, to.x - Math.abs(bend)];
+  return `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
 }
 
 function Node({ spot }: { spot: Spot }) {

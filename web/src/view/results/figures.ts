@@ -45,6 +45,8 @@ export function keyFigureOf(run: Run): Figure {
       // The exponent is of many nodes only, which small measurements do not have.
       if (told(run, "exponent") === null) return ["peak memory", figures["Peak memory"]!];
       return ["exponent", figures["Exponent"]!];
+    case "neuroevolution":
+      return ["best fitness", figures["Best fitness"]!];
     default:
       return ["QD score", figures["QD score"]!];
   }
