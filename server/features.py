@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from math import prod
+from typing import Literal
 
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
@@ -16,6 +18,14 @@ from .schemas import Axis, Feature, FieldError
 def axes(run: Run) -> list[Axis]:
     """The archive's own axes."""
     return [Axis(**axis) for axis in run.spec["archive"]["descriptors"]]
+
+
+def kind(run: Run) -> tuple[Literal["grid", "cvt"], int]:
+    """What the cells of the archive are, and how many."""
+    centroids = run.spec["archive"].get("centroids")
+    if centroids is not None:
+        return "cvt", centroids
+    return "grid", prod(axis.bins for axis in axes(run))
 
 
 def recorded(session: Session, run: Run) -> list[Feature]:

@@ -19,7 +19,7 @@ from .problems import FieldError, Refused
 from .reconcile import requeue
 from .services import Services
 
-OF_SEARCHES = ("search.block", "search.batch", "archive.descriptors")
+OF_SEARCHES = ("search.block", "search.batch", "archive")
 DECISIVE = {
     "quality-diversity": OF_SEARCHES,
     "neuroevolution": OF_SEARCHES,
@@ -71,7 +71,7 @@ def decisive(spec: Spec) -> str:
 def _least(spec: Any, field: str) -> Spec:
     """The spec with as little as possible in one of its fields."""
     part, _, name = field.partition(".")
-    if part == "archive":
+    if not name:
         return spec.model_copy(update={part: OneCell()})
     changed = getattr(spec, part).model_copy(update={name: 1})
     return spec.model_copy(update={part: changed})

@@ -1,7 +1,6 @@
 """The archive of a run: as columns, now or as it was, and as files."""
 
 from collections.abc import Sequence
-from math import prod
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -52,12 +51,12 @@ def read_archive(
     names = list(dict.fromkeys(filter(None, features.split(","))))
     of_elites.refuse_unknown(names, recorded)
     elites = _elites(session, run, as_of, names)
-    axes = of_elites.axes(run)
+    kind, cells = of_elites.kind(run)
     return ArchiveRead(
         generation=as_of,
-        kind="grid",
-        cells=prod(axis.bins for axis in axes),
-        axes=axes,
+        kind=kind,
+        cells=cells,
+        axes=of_elites.axes(run),
         recorded=recorded,
         cell=[elite.cell for elite in elites],
         fitness=[elite.fitness for elite in elites],

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from uuid import UUID
 
 import numpy as np
 import pytest
@@ -172,3 +173,44 @@ def test_elites_have_any_number_of_descriptors(api, services, run_id, report, de
     entries = services.redis.xrange(services.events.stream)
     (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"elites"]
     assert told["descriptors"] == [list(descriptors)]
+
+
+@pytest.mark.parametrize(
+    ("archive", "kind", "cells"),
+    [
+        ({"descriptors": [{"name": "turning", "bins": 7}]}, "grid", 7),
+        (
+            {"descriptors": [{"name": name} for name in ("nodes", "mach", "power")]},
+            "grid",
+            8000,
+        ),
+        ({"centroids": 500}, "cvt", 500),
+    ],
+)
+def test_an_archive_says_what_its_cells_and_axes_are(
+    api, services, spec, report, archive, kind, cells
+):
+    document = {**spec, "archive": {**archive}}
+    run = api.post("runs", json=document).json()
+    claim(services, UUID(run["id"]), "worker").record(report(1, {5: 1.0}), 1.0)
+    found = api.get(f"runs/{run['id']}/archive").json()
+    assert (found["kind"], found["cells"]) == (kind, cells)
+    names = [axis["name"] for axis in found["axes"]]
+    assert names == [each["name"] for each in run["spec"]["archive"]["descriptors"]]
+    assert all(axis["low"] < axis["high"] for axis in found["axes"])
+
+
+def test_a_feature_comes_with_title_unit_and_ends(api, services, run_id, report):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}, features={"old": 1.0}), 1.0)
+    recorded = api.get(f"runs/{run_id}/archive").json()["recorded"]
+    known = {feature.pop("name"): feature for feature in recorded}
+    assert known["bending_effort"]["title"] == "Bending effort"
+    assert known["bending_effort"]["unit"] == "rad²"
+    assert known["bending_effort"]["low"] < known["bending_effort"]["high"]
+    assert known["old"] == {
+        "title": "Old",
+        "unit": "",
+        "low": None,
+        "high": None,
+        "scale": "linear",
+    }

@@ -85,7 +85,7 @@ def test_bad_input_is_refused_with_field_and_reason(
         ("quality-diversity", {"search": {"batch": 65_536}}, "search.batch"),
         ("neuroevolution", {}, "search.block"),
         ("neuroevolution", {"search": {"batch": 65_536}}, "search.batch"),
-        ("quality-diversity", {"archive": {"descriptors": FINE}}, "archive.descriptors"),
+        ("quality-diversity", {"archive": {"descriptors": FINE}}, "archive"),
         ("gaits", {}, "block"),
         ("scaling", {}, "nodes"),
     ],
