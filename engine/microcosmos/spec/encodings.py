@@ -8,7 +8,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from .. import bodies
 from .base import LATER, Part
 from .body import Body, shape
-from .control import OUTPUTS, Actuation, Control, Sight
+from .control import OUTPUTS, Actuation, Control, Genome, Sight
 
 TRAITS = {
     "rest_angle": (-3.0, 3.0),
@@ -213,6 +213,22 @@ def refuse_unfit(control: Controller, body: Body) -> None:
             ) from error
     if (count := genes(control, whole)) > MOST_GENES:
         raise ValueError(f"a creature must have at most {MOST_GENES} numbers, got {count}")
+
+
+def refuse_cramped(control: Controller, genome: Genome) -> None:
+    """There must be room for networks in which every input leads to every output."""
+    if not isinstance(control, Control | Grown):
+        return
+    inputs, outputs = len(control.inputs), len(control.outputs)
+    for name, needed in (
+        ("max_nodes", inputs + outputs),
+        ("max_connections", inputs * outputs),
+    ):
+        if (found := getattr(genome, name)) < needed:
+            raise ValueError(
+                f"`genome.{name}` must be at least {needed} for {inputs} inputs and {outputs} "
+                f"outputs, got {found}"
+            )
 
 
 def genes(control: Controller, body: bodies.Body) -> int:

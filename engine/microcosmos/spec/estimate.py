@@ -4,13 +4,15 @@ from dataclasses import dataclass
 from functools import singledispatch
 from math import ceil
 
+from ..bodies.unfolding import MOST as LAID_OUT
 from .body import shape
+from .encodings import Controller, Direct, Grown, Weights, genes
 from .experiments import Spec
 from .gaits import Gaits
 from .neuroevolution import Neuroevolution
 from .quality_diversity import QualityDiversity
 from .scaling import Scaling
-from .scene import Scene
+from .scene import Gait, Scene
 
 FLOAT = 4
 PLANES = 9
@@ -43,8 +45,9 @@ def estimate(spec: Spec) -> Estimate:
 @estimate.register(Neuroevolution)
 def _(spec: QualityDiversity | Neuroevolution) -> Estimate:
     search = spec.search
-    genome = FLOAT * (3 * spec.genome.max_nodes + 5 * spec.genome.max_connections)
-    archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 128)
+    rows = 3 * spec.genome.max_nodes + 5 * spec.genome.max_connections
+    genome = FLOAT * (genes(spec.control, shape(spec.body)) or rows)
+    archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 160)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
     evaluations = search.batch * search.generations
     record = 2 * (48 * search.generations + 96 * min(evaluations, 4 * spec.archive.cells))
@@ -89,9 +92,19 @@ def simulation(scene: Scene, network_nodes: int) -> int:
     """Bytes of one simulated creature."""
     count = len(shape(scene.body).positions)
     # A batched choice among activations computes all of them.
-    controls = 10 * scene.task.steps * count * (network_nodes + 2) * FLOAT
+    width = max(network_nodes, _width(scene.control)) + 2
+    controls = 10 * scene.task.steps * count * width * FLOAT
+    if isinstance(scene.control, Direct | Grown):
+        controls += 4 * min(count, LAID_OUT) ** 2 * FLOAT
     cells = scene.world.width * scene.world.height
     return fluid(cells) + nodes(count * scene.coupling.layers) + controls
+
+
+def _width(control: Controller | Gait) -> int:
+    """Numbers at each node and time that a controller works with, where no network's."""
+    if isinstance(control, Direct):
+        return control.weights
+    return max(control.sizes) if isinstance(control, Weights) else 0
 
 
 def fluid(cells: int) -> int:

@@ -9,7 +9,7 @@ from .body import Body, Chain
 from .control import Control, Genome
 from .coupling import Coupling
 from .emitters import Emitter, refuse_unfit_emitters
-from .encodings import Controller
+from .encodings import Controller, refuse_cramped
 from .fields import Steric
 from .scene import Scene, refuse_misfit, refuse_senseless
 from .search import Archive, Descriptor, Search, Task
@@ -34,6 +34,7 @@ class QualityDiversity(Part):
     @model_validator(mode="after")
     def check_scene(self) -> Self:
         refuse_misfit(self.world, self.body, self.control)
+        refuse_cramped(self.control, self.genome)
         refuse_senseless(self.world, self.control, self.task)
         refuse_unfit_emitters(self.search.emitters, self.control.encoding)
         return self

@@ -7,7 +7,7 @@ import pytest
 
 from microcosmos import bodies, neat, spec
 from microcosmos.archive import creature
-from microcosmos.build import build_stroke, build_task, frame
+from microcosmos.build import build_encoding, build_stroke, build_task, frame
 from microcosmos.experiments.lineage import identity
 from microcosmos.filaments import Rest
 from microcosmos.render import audit
@@ -46,7 +46,11 @@ def test_creatures_with_networks_are_audited_too(senses):
     )
     inputs = len(scene.control.inputs)
     network = neat.minimal(jax.random.key(0), inputs, 2, 8, 16)
-    found = audit(creature.document(identity(frame(scene), network), None, None))
+    found = audit(
+        creature.document(
+            identity(frame(scene), build_encoding(scene, (8, 16)), network), None, None
+        )
+    )
     assert {row["name"] for row in found["rows"]} >= {"refined", "delta", "reciprocal"}
     assert all(row["value"] is not None for row in found["rows"])
 
