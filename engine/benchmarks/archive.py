@@ -1,0 +1,168 @@
+"""Archives beside QDax's and pyribs': insertion, tessellations, and what MAP-Elites reaches.
+
+Prints tables and asserts nothing. Rows of one table run interleaved in one process, each
+program compiled before. Peers are compared with where they are installed: `make peers`.
+"""
+
+import importlib
+import importlib.util
+import os
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from functions import FUNCTIONS, ours, theirs
+
+from microcosmos import device, genomes, search
+
+ROWS, GENES = 1_024, 1_000
+SIDES = (32, 128)
+TURNS, WARM = 15, 4
+CENTROIDS = 16_384
+SAMPLES = 50_000
+"""What QDax's examples give its centroids."""
+SEEDS = range(5)
+
+Add = Callable[[Any, Any, Any], object]
+"""From genes, fitness and places to something to wait for."""
+
+
+def main() -> None:
+    """All tables."""
+    device.prepare()
+    sides = SIDES[:1] if os.environ.get("SMALL") else SIDES
+    for side in sides:
+        insertion(side)
+    tessellation(1_024 if os.environ.get("SMALL") else CENTROIDS)
+    reached()
+
+
+def insertion(side: int) -> None:
+    """How long it takes to insert a batch of vectors, ours as 1."""
+    adds = {"ours, donated": _ours(side, donate=True), "ours": _ours(side, donate=False)}
+    if installed("qdax"):
+        adds |= {"QDax, donated": _qdax(side, donate=True), "QDax": _qdax(side, donate=False)}
+    if installed("ribs"):
+        adds["pyribs"] = _ribs(side)
+    seconds: dict[str, list[float]] = {name: [] for name in adds}
+    random = np.random.default_rng(0)
+    for turn in range(WARM + TURNS):
+        genes = random.uniform(-1, 1, (ROWS, GENES)).astype(np.float32)
+        fitness = (random.normal(size=ROWS) + 0.1 * turn).astype(np.float32)
+        places = random.random((ROWS, 2)).astype(np.float32)
+        there = jax.block_until_ready(jax.device_put((genes, fitness, places)))
+        for name, add in adds.items():
+            given = (genes, fitness, places) if name == "pyribs" else there
+            began = time.perf_counter()
+            jax.block_until_ready(add(*given))
+            if turn >= WARM:
+                seconds[name].append(time.perf_counter() - began)
+    print(f"\n{ROWS:,} vectors of {GENES:,} genes into {side * side:,} cells of a grid")
+    tell(seconds, "ours, donated")
+
+
+def tell(seconds: dict[str, list[float]], first: str) -> None:
+    """Medians and ratios of them."""
+    reference = statistics.median(seconds[first])
+    for name, taken in seconds.items():
+        median, least = statistics.median(taken), min(taken)
+        told = f"{1e3 * median:10.2f} ms, least {1e3 * least:10.2f}"
+        print(f"  {name:16s} {told}   {median / reference:9.2f} ×")
+
+
+def tessellation(count: int) -> None:
+    """How long centroids of a plane take, and how compact their cells are."""
+    print(f"\n{count:,} centroids on 2 axes; mean squared distance in areas of a cell")
+    began = time.perf_counter()
+    found = search.cvt.lloyd(count, 2, seed=0)
+    _told("ours", time.perf_counter() - began, found)
+    if installed("qdax"):
+        repertoires = importlib.import_module("qdax.core.containers.mapelites_repertoire")
+        began = time.perf_counter()
+        key = jax.random.PRNGKey(0)
+        found = repertoires.compute_cvt_centroids(2, max(SAMPLES, count), count, 0.0, 1.0, key)
+        _told("QDax", time.perf_counter() - began, np.asarray(found))
+
+
+def reached() -> None:
+    """QD score of MAP-Elites on plain functions, ours and QDax's, by seeds."""
+    print(f"\nQD score above the function's least value: median (range) of {len(SEEDS)} seeds")
+    for name in FUNCTIONS:
+        told = f"  {name:10s} ours {_range([ours(name, seed) for seed in SEEDS])}"
+        if installed("qdax"):
+            told += f"   QDax {_range([theirs(name, seed) for seed in SEEDS])}"
+        print(told, flush=True)
+
+
+def installed(package: str) -> bool:
+    """Whether a peer is installed; says so where it is not."""
+    if importlib.util.find_spec(package):
+        return True
+    print(f"  ({package} is not installed: make peers)")
+    return False
+
+
+def _ours(side: int, *, donate: bool) -> Add:
+    axes = tuple(search.Axis(i, 0.0, 1.0, side, False) for i in range(2))
+    grid, insert = search.Grid(axes), search.insert_program(donate=donate)
+    kept = [search.no_elites(grid.count, 2, genomes.Vector(jnp.zeros(GENES)))]
+
+    everybody, slots = jnp.ones(ROWS, bool), jnp.arange(ROWS, dtype=jnp.int32)
+
+    def add(genes: Any, fitness: Any, places: Any) -> object:
+        rows = search.Elites(
+            occupied=everybody,
+            fitness=fitness,
+            features=places,
+            generation=slots,
+            slot=slots,
+            genotypes=genomes.Vector(genes),
+        )
+        kept[0], inserted = insert(kept[0], rows, grid)
+        return kept[0], inserted
+
+    return add
+
+
+def _qdax(side: int, *, donate: bool) -> Add:
+    peer: Any = importlib.import_module("qdax.core.containers.mapelites_repertoire")
+    centroids = peer.compute_euclidean_centroids((side, side), 0.0, 1.0)
+    kept = [peer.MapElitesRepertoire.init_default(jnp.zeros(GENES), centroids)]
+    program = jax.jit(
+        lambda repertoire, genes, places, fitness: repertoire.add(genes, places, fitness),
+        donate_argnums=(0,) if donate else (),
+    )
+
+    def add(genes: Any, fitness: Any, places: Any) -> object:
+        kept[0] = program(kept[0], genes, places, fitness)
+        return kept[0]
+
+    return add
+
+
+def _ribs(side: int) -> Add:
+    peer: Any = importlib.import_module("ribs.archives")
+    archive = peer.GridArchive(
+        solution_dim=GENES, dims=(side, side), ranges=[(0, 1)] * 2, dtype=np.float32
+    )
+    return lambda genes, fitness, places: archive.add(genes, fitness, places) and None
+
+
+def _told(name: str, seconds: float, centroids: np.ndarray) -> None:
+    places = np.random.default_rng(9).random((200_000, 2))
+    tree = importlib.import_module("scipy.spatial").cKDTree(centroids)
+    compact = (tree.query(places)[0] ** 2).mean() * len(centroids)
+    print(f"  {name:16s} {seconds:8.2f} s   {compact:.4f} (hexagons 0.1604)", flush=True)
+
+
+def _range(values: list[float]) -> str:
+    return f"{statistics.median(values):.1f} ({min(values):.1f} to {max(values):.1f})"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
