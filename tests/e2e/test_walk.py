@@ -24,7 +24,8 @@ def test_a_run_is_submitted_watched_opened_and_its_creature_swims_and_travels(
 def submit_a_short_run(page: Page, address: str) -> str:
     page.goto(address)
     page.get_by_role("link", name="Start the first run").click()
-    demo = page.get_by_role("button", name=re.compile("^Demo A small"))
+    presets = page.get_by_role("group", name=re.compile("^Quality-diversity"))
+    demo = presets.get_by_role("button", name=re.compile("^Demo A small"))
     demo.click()
     expect(demo).to_have_attribute("aria-pressed", "true", timeout=FAST)
     generations = page.get_by_label("Generations", exact=False)

@@ -52,7 +52,7 @@ export function workOf(curves: Curves): Plot[] {
     {
       title: "Device-seconds",
       write: number,
-      series: one(curves, "device_seconds", "--curve-2", false),
+      series: one(withoutFirst(curves), "device_seconds", "--curve-2", false),
     },
   ];
   return plots.filter(({ series }) => series.length > 0);
@@ -70,6 +70,14 @@ function ofEmitters({ summary }: Curves, ending: string): Series[] {
 function one({ summary }: Curves, name: string, colour: string, dots: boolean): Series[] {
   const y = summary[name];
   return y ? [{ name, colour, y, dots }] : [];
+}
+
+/** The first generation has the compiling in it, beside which the others would be nothing. */
+function withoutFirst(curves: Curves): Curves {
+  const later = (column: Column) =>
+    column.map((value, i) => (curves.generation[i]! > 1 ? value : null));
+  const columns = Object.entries(curves.summary).map(([name, column]) => [name, later(column)]);
+  return { ...curves, summary: Object.fromEntries(columns) };
 }
 
 /** The newest value that there is. */

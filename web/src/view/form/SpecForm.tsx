@@ -118,6 +118,7 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
   const remove = (i: number) => state.change(rows.path, items.toSpliced(i, 1));
   return (
     <div class="form-rows" role="group" aria-label={rows.title}>
+      <p class="rows-title">{rows.title}</p>
       <Messages path={rows.path} messages={state.messages} />
       {rows.help && <p class="help">{rows.help}</p>}
       {items.map((_, i) => (
