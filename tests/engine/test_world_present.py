@@ -22,7 +22,7 @@ def pair(immerse, float64):
         boxes = []
         for nodes in (GROWN, ALL):
             body = bodies.chain(nodes, 1.0, bend=0.7)
-            box, start = immerse(body, float64, viscosity=0.05, size=(32, 32), **form)
+            box, _ = immerse(body, float64, viscosity=0.05, size=(32, 32), **form)
             positions = jnp.asarray(body.positions) + jnp.array([[11.0, 16.0]])
             box = replace(box, **options)
             if nodes == ALL:

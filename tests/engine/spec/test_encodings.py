@@ -96,5 +96,5 @@ def test_genes_are_counted_part_by_part():
 
 def test_networks_have_room_for_all_that_leads_to_outputs():
     words = {"control": {"encoding": "cppn-body"}, "genome": {"max_nodes": 10}}
-    with pytest.raises(ValidationError, match="`genome.max_nodes` must be at least 11"):
+    with pytest.raises(ValidationError, match=r"`genome\.max_nodes` must be at least 11"):
         spec.QualityDiversity.model_validate(words)
