@@ -20,6 +20,10 @@ _HOME = {
     "record": "render",
     "audit": "render",
     "check": "render",
+    "to_pandas": "archive.frames",
+    "to_ribs": "archive.frames",
+    "scoring_function": "build",
+    "to_repertoire": "build",
 }
 
 __all__ = [*_HOME, "__version__"]  # pyright: ignore[reportUnsupportedDunderAll]

@@ -3,15 +3,28 @@
 import csv as csv_module
 import json
 from io import StringIO
+from typing import Any
 
 import numpy as np
 
-from .file import load
+from .file import Tree, load
+
+Columns = dict[str, Any]
 
 
 def csv(data: bytes) -> str:
-    """One row for each elite: `solution_i`, `objective`, `measures_i`, `threshold`, features,
-    `generation`, `creature`, `index`.
+    """One row for each elite, with `columns`."""
+    found = columns(data)
+    text = StringIO()
+    writer = csv_module.writer(text, lineterminator="\n")
+    writer.writerow(found)
+    writer.writerows(zip(*(list(column) for column in found.values()), strict=True))
+    return text.getvalue()
+
+
+def columns(data: bytes) -> Columns:
+    """`solution_i`, `objective`, `measures_i`, `threshold`, features, `generation`, `creature`,
+    what repeated evaluations have shown if there were any, and `index`, an entry an elite.
 
     A solution is the genome's arrays side by side, in the order of their names; a measure
     is on its axis' own scale, so that bins of a log axis are equally wide.
@@ -19,26 +32,40 @@ def csv(data: bytes) -> str:
     tree, attributes = load(data)
     archive = tree["archive"]
     genomes = archive["genomes"]
-    solution = np.concatenate([genomes[name].astype(float) for name in sorted(genomes)], axis=1)
+    arrays = [genomes[name].astype(np.float32) for name in sorted(genomes)]
+    solution = np.concatenate([x.reshape(len(x), -1) for x in arrays], axis=1)
     axes = json.loads(attributes["spec"])["archive"]["descriptors"]
     features = json.loads(attributes["features"])
-    measures = [_scaled(archive["features"][:, features.index(a["name"])], a) for a in axes]
+    measures = [scaled(archive["features"][:, features.index(a["name"])], a) for a in axes]
     fitness = archive["fitness"]
-    columns = {f"solution_{i}": solution[:, i] for i in range(solution.shape[1])}
-    columns |= {"objective": fitness}
-    columns |= {f"measures_{i}": values for i, values in enumerate(measures)}
-    columns |= {"threshold": fitness}
-    columns |= {name: archive["features"][:, i] for i, name in enumerate(features)}
-    columns |= {"generation": archive["generation"]}
-    columns |= {"creature": [bytes(row).hex() for row in archive["creature"]]}
-    columns |= {"index": archive["cell"]}
-    text = StringIO()
-    writer = csv_module.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*(list(column) for column in columns.values()), strict=True))
-    return text.getvalue()
+    found: Columns = {f"solution_{i}": solution[:, i] for i in range(solution.shape[1])}
+    found |= {"objective": fitness}
+    found |= {f"measures_{i}": values for i, values in enumerate(measures)}
+    found |= {"threshold": fitness}
+    found |= {name: archive["features"][:, i] for i, name in enumerate(features)}
+    found |= {"generation": archive["generation"]}
+    found |= {"creature": [bytes(row).hex() for row in archive["creature"]]}
+    return found | repeated(archive) | {"index": archive["cell"]}
 
 
-def _scaled(values: np.ndarray, axis: dict) -> np.ndarray:
-    values = np.clip(values, axis["low"], axis["high"])
+def repeated(archive: Tree) -> Columns:
+    """Of evaluations under disturbed conditions their number, those that diverged, mean and
+    standard deviation of fitness, and the share that fell into the elite's own cell."""
+    repeats = archive.get("repeats", {})
+    if not np.any(repeats.get("count", 0)):
+        return {}
+    count, sound = repeats["count"], repeats["count"] - repeats["failed"]
+    spread = np.sqrt(repeats["squares"] / np.maximum(sound - 1, 1))
+    return {
+        "repeats": count,
+        "repeats_failed": repeats["failed"],
+        "repeats_mean": np.where(sound > 0, repeats["fitness"], np.nan),
+        "repeats_std": np.where(sound > 1, spread, np.nan),
+        "repeats_hit_rate": np.where(count > 0, repeats["hits"] / np.maximum(count, 1), np.nan),
+    }
+
+
+def scaled(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
+    """Values on an axis' own scale, those beyond its ends at the end."""
+    values = np.clip(values, np.float32(axis["low"]), np.float32(axis["high"]))
     return np.log10(values) if axis["scale"] == "log10" else values

@@ -3,7 +3,9 @@
 from .creatures import build_block, build_point, build_stroke_block, frame
 from .emitters import build_emitters, build_rates
 from .encodings import build_controls, build_encoding
-from .experiments import build, build_axes, build_plan
+from .experiments import build, build_plan
+from .niches import build_axes, build_niches
+from .peers import scoring_function, to_repertoire
 from .scene import (
     build_energy,
     build_limits,
@@ -26,6 +28,7 @@ __all__ = [
     "build_energy",
     "build_gaits",
     "build_limits",
+    "build_niches",
     "build_plan",
     "build_point",
     "build_rates",
@@ -37,4 +40,6 @@ __all__ = [
     "build_task",
     "build_world",
     "frame",
+    "scoring_function",
+    "to_repertoire",
 ]

@@ -5,9 +5,10 @@ from functools import singledispatch
 
 from .. import neat, search, spec
 from ..genomes import Encoding
-from ..search import emitters, tensorneat
+from ..search import emitters, qdax, tensorneat
 from ..search.emitters.tensorneat import TensorNeat
 from ..spec import emitters as words
+from .niches import build_niches
 
 Search = spec.QualityDiversity | spec.Neuroevolution
 """Experiments that fill an archive."""
@@ -70,6 +71,12 @@ def _(emitter: words.CmaMaeEmitter, slots, chosen, encoding):
         learning_rate=emitter.learning_rate,
         threshold=emitter.threshold,
     )
+
+
+@_build.register
+def _(emitter: words.CmaMeEmitter, slots, chosen, encoding):
+    niches, asked = build_niches(chosen.archive), emitter.emitters
+    return qdax.cma_me(slots, encoding.newcomer, niches, step=emitter.step, emitters=asked)
 
 
 def build_settings(

@@ -12,6 +12,7 @@ from ..experiments.state import Again, Limits, Plan
 from ..search.emitters.tensorneat import TensorNeat
 from .creatures import build_block, build_disturbed_block, frame
 from .emitters import Search, build_emitters
+from .niches import build_niches
 from .scene import build_encoding
 from .tables import build_gaits, build_scaling
 
@@ -111,26 +112,3 @@ def names_of(emitters: tuple[spec.Emitter, ...]) -> tuple[str, ...]:
 def room_of(chosen: Search) -> tuple[int, int]:
     """Nodes and connections that networks have room for."""
     return chosen.genome.max_nodes, chosen.genome.max_connections
-
-
-def build_niches(archive: spec.Archive) -> search.Cells:
-    """The archive's cells over recorded features."""
-    axes = build_axes(archive)
-    if archive.centroids is None:
-        return search.Grid(axes)
-    found = search.cvt.centroids(archive.centroids, len(axes), archive.seed)
-    return search.voronoi(axes, found)
-
-
-def build_axes(archive: spec.Archive) -> tuple[search.Axis, ...]:
-    """The archive's descriptors among recorded features."""
-    return tuple(
-        search.Axis(
-            feature=search.FEATURES.index(axis.name),
-            low=axis.low,
-            high=axis.high,
-            bins=axis.bins,
-            logarithmic=axis.scale == "log10",
-        )
-        for axis in archive.descriptors
-    )

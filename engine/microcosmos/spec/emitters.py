@@ -73,7 +73,7 @@ class CmaMeEmitter(Part):
     step: float = Field(default=0.2, gt=0.0, le=2.0)
     """Initial standard deviation of each gene; genes run from −1 to 1."""
     emitters: int = Field(default=1, ge=1, le=64)
-    """Emitters among which the slots are divided."""
+    """Emitters that take turns, each with a generation's slots."""
 
 
 class PopulationEmitter(Part):

@@ -1,0 +1,92 @@
+"""Archives in the libraries of others: a data frame, and an archive of pyribs'."""
+
+import importlib
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .export import columns
+from .file import load
+
+Source = bytes | str | os.PathLike
+"""An archive file, or where it is."""
+
+
+def to_pandas(archive: Source) -> Any:
+    """A pandas `DataFrame` with pyribs' columns and types; see `export.columns`.
+
+    `ribs.archives.ArchiveDataFrame` takes it as it is. Raises `ImportError` without pandas.
+    """
+    return _needed("pandas").DataFrame(columns(_bytes(archive)))
+
+
+def to_ribs(archive: Source) -> Any:
+    """A `GridArchive` or `CVTArchive` of pyribs' with our elites, its ranges on the axes' own
+    scales and every feature as a field.
+
+    Borders of bins round otherwise there: an elite on one is told to be in the middle of its
+    cell. Raises `ImportError` without pyribs.
+    """
+    data = _bytes(archive)
+    found, peer = columns(data), _needed("ribs.archives", "ribs[visualize]")
+    solution, measures = _beside(found, "solution_"), _beside(found, "measures_")
+    fields = list(found)[list(found).index("threshold") + 1 : -1]
+    fields = {name: np.asarray(found[name]) for name in fields}
+    filled = _empty(peer, data, solution.shape[1], fields)
+    strayed = filled.index_of(measures) != found["index"]
+    measures[strayed] = _middles(filled, found["index"])[strayed]
+    filled.add(solution, found["objective"], measures, **fields)
+    return filled
+
+
+def _empty(peer: Any, data: bytes, genes: int, fields: dict[str, np.ndarray]) -> Any:
+    tree, attributes = load(data)
+    spec = json.loads(attributes["spec"])["archive"]
+    ranges = [_ends(axis) for axis in spec["descriptors"]]
+    given = {
+        "solution_dim": genes,
+        "ranges": ranges,
+        "dtype": np.float32,
+        "extra_fields": {name: ((), _kind(values)) for name, values in fields.items()},
+    }
+    if "centroids" not in tree["archive"]:
+        return peer.GridArchive(dims=[axis["bins"] for axis in spec["descriptors"]], **given)
+    low, high = np.array(ranges).T
+    centroids = low + tree["archive"]["centroids"].astype(float) * (high - low)
+    return peer.CVTArchive(centroids=centroids, **given)
+
+
+def _ends(axis: dict[str, Any]) -> tuple[float, float]:
+    low, high = axis["low"], axis["high"]
+    return (np.log10(low), np.log10(high)) if axis["scale"] == "log10" else (low, high)
+
+
+def _middles(filled: Any, index: np.ndarray) -> np.ndarray:
+    """The middle of cells, in a pyribs archive."""
+    if hasattr(filled, "centroids"):
+        return filled.centroids[index]
+    place = np.stack(np.unravel_index(index, filled.dims), 1) + 0.5
+    return filled.lower_bounds + place / filled.dims * filled.interval_size
+
+
+def _kind(values: np.ndarray) -> Any:
+    return object if values.dtype.kind in "US" else values.dtype
+
+
+def _beside(found: dict[str, Any], prefix: str) -> np.ndarray:
+    return np.stack([x for name, x in found.items() if name.startswith(prefix)], 1)
+
+
+def _bytes(archive: Source) -> bytes:
+    return archive if isinstance(archive, bytes) else Path(archive).read_bytes()
+
+
+def _needed(module: str, package: str | None = None) -> Any:
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        name = module.partition(".")[0]
+        raise ImportError(f'`{name}` is needed: pip install "{package or name}"') from error

@@ -1,0 +1,195 @@
+"""QDax: repertoires there and back, its loop with our scores, its emitters in our loop."""
+
+import importlib
+import importlib.util
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import genomes, neat, search
+from microcosmos.search import qdax
+
+pytestmark = [
+    pytest.mark.skipif(importlib.util.find_spec("qdax") is None, reason="QDax: make peers"),
+    pytest.mark.filterwarnings("ignore"),
+]
+
+AXES = (
+    search.Axis(feature=1, low=1e-2, high=1e2, bins=3, logarithmic=True),
+    search.Axis(feature=0, low=-1.0, high=1.0, bins=4, logarithmic=False),
+    search.Axis(feature=2, low=0.0, high=2.0, bins=2, logarithmic=False),
+)
+GRIDS = [search.Grid(AXES[:axes]) for axes in (1, 2, 3)]
+AROUND = search.voronoi(AXES[:2], np.random.default_rng(0).random((12, 2)).astype(np.float32))
+
+
+@pytest.fixture(autouse=True)
+def lenient():
+    """QDax broadcasts silently."""
+    with jax.numpy_rank_promotion("allow"):
+        yield
+
+
+def filled(cells, count=40):
+    """An archive with some elites, vectors with their features."""
+    random = np.random.default_rng(3)
+    features = random.uniform(0.02, 1.0, (count, 3))
+    rows = search.Elites(
+        occupied=jnp.ones(count, bool),
+        fitness=jnp.asarray(random.normal(size=count), jnp.float32),
+        features=jnp.asarray(features, jnp.float32),
+        generation=jnp.full(count, 7, jnp.int32),
+        slot=jnp.arange(count, dtype=jnp.int32),
+        genotypes=genomes.Vector(jnp.asarray(random.uniform(-1, 1, (count, 5)), jnp.float32)),
+    )
+    nobody = search.no_elites(cells.count, 3, genomes.Vector(jnp.zeros(5)))
+    return search.insert(nobody, rows, cells)[0]
+
+
+def same(a, b):
+    pairs = zip(jax.tree.leaves(a), jax.tree.leaves(b), strict=True)
+    return all(np.asarray(x).tobytes() == np.asarray(y).tobytes() for x, y in pairs)
+
+
+@pytest.mark.parametrize("cells", [*GRIDS, AROUND], ids=["1-d", "2-d", "3-d", "cvt"])
+def test_a_repertoire_there_and_back_loses_nothing(cells):
+    archive = filled(cells)
+    repertoire = qdax.to_repertoire(archive, cells)
+    assert same(qdax.from_repertoire(repertoire, cells, 3), archive)
+
+
+@pytest.mark.parametrize("cells", GRIDS, ids=["1-d", "2-d", "3-d"])
+def test_our_grids_are_in_the_order_of_theirs(cells):
+    repertoires = qdax.needed("core.containers.mapelites_repertoire")
+    shape = tuple(axis.bins for axis in cells.axes)
+    theirs = repertoires.compute_euclidean_centroids(shape, 0.0, 1.0)
+    repertoire = qdax.to_repertoire(filled(cells), cells)
+    np.testing.assert_allclose(repertoire.centroids, theirs, atol=1e-6)
+    there = np.isfinite(repertoire.fitnesses[:, 0])
+    index = repertoires.get_cells_indices(repertoire.descriptors, repertoire.centroids)
+    assert np.array_equal(np.asarray(index)[there], np.flatnonzero(there))
+
+
+def test_features_of_their_own_elites_are_made_from_descriptors():
+    repertoire = qdax.to_repertoire(filled(AROUND), AROUND).replace(extra_scores={})
+    back = qdax.from_repertoire(repertoire, AROUND, 3)
+    there = np.asarray(back.occupied)
+    expected = filled(AROUND).features[there]
+    np.testing.assert_allclose(back.features[there][:, :2], expected[:, :2], rtol=1e-5)
+    assert np.isnan(back.features[there][:, 2]).all()
+
+
+def evaluated(genotypes):
+    """A stand-in for simulation: some of it diverges."""
+    x = genotypes.values
+    features = jnp.stack([x[:, 0], 10 ** x[:, 1], 1 + x[:, 2]], 1)
+    status = jnp.where(x[:, 3] > 0.8, 1, 0)
+    features = jnp.where(status[:, None] == 1, jnp.nan, features)
+    return search.Evaluation(
+        jnp.where(status == 1, jnp.nan, -jnp.sum(x * x, 1)), features, status
+    )
+
+
+def test_their_map_elites_runs_on_our_scores_and_what_diverged_never_enters():
+    loop, emitters = (
+        qdax.needed("core.map_elites"),
+        qdax.needed("core.emitters.standard_emitters"),
+    )
+    score = qdax.scoring_function(evaluated, AROUND)
+    mix = emitters.MixingEmitter(
+        lambda x, key: x + 0.3 * jax.random.normal(key, x.shape), None, 0.0, 32
+    )
+    run = loop.MAPElites(score, mix, lambda repertoire: {})
+    first = jax.random.uniform(jax.random.PRNGKey(0), (32, 5), minval=-1.0, maxval=1.0)
+    repertoire, state, _ = run.init(first, AROUND.centroids, jax.random.PRNGKey(1))
+    before = repertoire.fitnesses
+    for number in range(5):
+        repertoire, state, _ = run.update(repertoire, state, jax.random.PRNGKey(number))
+    there = np.isfinite(repertoire.fitnesses[:, 0])
+    assert np.all(repertoire.fitnesses >= before)
+    assert there.sum() > 6
+    assert np.isfinite(repertoire.descriptors).all()
+    assert np.all(np.asarray(repertoire.genotypes)[there][:, 3] <= 0.8)
+
+
+def looped(generations, emitter, archive, state, begin=0):
+    """Our loop on the stand-in."""
+    for number in range(begin, begin + generations):
+        children, (state,), _ = search.emitters.emit(
+            (emitter,),
+            (state,),
+            archive,
+            neat.first_counters(1, 1),
+            jnp.asarray(number),
+            key=jax.random.key(5),
+        )
+        found = evaluated(children.genotypes)
+        rows = search.Elites(
+            occupied=found.status == 0,
+            fitness=found.fitness,
+            features=found.features,
+            generation=jnp.full(emitter.slots, number, jnp.int32),
+            slot=jnp.arange(emitter.slots, dtype=jnp.int32),
+            genotypes=children.genotypes,
+        )
+        archive, inserted = search.insert(archive, rows, AROUND)
+        outcome = search.Outcome(
+            genotypes=children.genotypes,
+            fitness=rows.fitness,
+            features=rows.features,
+            sound=rows.occupied,
+            cell=inserted.cell,
+            entered=inserted.entered,
+            fresh=inserted.fresh,
+            improvement=inserted.improvement,
+        )
+        state = emitter.tell(state, outcome)
+    return archive, state
+
+
+def newcomer(*, key):
+    return genomes.Vector(jax.random.uniform(key, (5,), minval=-1.0, maxval=1.0))
+
+
+def test_cma_me_climbs_in_our_loop_and_goes_on_from_kept_arrays():
+    emitter = qdax.cma_me(16, newcomer, AROUND, step=0.3, emitters=2)
+    nobody = search.no_elites(12, 3, genomes.Vector(jnp.zeros(5)))
+    start = emitter.init(key=jax.random.key(0))
+    assert all(isinstance(x, jax.Array) and x.dtype != object for x in jax.tree.leaves(start))
+    early, kept = looped(3, emitter, nobody, start)
+    whole, state = looped(6, emitter, early, kept, begin=3)
+    again = jax.tree.map(lambda x: jnp.asarray(np.array(x)), kept)
+    assert same(looped(6, emitter, early, again, begin=3), (whole, state))
+    assert jax.tree.structure(state) == jax.tree.structure(start)
+    assert all(
+        np.isfinite(x).all() for x in jax.tree.leaves(state.emitter.emitter_states.cmaes_state)
+    )
+    assert int(whole.occupied.sum()) >= int(early.occupied.sum())
+    assert np.all(whole.fitness[early.occupied] >= early.fitness[early.occupied])
+
+
+def test_without_qdax_the_command_to_install_it_is_told(monkeypatch):
+    def missing(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    with pytest.raises(ValueError, match=r'pip install "microcosmos\[qdax\]"'):
+        qdax.needed("core.map_elites")
+
+
+@pytest.mark.parametrize("name", ["arm", "rastrigin"])
+def test_our_map_elites_reaches_the_score_of_theirs(name, monkeypatch):
+    folder = Path(__file__).parents[3] / "engine" / "benchmarks"
+    monkeypatch.syspath_prepend(str(folder))
+    functions = importlib.import_module("functions")
+    monkeypatch.setattr(functions, "GENES", 6)
+    functions.cells.cache_clear()
+    niches = functions.cells(128)
+    monkeypatch.setattr(functions, "cells", lambda: niches)
+    ours = [functions.ours(name, seed, 60, 64) for seed in range(3)]
+    theirs = [functions.theirs(name, seed, 60, 64) for seed in range(3)]
+    spread = max(np.ptp(ours), np.ptp(theirs), 0.01 * np.mean(theirs))
+    assert abs(np.median(ours) - np.median(theirs)) <= 2 * spread

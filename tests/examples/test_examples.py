@@ -1,0 +1,40 @@
+"""Each example runs, at a tiny size."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+TINY = {"body": {"nodes": 8}, "task": {"steps": 20}}
+
+pytestmark = pytest.mark.filterwarnings("ignore")
+
+
+def example(name, needs):
+    """The module of an example; the test is skipped where its library is missing."""
+    if importlib.util.find_spec(needs) is None:
+        pytest.skip(f"{needs} is not installed: make peers")
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_their_map_elites_evolves_our_creatures():
+    repertoire = example("qdax_map_elites", "qdax").main(generations=2, batch=4, **TINY)
+    assert np.isfinite(repertoire.fitnesses).any()
+
+
+def test_their_emitters_work_in_our_search(tmp_path):
+    module = example("qdax_emitter", "qdax")
+    search = {**module.SPEC["search"], "generations": 3, "batch": 8, "block": 4}
+    repertoire = module.main(tmp_path / "archive.h5", **TINY, search=search)
+    assert np.isfinite(repertoire.fitnesses).any()
+
+
+def test_pyribs_draws_our_archive(tmp_path):
+    search = {"generations": 2, "batch": 4, "block": 4}
+    picture = example("ribs_heatmap", "ribs").main(tmp_path, **TINY, search=search)
+    assert picture.read_bytes().startswith(b"\x89PNG")
