@@ -26,7 +26,7 @@ def told(
     for generation, summary in session.execute(ordered):
         place = bisect_left(generations, generation)
         if place < len(points):
-            points[place] |= _numbers(summary)
+            points[place] |= _numbers(summary or {})
     names = dict.fromkeys(name for point in points for name in point)
     return {name: [point.get(name) for point in points] for name in names}
 

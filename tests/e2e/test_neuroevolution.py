@@ -47,7 +47,8 @@ def look_along_other_axes(page: Page) -> None:
     page.get_by_label("Up").select_option(label="Fitness")
     assert "x=path_length&y=fitness" in page.url
     expect(page.get_by_text("Path length (cells)")).to_be_visible(timeout=FAST)
-    page.reload()
+    with page.expect_response(re.compile("features=path_length")):
+        page.reload()
     expect(page.get_by_label("Across")).to_have_value("path_length", timeout=FAST)
 
 
@@ -55,7 +56,7 @@ def open_the_best(page: Page) -> None:
     plot = page.get_by_role("application", name=re.compile("Archive map"))
     reading = page.locator("#map-reading")
     plot.focus()
-    page.wait_for_timeout(300)  # The columns of the axes are on their way.
+    page.wait_for_timeout(300)  # What was fetched is drawn.
     page.keyboard.press("ArrowRight")
     expect(reading).to_contain_text("Path length", timeout=FAST)
     page.keyboard.press("Enter")
