@@ -2,15 +2,17 @@
 
 from dataclasses import replace
 
-import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Int, PRNGKeyArray
 
 from ..genomes import CPPN
+from .chance import draws, left
 from .rows import match
 
 DISABLED = 0.75
 """Probability that a gene disabled in either parent is disabled in the child."""
+
+HALF = 0.5
 
 
 def crossover(
@@ -27,15 +29,13 @@ def crossover(
     parent. So the child has its structure, and holds a cycle only if it does. With
     probability `average` weights and biases of matching genes are means.
     """
-    mean_key, node_key, gene_key = jax.random.split(key, 3)
+    mean, swapped, gene = draws((), fitter.bias.shape, fitter.weight.shape, key=key)
     connection = match(
         fitter.innovation, fitter.connection_used, other.innovation, other.connection_used
     )
     node = match(fitter.node_id, fitter.node_used, other.node_id, other.node_used)
-    mean = jax.random.bernoulli(mean_key, average)
-    swapped = jax.random.bits(node_key, node.shape, "uint8") < 128
-    bits = jax.random.bits(gene_key, connection.shape, "uint32")
-    taken, chance = bits & 1 == 1, (bits >> 1).astype(jnp.float32) / 2.0**31
+    mean, swapped, taken = mean < average, swapped < HALF, gene < HALF
+    chance = left(jnp.where(taken, gene, gene - HALF), 0, HALF)
     off = ~fitter.enabled | ((connection >= 0) & ~other.enabled[connection])
     return replace(
         fitter,

@@ -8,11 +8,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
+from .chance import below, draws
 from .crossover import crossover
 from .mutation import Novelty, mutate
 from .numbering import Counters, number
 from .offspring import Standing, allot, allowed, recorded, shares, standing
-from .rows import NONE
+from .rows import NONE, apart
 from .settings import Settings
 from .species import Species, divide, no_species
 
@@ -71,7 +72,7 @@ def next_generation(
     sizes = allot(share, able, len(fitness), settings.min_size)
     brood = breed(sizes, fitness, species, now, settings, key=parents_key)
     children, novelty = bear(population, brood, settings, inputs, outputs, key=children_key)
-    children, counters = number(children, novelty, counters)
+    children, counters = apart(number(*apart((children, novelty)), counters))
     species = _represented(population, species, sizes > 0, now, settings, key=species_key)
     species = divide(
         children,
@@ -102,16 +103,14 @@ def breed(
     copied = rank < jnp.minimum(elites, now.valid)[own]
     survivors = jnp.ceil(settings.survival * species.members).astype(now.valid.dtype)
     survivors = jnp.clip(survivors, 1, jnp.maximum(1, now.valid))
-    keys = jax.vmap(lambda s: jax.random.split(jax.random.fold_in(key, s), 6))(slot)
-    chance = jax.vmap(jax.vmap(jax.random.uniform))(keys)
+    (chance,) = draws((len(slot), 6), key=key)
 
     def draw(of, chance):
-        place = jnp.floor(chance * survivors[of]).astype(slot.dtype)
-        return now.order[now.start[of] + jnp.minimum(place, survivors[of] - 1)]
+        return now.order[now.start[of] + below(survivors[of], chance)]
 
     abroad = chance[:, 3] < settings.interspecies
     breeding = jnp.argsort(sizes == 0, stable=True)
-    any_ = breeding[jnp.floor(chance[:, 4] * jnp.sum(sizes > 0)).astype(slot.dtype)]
+    any_ = breeding[below(jnp.sum(sizes > 0), chance[:, 4])]
     first, second = draw(own, chance[:, 0]), draw(jnp.where(abroad, any_, own), chance[:, 1])
     crossed = ~copied & (chance[:, 2] < settings.crossover)
     fitter = jnp.where(fitness[first] >= fitness[second], first, second)
@@ -138,18 +137,17 @@ def bear(
 ) -> tuple[CPPN, Novelty]:
     """The networks of a brood, without numbers for what is new in them."""
 
-    def child(one, other, crosses, mutated, slot):
-        cross_key, mutate_key = jax.random.split(jax.random.fold_in(key, slot))
-        crossed = crossover(one, other, settings.average, settings.disabled, key=cross_key)
-        one = _either(crosses, crossed, one)
-        varied, novelty = mutate(one, settings.rates, inputs, outputs, key=mutate_key)
+    def child(one, other, crosses, mutated, keys):
+        crossed = crossover(one, other, settings.average, settings.disabled, key=keys[0])
+        one = apart(_either(crosses, crossed, one))
+        varied, novelty = mutate(one, settings.rates, inputs, outputs, key=keys[1])
         novelty = jax.tree.map(lambda row: jnp.where(mutated, row, NONE), novelty)
         return _either(mutated, varied, one), novelty
 
     parents = jax.tree.map(lambda x: x[brood.parent], population)
     others = jax.tree.map(lambda x: x[brood.other], population)
-    slots = jnp.arange(len(brood.parent))
-    return jax.vmap(child)(parents, others, brood.other >= 0, brood.mutated, slots)
+    keys = jax.random.split(key, (len(brood.parent), 2))
+    return jax.vmap(child)(parents, others, brood.other >= 0, brood.mutated, keys)
 
 
 def _represented(
@@ -166,9 +164,9 @@ def _represented(
     species = replace(species, alive=breeding, threshold=_moved(species, settings))
     if settings.representative == "nearest":
         return species
-    chance = jax.random.uniform(key, breeding.shape)
-    place = jnp.floor(chance * species.members).astype(now.order.dtype)
-    drawn = now.order[jnp.minimum(now.start + place, len(now.order) - 1)]
+    (chance,) = draws(breeding.shape, key=key)
+    place = now.start + below(species.members, chance)
+    drawn = now.order[jnp.minimum(place, len(now.order) - 1)]
     return replace(species, representatives=jax.tree.map(lambda x: x[drawn], population))
 
 

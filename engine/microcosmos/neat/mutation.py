@@ -8,14 +8,18 @@ gives it one that all of the generation share.
 from dataclasses import replace
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
+from .chance import Chance, draws, left
 from .rates import Rates, one_of
-from .rows import NONE
+from .rows import NONE, apart
 from .structure import add_connection, add_node, delete_connection, delete_node
+
+
+DECISIONS = 10
+"""Draws of a child besides those of each gene."""
 
 
 class Novelty(eqx.Module):
@@ -44,25 +48,32 @@ def mutate(
     Raises `ValueError` where nodes can be deleted and the number of `outputs`, which never
     are, is not given.
     """
-    keys = jax.random.split(key, 8)
+    if rates.delete_node and outputs is None:
+        raise ValueError("`outputs` must be given where `delete_node` is above 0, got None")
+    nodes, genes = network.bias.shape, network.weight.shape
+    values, activations, toggles, some = draws(
+        (nodes[0] + genes[0],), nodes, genes, (DECISIONS,), key=key
+    )
     if rates.delete_node:
-        if outputs is None:
-            raise ValueError("`outputs` must be given where `delete_node` is above 0, got None")
-        network = delete_node(network, rates.delete_node, inputs + outputs, key=keys[5])
+        network = delete_node(network, rates.delete_node, inputs + (outputs or 0), some[0])
     if rates.delete_connection:
-        network = delete_connection(network, rates.delete_connection, key=keys[6])
+        network = delete_connection(network, rates.delete_connection, some[1])
+    network = apart(network)
     splittable = network.connection_used & network.enabled
-    values, link, node = jax.random.uniform(keys[7], (3,)) < jnp.asarray(
-        [rates.values, rates.add_connection, rates.add_node]
+    vary, link, node = (
+        some[2] < rates.values,
+        some[3] < rates.add_connection,
+        some[4] < rates.add_node,
     )
     if rates.apart:
-        values = values & ~link & ~node
-    network = mutate_values(network, values, rates, inputs, key=keys[0])
-    network = mutate_activations(network, rates, inputs, key=keys[1])
-    network = toggle_connections(network, rates.toggle, key=keys[2])
-    network, connection_row = add_connection(network, link, rates, inputs, key=keys[3])
+        vary = vary & ~link & ~node
+    network = mutate_values(network, vary, rates, inputs, values)
+    network = mutate_activations(network, rates, inputs, activations)
+    network = toggle_connections(network, rates.toggle, toggles)
+    network = apart(network)
+    network, connection_row = apart(add_connection(network, link, rates, inputs, some[5:8]))
     network, split_row, node_row, split = add_node(
-        network, splittable & network.enabled, node, rates, key=keys[4]
+        network, splittable & network.enabled, node, rates, some[8:10]
     )
     if rates.drop_split:  # The split connection stood above the added one.
         connection_row = connection_row - ((connection_row >= 0) & (split_row >= 0))
@@ -70,54 +81,47 @@ def mutate(
 
 
 def mutate_values(
-    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, *, key: PRNGKeyArray
+    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, chance: Chance
 ) -> CPPN:
     """Perturb or redraw weights, and the biases of nodes that are not inputs."""
-    weight_key, bias_key = jax.random.split(key)
     node = jnp.arange(network.node_used.shape[0])
     weights = network.connection_used & happens
     biases = network.node_used & (node >= inputs) & happens
     return replace(
         network,
-        weight=_vary(network.weight, weights, rates, key=weight_key),
-        bias=_vary(network.bias, biases, rates, key=bias_key),
+        weight=_vary(network.weight, weights, rates, chance[len(node) :]),
+        bias=_vary(network.bias, biases, rates, chance[: len(node)]),
     )
 
 
-def mutate_activations(network: CPPN, rates: Rates, inputs: int, *, key: PRNGKeyArray) -> CPPN:
+def mutate_activations(network: CPPN, rates: Rates, inputs: int, chance: Chance) -> CPPN:
     """Redraw the activations of some nodes."""
     if not rates.activation:
         return network
-    which, what = jax.random.split(key)
     node = jnp.arange(network.node_used.shape[0])
-    chosen = jax.random.bernoulli(which, rates.activation, node.shape) & network.node_used
-    drawn = one_of(rates.palette, node.shape, key=what)
-    chosen = chosen & (node >= inputs)
+    chosen = (chance < rates.activation) & network.node_used & (node >= inputs)
+    drawn = one_of(rates.palette, left(chance, 0, rates.activation))
     return replace(network, activation=jnp.where(chosen, drawn, network.activation))
 
 
-def toggle_connections(network: CPPN, rate: float, *, key: PRNGKeyArray) -> CPPN:
+def toggle_connections(network: CPPN, rate: float, chance: Chance) -> CPPN:
     """Enable or disable some connections."""
     if not rate:
         return network
-    chosen = jax.random.bernoulli(key, rate, network.enabled.shape) & network.connection_used
-    return replace(network, enabled=network.enabled ^ chosen)
+    return replace(
+        network, enabled=network.enabled ^ ((chance < rate) & network.connection_used)
+    )
 
 
 def _vary(
-    values: Float[Array, "gene"],
-    used: Bool[Array, "gene"],
-    rates: Rates,
-    *,
-    key: PRNGKeyArray,
+    values: Float[Array, "gene"], used: Bool[Array, "gene"], rates: Rates, chance: Chance
 ) -> Float[Array, "gene"]:
-    """One draw decides about each gene, another one is its step or its new value."""
-    which, what = jax.random.split(key)
-    chance = jax.random.uniform(which, values.shape)
-    drawn = rates.draw(what, values.shape, values.dtype)
-    either = rates.replace + (1 - rates.replace) * rates.weight
+    """A draw decides about each gene, and what it leaves is its step or its new value."""
+    new, either = rates.replace, rates.replace + (1 - rates.replace) * rates.weight
+    again = jnp.where(chance < new, left(chance, 0, new), left(chance, new, either))
+    drawn = rates.draw(again).astype(values.dtype)
     varied = jnp.where(chance < either, values + rates.weight_step * drawn, values)
-    varied = jnp.where(chance < rates.replace, drawn, varied)
+    varied = jnp.where(chance < new, drawn, varied)
     if rates.bound is not None:
         varied = jnp.clip(varied, -rates.bound, rates.bound)
     return jnp.where(used, varied, values)

@@ -9,20 +9,26 @@ import numpy as np
 from jaxtyping import Array
 
 from ..genomes import ACTIVATIONS
+from .chance import LARGEST, Chance
 
-Draw = Callable[..., Array]
-"""(key, shape, dtype) → random numbers around zero."""
+Draw = Callable[[Array], Array]
+"""Numbers that are equally likely between 0 and 1 → random numbers around zero."""
 
 
-def uniform(key, shape, dtype) -> Array:
+def normal(chance: Chance) -> Array:
+    """Numbers with mean 0 and deviation 1."""
+    return np.sqrt(2) * jax.lax.erf_inv(jnp.maximum(2 * chance - 1, -LARGEST))
+
+
+def uniform(chance: Chance) -> Array:
     """Numbers between −1 and 1, each equally likely."""
-    return jax.random.uniform(key, shape, dtype, -1, 1)
+    return 2 * chance - 1
 
 
-def one_of(palette: tuple[int, ...], shape: tuple[int, ...], *, key) -> Array:
+def one_of(palette: tuple[int, ...], chance: Chance) -> Array:
     """Activations, each of the palette equally likely."""
-    chosen = jax.random.bits(key, shape) % len(palette)
-    return jnp.asarray(np.asarray(palette))[chosen].astype(jnp.int32)
+    place = jnp.floor(chance * len(palette)).astype(jnp.int32)
+    return jnp.asarray(np.asarray(palette, np.int32))[place]
 
 
 @dataclass(frozen=True)
@@ -47,7 +53,7 @@ class Rates:
     """They do not where a node or connection is added, so that this alone is judged."""
     bound: float | None = None
     """Weights and biases are kept within this of zero."""
-    draw: Draw = jax.random.normal
+    draw: Draw = normal
     palette: tuple[int, ...] = tuple(range(len(ACTIVATIONS)))
     """Activations that are drawn, by their place among `genomes.ACTIVATIONS`."""
     recurrent: bool = False

@@ -4,6 +4,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Int, UInt32
 
+from .rows import over
+
 WORD = 32
 
 Sets = tuple[UInt32[Array, "node"], ...]
@@ -16,14 +18,16 @@ def neighbours(
     used: Bool[Array, "connection"],
     nodes: int,
 ) -> Sets:
-    """For each node the other ends of the connections that it owns; no pair comes twice."""
-    owner = jnp.where(used, owner, nodes)
+    """For each node the other ends of the connections that it owns."""
+    owner, node = jnp.where(used, owner, nodes), jnp.arange(nodes)
     bit = jnp.uint32(1) << (member % WORD).astype(jnp.uint32)
-    none = jnp.zeros(nodes, jnp.uint32)
-    return tuple(
-        none.at[owner].add(jnp.where(member // WORD == word, bit, 0), mode="drop")
-        for word in range(_words(nodes))
-    )
+    bits = [jnp.where(member // WORD == word, bit, 0) for word in range(_words(nodes))]
+
+    def join(row, sets):
+        owns = owner[row] == node
+        return tuple(s | jnp.where(owns, b[row], 0) for s, b in zip(sets, bits, strict=True))
+
+    return over(owner.shape[0], join, tuple(jnp.zeros(nodes, jnp.uint32) for _ in bits))
 
 
 def closure(sets: Sets) -> Sets:
@@ -34,9 +38,9 @@ def closure(sets: Sets) -> Sets:
         first = word * WORD
 
         def through(bit, sets, word=word, first=first):
-            reaches = (sets[word] >> bit.astype(jnp.uint32)) & 1
+            reaches = (sets[word] >> jnp.uint32(bit)) & 1
             every = jnp.uint32(0) - reaches  # All bits where the node reaches this one.
-            return tuple(s | (every & s[first + bit][None]) for s in sets)
+            return tuple(s | (every & s[first + bit]) for s in sets)
 
         sets = jax.lax.fori_loop(0, min(WORD, nodes - first), through, sets)
     return sets
@@ -45,7 +49,8 @@ def closure(sets: Sets) -> Sets:
 def singletons(nodes: int) -> Sets:
     """Each node's set holds itself."""
     node = jnp.arange(nodes)
-    return neighbours(node, node, jnp.ones(nodes, bool), nodes)
+    bit = jnp.uint32(1) << (node % WORD).astype(jnp.uint32)
+    return tuple(jnp.where(node // WORD == word, bit, 0) for word in range(_words(nodes)))
 
 
 def members(among: Bool[Array, "node"]) -> Sets:

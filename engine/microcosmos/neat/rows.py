@@ -1,15 +1,19 @@
 """Rows of genes: written, chosen, removed and found by number."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Int, PRNGKeyArray
+from jaxtyping import Array, Bool, Int
 
 from ..genomes import CPPN
+from .chance import Chance, below
 
 NONE = -1
 """Stands for the row or the number of a gene that is not there."""
+
+UNROLLED = 10
 
 NODES = ("node_used", "node_id", "activation", "bias")
 CONNECTIONS = ("connection_used", "innovation", "source", "target", "enabled", "weight")
@@ -33,11 +37,11 @@ def connect(network: CPPN, row, source, target, weight) -> CPPN:
 
 
 def choose(
-    allowed: Bool[Array, "item"], *, key: PRNGKeyArray
+    allowed: Bool[Array, "item"], chance: Chance
 ) -> tuple[Int[Array, ""], Bool[Array, ""]]:
     """One allowed item, each equally likely, and whether there is any."""
     total = jnp.sum(allowed)
-    return ranked(allowed, draw_below(total, key=key)), total > 0
+    return ranked(allowed, below(total, chance)), total > 0
 
 
 def ranked(weights: Array, rank: Int[Array, ""]) -> Int[Array, ""]:
@@ -46,57 +50,60 @@ def ranked(weights: Array, rank: Int[Array, ""]) -> Int[Array, ""]:
     return jnp.minimum(place, weights.shape[0] - 1)
 
 
-def draw_below(total: Int[Array, ""], *, key: PRNGKeyArray) -> Int[Array, ""]:
-    """A whole number from 0 on below `total`, or 0 where that is 0."""
-    limit = jnp.maximum(1, total).astype(jnp.uint32)
-    return (jax.random.bits(key) % limit).astype(jnp.int32)
-
-
 def match(
     numbers: Int[Array, "gene"],
     used: Bool[Array, "gene"],
     others: Int[Array, "other"],
     others_used: Bool[Array, "other"],
 ) -> Int[Array, "gene"]:
-    """The row of the other parent's gene that has the same number, or −1.
+    """The row of the other parent's gene that has the same number, or −1."""
+    table = jnp.where(others_used, others, NONE)
 
-    Numbers increase along the used rows, which come first.
-    """
-    table = jnp.where(others_used, others, jnp.iinfo(others.dtype).max)
-    row = jnp.searchsorted(table, numbers, method="scan_unrolled")
-    row = jnp.minimum(row, table.shape[0] - 1)
-    row = jnp.where(used & (table[row] == numbers), row, NONE)
-    return jax.lax.optimization_barrier(row)  # XLA would search again for each use.
+    def compare(place, row):
+        return jnp.where(table[place] == numbers, place, row)
+
+    row = over(others.shape[0], compare, jnp.full(numbers.shape, NONE))
+    return jnp.where(used, row, NONE)
+
+
+def apart(values):
+    """The same values: XLA compiles what makes them apart from what uses them, far faster."""
+    return jax.lax.optimization_barrier(values)
+
+
+def over(count: int, body: Callable, initial):
+    """A loop over rows, many to a turn: XLA makes one fast pass over a batch of each turn."""
+    return jax.lax.fori_loop(0, count, body, initial, unroll=min(UNROLLED, count))
 
 
 def drop_connection(network: CPPN, row: Int[Array, ""]) -> CPPN:
     """The network without one connection gene, the later ones moved up; −1 for none."""
-    place = jnp.arange(network.weight.shape[0])
-    return _moved(network, CONNECTIONS, _step(place, row))
+    return _shifted(network, CONNECTIONS, row)
 
 
 def drop_node(network: CPPN, node: Int[Array, ""]) -> CPPN:
     """The network without one node and all its connections; −1 for none."""
     kept = network.connection_used & (network.source != node) & (network.target != node)
-    rows = jnp.arange(kept.shape[0])
-    order = jnp.searchsorted(jnp.cumsum(kept), rows + 1, method="scan_unrolled")
-    network = _moved(network, CONNECTIONS, order)
-    earlier = (node >= 0) & (network.source > node), (node >= 0) & (network.target > node)
-    network = replace(
-        network, source=network.source - earlier[0], target=network.target - earlier[1]
-    )
-    place = jnp.arange(network.node_used.shape[0])
-    return _moved(network, NODES, _step(place, node))
-
-
-def _step(place, row):
-    """Where each row is filled from once `row` is gone."""
-    return place + ((row >= 0) & (place >= row))
-
-
-def _moved(network: CPPN, names: tuple[str, ...], origin) -> CPPN:
-    """The named columns filled from the rows of `origin`, with zeros from beyond the end."""
+    rows, upto = jnp.arange(kept.shape[0]), jnp.cumsum(kept)
+    start = jnp.zeros(rows.shape, rows.dtype)
+    order = over(kept.shape[0], lambda place, order: order + (upto[place] <= rows), start)
     columns = {
-        n: jnp.take(getattr(network, n), origin, mode="fill", fill_value=0) for n in names
+        n: jnp.take(getattr(network, n), order, mode="fill", fill_value=0) for n in CONNECTIONS
     }
-    return replace(network, **columns)
+    later = (node >= 0) & (columns["source"] > node), (node >= 0) & (columns["target"] > node)
+    columns["source"], columns["target"] = (
+        columns["source"] - later[0],
+        columns["target"] - later[1],
+    )
+    return _shifted(replace(network, **columns), NODES, node)
+
+
+def _shifted(network: CPPN, names: tuple[str, ...], row: Int[Array, ""]) -> CPPN:
+    """The named columns without one row, and zero at the end."""
+
+    def shift(values):
+        place = jnp.arange(values.shape[0])
+        moved = jnp.append(values[1:], jnp.zeros((1,), values.dtype))
+        return jnp.where((row >= 0) & (place >= row), moved, values)
+
+    return replace(network, **{name: shift(getattr(network, name)) for name in names})

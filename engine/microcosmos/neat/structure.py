@@ -2,18 +2,18 @@
 
 from dataclasses import replace
 
-import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Int, PRNGKeyArray
+from jaxtyping import Array, Bool, Int
 
 from ..genomes import CPPN
 from . import reach
+from .chance import Chance, below, left
 from .rates import Rates, one_of
 from .rows import (
     NONE,
+    apart,
     choose,
     connect,
-    draw_below,
     drop_connection,
     drop_node,
     put,
@@ -22,16 +22,18 @@ from .rows import (
 
 
 def add_connection(
-    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, *, key: PRNGKeyArray
+    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, chance: Chance
 ) -> tuple[CPPN, Int[Array, ""]]:
-    """Join two nodes that are not joined; also the new connection's row, or −1."""
+    """Join two nodes that are not joined; also the new connection's row, or −1.
+
+    Three draws decide.
+    """
     if not rates.add_connection:
         return network, jnp.asarray(NONE)
-    which, weight_key = jax.random.split(key)
-    source, target, exists = _free_pair(network, rates, inputs, key=which)
+    source, target, exists = apart(_free_pair(network, rates, inputs, chance))
     row = jnp.sum(network.connection_used)
     row = jnp.where(happens & exists & (row < network.connection_used.shape[0]), row, NONE)
-    weight = rates.draw(weight_key, (), network.weight.dtype)
+    weight = rates.draw(chance[2]).astype(network.weight.dtype)
     return connect(network, row, source, target, weight), row
 
 
@@ -40,23 +42,21 @@ def add_node(
     splittable: Bool[Array, "connection"],
     happens: Bool[Array, ""],
     rates: Rates,
-    *,
-    key: PRNGKeyArray,
+    chance: Chance,
 ) -> tuple[CPPN, Int[Array, ""], Int[Array, ""], Int[Array, ""]]:
     """Split a connection: it is disabled (or removed), and a new node takes its place.
 
     The way in has weight 1 and the way out the old weight, so that with the identity as
     activation nothing would change. Also the row of the way in, the node's row, and the
-    number of the connection that was split, or −1 each.
+    number of the connection that was split, or −1 each. Two draws decide.
     """
-    which, activation_key = jax.random.split(key)
-    old, exists = choose(splittable, key=which)
+    old, exists = apart(choose(splittable, chance[0]))
     node, row = jnp.sum(network.node_used), jnp.sum(network.connection_used)
     row = row - rates.drop_split
     happens = happens & exists & (node < network.node_used.shape[0])
     happens = happens & (row + 1 < network.connection_used.shape[0])
     node_row, split_row = jnp.where(happens, node, NONE), jnp.where(happens, row, NONE)
-    activation = one_of(rates.palette, (), key=activation_key)
+    activation = one_of(rates.palette, chance[1])
     one = jnp.ones((), network.weight.dtype)
     source, target, weight = network.source[old], network.target[old], network.weight[old]
     innovation = jnp.where(happens, network.innovation[old], NONE)
@@ -73,36 +73,31 @@ def add_node(
     return connect(network, second, node, target, weight), split_row, node_row, innovation
 
 
-def delete_connection(network: CPPN, rate: float, *, key: PRNGKeyArray) -> CPPN:
+def delete_connection(network: CPPN, rate: float, chance: Chance) -> CPPN:
     """Remove a connection."""
-    whether, which = jax.random.split(key)
-    row, exists = choose(network.connection_used, key=which)
-    happens = jax.random.bernoulli(whether, rate) & exists
-    return drop_connection(network, jnp.where(happens, row, NONE))
+    row, exists = choose(network.connection_used, left(chance, 0, rate))
+    return drop_connection(network, jnp.where((chance < rate) & exists, row, NONE))
 
 
-def delete_node(network: CPPN, rate: float, fixed: int, *, key: PRNGKeyArray) -> CPPN:
+def delete_node(network: CPPN, rate: float, fixed: int, chance: Chance) -> CPPN:
     """Remove a hidden node and all its connections; the first `fixed` ones stay."""
-    whether, which = jax.random.split(key)
     hidden = network.node_used & (jnp.arange(network.node_used.shape[0]) >= fixed)
-    node, exists = choose(hidden, key=which)
-    happens = jax.random.bernoulli(whether, rate) & exists
-    return drop_node(network, jnp.where(happens, node, NONE))
+    node, exists = choose(hidden, left(chance, 0, rate))
+    return drop_node(network, jnp.where((chance < rate) & exists, node, NONE))
 
 
 def _free_pair(
-    network: CPPN, rates: Rates, inputs: int, *, key: PRNGKeyArray
+    network: CPPN, rates: Rates, inputs: int, chance: Chance
 ) -> tuple[Int[Array, ""], Int[Array, ""], Bool[Array, ""]]:
     """The source and target of a possible connection, and whether there is one."""
-    free = _free_sources(network, rates.recurrent)
+    free = apart(_free_sources(network, rates.recurrent))
     is_target = network.node_used & (jnp.arange(network.node_used.shape[0]) >= inputs)
     if rates.blind:
-        source_key, target_key = jax.random.split(key)
-        source, _ = choose(network.node_used, key=source_key)
-        target, exists = choose(is_target, key=target_key)
+        source, _ = choose(network.node_used, chance[0])
+        target, exists = choose(is_target, chance[1])
         return source, target, exists & reach.held(free, target)[source]
     many = jnp.where(is_target, reach.sizes(free), 0)
-    rank = draw_below(jnp.sum(many), key=key)
+    rank = below(jnp.sum(many), chance[0])
     target = ranked(many, rank)
     before = jnp.sum(jnp.where(jnp.arange(len(many)) < target, many, 0))
     return ranked(reach.held(free, target), rank - before), target, jnp.any(many > 0)
