@@ -61,6 +61,7 @@ def test_who_listens_is_told_what_happens_to_a_run(address, services, run_id, re
         "evaluations": 16,
         "diverged": 1,
         "seconds": 1.5,
+        "summary": None,
     }
     assert (data[2]["cell"], data[2]["fitness"]) == ([3, 9], [1.0, 2.0])
     assert (data[3]["generation"], data[4]["status"]) == (1, "finished")
