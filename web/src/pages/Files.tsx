@@ -1,11 +1,10 @@
 /** What can be kept of a run, and how it came to be. */
 
-import { archiveUrl, proveFile, resultsUrl } from "../api/client";
-import { messageOf } from "../api/problem";
+import { archiveUrl, resultsUrl } from "../api/client";
 import type { Run } from "../api/types";
 import { hasArchive } from "../live/fetching";
-import { tell } from "../live/toasts";
 import { moment, short } from "../view/format";
+import { FileLink } from "./FileLink";
 
 export function Files({ run }: { run: Run }) {
   const spec = JSON.stringify(run.spec, null, 2);
@@ -39,20 +38,5 @@ export function Files({ run }: { run: Run }) {
         <pre>{spec}</pre>
       </details>
     </section>
-  );
-}
-
-/** A download that says why where there is no file yet. */
-function FileLink({ url, name }: { url: string; name: string }) {
-  const download = (event: MouseEvent) => {
-    event.preventDefault();
-    proveFile(url)
-      .then(() => location.assign(url))
-      .catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
-  };
-  return (
-    <a class="button" href={url} onClick={download}>
-      {name}
-    </a>
   );
 }

@@ -7,6 +7,7 @@ import { decodeFloats } from "../frames/base64";
 import { networkOf } from "../frames/network";
 import { GeneStrip } from "../view/network/GeneStrip";
 import { NetworkGraph } from "../view/network/NetworkGraph";
+import { FileLink } from "./FileLink";
 
 const FORMS: [Form, string][] = [
   ["svg", "SVG"],
@@ -35,14 +36,7 @@ function Network({ sha, genes }: { sha: string; genes: Genes }) {
       <p class="links network-files">
         <span class="quiet small">Keep it as</span>
         {FORMS.map(([form, title]) => (
-          <a
-            key={form}
-            class="button"
-            href={networkUrl(sha, form)}
-            download={`network-${sha.slice(0, 12)}.${form}`}
-          >
-            {title}
-          </a>
+          <FileLink key={form} url={networkUrl(sha, form)} name={title} />
         ))}
       </p>
     </section>

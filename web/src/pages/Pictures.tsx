@@ -4,6 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 import { type Picture, pictureUrl, proveRendering } from "../api/client";
 import { poll } from "../live/polling";
 import { tell } from "../live/toasts";
+import { save } from "./FileLink";
 
 const KINDS: [Picture, string][] = [
   ["film.mp4", "MP4"],
@@ -44,12 +45,4 @@ function Download({ url, title }: { url: string; title: string }) {
       {busy ? `Rendering ${title} …` : title}
     </button>
   );
-}
-
-/** As a click on a link would; the server says what the file is called. */
-function save(url: string): void {
-  const link = document.createElement("a");
-  link.href = url;
-  link.download = "";
-  link.click();
 }
