@@ -27,7 +27,8 @@ def columns(data: bytes) -> Columns:
     what repeated evaluations have shown if there were any, and `index`, an entry an elite.
 
     A solution is the genome's arrays side by side, in the order of their names; a measure
-    is on its axis' own scale, so that bins of a log axis are equally wide.
+    is on its axis' own scale, so that bins of a log axis are equally wide, and around
+    centroids from 0 to 1 on that scale, as distances are taken there.
     """
     tree, attributes = load(data)
     archive = tree["archive"]
@@ -36,7 +37,8 @@ def columns(data: bytes) -> Columns:
     solution = np.concatenate([x.reshape(len(x), -1) for x in arrays], axis=1)
     axes = json.loads(attributes["spec"])["archive"]["descriptors"]
     features = json.loads(attributes["features"])
-    measures = [scaled(archive["features"][:, features.index(a["name"])], a) for a in axes]
+    place = unit if "centroids" in archive else scaled
+    measures = [place(archive["features"][:, features.index(a["name"])], a) for a in axes]
     fitness = archive["fitness"]
     found: Columns = {f"solution_{i}": solution[:, i] for i in range(solution.shape[1])}
     found |= {"objective": fitness}
@@ -69,3 +71,17 @@ def scaled(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
     """Values on an axis' own scale, those beyond its ends at the end."""
     values = np.clip(values, np.float32(axis["low"]), np.float32(axis["high"]))
     return np.log10(values) if axis["scale"] == "log10" else values
+
+
+def unit(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
+    """Values from 0 to 1 on an axis' own scale."""
+    low, high = ends(axis)
+    return ((scaled(values, axis) - low) / (high - low)).astype(values.dtype)
+
+
+def ends(axis: dict[str, Any]) -> tuple[float, float]:
+    """The ends of an axis on its own scale."""
+    low, high = axis["low"], axis["high"]
+    if axis["scale"] == "log10":
+        return float(np.log10(low)), float(np.log10(high))
+    return low, high

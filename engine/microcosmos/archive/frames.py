@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .export import columns
+from .export import columns, ends
 from .file import load
 
 Source = bytes | str | os.PathLike
@@ -24,8 +24,9 @@ def to_pandas(archive: Source) -> Any:
 
 
 def to_ribs(archive: Source) -> Any:
-    """A `GridArchive` or `CVTArchive` of pyribs' with our elites, its ranges on the axes' own
-    scales and every feature as a field.
+    """A `GridArchive` or `CVTArchive` of pyribs' with our elites and every feature as a field.
+
+    Ranges of a grid are on the axes' own scales, around centroids from 0 to 1 on those.
 
     Borders of bins round otherwise there: an elite on one is told to be in the middle of its
     cell. Raises `ImportError` without pyribs.
@@ -45,23 +46,16 @@ def to_ribs(archive: Source) -> Any:
 def _empty(peer: Any, data: bytes, genes: int, fields: dict[str, np.ndarray]) -> Any:
     tree, attributes = load(data)
     spec = json.loads(attributes["spec"])["archive"]
-    ranges = [_ends(axis) for axis in spec["descriptors"]]
     given = {
         "solution_dim": genes,
-        "ranges": ranges,
         "dtype": np.float32,
         "extra_fields": {name: ((), _kind(values)) for name, values in fields.items()},
     }
-    if "centroids" not in tree["archive"]:
-        return peer.GridArchive(dims=[axis["bins"] for axis in spec["descriptors"]], **given)
-    low, high = np.array(ranges).T
-    centroids = low + tree["archive"]["centroids"].astype(float) * (high - low)
-    return peer.CVTArchive(centroids=centroids, **given)
-
-
-def _ends(axis: dict[str, Any]) -> tuple[float, float]:
-    low, high = axis["low"], axis["high"]
-    return (np.log10(low), np.log10(high)) if axis["scale"] == "log10" else (low, high)
+    axes, centroids = spec["descriptors"], tree["archive"].get("centroids")
+    if centroids is not None:
+        return peer.CVTArchive(centroids=centroids, ranges=[(0.0, 1.0)] * len(axes), **given)
+    bins, ranges = [axis["bins"] for axis in axes], [ends(axis) for axis in axes]
+    return peer.GridArchive(dims=bins, ranges=ranges, **given)
 
 
 def _middles(filled: Any, index: np.ndarray) -> np.ndarray:
