@@ -54,6 +54,7 @@ peers: install
 bench: peers
 	$(BIN)/python engine/benchmarks/physics.py
 	$(BIN)/python engine/benchmarks/archive.py
+	$(BIN)/python engine/benchmarks/neat.py
 	$(BIN)/python engine/benchmarks/generation.py
 
 acceptance: install web

@@ -49,14 +49,23 @@ class CPPN(eqx.Module):
 
 
 def minimal(
-    key: PRNGKeyArray, inputs: int, outputs: int, max_nodes: int, max_connections: int
+    key: PRNGKeyArray,
+    inputs: int,
+    outputs: int,
+    max_nodes: int,
+    max_connections: int,
+    palette: tuple[int, ...] = tuple(range(len(ACTIVATIONS))),
 ) -> CPPN:
-    """Every input connected to every output; weights and biases have deviation 1."""
+    """Every input connected to every output; weights and biases have deviation 1.
+
+    Outputs have activations of the palette, each equally likely.
+    """
     weight_key, bias_key, activation_key = jax.random.split(key, 3)
     node, row = jnp.arange(max_nodes), jnp.arange(max_connections)
     node_used, row_used = node < inputs + outputs, row < inputs * outputs
     is_output = node_used & (node >= inputs)
-    drawn = jax.random.randint(activation_key, (max_nodes,), 0, len(ACTIVATIONS))
+    drawn = jax.random.randint(activation_key, (max_nodes,), 0, len(palette))
+    drawn = jnp.asarray(np.asarray(palette, np.int32))[drawn]
     return CPPN(
         node_used=node_used,
         node_id=jnp.where(node_used, node, 0),

@@ -17,7 +17,6 @@ from .rates import Rates, one_of
 from .rows import NONE, apart
 from .structure import add_connection, add_node, delete_connection, delete_node
 
-
 DECISIONS = 10
 """Draws of a child besides those of each gene."""
 
@@ -121,7 +120,7 @@ def _vary(
     again = jnp.where(chance < new, left(chance, 0, new), left(chance, new, either))
     drawn = rates.draw(again).astype(values.dtype)
     varied = jnp.where(chance < either, values + rates.weight_step * drawn, values)
-    varied = jnp.where(chance < new, drawn, varied)
+    varied = jnp.where(chance < new, rates.new_step * drawn, varied)
     if rates.bound is not None:
         varied = jnp.clip(varied, -rates.bound, rates.bound)
     return jnp.where(used, varied, values)

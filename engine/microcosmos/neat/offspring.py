@@ -47,16 +47,25 @@ def recorded(species: Species, now: Standing, generation: Int[Array, ""]) -> Spe
 def allowed(
     species: Species, now: Standing, settings: Settings, generation: Int[Array, ""]
 ) -> tuple[Bool[Array, "species"], Species]:
-    """The species that may have children; the clock of a stagnant population starts anew."""
+    """The species that may have children.
+
+    Once the population stagnates, its clock and those of the two species start anew, as in the
+    authors' program.
+    """
     able = species.alive & (now.valid > 0)
     place = places(now.best)
     fresh = generation - species.improved < settings.stagnation
-    able = able & (fresh | (place < max(1, settings.species_elitism)))
+    lively = able & (fresh | (place < max(1, settings.species_elitism)))
     if not settings.population_stagnation:
-        return able, species
+        return lively, species
     stuck = generation - species.peak_generation > settings.population_stagnation
-    restarted = jnp.where(stuck, generation, species.peak_generation)
-    return able & (~stuck | (place < 2)), replace(species, peak_generation=restarted)
+    able = jnp.where(stuck, able & (place < 2), lively)
+    again = replace(
+        species,
+        improved=jnp.where(stuck & able, generation, species.improved),
+        peak_generation=jnp.where(stuck, generation, species.peak_generation),
+    )
+    return able, again
 
 
 def shares(

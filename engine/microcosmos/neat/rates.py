@@ -1,7 +1,7 @@
 """How often each mutation happens to a child, and what a new gene is like."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import jax
 import jax.numpy as jnp
@@ -41,6 +41,8 @@ class Rates:
     """What a drawn number is multiplied by to perturb a weight or bias."""
     replace: float
     """A weight or bias is drawn anew."""
+    new_step: float = field(default=1.0, kw_only=True)
+    """What a drawn number is multiplied by then."""
     activation: float
     toggle: float
     add_node: float

@@ -61,6 +61,7 @@ PAPER = Settings(
         weight=1.0,
         weight_step=2.5,
         replace=0.1,
+        new_step=2.5,
         activation=0.0,
         toggle=0.0,
         add_node=0.03,
@@ -79,7 +80,7 @@ PAPER = Settings(
     max_species=50,
     representative="random",
     stagnation=15,
-    population_stagnation=20,
+    population_stagnation=0,
     species_elitism=1,
     allotment="sharing",
     inertia=0.0,
@@ -95,9 +96,11 @@ PAPER = Settings(
 )
 """The XOR experiment of Stanley and Miikkulainen (2002), section 4.1.
 
-Not in the paper, but in the authors' program: the step of weights, that they stay where
+Not in the paper, but in the authors' program: the step of weights, also of new ones,
+that they stay where
 structure is added, and the shares of survivors and of children that are only crossed.
-Ours: weights stay within 8, the best species never stagnates, and species are at most 50.
+Ours: a stagnant population keeps all its species (the paper keeps two after 20 generations,
+with which XOR was solved less often), weights stay within 8, the best species never stagnates, and species are at most 50.
 """
 
 TENSORNEAT = Settings(

@@ -1,6 +1,7 @@
 """Populations of networks, and NEAT's operators as plain Python over dictionaries."""
 
 from dataclasses import replace
+from functools import cache, partial
 
 import jax
 import jax.numpy as jnp
@@ -31,51 +32,64 @@ def settings():
 
 @pytest.fixture(scope="session")
 def shrinking(settings):
-    """The same with deletion, TensorNEAT's way of choosing and bounded weights."""
+    """The same with deletion, TensorNEAT's way of choosing, and bounds that move or not."""
     preset = neat.PRESETS["tensorneat"]
     rates = replace(preset.rates, add_node=0.5, add_connection=0.6, bound=1.5)
-    return replace(preset, rates=rates, threshold=0.6, max_species=8, survival=0.4)
+    moving = replace(preset, target_species=4, threshold_step=0.1, threshold=0.2)
+    return replace(moving, rates=rates, max_species=8, survival=0.4)
 
 
 @pytest.fixture(scope="session")
-def evolve():
+def begin():
+    """A function that gives the program which divides a first population, compiled once."""
+    return cache(lambda settings: jax.jit(lambda n: neat.first_species(n, settings)))
+
+
+@pytest.fixture(scope="session")
+def advance():
+    """A function that gives the program of a generation, compiled once for all tests."""
+
+    @cache
+    def program(settings):
+        step = partial(neat.next_generation, settings=settings, inputs=INPUTS, outputs=OUTPUTS)
+        return jax.jit(lambda n, f, s, c, k, g: step(n, f, s, c, key=k, generation=g))
+
+    return program
+
+
+@pytest.fixture(scope="session")
+def evolve(begin, advance):
     """A function that runs a population with arbitrary fitness and keeps every generation."""
 
     def run(settings, generations, seed=0, broken=0.1):
-        keys = jax.random.split(jax.random.key(seed), BATCH)
-        minimal = jax.vmap(lambda k: neat.minimal(k, INPUTS, OUTPUTS, NODES, CONNECTIONS))
-        networks = jax.jit(minimal)(keys)
-        species = jax.jit(lambda n: neat.first_species(n, settings))(networks)
-        counters = neat.first_counters(INPUTS, OUTPUTS)
+        key = jax.random.key(seed)
+        networks = newcomers(jax.random.split(key, BATCH))
+        species, counters = begin(settings)(networks), neat.first_counters(INPUTS, OUTPUTS)
         random = np.random.default_rng(seed)
-        advance = jax.jit(
-            lambda n, f, s, c, g: neat.next_generation(
-                n,
-                f,
-                s,
-                c,
-                settings,
-                inputs=INPUTS,
-                outputs=OUTPUTS,
-                key=jax.random.key(seed),
-                generation=g,
-            )
-        )
         history = []
         for generation in range(generations):
             fitness = random.normal(size=BATCH).astype(np.float32)
             fitness[random.random(BATCH) < broken] = random.choice([np.nan, -np.inf])
-            after = advance(
-                networks, jnp.asarray(fitness), species, counters, jnp.asarray(generation)
-            )
-            history.append(
-                jax.device_get((networks, fitness, species, counters, after[3], after[4]))
-            )
+            now = networks, jnp.asarray(fitness), species, counters
+            after = advance(settings)(*now, key, jnp.asarray(generation))
+            history.append(jax.device_get((*now, after[3], after[4])))
             networks, species, counters = after[:3]
         history.append(jax.device_get((networks, None, species, counters, None, None)))
         return history
 
     return run
+
+
+@jax.jit
+def newcomers(keys):
+    minimal = partial(
+        neat.minimal,
+        inputs=INPUTS,
+        outputs=OUTPUTS,
+        max_nodes=NODES,
+        max_connections=CONNECTIONS,
+    )
+    return jax.vmap(minimal)(keys)
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,5 @@
 """Populations under selection: species, children, and what networks stay."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import jax
@@ -174,19 +173,11 @@ def test_the_same_keys_give_the_same_bits(evolve, settings, grown):
 
 
 @pytest.mark.parametrize("broken", [np.nan, -np.inf])
-def test_a_population_without_any_finite_fitness_stays(grown, settings, broken):
+def test_a_population_without_any_finite_fitness_stays(grown, advance, settings, broken):
     networks, _, species, counters, _, _ = jax.tree.map(jnp.asarray, grown[-1])
     fitness = jnp.full(networks.weight.shape[0], broken, jnp.float32)
-    children, divided, after, parents, codes = neat.next_generation(
-        networks,
-        fitness,
-        species,
-        counters,
-        settings,
-        inputs=INPUTS,
-        outputs=OUTPUTS,
-        key=jax.random.key(0),
-        generation=jnp.asarray(14),
+    children, divided, after, parents, codes = advance(settings)(
+        networks, fitness, species, counters, jax.random.key(0), jnp.asarray(14)
     )
     for old, new in zip(jax.tree.leaves(networks), jax.tree.leaves(children), strict=True):
         np.testing.assert_array_equal(new, old)
@@ -196,7 +187,7 @@ def test_a_population_without_any_finite_fitness_stays(grown, settings, broken):
     assert after.innovation == counters.innovation
 
 
-def test_what_dead_rows_of_species_hold_does_not_matter(grown, settings):
+def test_what_dead_rows_of_species_hold_does_not_matter(grown, advance, settings):
     networks, fitness, species, counters, *_ = grown[3]
     assert not species.alive.all()
 
@@ -207,13 +198,10 @@ def test_what_dead_rows_of_species_hold_does_not_matter(grown, settings):
     other = jax.tree.map(scrambled, species.representatives)
     changed = neat.Species(**{**vars(species), "representatives": other})
     results = [
-        neat.next_generation(
+        advance(settings)(
             *jax.tree.map(jnp.asarray, (networks, fitness, one, counters)),
-            settings,
-            inputs=INPUTS,
-            outputs=OUTPUTS,
-            key=jax.random.key(5),
-            generation=jnp.asarray(3),
+            jax.random.key(5),
+            jnp.asarray(3),
         )
         for one in (species, changed)
     ]
@@ -256,13 +244,14 @@ def test_children_sum_to_the_population_and_are_near_their_share():
         assert np.abs(sizes - exact).max() < 1.01
 
 
-def test_a_moving_threshold_keeps_the_number_of_species_near_its_target(evolve, settings):
-    moving = replace(settings, target_species=4, threshold_step=0.1, threshold=0.2)
-    history = evolve(moving, 20, seed=2)
-    thresholds = [float(h[2].threshold) for h in history]
-    assert max(thresholds) > 0.4
-    counts = [h[2].alive.sum() for h in history[-8:]]
-    assert np.mean(counts) == pytest.approx(4, abs=2)
+def test_a_moving_threshold_follows_the_number_of_species_that_breed(shrunk, shrinking):
+    step = shrinking.threshold_step
+    for before, after in pairwise(shrunk):
+        _, _, species, _, parents, _ = before
+        excess = len(np.unique(species.of[parents[:, 0]])) - shrinking.target_species
+        expected = max(step, float(species.threshold) + step * np.sign(excess))
+        assert after[2].threshold == pytest.approx(expected, rel=1e-6)
+    assert max(float(h[2].threshold) for h in shrunk) > 0.4
 
 
 def _two_species(settings):

@@ -131,7 +131,8 @@ def test_the_same_mutation_in_one_generation_gets_the_same_numbers():
 def test_a_split_by_the_identity_changes_nothing():
     rates = neat.Rates(0.0, 1.0, 0.0, 0.0, 0.0, add_node=1.0, add_connection=0.0)
     parent = neat.minimal(jax.random.key(5), INPUTS, OUTPUTS, NODES, CONNECTIONS)
-    child, novelty = neat.mutate(parent, rates, INPUTS, key=jax.random.key(6))
+    program = jax.jit(lambda n, k: neat.mutate(n, rates, INPUTS, key=k))
+    child, novelty = program(parent, jax.random.key(6))
     identity = child.activation.at[novelty.node_row].set(0)
     child = genomes.CPPN(**{**vars(child), "activation": identity})
     inputs = jax.random.normal(jax.random.key(7), (INPUTS, 50))
@@ -157,9 +158,10 @@ def test_recurrent_networks_may_hold_cycles_and_loops():
     counters = neat.first_counters(INPUTS, OUTPUTS)
     networks = first_generation(jax.random.key(0))
     mutate = jax.jit(jax.vmap(lambda n, k: neat.mutate(n, rates, INPUTS, key=k)))
+    numbered = jax.jit(neat.number)
     for step in range(12):
         children, novelty = mutate(networks, jax.random.split(jax.random.key(step), BATCH))
-        networks, counters = neat.number(children, novelty, counters)
+        networks, counters = numbered(children, novelty, counters)
     networks = jax.device_get(networks)
     used = networks.connection_used
     assert (networks.source == networks.target)[used].any()

@@ -20,6 +20,12 @@ FIGURES = json.loads((Path(__file__).parent / "tensorneat_operators.json").read_
 PRESET = neat.PRESETS["tensorneat"]
 
 
+@jax.jit
+def vary(parent, keys):
+    mutate = jax.vmap(lambda k: neat.mutate(parent, PRESET.rates, INPUTS, OUTPUTS, key=k))
+    return mutate(keys)
+
+
 @pytest.fixture(scope="module", params=["initial", "evolved"])
 def mutated(request):
     """The figures, the parent, and many independent children of it."""
@@ -32,14 +38,8 @@ def mutated(request):
         parent.connection_used[row] = parent.enabled[row] = True
         parent.innovation[row], parent.weight[row] = row, weight
         parent.source[row], parent.target[row] = row_of[source], row_of[target]
-    program = jax.jit(
-        jax.vmap(
-            lambda k: neat.mutate(
-                jax.tree.map(jnp.asarray, parent), PRESET.rates, INPUTS, OUTPUTS, key=k
-            )
-        )
-    )
-    children, novelty = jax.device_get(program(jax.random.split(jax.random.key(0), TRIALS)))
+    keys = jax.random.split(jax.random.key(0), TRIALS)
+    children, novelty = jax.device_get(vary(jax.tree.map(jnp.asarray, parent), keys))
     return figures, parent, children, novelty
 
 
