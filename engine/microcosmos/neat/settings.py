@@ -96,11 +96,11 @@ PAPER = Settings(
 )
 """The XOR experiment of Stanley and Miikkulainen (2002), section 4.1.
 
-Not in the paper, but in the authors' program: the step of weights, also of new ones,
-that they stay where
-structure is added, and the shares of survivors and of children that are only crossed.
-Ours: a stagnant population keeps all its species (the paper keeps two after 20 generations,
-with which XOR was solved less often), weights stay within 8, the best species never stagnates, and species are at most 50.
+Not in the paper, but in the authors' program: the step of weights, also of new ones, that
+they stay where structure is added, and the shares of survivors and of children that are only
+crossed. Ours: a stagnant population keeps all its species (the paper keeps two after 20
+generations, with which XOR was solved less often), weights stay within 8, the best species
+never stagnates, and species are at most 50.
 """
 
 TENSORNEAT = Settings(
