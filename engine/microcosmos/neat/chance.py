@@ -37,7 +37,7 @@ def pcg3d(x: UInt32[Array, ""], y: UInt32[Array, ""], z: UInt32[Array, "place"])
     return _mixed(*(word ^ (word >> 16) for word in (x, y, z)))[2]
 
 
-def left(chance: Chance, low: float | int, high: float | int) -> Chance:
+def left(chance: Chance, low: float, high: float) -> Chance:
     """What a draw that fell between two thresholds leaves: a draw again."""
     return jnp.clip((chance - low) / max(high - low, 2.0**-24), 0, LARGEST)
 

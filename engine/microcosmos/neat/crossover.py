@@ -35,7 +35,7 @@ def crossover(
     )
     node = match(fitter.node_id, fitter.node_used, other.node_id, other.node_used)
     mean, swapped, taken = mean < average, swapped < HALF, gene < HALF
-    chance = left(jnp.where(taken, gene, gene - HALF), 0, HALF)
+    chance = left(jnp.where(taken, gene, gene - HALF), 0.0, HALF)
     off = ~fitter.enabled | ((connection >= 0) & ~other.enabled[connection])
     return replace(
         fitter,

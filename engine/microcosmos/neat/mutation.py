@@ -13,7 +13,7 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
 from .chance import Chance, draws, left
-from .rates import Rates, one_of
+from .rates import Rates, bounded, one_of
 from .rows import NONE, apart
 from .structure import add_connection, add_node, delete_connection, delete_node
 
@@ -99,7 +99,7 @@ def mutate_activations(network: CPPN, rates: Rates, inputs: int, chance: Chance)
         return network
     node = jnp.arange(network.node_used.shape[0])
     chosen = (chance < rates.activation) & network.node_used & (node >= inputs)
-    drawn = one_of(rates.palette, left(chance, 0, rates.activation))
+    drawn = one_of(rates.palette, left(chance, 0.0, rates.activation))
     return replace(network, activation=jnp.where(chosen, drawn, network.activation))
 
 
@@ -117,10 +117,8 @@ def _vary(
 ) -> Float[Array, "gene"]:
     """A draw decides about each gene, and what it leaves is its step or its new value."""
     new, either = rates.replace, rates.replace + (1 - rates.replace) * rates.weight
-    again = jnp.where(chance < new, left(chance, 0, new), left(chance, new, either))
+    again = jnp.where(chance < new, left(chance, 0.0, new), left(chance, new, either))
     drawn = rates.draw(again).astype(values.dtype)
     varied = jnp.where(chance < either, values + rates.weight_step * drawn, values)
     varied = jnp.where(chance < new, rates.new_step * drawn, varied)
-    if rates.bound is not None:
-        varied = jnp.clip(varied, -rates.bound, rates.bound)
-    return jnp.where(used, varied, values)
+    return jnp.where(used, bounded(varied, rates), values)

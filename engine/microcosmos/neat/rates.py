@@ -65,3 +65,8 @@ class Rates:
     cycle would close, in place of being one of those that are possible."""
     drop_split: bool = False
     """A split connection is removed, not disabled."""
+
+
+def bounded(values: Array, rates: Rates) -> Array:
+    """Weights or biases as far as they are allowed."""
+    return values if rates.bound is None else jnp.clip(values, -rates.bound, rates.bound)

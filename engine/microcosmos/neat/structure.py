@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Int
 from ..genomes import CPPN
 from . import reach
 from .chance import Chance, below, left
-from .rates import Rates, one_of
+from .rates import Rates, bounded, one_of
 from .rows import (
     NONE,
     apart,
@@ -33,7 +33,7 @@ def add_connection(
     source, target, exists = apart(_free_pair(network, rates, inputs, chance))
     row = jnp.sum(network.connection_used)
     row = jnp.where(happens & exists & (row < network.connection_used.shape[0]), row, NONE)
-    weight = rates.draw(chance[2]).astype(network.weight.dtype)
+    weight = bounded(rates.draw(chance[2]), rates).astype(network.weight.dtype)
     return connect(network, row, source, target, weight), row
 
 
@@ -75,14 +75,14 @@ def add_node(
 
 def delete_connection(network: CPPN, rate: float, chance: Chance) -> CPPN:
     """Remove a connection."""
-    row, exists = choose(network.connection_used, left(chance, 0, rate))
+    row, exists = choose(network.connection_used, left(chance, 0.0, rate))
     return drop_connection(network, jnp.where((chance < rate) & exists, row, NONE))
 
 
 def delete_node(network: CPPN, rate: float, fixed: int, chance: Chance) -> CPPN:
     """Remove a hidden node and all its connections; the first `fixed` ones stay."""
     hidden = network.node_used & (jnp.arange(network.node_used.shape[0]) >= fixed)
-    node, exists = choose(hidden, left(chance, 0, rate))
+    node, exists = choose(hidden, left(chance, 0.0, rate))
     return drop_node(network, jnp.where((chance < rate) & exists, node, NONE))
 
 

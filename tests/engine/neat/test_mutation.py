@@ -154,7 +154,9 @@ def test_ranks_number_distinct_pairs_and_skip_what_did_not_arise():
 
 
 def test_recurrent_networks_may_hold_cycles_and_loops():
-    rates = neat.Rates(0, 1, 0, 0, 0, add_node=0.3, add_connection=1.0, recurrent=True)
+    rates = neat.Rates(
+        0.0, 1.0, 0.0, 0.0, 0.0, add_node=0.3, add_connection=1.0, recurrent=True
+    )
     counters = neat.first_counters(INPUTS, OUTPUTS)
     networks = first_generation(jax.random.key(0))
     mutate = jax.jit(jax.vmap(lambda n, k: neat.mutate(n, rates, INPUTS, key=k)))
