@@ -199,7 +199,10 @@ def test_what_dead_rows_of_species_hold_does_not_matter(grown, advance, settings
         return np.where(dead, values, np.ones((), values.dtype))
 
     other = jax.tree.map(scrambled, species.representatives)
-    changed = neat.Species(**{**vars(species), "representatives": other})
+    species = jax.tree.map(jnp.asarray, species)
+    changed = neat.Species(
+        **{**vars(species), "representatives": jax.tree.map(jnp.asarray, other)}
+    )
     results = [
         advance(settings)(
             *jax.tree.map(jnp.asarray, (networks, fitness, one, counters)),
