@@ -12,10 +12,7 @@ from .problems import Refused
 
 
 def network_of(row: Creature) -> Network:
-    """The network of a creature; raises `Refused` where its genes are none.
-
-    One with cycles is computed as often as the simulation has steps, its inputs held.
-    """
+    """The network of a creature; raises `Refused` where its genes are none."""
     identity = json.loads(row.identity)
     genome: dict[str, Any] = identity["genome"]
     if "nodes" not in genome:
@@ -24,9 +21,7 @@ def network_of(row: Creature) -> Network:
             "needed are genes of nodes and connections."
         )
         raise Refused(404, "No network", detail)
-    recurrent = genome["control"].get("recurrent", False)
-    steps = identity["task"]["steps"] if recurrent else None
-    return networks.from_genes(genome, genome["inputs"], genome["outputs"], steps)
+    return networks.of_creature(identity)
 
 
 def tensorneat(network: Network) -> bytes:

@@ -1,10 +1,21 @@
 """Precision, strict broadcasting, checked shapes and creatures for tests of the engine."""
 
+import atexit
+import os
+import shutil
+import tempfile
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from jaxtyping import install_import_hook
+
+CACHE = "MICROCOSMOS_TEST_COMPILED"
+if CACHE not in os.environ:  # The processes that share the tests find the first one's.
+    os.environ[CACHE] = tempfile.mkdtemp(prefix="microcosmos-compiled-")
+    atexit.register(shutil.rmtree, os.environ[CACHE], ignore_errors=True)
+jax.config.update("jax_compilation_cache_dir", os.environ[CACHE])
 
 SHAPED = (
     "bodies",

@@ -53,15 +53,12 @@ def network(
 
 def _read(file: Path) -> "Network":
     from ..archive.creature import parse
-    from ..networks import from_genes, load_tensorneat
+    from ..networks import load_tensorneat, of_creature
 
     data = file.read_bytes()
     if data[:2] == ZIP:
         return load_tensorneat(data)[0]
-    genome = parse(data)["identity"]["genome"]
-    if "nodes" not in genome:
-        raise ValueError(f"`genome.encoding` must hold a network, got {genome['encoding']!r}")
-    return from_genes(genome, genome["inputs"], genome["outputs"])
+    return of_creature(parse(data)["identity"])
 
 
 def _rendered(network: "Network", form: str) -> bytes:

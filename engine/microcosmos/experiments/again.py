@@ -1,5 +1,6 @@
 """Evaluating elites again, and what that makes of the archive."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -45,6 +46,7 @@ def due(plan: Plan, state: State) -> bool:
 def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> State:
     """The state with every elite evaluated again; raises `Stopped` as `advance` does."""
     assert plan.again is not None
+    began = time.monotonic()
     done = np.asarray(state.elites.occupied)
     cells, repeats = np.flatnonzero(done), state.repeats
     genotypes = jax.tree.map(lambda x: np.asarray(x)[cells], state.elites.genotypes)
@@ -56,7 +58,8 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
         )
         everywhere = jax.tree.map(lambda x: _spread(x, cells, plan.cells), found)
         repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.niches)
-    return replace(state, repeats=repeats)
+    seconds = (time.monotonic() - began) * jax.local_device_count()
+    return replace(state, repeats=repeats, device_seconds=state.device_seconds + seconds)
 
 
 def figures(programs: Programs, state: State) -> tuple[float, float, float]:

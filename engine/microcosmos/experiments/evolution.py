@@ -59,7 +59,7 @@ class Evolution:
 
         Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
         """
-        programs = self.programs
+        programs, spent = self.programs, state.device_seconds
         children, emitters, counters = programs.emit(
             state.emitters, state.elites, state.counters, jnp.asarray(state.generation)
         )
@@ -102,7 +102,7 @@ class Evolution:
             corrected = again.figures(self.repeats, state)
         row = np.array([*_figures(state), clipped, *corrected])
         state = replace(state, curves=np.concatenate([state.curves, row[None]]))
-        return state, _report(self.plan, state, news.elites, seconds)
+        return state, _report(self.plan, state, news.elites, state.device_seconds - spent)
 
     def creature(self, state: State, cell: int) -> dict[str, Any]:
         """The creature file of a cell's elite."""

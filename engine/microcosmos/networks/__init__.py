@@ -6,7 +6,7 @@ from .drawing import svg
 from .evaluation import agree, evaluate, probes
 from .file import dump_tensorneat, load_tensorneat
 from .formula import formula
-from .genes import from_genes, to_genes
+from .genes import from_genes, of_creature, to_genes
 from .network import Network
 from .reading import read_tensorneat
 from .writing import Genome, write_tensorneat
@@ -22,6 +22,7 @@ __all__ = [
     "from_genes",
     "load_tensorneat",
     "numpy_code",
+    "of_creature",
     "probes",
     "read_tensorneat",
     "svg",

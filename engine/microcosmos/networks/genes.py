@@ -18,6 +18,19 @@ BOUND = 1e6
 """Our engine keeps values within this; see `genomes.cppn`."""
 
 
+def of_creature(identity: Mapping[str, Any]) -> Network:
+    """The network in a creature's identity; raises `ValueError` where its genes are none.
+
+    A recurrent one is computed as often as the simulation has steps, its inputs held.
+    """
+    genome = identity["genome"]
+    if "nodes" not in genome:
+        raise ValueError(f"`genome.encoding` must hold a network, got {genome['encoding']!r}")
+    recurrent = genome["control"].get("recurrent", False)
+    steps = identity["task"]["steps"] if recurrent else None
+    return from_genes(genome, genome["inputs"], genome["outputs"], steps)
+
+
 def from_genes(
     genes: Mapping[str, Any],
     inputs: Sequence[str],

@@ -1,0 +1,138 @@
+"""A NEAT run repeats bit for bit, keeps whole lineages, and ends when it was asked to."""
+
+import json
+
+import numpy as np
+import pytest
+
+from microcosmos.archive import creature, file
+from microcosmos.build import build
+from microcosmos.experiments import Stopped
+from microcosmos.spec import parse
+
+SMALL = {
+    "experiment": "neuroevolution",
+    "seed": 5,
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 12},
+    "control": {"period": 30},
+    "genome": {"max_nodes": 10, "max_connections": 16},
+    "task": {"steps": 60},
+    "search": {
+        "generations": 5,
+        "batch": 16,
+        "block": 8,
+        "reevaluation": {"every": 3},
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def experiment():
+    return build(parse(SMALL))
+
+
+@pytest.fixture(scope="module")
+def course(experiment):
+    """States and reports of the whole run, the initial state first."""
+    states, reports = [experiment.init()], []
+    while not experiment.done(states[-1]):
+        state, report = experiment.advance(states[-1])
+        states.append(state)
+        reports.append(report)
+    return states, reports
+
+
+def finish(experiment, state):
+    while not experiment.done(state):
+        state, _ = experiment.advance(state)
+    return experiment.save(state)
+
+
+def test_a_run_taken_up_from_any_generation_ends_with_the_same_bytes(experiment, course):
+    states, _ = course
+    whole = experiment.save(states[-1])
+    for state in states[:-1]:
+        assert finish(experiment, experiment.restore(experiment.save(state))) == whole
+
+
+def test_every_forebear_that_is_named_was_recorded_before(course):
+    born, related = {}, 0
+    for report in course[1]:
+        for elite in report.elites:
+            for parent in elite.parents:
+                related += 1
+                assert born[parent] < report.generation
+        for elite in report.elites:
+            born.setdefault(elite.creature, report.generation)
+    assert related > 10
+
+
+def test_crossed_creatures_name_two_forebears(course):
+    elites = [elite for report in course[1] for elite in report.elites]
+    pairs = [elite for elite in elites if len(elite.parents) == 2]
+    assert pairs
+    assert all(elite.operator == "crossover" for elite in pairs)
+
+
+def test_the_fittest_creature_of_all_is_kept(experiment, course):
+    states, reports = course
+    best = experiment.best(states[-1])
+    assert best["measured"]["fitness"] == reports[-1].best
+    assert creature.parse(best)["sha256"] == best["sha256"]
+    bests = [report.best for report in reports]
+    assert bests == sorted(bests)
+
+
+def test_elites_are_evaluated_again_on_schedule_and_at_the_end(experiment, course):
+    states, reports = course
+    corrected = [report.summary.get("corrected_qd_score") for report in reports]
+    assert [value is not None for value in corrected] == [False, False, True, False, True]
+    final = states[-1]
+    again = np.asarray(final.repeats.count)
+    assert (again[np.asarray(final.elites.occupied)] >= 1).all()
+    assert not again[~np.asarray(final.elites.occupied)].any()
+    assert 0 <= reports[-1].summary["hit_rate"] <= 1
+
+
+def test_a_wish_to_stop_while_elites_are_evaluated_again_leaves_the_state(experiment, course):
+    state = course[0][2]
+    before = experiment.save(state)
+    asked = iter([False, False, True])
+    with pytest.raises(Stopped):
+        experiment.advance(state, stop=lambda: next(asked))
+    assert experiment.save(state) == before
+    assert experiment.save(experiment.advance(state)[0]) == experiment.save(course[0][3])
+
+
+@pytest.mark.parametrize(
+    ("stop", "reason"), [({"evaluations": 30}, "evaluations"), ({"fitness": 1e-6}, "fitness")]
+)
+def test_a_limit_ends_a_run_and_is_recorded(stop, reason, experiment, course):
+    document = {**SMALL, "search": {**SMALL["search"], "stop": stop, "reevaluation": None}}
+    limited = build(parse(document))
+    # The same programs, so that only the limit differs.
+    limited = type(limited)(limited.plan, experiment.programs)
+    state = limited.init()
+    generations = 2 if reason == "evaluations" else 1
+    while not limited.done(state):
+        state, report = limited.advance(state)
+    assert state.generation == generations
+    assert report.summary["ended"] == f"{reason} after generation {generations}"
+    data = limited.save(state)
+    _, attributes = file.load(data)
+    assert json.loads(attributes["ended"]) == {"reason": reason, "generation": generations}
+    assert limited.done(limited.restore(data))
+
+
+def test_no_clock_is_in_a_file_unless_it_decides(experiment, course):
+    tree, _ = file.load(experiment.save(course[0][-1]))
+    assert "device_seconds" not in tree["loop"]
+    document = {**SMALL, "search": {**SMALL["search"], "stop": {"device_hours": 1e-9}}}
+    timed = build(parse({**document, "search": {**document["search"], "reevaluation": None}}))
+    timed = type(timed)(timed.plan, experiment.programs)
+    state, report = timed.advance(timed.init())
+    assert timed.done(state)
+    assert report.summary["ended"].startswith("device_hours")
+    again = timed.restore(timed.save(state))
+    assert again.device_seconds == state.device_seconds > 0
