@@ -107,7 +107,8 @@ def _made(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Re
     except ValueError as error:
         needed = "a body that can be built anew"
         raise creature.CreatureError("identity.genome", needed, str(error)) from error
-    return body, Rest(rest.angle[:, joints], rest.length[:, edges])
+    angle, length = rest.angle[:, joints], rest.length[:, edges]
+    return body, Rest(jnp.asarray(angle), jnp.asarray(length))
 
 
 def _follow(task: search.Task, rest: Rest) -> tuple[Found, Rest]:
