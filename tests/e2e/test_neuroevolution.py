@@ -3,7 +3,7 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-FAST, SLOW = 10_000, 120_000
+FAST, SLOW = 10_000, 300_000
 
 
 @pytest.mark.e2e

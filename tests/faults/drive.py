@@ -140,7 +140,9 @@ class Installation:
         """All that the API tells about a run's course, but for wall times."""
         curves = self.http.get(f"/api/v1/runs/{run}/generations").raise_for_status().json()
         archive = self.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
-        return {"curves": {**curves, "seconds": None}, "archive": archive}
+        summary = {**(curves.get("summary") or {}), "device_seconds": None}
+        curves = {**curves, "seconds": None, "summary": summary}
+        return {"curves": curves, "archive": archive}
 
     # Processes.
 

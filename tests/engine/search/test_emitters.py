@@ -41,15 +41,13 @@ def archive():
 
 
 def emitted(emitter, archive, seed=0):
-    counters = neat.first_counters(3, 2)
-    children, _, counters = search.emitters.emit(
-        (emitter,),
-        (emitter.init(key=jax.random.key(1)),),
-        archive,
-        counters,
-        jnp.asarray(1),
-        key=jax.random.key(seed),
-    )
+    @jax.jit
+    def emit(state, archive, counters):
+        given = ((emitter,), (state,), archive, counters, jnp.asarray(1))
+        return search.emitters.emit(*given, key=jax.random.key(seed))
+
+    state = emitter.init(key=jax.random.key(1))
+    children, _, counters = emit(state, archive, neat.first_counters(3, 2))
     return children, counters
 
 

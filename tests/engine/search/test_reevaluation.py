@@ -24,16 +24,14 @@ def task():
         control=Control(period=20, ramp=0.0, sense_energy=True, angle_scale=0.3),
         task=Task(steps=40),
     )
-    with jax.enable_x64(True):
-        return build_task(scene, jnp.float64, room=(12, 16))
+    return build_task(scene, room=(12, 16))
 
 
 @pytest.fixture(scope="module")
 def network():
-    with jax.enable_x64(True):
-        made = neat.minimal(jax.random.key(5), 4, 2, 12, 16)
-        # Energy has no weight: elsewhere it must not change the motion.
-        return replace(made, weight=jnp.where(made.source == 3, 0.0, made.weight))
+    made = neat.minimal(jax.random.key(5), 4, 2, 12, 16)
+    # Energy has no weight: elsewhere it must not change the motion.
+    return replace(made, weight=jnp.where(made.source == 3, 0.0, made.weight))
 
 
 @pytest.fixture(scope="module")
@@ -42,34 +40,32 @@ def disturbed(task, network):
     run = jax.jit(lambda changed: reevaluation.evaluate_disturbed(task, network, changed))
 
     def found(**changes):
-        with jax.enable_x64(True):
-            values = {**STILL, **changes}
-            whole = {
-                name: jnp.asarray(value, jnp.int32 if name == "energy" else jnp.float64)
-                for name, value in values.items()
-            }
-            evaluation = run(Disturbance(**whole))
-            assert evaluation.status == 0
-            features = np.asarray(evaluation.features)
-            return dict(zip(search.FEATURES, features.tolist(), strict=True))
+        values = {**STILL, **changes}
+        whole = {
+            name: jnp.asarray(value, jnp.int32 if name == "energy" else jnp.float32)
+            for name, value in values.items()
+        }
+        evaluation = run(Disturbance(**whole))
+        assert evaluation.status == 0
+        features = np.asarray(evaluation.features)
+        return dict(zip(search.FEATURES, features.tolist(), strict=True))
 
     return found
 
 
 @pytest.fixture(scope="module")
 def plain(task, network):
-    with jax.enable_x64(True):
-        features = jax.jit(lambda: search.evaluate(task, network).features)()
+    features = jax.jit(lambda: search.evaluate(task, network).features)()
     return dict(zip(search.FEATURES, np.asarray(features).tolist(), strict=True))
 
 
 MOTION = ("displacement", "path_length", "bending_effort", "rotation")
 
 
-def agree(found, expected, names=MOTION, rel=1e-9):
+def agree(found, expected, names=MOTION, rel=1e-3):
     assert expected["displacement"] > 1e-3
     for name in names:
-        assert found[name] == pytest.approx(expected[name], rel=rel, abs=1e-12), name
+        assert found[name] == pytest.approx(expected[name], rel=rel, abs=1e-5), name
 
 
 def test_conditions_that_are_not_disturbed_change_nothing(disturbed, plain):
@@ -85,19 +81,18 @@ def test_the_lattice_is_the_same_everywhere_and_in_its_four_directions(disturbed
 def test_energy_is_moved_with_a_body_that_is_moved(disturbed, plain):
     found = disturbed(shift=(5.0, 2.0), energy=(5, 2))
     agree(found, plain, (*MOTION, "energy"))
-    assert disturbed(energy=(5, 2))["energy"] != pytest.approx(plain["energy"], rel=1e-6)
+    assert disturbed(energy=(5, 2))["energy"] != pytest.approx(plain["energy"], rel=1e-2)
 
 
 def test_a_whole_period_ahead_is_no_change_and_half_a_period_is_one(disturbed, plain):
     agree(disturbed(phase=2 * np.pi), plain)
     later = disturbed(phase=np.pi)
-    assert later["displacement"] != pytest.approx(plain["displacement"], rel=1e-6)
+    assert later["displacement"] != pytest.approx(plain["displacement"], rel=1e-2)
 
 
 def test_a_factor_of_viscosity_is_that_viscosity(disturbed, task, network):
-    with jax.enable_x64(True):
-        other = replace(task, world=replace(task.world, viscosity=1.05 * task.world.viscosity))
-        features = jax.jit(lambda: search.evaluate(other, network).features)()
+    other = replace(task, world=replace(task.world, viscosity=1.05 * task.world.viscosity))
+    features = jax.jit(lambda: search.evaluate(other, network).features)()
     expected = dict(zip(search.FEATURES, np.asarray(features).tolist(), strict=True))
     agree(disturbed(viscosity=1.05), expected)
 

@@ -1,4 +1,4 @@
-"""Repeated evaluations add up to means, spreads and hits; a corrected archive is made of them."""
+"""Repeated evaluations add up to means and spreads; a corrected archive is made of them."""
 
 import jax.numpy as jnp
 import numpy as np
