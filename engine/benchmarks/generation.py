@@ -37,7 +37,8 @@ def generations(document: dict) -> list[tuple[float, float]]:
         began = time.monotonic()
         state, report = run.advance(state)
         whole = time.monotonic() - began
-        found.append((whole, report.summary["device_seconds"] / jax.local_device_count()))
+        spent = float((report.summary or {})["device_seconds"] or 0.0)
+        found.append((whole, spent / jax.local_device_count()))
     return found[WARM:]
 
 

@@ -58,7 +58,7 @@ class Scales:
         return cells_a_step * self.cell / self.step
 
 
-def reynolds(speed: Any, length: float, viscosity: Any) -> Any:
+def reynolds(speed: Any, length: Any, viscosity: Any) -> Any:
     """Inertia against viscosity, U L / ν, with the mean speed of the nodes as U."""
     return speed * length / viscosity
 

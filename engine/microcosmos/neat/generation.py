@@ -72,7 +72,8 @@ def next_generation(
     sizes = allot(share, able, len(fitness), settings.min_size)
     brood = breed(sizes, fitness, species, now, settings, key=parents_key)
     children, novelty = bear(population, brood, settings, inputs, outputs, key=children_key)
-    children, counters = apart(number(*apart((children, novelty)), counters))
+    children, novelty = apart((children, novelty))
+    children, counters = apart(number(children, novelty, counters))
     species = _represented(population, species, sizes > 0, now, settings, key=species_key)
     species = divide(
         children,

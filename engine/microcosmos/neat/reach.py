@@ -73,7 +73,8 @@ def without(one: Sets, other: Sets) -> Sets:
 
 def sizes(sets: Sets) -> Int[Array, "node"]:
     """How many nodes each set holds."""
-    return sum(jax.lax.population_count(s) for s in sets).astype(jnp.int32)
+    counts = jnp.stack([jax.lax.population_count(s) for s in sets])
+    return jnp.sum(counts, 0, dtype=jnp.int32)
 
 
 def held(sets: Sets, node: Int[Array, ""]) -> Bool[Array, "node"]:

@@ -20,8 +20,8 @@ def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, 
     body, start, rods = spec.shape(scene.body), driven.start, driven.world.rods
     there = driven.world.present
     nodes = np.ones(len(body.positions), bool) if there is None else np.asarray(there)
-    edges = nodes[body.edges].all(1)
-    joints = edges[body.joints].all(1)
+    edges: np.ndarray = np.all(nodes[body.edges], axis=1)
+    joints: np.ndarray = np.all(edges[body.joints], axis=1)
     numbers, edge_numbers = np.cumsum(nodes) - 1, np.cumsum(edges) - 1
     return (
         bodies.Body(

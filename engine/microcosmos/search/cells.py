@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 Features = Float[Array, "row feature"]
 Places = Float[Array, "row axis"]
@@ -139,7 +139,7 @@ def candidates(centroids: np.ndarray) -> np.ndarray | None:
     side = boxes(cells, axes)
     middles = np.stack(np.meshgrid(*[(np.arange(side) + 0.5) / side] * axes, indexing="ij"), -1)
     middles, half = middles.reshape(-1, axes), np.sqrt(axes) / 2 / side
-    tree = cKDTree(centroids.astype(np.float64))
+    tree = KDTree(centroids.astype(np.float64))
     reach = tree.query(middles)[0] + 2 * half + 1e-4  # More than what float32 rounds away.
     counts = tree.query_ball_point(middles, reach, return_length=True)
     if len(middles) * counts.max() > LISTED:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from ..archive.store import write_whole
 
@@ -50,7 +50,7 @@ def lloyd(cells: int, axes: int, seed: int) -> Points:
     samples = spread(max(LEAST, SAMPLES * cells), axes, random.random(axes))
     samples = samples[np.lexsort(np.floor(samples * 64).T)]  # Near ones together, for caches.
     for _ in range(ROUNDS):
-        tree = cKDTree(points, balanced_tree=False, compact_nodes=False)
+        tree = KDTree(points, balanced_tree=False, compact_nodes=False)
         nearest = tree.query(samples, workers=-1)[1]
         count = np.bincount(nearest, minlength=cells)
         sums = [np.bincount(nearest, column, cells) for column in samples.T]

@@ -88,7 +88,7 @@ def from_repertoire(repertoire: Any, cells: Cells, features: int) -> Elites:
     """
     rows, genes, told = np.argsort(order(cells)), repertoire.genotypes, repertoire.extra_scores
     plain = isinstance(genes, jax.Array | np.ndarray)
-    genotypes = jax.tree.map(lambda x: x[rows], Vector(genes) if plain else genes)
+    genotypes = jax.tree.map(lambda x: x[rows], Vector(jnp.asarray(genes)) if plain else genes)
     fitness = jnp.reshape(repertoire.fitnesses, -1)[rows]
     there, none = jnp.isfinite(fitness), jnp.zeros(cells.count, jnp.int32)
     known = told.get("features")
@@ -174,6 +174,7 @@ class QdaxEmitter:
             genes, _ = self.emitter.emit(repertoire, learnt, _raw(keys[0]))
         anyone = jnp.any(archive.occupied)
         fresh = newcomers(self.newcomer, keys)
+        assert isinstance(fresh.genotypes, Vector)
         operator = OPERATORS.index(self.operator)
         children = Children(
             Vector(jnp.where(anyone, jnp.clip(genes, -1.0, 1.0), fresh.genotypes.values)),
