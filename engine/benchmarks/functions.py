@@ -56,7 +56,7 @@ def ours(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATC
         children, _, _ = search.emitters.emit(
             (emitter,), (None,), archive, neat.first_counters(1, 1), number, key=key
         )
-        assert isinstance(children.genotypes, Vector)
+        assert isinstance(children.genotypes, genomes.Vector)
         values = children.genotypes.values
         fitness, places = evaluate((values + 1) / 2)
         found = search.Elites(
