@@ -44,8 +44,8 @@ check: install web
 # Two processes: the tests of the server fork, which a process with JAX in it must not.
 test: install web
 	$(STYLE)
-	$(BIN)/pytest -n auto --maxprocesses 4 --dist loadfile tests/engine
-	$(BIN)/pytest --ignore=tests/engine
+	$(BIN)/pytest -n auto --maxprocesses 4 --dist loadfile tests/engine tests/examples
+	$(BIN)/pytest --ignore=tests/engine --ignore=tests/examples
 
 # What benchmarks compare with; not needed for anything else.
 peers: install

@@ -29,10 +29,10 @@ def kind(run: Run) -> tuple[Literal["grid", "cvt"], int]:
 
 
 def recorded(session: Session, run: Run) -> list[Feature]:
-    """What was measured of the run's elites; of a run without any, the archive's axes."""
+    """What was measured of the run's elites; of a run without any, what will be."""
     one = select(Creature.measured).join(Elite, Elite.creature == Creature.sha256)
     measured = session.scalars(one.where(Elite.run_id == run.id).limit(1)).first()
-    names = measured["features"] if measured else [axis.name for axis in axes(run)]
+    names = measured["features"] if measured else list(FEATURES)
     return [_told(name) for name in names]
 
 
