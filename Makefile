@@ -54,7 +54,8 @@ peers: install
 bench: peers
 	$(BIN)/python engine/benchmarks/physics.py
 	$(BIN)/python engine/benchmarks/archive.py
-	$(BIN)/python engine/benchmarks/neat.py
+	$(BIN)/python engine/benchmarks/networks.py
+	$(BIN)/python engine/benchmarks/xor.py
 	$(BIN)/python engine/benchmarks/generation.py
 
 acceptance: install web

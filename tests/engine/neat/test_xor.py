@@ -6,7 +6,7 @@ from pathlib import Path
 import jax
 import jax.numpy as jnp
 
-SOURCE = Path(__file__).parents[3] / "engine" / "benchmarks" / "neat.py"
+SOURCE = Path(__file__).parents[3] / "engine" / "benchmarks" / "xor.py"
 
 
 def test_xor_is_solved_with_hidden_nodes_only():

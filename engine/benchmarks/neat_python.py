@@ -1,0 +1,134 @@
+"""neat-python's population, grown and timed as `populations.py` does with ours."""
+
+import random
+import statistics
+import tempfile
+import time
+from typing import Any
+
+from populations import GROWTH, LINES, OUTPUTS, STEPS_APART
+
+CONFIG = """
+[NEAT]
+fitness_criterion = max
+fitness_threshold = 1e9
+no_fitness_termination = True
+pop_size = {size}
+reset_on_extinction = False
+[DefaultGenome]
+num_inputs = 4
+num_outputs = 2
+num_hidden = 0
+feed_forward = True
+initial_connection = full_direct
+compatibility_disjoint_coefficient = 1.0
+compatibility_weight_coefficient = 0.4
+conn_add_prob = 0.2
+conn_delete_prob = 0.2
+node_add_prob = 0.1
+node_delete_prob = 0.1
+activation_default = sigmoid
+activation_options = sigmoid
+activation_mutate_rate = 0.1
+aggregation_default = sum
+aggregation_options = sum
+aggregation_mutate_rate = 0.0
+bias_init_mean = 0.0
+bias_init_stdev = 1.0
+bias_replace_rate = 0.015
+bias_mutate_rate = 0.2
+bias_mutate_power = 0.15
+bias_max_value = 5.0
+bias_min_value = -5.0
+response_init_mean = 1.0
+response_init_stdev = 0.0
+response_replace_rate = 0.0
+response_mutate_rate = 0.0
+response_mutate_power = 0.0
+response_max_value = 5.0
+response_min_value = -5.0
+weight_init_mean = 0.0
+weight_init_stdev = 1.0
+weight_replace_rate = 0.015
+weight_mutate_rate = 0.2
+weight_mutate_power = 0.15
+weight_max_value = 5.0
+weight_min_value = -5.0
+enabled_default = True
+enabled_mutate_rate = 0.0
+[DefaultSpeciesSet]
+compatibility_threshold = 2.0
+[DefaultStagnation]
+species_fitness_func = max
+max_stagnation = 15
+species_elitism = 2
+[DefaultReproduction]
+elitism = 2
+survival_threshold = 0.1
+min_species_size = 1
+"""
+"""TensorNEAT's defaults, as far as neat-python has them: what ours is given too."""
+
+
+class Theirs:
+    """A population of neat-python's that takes one generation after the other."""
+
+    def __init__(self, peer: Any, size: int, hidden: int) -> None:
+        with tempfile.NamedTemporaryFile("w", suffix=".cfg") as file:
+            file.write(CONFIG.format(size=size))
+            file.flush()
+            self.config = peer.Config(
+                peer.DefaultGenome,
+                peer.DefaultReproduction,
+                peer.DefaultSpeciesSet,
+                peer.DefaultStagnation,
+                file.name,
+            )
+        random.seed(0)
+        self.population = peer.Population(self.config)
+        self._grow(hidden)
+
+    def _grow(self, hidden: int) -> None:
+        """As `grown`: each network a copy of one of few ancestors, then varied."""
+        settings, people = self.config.genome_config, self.population.population
+        ancestors = list(people.values())[:LINES]
+        for one in ancestors:
+            for _ in range(2 * hidden - STEPS_APART):
+                self._vary(one, settings)
+        for place, one in enumerate(people.values()):
+            if place >= LINES:
+                ancestor = ancestors[place % LINES]
+                one.nodes = {k: gene.copy() for k, gene in ancestor.nodes.items()}
+                one.connections = {k: gene.copy() for k, gene in ancestor.connections.items()}
+        for one in people.values():
+            for _ in range(STEPS_APART):
+                self._vary(one, settings)
+        self.population.species.species.clear()
+        self.population.species.speciate(self.config, people, 0)
+
+    def _vary(self, network: Any, settings: Any) -> None:
+        if random.random() < GROWTH.add_connection:
+            network.mutate_add_connection(settings)
+        if random.random() < GROWTH.add_node:
+            network.mutate_add_node(settings)
+
+    def advance(self) -> float:
+        """The seconds of one generation."""
+        it, config = self.population, self.config
+        for network in it.population.values():
+            network.fitness = random.random()
+        began = time.perf_counter()
+        it.population = it.reproduction.reproduce(
+            config, it.species, config.pop_size, it.generation
+        )
+        it.species.speciate(config, it.population, it.generation)
+        seconds = time.perf_counter() - began
+        it.generation += 1
+        return seconds
+
+    def sizes(self) -> tuple[float, float, int]:
+        """Mean hidden nodes and connections, and the number of species."""
+        people = list(self.population.population.values())
+        nodes = statistics.mean(len(one.nodes) for one in people) - OUTPUTS
+        connections = statistics.mean(len(one.connections) for one in people)
+        return nodes, connections, len(self.population.species.species)
