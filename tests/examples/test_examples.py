@@ -27,6 +27,11 @@ def test_their_map_elites_evolves_our_creatures():
     assert np.isfinite(repertoire.fitnesses).any()
 
 
+def test_their_map_elites_evolves_our_networks():
+    repertoire = example("qdax_neat", "qdax").main(generations=3, batch=4, **TINY)
+    assert np.isfinite(repertoire.fitnesses).any()
+
+
 def test_their_emitters_work_in_our_search(tmp_path):
     module = example("qdax_emitter", "qdax")
     search = {**module.SPEC["search"], "generations": 3, "batch": 8, "block": 4}

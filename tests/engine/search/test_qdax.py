@@ -171,6 +171,50 @@ def test_cma_me_climbs_in_our_loop_and_goes_on_from_kept_arrays():
     assert np.all(whole.fitness[early.occupied] >= early.fitness[early.occupied])
 
 
+def network_scores(networks, key=None):
+    """A stand-in for simulation: more hidden nodes are fitter; weights say where."""
+    hidden = jnp.sum(networks.node_used, 1) - 3.0
+    used = networks.connection_used
+    mean = jnp.sum(jnp.where(used, networks.weight, 0.0), 1) / jnp.sum(used, 1)
+    place = jax.nn.sigmoid(jnp.stack([mean, networks.bias[:, 2]], 1))
+    return hidden, place, {}
+
+
+def test_our_neat_grows_networks_in_their_map_elites_and_numbers_them_alike():
+    loop, multi = qdax.needed("core.map_elites"), qdax.needed("core.emitters.multi_emitter")
+    rates = neat.Rates(
+        weight=0.8,
+        weight_step=0.5,
+        replace=0.1,
+        activation=0.1,
+        toggle=0.1,
+        add_node=0.5,
+        add_connection=0.3,
+    )
+
+    def minimal(*, key):
+        return neat.minimal(key, 2, 1, 16, 32)
+
+    def emitter(crossover):
+        return qdax.NeatEmitter(search.emitters.Neat(16, minimal, rates, 2, crossover))
+
+    both = multi.MultiEmitter((emitter(0.0), emitter(0.5)))
+    run = loop.MAPElites(network_scores, both, lambda repertoire: {})
+    first = jax.vmap(lambda key: minimal(key=key))(jax.random.split(jax.random.key(0), 32))
+    repertoire, state, _ = run.init(first, AROUND.centroids, jax.random.PRNGKey(1))
+    assert [int(s.innovation) for s in state.emitter_states] == [2, 2]
+    update = jax.jit(run.update)
+    for number in range(12):
+        repertoire, state, _ = update(repertoire, state, jax.random.PRNGKey(number))
+    there = np.isfinite(repertoire.fitnesses[:, 0])
+    assert repertoire.fitnesses[there].max() >= 3
+    kept = jax.tree.map(lambda x: np.asarray(x)[there], repertoire.genotypes)
+    used = kept.connection_used
+    assert kept.innovation[used].max() < int(state.emitter_states[0].innovation)
+    rows = [r[u] for r, u in zip(kept.innovation, used, strict=True)]
+    assert all((np.diff(numbers) > 0).all() for numbers in rows)
+
+
 def test_without_qdax_the_command_to_install_it_is_told(monkeypatch):
     def missing(name):
         raise ImportError(name)

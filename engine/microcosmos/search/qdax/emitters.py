@@ -1,120 +1,21 @@
-"""Exchange with QDax (Chalumeau et al., JMLR 25, 2024): repertoires, scoring and emitters.
+"""Emitters: QDax's in our loop, and our NEAT in QDax's."""
 
-QDax is imported where it is needed. Its descriptors and centroids are places from 0 to 1 on our
-axes' own scales; its rows of a grid are in another order than ours.
-"""
-
-import importlib
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import prod
 from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray, PyTree
 
-from ..genomes import Genotype, Vector
-from ..neat import Counters
-from .cells import Axis, Cells, Grid, places
-from .emitters.elites import Newcomer, newcomers
-from .emitters.emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
-from .evaluation import Evaluation
-from .insertion import Elites
-
-KEPT = ("features", "generation", "slot")
-"""Columns of elites that a repertoire holds as extra scores."""
-
-
-def needed(module: str) -> Any:
-    """A module of QDax's. Raises `ValueError` with the command to install it."""
-    try:
-        return importlib.import_module(f"qdax.{module}")
-    except ImportError as error:
-        raise ValueError(
-            f'QDax is needed and not installed: pip install "microcosmos[qdax]" ({error})'
-        ) from error
-
-
-def scoring_function(evaluate: Callable[[Genotype], Evaluation], cells: Cells) -> Callable:
-    """QDax's protocol around an evaluation of a batch: fitness, descriptors, extra scores.
-
-    Genotypes are networks, or plain arrays of genes from −1 to 1. What diverged has fitness
-    −inf, so that no repertoire takes it.
-    """
-
-    def score(genotypes: Any, key: Any = None) -> tuple[Array, Array, dict[str, Array]]:
-        plain = isinstance(genotypes, jax.Array | np.ndarray)
-        found = evaluate(Vector(jnp.asarray(genotypes)) if plain else genotypes)
-        sound = (found.status == 0) & jnp.isfinite(found.fitness)
-        fitness = jnp.where(sound, found.fitness, -jnp.inf)
-        place = jnp.where(sound[:, None], places(found.features, cells.axes), 0.0)
-        return fitness, place, {"features": found.features, "status": found.status}
-
-    return score
-
-
-def order(cells: Cells) -> Int[np.ndarray, "cell"]:
-    """Our number of each of QDax's cells: its grids swap the first two descriptors."""
-    shape = tuple(axis.bins for axis in cells.axes)
-    if not isinstance(cells, Grid) or len(shape) < 2:
-        return np.arange(cells.count)
-    return np.arange(prod(shape)).reshape(shape).swapaxes(0, 1).ravel()
-
-
-def to_repertoire(elites: Elites, cells: Cells) -> Any:
-    """A `MapElitesRepertoire` of the same elites; see `from_repertoire` for the way back."""
-    rows = order(cells)
-    there, genotypes = elites.occupied[rows], elites.genotypes
-    genes = genotypes.values if isinstance(genotypes, Vector) else genotypes
-    place = places(elites.features, cells.axes)[rows]
-    return needed("core.containers.mapelites_repertoire").MapElitesRepertoire(
-        genotypes=jax.tree.map(lambda x: x[rows], genes),
-        fitnesses=jnp.where(there, elites.fitness[rows], -jnp.inf)[:, None],
-        descriptors=jnp.where(there[:, None], place, 0.0),
-        centroids=jnp.asarray(cells.centres[rows]),
-        extra_scores={name: getattr(elites, name)[rows] for name in KEPT},
-        keys_extra_scores=KEPT,
-    )
-
-
-def from_repertoire(repertoire: Any, cells: Cells, features: int) -> Elites:
-    """Our elites of a repertoire over the same cells.
-
-    Where it holds no features of ours as extra scores, those that are descriptors are made
-    from its descriptors and the others are NaN.
-    """
-    rows, genes, told = np.argsort(order(cells)), repertoire.genotypes, repertoire.extra_scores
-    plain = isinstance(genes, jax.Array | np.ndarray)
-    genotypes = jax.tree.map(lambda x: x[rows], Vector(jnp.asarray(genes)) if plain else genes)
-    fitness = jnp.reshape(repertoire.fitnesses, -1)[rows]
-    there, none = jnp.isfinite(fitness), jnp.zeros(cells.count, jnp.int32)
-    known = told.get("features")
-    if known is None:
-        known = _features(repertoire.descriptors, cells.axes, features)
-    return Elites(
-        occupied=there,
-        fitness=jnp.where(there, fitness, 0.0),
-        features=jnp.where(there[:, None], known[rows], 0.0),
-        generation=told["generation"][rows] if "generation" in told else none,
-        slot=told["slot"][rows] if "slot" in told else none,
-        genotypes=genotypes,
-    )
-
-
-def _features(
-    place: Float[Array, "cell axis"], axes: tuple[Axis, ...], features: int
-) -> Float[Array, "cell feature"]:
-    found = jnp.full((len(place), features), jnp.nan, jnp.float32)
-    for i, axis in enumerate(axes):
-        low, high = axis.low, axis.high
-        if axis.logarithmic:
-            low, high = np.log10(low), np.log10(high)
-        value = low + place[:, i] * (high - low)
-        found = found.at[:, axis.feature].set(10**value if axis.logarithmic else value)
-    return found
+from ...genomes import CPPN, Vector
+from ...neat import Counters
+from ..cells import Cells, places
+from ..emitters.elites import Newcomer, newcomers
+from ..emitters.emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from ..emitters.neat import Neat
+from ..insertion import Elites
+from .repertoires import needed, order, to_repertoire
 
 
 class Told(eqx.Module):
@@ -224,6 +125,84 @@ def cma_me(
     )
     pool = needed("core.emitters.cma_pool_emitter").CMAPoolEmitter(emitters, one)
     return QdaxEmitter(slots, newcomer, cells, pool, "cma-me")
+
+
+@dataclass(frozen=True)
+class NeatEmitter:
+    """NEAT's mutations and crossover for QDax's `MAPElites`, whose genotypes are then networks.
+
+    Its state is the next numbers that no gene has yet: the same mutation in a batch has the
+    same number. Among several emitters of a `MultiEmitter` each sees all children.
+    """
+
+    emitter: Neat
+
+    @property
+    def batch_size(self) -> int:
+        """Children a generation."""
+        return self.emitter.slots
+
+    @property
+    def use_all_data(self) -> bool:
+        """Numbers that others gave are not given again."""
+        return True
+
+    def init(
+        self,
+        key: Array,
+        repertoire: Any,
+        genotypes: CPPN,
+        fitnesses: Array,
+        descriptors: Array,
+        extra_scores: dict[str, Array],
+    ) -> Counters:
+        """After all genes of the first networks."""
+        return _beyond(genotypes, Counters(jnp.asarray(0), jnp.asarray(0)))
+
+    def emit(
+        self, repertoire: Any, emitter_state: Counters, key: Array
+    ) -> tuple[CPPN, dict[str, Array]]:
+        """Children of networks in the repertoire."""
+        fitness = jnp.reshape(repertoire.fitnesses, -1)
+        nothing = jnp.zeros(fitness.shape, jnp.int32)
+        archive = Elites(
+            occupied=jnp.isfinite(fitness),
+            fitness=fitness,
+            features=repertoire.descriptors,
+            generation=nothing,
+            slot=nothing,
+            genotypes=repertoire.genotypes,
+        )
+        if not jnp.issubdtype(key.dtype, jax.dtypes.prng_key):
+            key = jax.random.wrap_key_data(key)
+        keys = jax.random.split(key, self.batch_size)
+        children, _, _ = self.emitter.emit(
+            None, archive, emitter_state, jnp.asarray(0), keys=keys
+        )
+        assert isinstance(children.genotypes, CPPN)
+        return children.genotypes, {}
+
+    def state_update(
+        self,
+        emitter_state: Counters,
+        repertoire: Any,
+        genotypes: CPPN,
+        fitnesses: Array,
+        descriptors: Array,
+        extra_scores: dict[str, Array],
+    ) -> Counters:
+        """After all genes of the children too."""
+        return _beyond(genotypes, emitter_state)
+
+
+def _beyond(networks: CPPN, counters: Counters) -> Counters:
+    """The next numbers after those of networks, and not before the given ones."""
+    used = jnp.where(networks.connection_used, networks.innovation, -1)
+    nodes = jnp.where(networks.node_used, networks.node_id, -1)
+    return Counters(
+        jnp.maximum(counters.innovation, jnp.max(used) + 1),
+        jnp.maximum(counters.node, jnp.max(nodes) + 1),
+    )
 
 
 def _raw(key: PRNGKeyArray) -> Array:

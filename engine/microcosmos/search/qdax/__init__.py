@@ -1,0 +1,18 @@
+"""Exchange with QDax (Chalumeau et al., JMLR 25, 2024): repertoires, scoring and emitters.
+
+QDax is imported where it is needed.
+"""
+
+from .emitters import NeatEmitter, QdaxEmitter, cma_me
+from .repertoires import from_repertoire, needed, order, scoring_function, to_repertoire
+
+__all__ = [
+    "NeatEmitter",
+    "QdaxEmitter",
+    "cma_me",
+    "from_repertoire",
+    "needed",
+    "order",
+    "scoring_function",
+    "to_repertoire",
+]

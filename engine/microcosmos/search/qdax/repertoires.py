@@ -1,0 +1,112 @@
+"""Repertoires and scoring functions as QDax has them.
+
+Its descriptors and centroids are places from 0 to 1 on our axes' own scales; its rows of a grid
+are in another order than ours.
+"""
+
+import importlib
+from collections.abc import Callable
+from math import prod
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from ...genomes import Genotype, Vector
+from ..cells import Axis, Cells, Grid, places
+from ..evaluation import Evaluation
+from ..insertion import Elites
+
+KEPT = ("features", "generation", "slot")
+"""Columns of elites that a repertoire holds as extra scores."""
+
+
+def needed(module: str) -> Any:
+    """A module of QDax's. Raises `ValueError` with the command to install it."""
+    try:
+        return importlib.import_module(f"qdax.{module}")
+    except ImportError as error:
+        raise ValueError(
+            f'QDax is needed and not installed: pip install "microcosmos[qdax]" ({error})'
+        ) from error
+
+
+def scoring_function(evaluate: Callable[[Genotype], Evaluation], cells: Cells) -> Callable:
+    """QDax's protocol around an evaluation of a batch: fitness, descriptors, extra scores.
+
+    Genotypes are networks, or plain arrays of genes from −1 to 1. What diverged has fitness
+    −inf, so that no repertoire takes it.
+    """
+
+    def score(genotypes: Any, key: Any = None) -> tuple[Array, Array, dict[str, Array]]:
+        plain = isinstance(genotypes, jax.Array | np.ndarray)
+        found = evaluate(Vector(jnp.asarray(genotypes)) if plain else genotypes)
+        sound = (found.status == 0) & jnp.isfinite(found.fitness)
+        fitness = jnp.where(sound, found.fitness, -jnp.inf)
+        place = jnp.where(sound[:, None], places(found.features, cells.axes), 0.0)
+        return fitness, place, {"features": found.features, "status": found.status}
+
+    return score
+
+
+def order(cells: Cells) -> Int[np.ndarray, "cell"]:
+    """Our number of each of QDax's cells: its grids swap the first two descriptors."""
+    shape = tuple(axis.bins for axis in cells.axes)
+    if not isinstance(cells, Grid) or len(shape) < 2:
+        return np.arange(cells.count)
+    return np.arange(prod(shape)).reshape(shape).swapaxes(0, 1).ravel()
+
+
+def to_repertoire(elites: Elites, cells: Cells) -> Any:
+    """A `MapElitesRepertoire` of the same elites; see `from_repertoire` for the way back."""
+    rows = order(cells)
+    there, genotypes = elites.occupied[rows], elites.genotypes
+    genes = genotypes.values if isinstance(genotypes, Vector) else genotypes
+    place = places(elites.features, cells.axes)[rows]
+    return needed("core.containers.mapelites_repertoire").MapElitesRepertoire(
+        genotypes=jax.tree.map(lambda x: x[rows], genes),
+        fitnesses=jnp.where(there, elites.fitness[rows], -jnp.inf)[:, None],
+        descriptors=jnp.where(there[:, None], place, 0.0),
+        centroids=jnp.asarray(cells.centres[rows]),
+        extra_scores={name: getattr(elites, name)[rows] for name in KEPT},
+        keys_extra_scores=KEPT,
+    )
+
+
+def from_repertoire(repertoire: Any, cells: Cells, features: int) -> Elites:
+    """Our elites of a repertoire over the same cells.
+
+    Where it holds no features of ours as extra scores, those that are descriptors are made
+    from its descriptors and the others are NaN.
+    """
+    rows, genes, told = np.argsort(order(cells)), repertoire.genotypes, repertoire.extra_scores
+    plain = isinstance(genes, jax.Array | np.ndarray)
+    genotypes = jax.tree.map(lambda x: x[rows], Vector(jnp.asarray(genes)) if plain else genes)
+    fitness = jnp.reshape(repertoire.fitnesses, -1)[rows]
+    there, none = jnp.isfinite(fitness), jnp.zeros(cells.count, jnp.int32)
+    known = told.get("features")
+    if known is None:
+        known = _features(repertoire.descriptors, cells.axes, features)
+    return Elites(
+        occupied=there,
+        fitness=jnp.where(there, fitness, 0.0),
+        features=jnp.where(there[:, None], known[rows], 0.0),
+        generation=told["generation"][rows] if "generation" in told else none,
+        slot=told["slot"][rows] if "slot" in told else none,
+        genotypes=genotypes,
+    )
+
+
+def _features(
+    place: Float[Array, "cell axis"], axes: tuple[Axis, ...], features: int
+) -> Float[Array, "cell feature"]:
+    found = jnp.full((len(place), features), jnp.nan, jnp.float32)
+    for i, axis in enumerate(axes):
+        low, high = axis.low, axis.high
+        if axis.logarithmic:
+            low, high = np.log10(low), np.log10(high)
+        value = low + place[:, i] * (high - low)
+        found = found.at[:, axis.feature].set(10**value if axis.logarithmic else value)
+    return found
