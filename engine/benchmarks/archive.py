@@ -11,6 +11,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -22,14 +23,23 @@ from microcosmos import device, genomes, search
 
 ROWS, GENES = 1_024, 1_000
 SIDES = (32, 128)
-TURNS, WARM = 15, 4
+TURNS = 15
+STAGES = {"early in a search, most enter": 4, "late in a search, few enter": 100}
+"""Batches that went before those that are timed."""
 CENTROIDS = 16_384
 SAMPLES = 50_000
 """What QDax's examples give its centroids."""
 SEEDS = range(5)
 
-Add = Callable[[Any, Any, Any], object]
-"""From genes, fitness and places to something to wait for."""
+
+@dataclass(frozen=True)
+class Peer:
+    """An archive, and how it takes a batch in."""
+
+    pack: Callable[[np.ndarray, np.ndarray, np.ndarray], Any]
+    """From genes, fitness and places to what a search has in hand; not timed."""
+    add: Callable[[Any], object]
+    """From that to something to wait for."""
 
 
 def main() -> None:
@@ -37,32 +47,34 @@ def main() -> None:
     device.prepare()
     sides = SIDES[:1] if os.environ.get("SMALL") else SIDES
     for side in sides:
-        insertion(side)
+        for stage in STAGES:
+            insertion(side, stage)
     tessellation(1_024 if os.environ.get("SMALL") else CENTROIDS)
     reached()
 
 
-def insertion(side: int) -> None:
+def insertion(side: int, stage: str) -> None:
     """How long it takes to insert a batch of vectors, ours as 1."""
-    adds = {"ours, donated": _ours(side, donate=True), "ours": _ours(side, donate=False)}
+    peers = {"ours, donated": _ours(side, donate=True), "ours": _ours(side, donate=False)}
     if installed("qdax"):
-        adds |= {"QDax, donated": _qdax(side, donate=True), "QDax": _qdax(side, donate=False)}
+        peers |= {"QDax, donated": _qdax(side, donate=True), "QDax": _qdax(side, donate=False)}
     if installed("ribs"):
-        adds["pyribs"] = _ribs(side)
-    seconds: dict[str, list[float]] = {name: [] for name in adds}
+        peers["pyribs"] = _ribs(side)
+    seconds: dict[str, list[float]] = {name: [] for name in peers}
     random = np.random.default_rng(0)
-    for turn in range(WARM + TURNS):
+    for turn in range(STAGES[stage] + TURNS):
         genes = random.uniform(-1, 1, (ROWS, GENES)).astype(np.float32)
-        fitness = (random.normal(size=ROWS) + 0.1 * turn).astype(np.float32)
+        fitness = random.normal(size=ROWS).astype(np.float32)
         places = random.random((ROWS, 2)).astype(np.float32)
-        there = jax.block_until_ready(jax.device_put((genes, fitness, places)))
-        for name, add in adds.items():
-            given = (genes, fitness, places) if name == "pyribs" else there
+        for name, peer in peers.items():
+            given = jax.block_until_ready(peer.pack(genes, fitness, places))
             began = time.perf_counter()
-            jax.block_until_ready(add(*given))
-            if turn >= WARM:
+            jax.block_until_ready(peer.add(given))
+            if turn >= STAGES[stage]:
                 seconds[name].append(time.perf_counter() - began)
-    print(f"\n{ROWS:,} vectors of {GENES:,} genes into {side * side:,} cells of a grid")
+    print(
+        f"\n{ROWS:,} vectors of {GENES:,} genes into {side * side:,} cells of a grid, {stage}"
+    )
     tell(seconds, "ours, donated")
 
 
@@ -107,29 +119,30 @@ def installed(package: str) -> bool:
     return False
 
 
-def _ours(side: int, *, donate: bool) -> Add:
+def _ours(side: int, *, donate: bool) -> Peer:
     axes = tuple(search.Axis(i, 0.0, 1.0, side, False) for i in range(2))
     grid, insert = search.Grid(axes), search.insert_program(donate=donate)
     kept = [search.no_elites(grid.count, 2, genomes.Vector(jnp.zeros(GENES)))]
 
-    everybody, slots = jnp.ones(ROWS, bool), jnp.arange(ROWS, dtype=jnp.int32)
-
-    def add(genes: Any, fitness: Any, places: Any) -> object:
+    def pack(genes: np.ndarray, fitness: np.ndarray, places: np.ndarray) -> search.Elites:
         rows = search.Elites(
-            occupied=everybody,
+            occupied=np.ones(ROWS, bool),
             fitness=fitness,
             features=places,
-            generation=slots,
-            slot=slots,
+            generation=np.arange(ROWS, dtype=np.int32),
+            slot=np.arange(ROWS, dtype=np.int32),
             genotypes=genomes.Vector(genes),
         )
+        return jax.device_put(rows)
+
+    def add(rows: search.Elites) -> object:
         kept[0], inserted = insert(kept[0], rows, grid)
         return kept[0], inserted
 
-    return add
+    return Peer(pack, add)
 
 
-def _qdax(side: int, *, donate: bool) -> Add:
+def _qdax(side: int, *, donate: bool) -> Peer:
     peer: Any = importlib.import_module("qdax.core.containers.mapelites_repertoire")
     centroids = peer.compute_euclidean_centroids((side, side), 0.0, 1.0)
     kept = [peer.MapElitesRepertoire.init_default(jnp.zeros(GENES), centroids)]
@@ -138,19 +151,23 @@ def _qdax(side: int, *, donate: bool) -> Add:
         donate_argnums=(0,) if donate else (),
     )
 
-    def add(genes: Any, fitness: Any, places: Any) -> object:
+    def add(given: Any) -> object:
+        genes, fitness, places = given
         kept[0] = program(kept[0], genes, places, fitness)
         return kept[0]
 
-    return add
+    return Peer(lambda *given: jax.device_put(given), add)
 
 
-def _ribs(side: int) -> Add:
+def _ribs(side: int) -> Peer:
     peer: Any = importlib.import_module("ribs.archives")
     archive = peer.GridArchive(
         solution_dim=GENES, dims=(side, side), ranges=[(0, 1)] * 2, dtype=np.float32
     )
-    return lambda genes, fitness, places: archive.add(genes, fitness, places) and None
+    return Peer(
+        lambda *given: given,
+        lambda given: archive.add(given[0], given[1], given[2]) and None,
+    )
 
 
 def _told(name: str, seconds: float, centroids: np.ndarray) -> None:

@@ -68,17 +68,21 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
     device. Candidates that are not `occupied`, or whose fitness or descriptors are not finite,
     never enter.
     """
-    count = archive.occupied.shape[0]
+    count, rows = archive.occupied.shape[0], candidates.occupied.shape[0]
     able = candidates.occupied & jnp.isfinite(candidates.fitness)
     able &= sound(candidates.features, cells.axes)
     cell = jnp.where(able, cells.of(candidates.features), count)
     there = jnp.minimum(cell, count - 1)
     fresh = able & ~archive.occupied[there]
     entered = _winners(archive, candidates, cell, there, able)
+    # Rows that do not enter are sent to places of their own beyond the archive.
+    place = jnp.where(entered, cell, count + jnp.arange(rows))
     before = jnp.where(fresh, 0.0, archive.fitness[there])
     improvement = jnp.where(able, candidates.fitness - before, -jnp.inf)
-    archive = jax.lax.platform_dependent(
-        archive, candidates, cell, entered, cpu=_write_rows, default=_scatter
+    archive = jax.tree.map(
+        lambda old, new: old.at[place].set(new, mode="drop", unique_indices=True),
+        archive,
+        candidates,
     )
     return archive, Inserted(cell, entered, fresh, improvement)
 
@@ -102,37 +106,6 @@ def _mix(words: UInt32[Array, "row word"], salt: int) -> UInt32[Array, "row"]:
     h = (h ^ (h >> 13)) * jnp.uint32(0xC2B2AE35)
     h = (h ^ (h >> 16)) * (place | 1)[None]
     return jnp.sum(h, 1, dtype=jnp.uint32)
-
-
-def _scatter(
-    archive: Elites, candidates: Elites, cell: Int[Array, "row"], entered: Bool[Array, "row"]
-) -> Elites:
-    """The archive with the rows that enter, all at once."""
-    count, rows = archive.occupied.shape[0], len(cell)
-    # Rows that do not enter are sent to places of their own beyond the archive.
-    place = jnp.where(entered, cell, count + jnp.arange(rows))
-    return jax.tree.map(
-        lambda old, new: old.at[place].set(new, mode="drop", unique_indices=True),
-        archive,
-        candidates,
-    )
-
-
-def _write_rows(
-    archive: Elites, candidates: Elites, cell: Int[Array, "row"], entered: Bool[Array, "row"]
-) -> Elites:
-    """As `_scatter`, one row after the other: a scatter on a CPU goes gene by gene."""
-    (rows,) = jnp.nonzero(entered, size=len(cell), fill_value=0)
-
-    def write(turn: Int[Array, ""], archive: Elites) -> Elites:
-        row = rows[turn]
-        return jax.tree.map(
-            lambda old, new: jax.lax.dynamic_update_index_in_dim(old, new[row], cell[row], 0),
-            archive,
-            candidates,
-        )
-
-    return jax.lax.fori_loop(0, jnp.sum(entered), write, archive)
 
 
 def _winners(
