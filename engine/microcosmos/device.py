@@ -5,6 +5,7 @@ Numbers of one kind of device repeat bit for bit; those of another may round dif
 
 import os
 import platform
+import warnings
 from pathlib import Path
 
 import jax
@@ -12,6 +13,10 @@ from jaxlib.version import __version__ as jaxlib_version
 
 from .version import VERSION
 
+_STARTED = (
+    "JAX has started before `microcosmos.prepare()` and keeps its {} devices: call that first, "
+    "so that every core works."
+)
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
 
 
@@ -19,14 +24,18 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     """Settings that make results repeatable; to be called before JAX is first used.
 
     On a CPU, one device a core (or `devices` of them) lets every core have a block of its
-    own; results do not depend on how many. Compiled programs are kept where
+    own; results do not depend on how many. Where JAX has started already it keeps those it
+    has, with a warning. Compiled programs are kept where
     JAX_COMPILATION_CACHE_DIR says, else in `cache`.
     """
     flags = os.environ.get("XLA_FLAGS", "")
     if Path("/proc/driver/nvidia").exists() and "xla_gpu_deterministic_ops" not in flags:
         os.environ["XLA_FLAGS"] = f"{flags} {GPU_FLAGS}".strip()
     jax.config.update("jax_default_matmul_precision", "highest")
-    jax.config.update("jax_num_cpu_devices", devices or len(os.sched_getaffinity(0)))
+    try:
+        jax.config.update("jax_num_cpu_devices", devices or len(os.sched_getaffinity(0)))
+    except RuntimeError:
+        warnings.warn(_STARTED.format(jax.local_device_count()), stacklevel=2)
     if cache and not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
         jax.config.update("jax_compilation_cache_dir", os.fspath(cache))
     # Even small programs are worth keeping: a resumed run then starts within a second.

@@ -12,6 +12,15 @@ TINY = {"body": {"nodes": 8}, "task": {"steps": 20}}
 pytestmark = pytest.mark.filterwarnings("ignore")
 
 
+@pytest.fixture(autouse=True)
+def lenient():
+    """QDax broadcasts silently; other tests of this process may have forbidden it."""
+    import jax
+
+    with jax.numpy_rank_promotion("allow"):
+        yield
+
+
 def example(name, needs):
     """The module of an example; the test is skipped where its library is missing."""
     if importlib.util.find_spec(needs) is None:

@@ -64,15 +64,15 @@ class Backend:
         return self.next_state(state, jnp.asarray(np.where(np.isnan(values), -np.inf, values)))
 
     def to_arrays(self, state: State) -> dict[str, np.ndarray]:
-        """Everything in a state by name, those of species behind `species/`."""
+        """Everything in a state by name, those of species behind `species.`."""
         return _flat(state, "")
 
-    def from_arrays(self, arrays: Mapping[str, np.ndarray]) -> State:
+    def from_arrays(self, arrays: Mapping[str, np.ndarray | Array]) -> State:
         """The state of such arrays; it goes on bit for bit."""
         states = import_module("tensorneat.common")
         named = {name: jnp.asarray(arrays[name]) for name in sorted(arrays)}
-        own = {name: x for name, x in named.items() if "/" not in name}
-        species = {name.split("/")[1]: x for name, x in named.items() if "/" in name}
+        own = {name: x for name, x in named.items() if "." not in name}
+        species = {name.split(".")[1]: x for name, x in named.items() if "." in name}
         return states.State(**own, species=states.State(**species))
 
     def population(self, state: State) -> tuple[CPPN, Bool[np.ndarray, "individual"]]:
@@ -181,5 +181,5 @@ def _flat(state: State, prefix: str) -> dict[str, np.ndarray]:
     for name in sorted(state.registered_keys()):
         value = getattr(state, name)
         nested = hasattr(value, "registered_keys")
-        arrays |= _flat(value, f"{name}/") if nested else {prefix + name: np.asarray(value)}
+        arrays |= _flat(value, f"{name}.") if nested else {prefix + name: np.asarray(value)}
     return arrays

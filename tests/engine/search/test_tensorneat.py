@@ -63,7 +63,7 @@ def test_the_package_is_not_loaded_to_ask_for_it():
 def test_a_state_in_arrays_goes_on_bit_for_bit(backend, grown):
     half, end = grown
     arrays = backend.to_arrays(half)
-    assert {"randkey", "pop_nodes", "pop_conns", "generation", "species/center_nodes"} <= {
+    assert {"randkey", "pop_nodes", "pop_conns", "generation", "species.center_nodes"} <= {
         *arrays
     }
     assert all(array.dtype != object for array in arrays.values())

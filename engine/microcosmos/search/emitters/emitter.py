@@ -5,6 +5,7 @@ from typing import Protocol, runtime_checkable
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Key, PRNGKeyArray, PyTree
 
 from ...genomes import Genotype
@@ -28,6 +29,9 @@ NO_PARENT = -1
 
 Keys = Key[Array, "slot"]
 """A key for each slot."""
+
+Kept = PyTree[Array | np.ndarray]
+"""An emitter's state."""
 
 
 class Children(eqx.Module):
@@ -67,36 +71,36 @@ class Emitter(Protocol):
         """Children a generation."""
         ...
 
-    def init(self, *, key: PRNGKeyArray) -> PyTree[Array]:
+    def init(self, *, key: PRNGKeyArray) -> Kept:
         """Before the first generation."""
         ...
 
     def emit(
         self,
-        state: PyTree[Array],
+        state: Kept,
         archive: Elites,
         counters: Counters,
         generation: Int[Array, ""],
         *,
         keys: Keys,
-    ) -> tuple[Children, PyTree[Array], Counters]:
+    ) -> tuple[Children, Kept, Counters]:
         """Children, with a key for each slot; new genes are numbered by `counters`."""
         ...
 
-    def tell(self, state: PyTree[Array], outcome: Outcome) -> PyTree[Array]:
+    def tell(self, state: Kept, outcome: Outcome) -> Kept:
         """The state once its children are measured and inserted."""
         ...
 
 
 def emit(
     emitters: tuple[Emitter, ...],
-    states: tuple[PyTree[Array], ...],
+    states: tuple[Kept, ...],
     archive: Elites,
     counters: Counters,
     generation: Int[Array, ""],
     *,
     key: PRNGKeyArray,
-) -> tuple[Children, tuple[PyTree[Array], ...], Counters]:
+) -> tuple[Children, tuple[Kept, ...], Counters]:
     """The children of all emitters, one after another, and what the emitters keep of them.
 
     Every slot has a key of its own, derived from the seed, the generation and the slot.
@@ -116,8 +120,8 @@ def emit(
 
 
 def tell(
-    emitters: tuple[Emitter, ...], states: tuple[PyTree[Array], ...], outcome: Outcome
-) -> tuple[PyTree[Array], ...]:
+    emitters: tuple[Emitter, ...], states: tuple[Kept, ...], outcome: Outcome
+) -> tuple[Kept, ...]:
     """Each emitter's state once it has seen what became of its own children."""
     told, first = [], 0
     for emitter, state in zip(emitters, states, strict=True):

@@ -11,7 +11,7 @@ from ..insertion import Elites
 from ..tensorneat import Backend
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
 
-Arrays = dict[str, np.ndarray]
+Arrays = dict[str, np.ndarray] | dict[str, Array]
 
 
 @dataclass(frozen=True)
