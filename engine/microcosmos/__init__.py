@@ -20,6 +20,8 @@ _HOME = {
     "record": "render",
     "audit": "render",
     "check": "render",
+    "gradient": "render",
+    "gradient_health": "render",
     "to_pandas": "archive.frames",
     "to_ribs": "archive.frames",
     "scoring_function": "build",

@@ -56,6 +56,36 @@ def audit(
         raise typer.Exit(1)
 
 
+@app.command()
+def gradient(
+    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    of: Annotated[str, typer.Option(help="Fitness or a feature.")] = "fitness",
+    by: Annotated[
+        list[str] | None,
+        typer.Option(help="genes (default), rest_angle, rest_length, stretch, viscosity ..."),
+    ] = None,
+    starts: Annotated[int, typer.Option(min=1, help="Other starts to compare with.")] = 8,
+    out: Annotated[Path | None, typer.Option(help="Where it is written as JSON too.")] = None,
+) -> None:
+    """How far can the gradient of a creature's fitness, or of a feature, be trusted?"""
+    from ..archive.creature import CreatureError, parse
+    from ..archive.store import write_whole
+    from ..device import prepare
+
+    prepare(cache=CACHE)
+    from ..render import gradient_health
+
+    try:
+        parts = tuple(by or ["genes"])
+        found = gradient_health(parse(file.read_bytes()), of, parts, starts=starts)
+    except (CreatureError, ValueError, OSError) as error:
+        fail(f"{file}: {error}")
+    if out:
+        write_whole(out, json.dumps(found.document(), indent=1).encode())
+    for line in found.lines():
+        print(line)
+
+
 def _check(file: Path) -> None:
     from ..archive.creature import parse
     from ..render import check

@@ -8,7 +8,8 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from .dynamics import Rates, collide, stream
+from .adjoint import collision
+from .dynamics import Rates, stream
 from .lattice import DIRECTIONS, PAIRS, Plane, Populations, Vectors, equilibrium
 
 
@@ -44,7 +45,7 @@ def advance(
     """
     if surroundings.force is not None:
         force = force + surroundings.force[:, None, None]
-    collided = collide(f, rho, momentum, force, rates)
+    collided = collision(f, rho, momentum, force, rates)
     f = stream(collided)
     if surroundings.solid is not None:
         f = _bounce(f, collided, surroundings.solid)

@@ -10,6 +10,8 @@ _HOME = {
     "Check": "checking",
     "check": "checking",
     "audit": "auditing",
+    "gradient": "derivatives",
+    "gradient_health": "derivatives",
     "record": "replay",
     "Replay": "reading",
     "ReplayError": "reading",

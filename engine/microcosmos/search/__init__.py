@@ -1,6 +1,6 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
-from . import cvt, emitters, reevaluation
+from . import cvt, emitters, gradients, reevaluation
 from .blocks import Stopped, evaluate_blocks, never
 from .cells import Axis, Cells, Grid, Voronoi, voronoi
 from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
@@ -19,6 +19,7 @@ from .evaluation import (
     simulate,
 )
 from .features import FEATURES, Seen, motion, observe
+from .health import Health, gradient_health
 from .insertion import Elites, Inserted, clipped, digest, insert, insert_program, no_elites
 from .strokes import STROKE_FEATURES, Conditions, Watched, impulse, stroke_program, swim, watch
 
@@ -38,6 +39,7 @@ __all__ = [
     "Evaluation",
     "Goal",
     "Grid",
+    "Health",
     "Inserted",
     "Outcome",
     "Seen",
@@ -53,6 +55,8 @@ __all__ = [
     "emitters",
     "evaluate",
     "evaluate_blocks",
+    "gradient_health",
+    "gradients",
     "impulse",
     "insert",
     "insert_program",

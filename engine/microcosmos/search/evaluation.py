@@ -23,6 +23,8 @@ from .features import FEATURES, Seen, motion, observe
 STATUSES = ("ok", "non-finite", "supersonic")
 """Why an evaluation counts or does not, by status code."""
 
+Scalar = Float[Array, ""]
+
 Actuator = Genotype | Rest
 """What moves a body: what is inherited, or rest shapes over time."""
 
@@ -69,7 +71,8 @@ def measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
     dtype = seen.centre.dtype
     features = jnp.stack([values[name].astype(dtype) for name in FEATURES])
-    return Evaluation(fitness(task, features), features, status(driven.world, end, features))
+    fitness = fitness_of(task, values["displacement"], values["energy"])
+    return Evaluation(fitness.astype(dtype), features, status(driven.world, end, features))
 
 
 def drive(task: Task, actuator: Actuator) -> Drive:
@@ -80,10 +83,12 @@ def drive(task: Task, actuator: Actuator) -> Drive:
 
 
 def simulate(
-    driven: Drive, see: Callable[[State, Measures], Any] = observe
+    driven: Drive,
+    see: Callable[[State, Measures], Any] = observe,
+    segment: int | None = None,
 ) -> tuple[State, Any]:
     """The state at the end, and what was seen after each step."""
-    go_on = partial(rollout, control=driven.control, remember=driven.remember)
+    go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, see)
 
 
@@ -93,15 +98,14 @@ def motion_of(task: Task, driven: Drive, end: State, seen: Seen) -> dict[str, An
     return motion(driven.world, driven.start, end, seen, length)
 
 
-def fitness(task: Task, features: Float[Array, "feature"]) -> Float[Array, ""]:
+def fitness_of(task: Task, displacement: Scalar, energy: Scalar) -> Scalar:
     """Displacement in cells, collected energy, or both, as the goal weighs them."""
     goal = task.goal
     if goal.energy == 0:
-        return features[FEATURES.index("displacement")]
-    energy = goal.energy * features[FEATURES.index("energy")]
+        return displacement
     if goal.displacement == 0:
-        return energy
-    return goal.displacement * features[FEATURES.index("displacement")] + energy
+        return goal.energy * energy
+    return goal.displacement * displacement + goal.energy * energy
 
 
 def status(world: World, end: State, features: Float[Array, "feature"]) -> Int[Array, ""]:

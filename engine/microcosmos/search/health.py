@@ -1,0 +1,168 @@
+"""How far a gradient can be trusted: against finite differences, over time, from other starts.
+
+A simulation that is differentiable can still have useless gradients: limits cut them, chaos
+makes them grow without bound with the horizon (Metz et al., arXiv:2111.05803).
+"""
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from . import gradients
+from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
+from .reevaluation import Disturbance, Spread, disturbance, moved
+
+STEPS = {"float64": (1e-3, 1e-4, 1e-5, 1e-6), "float32": (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)}
+"""Of the finite differences, as shares of the values' length; the best counts."""
+
+HORIZONS = (1 / 8, 1 / 4, 1 / 2, 1)
+
+Build = Callable[[Any], tuple[Task, Actuator]]
+"""From a precision to the creature in it."""
+
+
+@dataclass(frozen=True)
+class Health:
+    """What was found of the gradient of one measure by some parts."""
+
+    of: str
+    by: tuple[str, ...]
+    value: float
+    errors: dict[str, float]
+    """By precision: how far the slope along the gradient is from finite differences, as a share
+    of it."""
+    norms: dict[int, float]
+    """The gradient's length after so many steps."""
+    sign_agreement: float
+    """Share of the gradient, by size, whose sign is the same from other starts."""
+    cosine: float
+    """Mean cosine between gradients from other starts and the creature's own."""
+    starts: int
+    limited: float
+    """Share of node steps at a limit, where gradients are cut."""
+
+    def document(self) -> dict[str, Any]:
+        """As JSON."""
+        return asdict(self) | {"norms": [[n, norm] for n, norm in self.norms.items()]}
+
+    def lines(self) -> list[str]:
+        """As sentences."""
+        about = f"{self.of} by {', '.join(self.by)}"
+        agrees = [f"{name} {error:.1e}" for name, error in self.errors.items()]
+        grows = [f"{norm:.3g} after {steps} steps" for steps, norm in self.norms.items()]
+        return [
+            f"{about}: {self.value:.6g}",
+            f"error of the slope against finite differences: {', '.join(agrees)}",
+            f"length of the gradient: {', '.join(grows)}",
+            f"from {self.starts} other starts: the same sign for {self.sign_agreement:.0%} of "
+            f"it, cosine {self.cosine:.2f}",
+            f"node steps at a limit, where it is cut: {self.limited:.1%}",
+        ]
+
+
+def gradient_health(
+    build: Build,
+    of: str = "fitness",
+    by: tuple[str, ...] = ("genes",),
+    *,
+    starts: int = 8,
+    seed: int = 0,
+) -> Health:
+    """The report for a creature, `build(dtype)` being its task and what moves it."""
+    errors = {}
+    for precision in STEPS:
+        with jax.enable_x64(precision == "float64"):
+            task, actuator = build(jnp.dtype(precision))
+            errors[precision] = _error(task, actuator, of, by, STEPS[precision])
+    task, actuator = build(jnp.dtype("float32"))
+    values = gradients.parts(task, actuator, by)
+    steps = len(jax.tree.leaves(drive(task, actuator).inputs)[0])
+    norms = {}
+    for share in HORIZONS:
+        horizon = max(1, round(share * steps))
+        _, own = _gradient(task, actuator, of, horizon)(values)
+        norms[horizon] = float(np.linalg.norm(own))
+    others = np.asarray(_from_other_starts(task, actuator, of, starts, seed)(values))
+    found, own = _gradient(task, actuator, of, None)(values)
+    own = np.asarray(own)
+    size = np.abs(own) / max(np.abs(own).sum(), 1e-30)
+    lengths = np.linalg.norm(others, axis=1) * np.linalg.norm(own)
+    driven = drive(task, actuator)
+    end, seen = jax.jit(lambda: simulate(driven))()
+    return Health(
+        of=of,
+        by=by,
+        value=float(found),
+        errors=errors,
+        norms=norms,
+        sign_agreement=float(((np.sign(others) == np.sign(own)) @ size).mean()),
+        cosine=float((others @ own / np.maximum(lengths, 1e-30)).mean()),
+        starts=starts,
+        limited=float(motion_of(task, driven, end, seen)["limited"]),
+    )
+
+
+def _flat(values: gradients.Values) -> Float[Array, "value"]:
+    return jnp.concatenate([values[name].reshape(-1) for name in sorted(values)])
+
+
+def _gradient(task: Task, actuator: Actuator, of: str, horizon: int | None) -> Callable:
+    """From values to the measure and its gradient as one vector."""
+
+    def both(values):
+        def measure(values):
+            return gradients.measures(task, actuator, values, (of,), horizon=horizon)[0]
+
+        found, rows = jax.value_and_grad(measure)(values)
+        return found, _flat(rows)
+
+    return jax.jit(both)
+
+
+def _error(
+    task: Task, actuator: Actuator, of: str, by: tuple[str, ...], sizes: tuple[float, ...]
+) -> float:
+    """The slope along the gradient against central differences of the best size."""
+    values = gradients.parts(task, actuator, by)
+    program = _gradient(task, actuator, of, None)
+    _, own = program(values)
+    length = jnp.linalg.norm(own)
+    direction = own / jnp.maximum(length, 1e-30)
+    unit = jnp.maximum(jnp.linalg.norm(_flat(values)), 1.0)
+
+    def moved_by(size):
+        parts, first = {}, 0
+        for name in sorted(values):
+            count = values[name].size
+            step = direction[first : first + count].reshape(values[name].shape)
+            parts[name] = values[name] + size * unit * step
+            first += count
+        return program(parts)[0]
+
+    slopes = [(moved_by(h) - moved_by(-h)) / (2 * h * unit) for h in sizes]
+    return min(float(abs(slope - length) / jnp.maximum(length, 1e-30)) for slope in slopes)
+
+
+def _from_other_starts(
+    task: Task, actuator: Actuator, of: str, starts: int, seed: int
+) -> Callable:
+    """From values to gradients with other phases, places and directions."""
+    spread = Spread(viscosity=0.0, energy=False)
+    keys = jax.random.split(jax.random.key(seed), starts)
+    size = task.world.size
+    draws = jax.vmap(lambda key: disturbance(spread, size, key=key))(keys)
+
+    def one(values, change: Disturbance):
+        begun = replace(task, phase=change.phase, start=moved(task.start, change))
+
+        def measure(values):
+            return gradients.measures(begun, actuator, values, (of,))[0]
+
+        return _flat(jax.grad(measure)(values))
+
+    return jax.jit(lambda values: mapped(lambda change: one(values, change), draws))

@@ -1,0 +1,73 @@
+"""Derivatives of what is measured against finite differences, for every part of a creature."""
+
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import spec
+from microcosmos.build import build_task
+from microcosmos.search import gradients
+
+STEPS = 200
+OF = ("fitness", "path_length", "bending_effort", "stretching_effort", "power", "symmetry")
+SIZES = (1e-3, 1e-4, 1e-5, 1e-6)
+"""Of finite differences; the best counts: stiffnesses matter little, a path's length bends
+sharply near rest."""
+
+CONTROLS = {
+    "cppn": {"period": 50, "angle_scale": 0.1, "length_scale": 0.05},
+    "direct": {"encoding": "direct", "period": 50},
+}
+
+
+@pytest.fixture(params=CONTROLS)
+def creature(request, float64):
+    """A small swimmer of each encoding in double precision, no limit acting."""
+    scene = spec.Scene.model_validate(
+        {
+            "world": {"width": 24, "height": 24, "viscosity": 0.1},
+            "body": {"nodes": 8},
+            "coupling": {"limits": False},
+            "control": CONTROLS[request.param],
+            "task": {"steps": STEPS},
+        }
+    )
+    task = build_task(scene, float64, room=(8, 12))
+    newcomer = task.encoding.newcomer(key=jax.random.key(3))
+    double = partial(jax.tree.map, lambda x: x.astype(float64) if x.dtype == "f" else x)
+    return task, double(newcomer)
+
+
+def test_derivatives_by_every_part_are_those_of_finite_differences(creature):
+    task, genotype = creature
+    values = gradients.parts(task, genotype)
+    value = jax.jit(lambda v: gradients.measures(task, genotype, v, OF))
+    found, rows = jax.jit(
+        lambda v: gradients.value_and_jacobian(task, genotype, v, OF, segment=15)
+    )(values)
+    np.testing.assert_allclose(found, value(values), rtol=1e-10)
+    random = np.random.default_rng(0)
+    for name, at in values.items():
+        along = jnp.asarray(random.normal(size=at.shape))
+        slope = np.asarray(jnp.tensordot(rows[name], along, along.ndim))
+        scale = np.maximum(np.abs(slope), 1e-4)
+        errors = []
+        for h in SIZES:
+            ahead, behind = (value(values | {name: at + d * along}) for d in (h, -h))
+            errors.append(np.abs(slope - (ahead - behind) / (2 * h)) / scale)
+        error = np.min(errors, axis=0)
+        assert error.max() <= 1e-6, f"{name}: {dict(zip(OF, error.tolist(), strict=True))}"
+        if name not in ("bend", "shear", "stretch"):
+            assert np.abs(slope[0]) > 1e-6, name
+
+
+def test_what_cannot_be_differentiated_is_refused():
+    task = build_task(spec.Scene())
+    genotype = task.encoding.newcomer(key=jax.random.key(0))
+    with pytest.raises(ValueError, match=r"`by` must be of .*, got colour"):
+        gradients.parts(task, genotype, ("colour",))
+    with pytest.raises(ValueError, match=r"`of` must be of .*, got hidden_nodes"):
+        gradients.measures(task, genotype, {}, ("hidden_nodes",))
