@@ -21,7 +21,7 @@ SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL":
 FIGURE = Path(__file__).parents[2] / "docs" / "pictures" / "searches.png"
 HOURS = 3600
 
-console = Console()
+console = Console(width=110)
 
 
 def carry_out(place: Installation, document: dict, title: str) -> dict:

@@ -68,6 +68,7 @@ def _(control: spec.Direct, controls, body, room):
         terms=control.terms,
         plan=build_layout(body) if {"rest_angle", "rest_length"} & set(control.free) else None,
         spread=control.spread,
+        faintest=control.faintest,
     )
 
 

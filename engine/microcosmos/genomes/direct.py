@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 from jaxtyping import Array, PRNGKeyArray
 
 from ..world import State, World
@@ -14,6 +16,9 @@ from .shaping import Plan, shaped, within
 from .vectors import evenly, from_values, to_values
 from .waves import Basis, phases, wave
 
+CONTROL = ("angles", "lengths")
+"""The parts that move the body."""
+
 
 @dataclass(frozen=True)
 class Direct:
@@ -21,7 +26,7 @@ class Direct:
 
     controls: Controls
     parts: Mapping[str, int]
-    """How many genes each part has, in order; the last are `angles` and `lengths`."""
+    """How many genes each part has, in order; the last are `CONTROL`."""
     bounds: Mapping[str, tuple[float, float]]
     """Of the body's free measures."""
     basis: Basis
@@ -30,6 +35,8 @@ class Direct:
     """Needed where rest angles or rest lengths are free."""
     spread: float = 1.0
     """Newcomers' genes lie within ± this."""
+    faintest: float = 1.0
+    """Newcomers' angles and lengths are multiplied by factors from this to 1."""
 
     @property
     def room(self) -> None:
@@ -37,8 +44,17 @@ class Direct:
         return None
 
     def newcomer(self, *, key: PRNGKeyArray) -> Vector:
-        """Every gene evenly drawn."""
-        return evenly(sum(self.parts.values()), self.spread, key=key)
+        """Every gene evenly drawn, then control made fainter."""
+        genes_key, factor_key = jax.random.split(key)
+        genes = evenly(sum(self.parts.values()), self.spread, key=genes_key)
+        factors = self.faintest ** jax.random.uniform(factor_key, (2,))
+        scale = jnp.concatenate(
+            [
+                jnp.full(count, factors[CONTROL.index(name)] if name in CONTROL else 1.0)
+                for name, count in self.parts.items()
+            ]
+        )
+        return Vector(genes.values * scale)
 
     def drive(
         self, world: World, start: State, genotype: Vector, phase: Scalar | None

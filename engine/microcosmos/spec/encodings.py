@@ -81,6 +81,9 @@ class Direct(Actuation, Shaping):
     """Harmonics of the sum, or entries of the table, for every joint and edge."""
     spread: float = Field(default=1.0, gt=0.0, le=1.0)
     """Genes of newcomers lie evenly within ± this; all genes lie within ±1."""
+    faintest: float = Field(default=0.01, gt=0.0, le=1.0)
+    """Newcomers' angles, and lengths, are made fainter by a factor from this to 1, even on a
+    log scale: many independent genes would else come to the same effort in everybody."""
 
     @property
     def inputs(self) -> tuple[str, ...]:

@@ -107,11 +107,18 @@ def test_turns_of_joints_around_a_branch_are_independent():
 
 
 def test_newcomers_differ_and_stay_within_their_spread(grow):
-    task, _ = grow({"nodes": 9}, {}, spread=0.5)
-    keys = jax.random.split(jax.random.key(0), 20)
+    task, _ = grow({"nodes": 9}, {}, spread=0.5, faintest=0.01, **FREE)
+    keys = jax.random.split(jax.random.key(0), 200)
     values = jax.vmap(lambda key: task.encoding.newcomer(key=key).values)(keys)
-    assert 0.4 < np.abs(values).max() <= 0.5
-    assert len(np.unique(np.asarray(values), axis=0)) == 20
+    parts = jax.vmap(task.encoding.divided)(values)
+    assert len(np.unique(np.asarray(values), axis=0)) == 200
+    assert 0.49 < np.abs(parts["rest_angle"]).max() <= 0.5
+    for name in ("angles", "lengths"):
+        # Even on a log scale from 0.5 to 0.005: the mean is in the middle.
+        strongest = np.log(np.abs(parts[name]).max(1))
+        assert abs(strongest.mean() - np.log(0.05)) < 3 * np.log(100) / np.sqrt(12 * 200)
+    strength = [np.log(np.abs(parts[name]).max(1)) for name in ("angles", "lengths")]
+    assert abs(np.corrcoef(*strength)[0, 1]) < 0.25
 
 
 def test_start_shapes_can_be_differentiated(grow):
