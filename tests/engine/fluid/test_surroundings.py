@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from microcosmos import fluid
+from microcosmos.fluid.adjoint import collision
 from microcosmos.fluid.lattice import DIRECTIONS
 
 SIZE = (12, 10)
@@ -43,7 +44,7 @@ def test_empty_surroundings_compile_to_collision_and_streaming_alone(float64):
 
     def plain(f):
         rho, momentum = fluid.density(f), fluid.momentum(f)
-        return fluid.stream(fluid.collide(f, rho, momentum, force, rates))
+        return fluid.stream(collision(f, rho, momentum, force, rates))
 
     def advanced(f):
         rho, momentum = fluid.density(f), fluid.momentum(f)
