@@ -11,16 +11,22 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
+from ..device import compiler_options
+from ..genomes import Drive
+from ..world import State
 from . import gradients
 from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
+from .features import Seen
 from .reevaluation import Disturbance, Spread, disturbance, moved
 
 STEPS = {"float64": (1e-3, 1e-4, 1e-5, 1e-6), "float32": (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)}
 """Of the finite differences, as shares of the values' length; the best counts."""
 
-HORIZONS = (1 / 8, 1 / 4, 1 / 2, 1)
+HORIZONS = (1 / 4, 1 / 2)
+"""Shares of the whole time, which counts too."""
 
 Build = Callable[[Any], tuple[Task, Actuator]]
 """From a precision to the creature in it."""
@@ -74,32 +80,28 @@ def gradient_health(
     seed: int = 0,
 ) -> Health:
     """The report for a creature, `build(dtype)` being its task and what moves it."""
-    errors = {}
-    for precision in STEPS:
-        with jax.enable_x64(precision == "float64"):
-            task, actuator = build(jnp.dtype(precision))
-            errors[precision] = _error(task, actuator, of, by, STEPS[precision])
+    with jax.enable_x64(True):
+        task, actuator = build(jnp.dtype("float64"))
+        values = gradients.parts(task, actuator, by)
+        error = _error(_gradient(task, actuator, of), values, STEPS["float64"])
     task, actuator = build(jnp.dtype("float32"))
-    values = gradients.parts(task, actuator, by)
-    steps = len(jax.tree.leaves(drive(task, actuator).inputs)[0])
+    values, driven = gradients.parts(task, actuator, by), drive(task, actuator)
+    program = _gradient(task, actuator, of)
+    found, own = jax.device_get(program(values))
+    steps = len(jax.tree.leaves(driven.inputs)[0])
     norms = {}
-    for share in HORIZONS:
-        horizon = max(1, round(share * steps))
-        _, own = _gradient(task, actuator, of, horizon)(values)
-        norms[horizon] = float(np.linalg.norm(own))
+    for horizon in (max(1, round(share * steps)) for share in HORIZONS):
+        norms[horizon] = _length(_gradient(task, actuator, of, horizon)(values)[1])
     others = np.asarray(_from_other_starts(task, actuator, of, starts, seed)(values))
-    found, own = _gradient(task, actuator, of, None)(values)
-    own = np.asarray(own)
     size = np.abs(own) / max(np.abs(own).sum(), 1e-30)
-    lengths = np.linalg.norm(others, axis=1) * np.linalg.norm(own)
-    driven = drive(task, actuator)
-    end, seen = jax.jit(lambda: simulate(driven))()
+    lengths = np.linalg.norm(others, axis=1) * _length(own)
+    end, seen = _simulated(driven)
     return Health(
         of=of,
         by=by,
         value=float(found),
-        errors=errors,
-        norms=norms,
+        errors={"float64": error, "float32": _error(program, values, STEPS["float32"])},
+        norms=norms | {steps: _length(own)},
         sign_agreement=float(((np.sign(others) == np.sign(own)) @ size).mean()),
         cosine=float((others @ own / np.maximum(lengths, 1e-30)).mean()),
         starts=starts,
@@ -107,11 +109,21 @@ def gradient_health(
     )
 
 
+def _simulated(driven: Drive) -> tuple[State, Seen]:
+    return jax.jit(lambda: simulate(driven), compiler_options=compiler_options())()
+
+
+def _length(vector: Any) -> float:
+    return float(np.linalg.norm(vector))
+
+
 def _flat(values: gradients.Values) -> Float[Array, "value"]:
-    return jnp.concatenate([values[name].reshape(-1) for name in sorted(values)])
+    return ravel_pytree(values)[0]
 
 
-def _gradient(task: Task, actuator: Actuator, of: str, horizon: int | None) -> Callable:
+def _gradient(
+    task: Task, actuator: Actuator, of: str, horizon: int | None = None
+) -> Callable[[gradients.Values], tuple[Array, Array]]:
     """From values to the measure and its gradient as one vector."""
 
     def both(values):
@@ -121,36 +133,26 @@ def _gradient(task: Task, actuator: Actuator, of: str, horizon: int | None) -> C
         found, rows = jax.value_and_grad(measure)(values)
         return found, _flat(rows)
 
-    return jax.jit(both)
+    return jax.jit(both, compiler_options=compiler_options())
 
 
-def _error(
-    task: Task, actuator: Actuator, of: str, by: tuple[str, ...], sizes: tuple[float, ...]
-) -> float:
+def _error(program: Callable, values: gradients.Values, sizes: tuple[float, ...]) -> float:
     """The slope along the gradient against central differences of the best size."""
-    values = gradients.parts(task, actuator, by)
-    program = _gradient(task, actuator, of, None)
     _, own = program(values)
     length = jnp.linalg.norm(own)
+    flat, whole = ravel_pytree(values)
     direction = own / jnp.maximum(length, 1e-30)
-    unit = jnp.maximum(jnp.linalg.norm(_flat(values)), 1.0)
-
-    def moved_by(size):
-        parts, first = {}, 0
-        for name in sorted(values):
-            count = values[name].size
-            step = direction[first : first + count].reshape(values[name].shape)
-            parts[name] = values[name] + size * unit * step
-            first += count
-        return program(parts)[0]
-
-    slopes = [(moved_by(h) - moved_by(-h)) / (2 * h * unit) for h in sizes]
+    unit = jnp.maximum(jnp.linalg.norm(flat), 1.0)
+    slopes = []
+    for size in sizes:
+        ahead, behind = (program(whole(flat + s * unit * direction))[0] for s in (size, -size))
+        slopes.append((ahead - behind) / (2 * size * unit))
     return min(float(abs(slope - length) / jnp.maximum(length, 1e-30)) for slope in slopes)
 
 
 def _from_other_starts(
     task: Task, actuator: Actuator, of: str, starts: int, seed: int
-) -> Callable:
+) -> Callable[[gradients.Values], Float[Array, "start value"]]:
     """From values to gradients with other phases, places and directions."""
     spread = Spread(viscosity=0.0, energy=False)
     keys = jax.random.split(jax.random.key(seed), starts)
@@ -165,4 +167,7 @@ def _from_other_starts(
 
         return _flat(jax.grad(measure)(values))
 
-    return jax.jit(lambda values: mapped(lambda change: one(values, change), draws))
+    return jax.jit(
+        lambda values: mapped(lambda change: one(values, change), draws),
+        compiler_options=compiler_options(),
+    )
