@@ -14,7 +14,7 @@ import jax
 import neat_python
 from populations import INPUTS, OUTPUTS, Ours, grown
 
-from microcosmos import device, genomes
+from microcosmos import device, genomes, search
 
 POINTS = 64
 HIDDEN = (10, 30)
@@ -67,10 +67,15 @@ def compare(peer: ModuleType | None, size: int, hidden: int, repeats: int, slow:
 
 
 def forward(hidden: int) -> None:
-    """Networks a second on a batch of points."""
+    """Networks a second on a batch of points, as creatures are evaluated."""
     networks, _ = grown(FORWARD, hidden)
     points = jax.random.normal(jax.random.key(1), (INPUTS, POINTS))
-    program = jax.jit(jax.vmap(lambda n: genomes.evaluate(n, points, OUTPUTS)))
+    program = jax.jit(
+        lambda networks: search.mapped(
+            lambda n: genomes.evaluate(n, points, OUTPUTS), networks
+        ),
+        compiler_options=device.compiler_options(),
+    )
     jax.block_until_ready(program(networks))
     seconds = []
     for _ in range(11):

@@ -105,25 +105,22 @@ def evaluate(network: CPPN, inputs: Points, outputs: int) -> Points:
     nodes, given = network.node_used.shape[0], inputs.shape[0]
     weights = matrix(network, inputs.dtype)
     order = jnp.argsort(depths(network), stable=True)
-    # Inputs and unused rows keep what they have; branch 0 does nothing.
+    functions = list(ACTIVATIONS.values())
+    # Inputs and unused rows keep what they have.
     computed = network.node_used & (np.arange(nodes) >= given)
-    branch = jnp.where(computed, network.activation + 1, 0)
-    functions = [lambda values, _: values] + [_assign(f) for f in ACTIVATIONS.values()]
 
     def visit(values, node):
-        gathered = (weights[node], network.bias[node], node)
-        return jax.lax.switch(branch[node], functions, values, gathered), None
+        def value():
+            # A written-out sum: a matrix product may be split differently elsewhere.
+            z = network.bias[node] + jnp.sum(weights[node][:, None] * values, 0)
+            found = jax.lax.switch(network.activation[node], functions, z)
+            return jnp.clip(found, -BOUND, BOUND)
+
+        # All that branches is one row: a branch that held every node's values would copy them.
+        return values.at[node].set(
+            jax.lax.cond(computed[node], value, lambda: values[node])
+        ), None
 
     values = jnp.zeros((nodes, inputs.shape[1]), inputs.dtype).at[:given].set(inputs)
     values, _ = jax.lax.scan(visit, values, order)
     return values[given : given + outputs]
-
-
-def _assign(function):
-    def assign(values, gathered):
-        weights, bias, node = gathered
-        # A written-out sum: a matrix product may be split differently elsewhere.
-        z = bias + jnp.sum(weights[:, None] * values, 0)
-        return values.at[node].set(jnp.clip(function(z), -BOUND, BOUND))
-
-    return assign
