@@ -125,15 +125,14 @@ def _ours(side: int, *, donate: bool) -> Peer:
     kept = [search.no_elites(grid.count, 2, genomes.Vector(jnp.zeros(GENES)))]
 
     def pack(genes: np.ndarray, fitness: np.ndarray, places: np.ndarray) -> search.Elites:
-        rows = search.Elites(
-            occupied=np.ones(ROWS, bool),
-            fitness=fitness,
-            features=places,
-            generation=np.arange(ROWS, dtype=np.int32),
-            slot=np.arange(ROWS, dtype=np.int32),
-            genotypes=genomes.Vector(genes),
+        return search.Elites(
+            occupied=jnp.ones(ROWS, bool),
+            fitness=jnp.asarray(fitness),
+            features=jnp.asarray(places),
+            generation=jnp.arange(ROWS, dtype=jnp.int32),
+            slot=jnp.arange(ROWS, dtype=jnp.int32),
+            genotypes=genomes.Vector(jnp.asarray(genes)),
         )
-        return jax.device_put(rows)
 
     def add(rows: search.Elites) -> object:
         kept[0], inserted = insert(kept[0], rows, grid)

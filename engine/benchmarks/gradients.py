@@ -22,6 +22,7 @@ from microcosmos.search import gradients
 SIZES = ((64, 32), (128, 128))
 """Cells along a side, and nodes."""
 STEPS, REPEATS = 200, 5
+ROOM = (8, 8)
 
 
 def main() -> None:
@@ -40,7 +41,8 @@ def compare(size: int, nodes: int) -> None:
         }
     )
     task = build.build_task(scene)
-    creature = task.encoding.newcomer(key=jax.random.key(0))
+    encoding = build.build_encoding(scene, ROOM)
+    creature = encoding.newcomer(key=jax.random.key(0))
     values = gradients.parts(task, creature, ("genes", "viscosity"))
     few = isqrt(STEPS)
 
