@@ -9,7 +9,7 @@ from redis import Redis
 from redis.backoff import ExponentialBackoff
 from redis.retry import Retry
 from rq import Queue
-from rq.exceptions import NoSuchJobError
+from rq.exceptions import InvalidJobOperation, NoSuchJobError
 from rq.job import Job, JobStatus
 from rq.registry import clean_registries
 from rq.results import Result
@@ -107,7 +107,9 @@ class Jobs:
             for execution in executions.get_execution_ids():
                 self.redis.zrem(job.started_job_registry.key, f"{job_id}:{execution}")
             self.redis.delete(executions.key)
-            job.delete()
+            # A job that ends at this moment deletes itself.
+            with suppress(InvalidJobOperation):
+                job.delete()
 
     def runs_at_hand(self) -> set[str]:
         """Jobs of runs that wait in the queue or that a worker has taken."""
