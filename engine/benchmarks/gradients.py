@@ -17,7 +17,7 @@ from rich.table import Table
 
 from microcosmos import build, device, fluid, spec
 from microcosmos.fluid import surroundings
-from microcosmos.search import gradients
+from microcosmos.search import folding, gradients
 
 SIZES = ((64, 32), (128, 128))
 """Cells along a side, and nodes."""
@@ -29,6 +29,7 @@ def main() -> None:
     device.prepare()
     for size, nodes in SIZES:
         compare(size, nodes)
+    fold()
 
 
 def compare(size: int, nodes: int) -> None:
@@ -78,6 +79,35 @@ def compare(size: int, nodes: int) -> None:
         median = statistics.median(seconds[name])
         memory = program.memory_analysis().temp_size_in_bytes / 2**20
         table.add_row(name, f"{1e3 * median:.0f}", f"{median / first:.1f}", f"{memory:.0f}")
+    Console().print(table)
+
+
+def fold() -> None:
+    """A row for an update of one filament of the presets `digits` and `digits-fluid`."""
+    presets = {preset.name: preset.spec for preset in spec.EXPERIMENTS["folding"].presets}
+    few = {"memory": 0.1, "updates": 1}
+    ways = {
+        "without a fluid": (presets["digits"], {}, surroundings.collision),
+        "in a fluid, autodiff": (presets["digits-fluid"], {}, fluid.collide),
+        "in a fluid": (presets["digits-fluid"], {}, surroundings.collision),
+        "in a fluid, in segments": (presets["digits-fluid"], few, surroundings.collision),
+    }
+    table = Table("", "s", "MiB", title="One update of 1,000 nodes through 250 steps")
+    for name, (chosen, changes, collision) in ways.items():
+        assert isinstance(chosen, spec.Folding)
+        chosen = chosen.model_copy(update=changes)
+        descent = build.build_descent(chosen)
+        first = folding.start(descent, build.build_pictures(chosen)[:1])
+        program = compiled(
+            lambda block, d=descent: folding.update_block(d, block), first, collision
+        )
+        seconds = []
+        for _ in range(3):
+            began = time.perf_counter()
+            jax.block_until_ready(program(first))
+            seconds.append(time.perf_counter() - began)
+        memory = program.memory_analysis().temp_size_in_bytes / 2**20
+        table.add_row(name, f"{statistics.median(seconds):.2f}", f"{memory:.0f}")
     Console().print(table)
 
 

@@ -11,11 +11,15 @@ from .version import VERSION as __version__
 
 _HOME = {
     "EXPERIMENTS": "spec",
+    "Folding": "spec",
     "Gaits": "spec",
+    "Neuroevolution": "spec",
     "QualityDiversity": "spec",
+    "Refinement": "spec",
     "Scaling": "spec",
     "parse": "spec",
     "evolve": "local",
+    "refine": "local",
     "prepare": "device",
     "record": "render",
     "audit": "render",

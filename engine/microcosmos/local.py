@@ -2,7 +2,7 @@
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ from .archive.store import write_whole
 from .build import build
 from .experiments import Experiment, Report, Stopped
 from .search import never
-from .spec import Spec
+from .spec import Archive, Refinement, Spec
 
 
 def evolve(
@@ -45,6 +45,24 @@ def evolve(
         pass
     keep(experiment, state, archive)
     return experiment.done(state)
+
+
+def refine(
+    file: Mapping[str, Any], archive: Archive | None = None, **options: Any
+) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """A creature made fitter by gradient steps within its cell of `archive`, and each step.
+
+    `options` are those of `spec.Refinement`. The new creature file has the old one as its
+    parent. Raises `ValueError` for a file that is not sound.
+    """
+    chosen = Refinement(creature=dict(file), archive=archive or Archive(), **options)
+    experiment = build(chosen)
+    state = experiment.init()
+    while not experiment.done(state):
+        state, _ = experiment.advance(state)
+    refined = experiment.best(state)
+    assert refined is not None
+    return refined, [dict(row.values) for row in state.table.rows]
 
 
 def keep(experiment: Experiment, state: Any, archive: Path) -> None:

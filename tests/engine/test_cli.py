@@ -102,3 +102,51 @@ def test_a_picture_of_an_unknown_kind_is_refused(run, tmp_path):
     (tmp_path / "creature.replay").write_bytes(b"nothing")
     text = finished(run("figure", "creature.replay", "creature.bmp"), code=2)
     assert ".mp4" in text
+
+
+def test_a_filament_folds_into_a_packed_picture_and_is_drawn(run, tmp_path):
+    packed = json.loads(finished(run("picture", "--text", "o", "--name", "a ring")))
+    assert packed["name"] == "a ring"
+    spec = {
+        "experiment": "folding",
+        "targets": [packed],
+        "world": {"width": 24, "height": 24, "fluid": False},
+        "body": {"builder": "walk", "nodes": 24},
+        "steps": 10,
+        "size": 16,
+        "updates": 3,
+    }
+    (tmp_path / "ring.json").write_text(json.dumps(spec))
+    assert "Done" in finished(run("evolve", "ring.json"))
+    assert "ring.svg" in finished(run("figure", "ring.h5", "ring.svg"))
+    assert "a ring" in (tmp_path / "ring.svg").read_text()
+    assert json.loads((tmp_path / "ring.best.json").read_text())["measured"] is None
+    text = finished(run("picture"), code=2)
+    assert "FILE or --text" in text
+
+
+def test_mnist_is_fetched_verified_and_not_fetched_twice(tmp_path, monkeypatch):
+    from hashlib import md5
+
+    import httpx
+    from typer.testing import CliRunner
+
+    from microcosmos.cli import app, pictures
+
+    served, asked = {"a": b"images", "b": b"broken"}, []
+
+    def get(url, **_):
+        asked.append(url)
+        return httpx.Response(200, content=served[url[-1]], request=httpx.Request("GET", url))
+
+    monkeypatch.setattr(httpx, "get", get)
+    digest = md5(b"images", usedforsecurity=False).hexdigest()
+    monkeypatch.setattr(pictures, "MNIST_FILES", {"a": digest})
+    command = ["data", "mnist", str(tmp_path / "mnist")]
+    for _ in range(2):
+        assert CliRunner().invoke(app, command).exit_code == 0
+    assert asked == [pictures.MNIST + "a"]
+    assert (tmp_path / "mnist" / "a").read_bytes() == b"images"
+    monkeypatch.setattr(pictures, "MNIST_FILES", {"b": digest})
+    assert CliRunner().invoke(app, command).exit_code == 2
+    assert not (tmp_path / "mnist" / "b").exists()

@@ -21,7 +21,7 @@ def lenient():
         yield
 
 
-def example(name, needs):
+def example(name, needs="jax"):
     """The module of an example; the test is skipped where its library is missing."""
     if importlib.util.find_spec(needs) is None:
         pytest.skip(f"{needs} is not installed: make peers")
@@ -52,3 +52,18 @@ def test_pyribs_draws_our_archive(tmp_path):
     search = {"generations": 2, "batch": 4, "block": 4}
     picture = example("ribs_heatmap", "ribs").main(tmp_path, **TINY, search=search)
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_stiffness_is_recovered_within_a_hundredth_from_how_a_filament_straightens():
+    module = example("stiffness")
+    assert abs(module.main() / module.TRUE - 1) < 0.01
+
+
+def test_a_gait_is_designed_for_a_path():
+    found = example("path").main(steps=40, updates=6)
+    assert found[-1] < found[0]
+
+
+def test_a_rest_shape_is_designed_for_a_viscosity():
+    ((before, after),) = example("rest_shape").main((0.5,), steps=60, updates=2).values()
+    assert after > before

@@ -2,7 +2,7 @@
 
 Four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
-one; and creatures that sense and collect energy.
+one; creatures that sense and collect energy; and searches with derivatives and without.
 """
 
 import random
@@ -15,10 +15,11 @@ from comparison import METHODS, SEEDS, compare, draw, sinusoidal, spec
 from drive import Installation, interrupt, kill_job, pause_and_resume, stop_worker
 from foraging import forage
 from rich.console import Console
+from slopes import compare_slopes
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
-FIGURE = Path(__file__).parents[2] / "docs" / "pictures" / "searches.png"
+PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
 HOURS = 3600
 
 console = Console(width=110)
@@ -52,25 +53,48 @@ def disturb(place: Installation, undisturbed: bytes) -> bool:
     return same
 
 
-def main() -> None:
+def searches(place: Installation) -> bool:
+    """Whether searches are as far ahead of random search as they have to be, and a disturbed
+    run ends as an undisturbed one."""
+    runs = {
+        name: [carry_out(place, spec(s, name), f"{name}, seed {s}") for s in SEEDS]
+        for name in METHODS
+    }
+    good = compare(runs, console)
+    draw(runs, PICTURES / "searches.png")
+    good &= disturb(place, place.archive(runs["MAP-Elites, NEAT"][0]["id"]))
+    sinusoidal(place, runs, console)
+    return good
+
+
+def foraging(place: Installation) -> bool:
+    """Whether creatures that sense energy collect more of it."""
+    return forage(place, carry_out, console)
+
+
+def slopes(place: Installation) -> bool:
+    """Searches with derivatives and without: printed, whoever wins."""
+    compare_slopes(place, carry_out, console, PICTURES / "slopes.png")
+    return True
+
+
+PARTS = {"searches": searches, "foraging": foraging, "slopes": slopes}
+
+
+def main(names: list[str]) -> None:
+    """All parts, or those of the names."""
+    if unknown := set(names) - PARTS.keys():
+        sys.exit(f"parts must be of {', '.join(PARTS)}, got {', '.join(sorted(unknown))}")
     with tempfile.TemporaryDirectory() as folder:
         place = Installation(Path(folder) / "data", SETTINGS)
         place.start()
         try:
-            runs = {
-                name: [carry_out(place, spec(s, name), f"{name}, seed {s}") for s in SEEDS]
-                for name in METHODS
-            }
-            good = compare(runs, console)
-            draw(runs, FIGURE)
-            good &= disturb(place, place.archive(runs["MAP-Elites, NEAT"][0]["id"]))
-            sinusoidal(place, runs, console)
-            good &= forage(place, carry_out, console)
+            good = [PARTS[name](place) for name in names or PARTS]
         finally:
             place.end()
             place.close()
-    sys.exit(not good)
+    sys.exit(not all(good))
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

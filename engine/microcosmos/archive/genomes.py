@@ -91,6 +91,23 @@ class Weights(Vector):
         _refuse_other_length(self.values, self.control, body)
 
 
+class Fold(Part):
+    """The rest angle of every joint and the rest length of every edge."""
+
+    encoding: Literal["fold"]
+    control: spec.Fold
+    values: str = Field(max_length=8 * MOST_GENES)
+    """Base64 of float32: rad that are added to the body's angles, then what
+    `control.lengths` makes of its lengths."""
+
+    def refuse_other_length(self, body: Body) -> None:
+        """A number for each joint and edge."""
+        whole = spec.shape(body)
+        needed, found = len(whole.joints) + len(whole.edges), len(decode(self.values))
+        if found != needed:
+            raise ValueError(f"`genome.values` must hold {needed} numbers, got {found}")
+
+
 class Stroke(Gait):
     """A hand-made gait in the place of genes."""
 

@@ -5,7 +5,7 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from ..spec import Body, Coupling, Gait, Part, Scene, Task, World
-from .genomes import CPPN, Direct, Grown, Stroke, Weights
+from .genomes import CPPN, Direct, Fold, Grown, Stroke, Weights
 
 
 class PlacedWorld(World):
@@ -18,7 +18,7 @@ class Identity(Part):
     """Everything that a creature is."""
 
     format: Literal["microcosmos-creature/1"]
-    genome: CPPN | Direct | Weights | Grown | Stroke = Field(discriminator="encoding")
+    genome: CPPN | Direct | Weights | Grown | Stroke | Fold = Field(discriminator="encoding")
     world: PlacedWorld
     body: Body
     task: Task
@@ -26,7 +26,7 @@ class Identity(Part):
     @model_validator(mode="after")
     def check_fit(self) -> Self:
         scene = self.scene
-        if isinstance(self.genome, Direct | Weights):
+        if isinstance(self.genome, Direct | Weights | Fold):
             self.genome.refuse_other_length(scene.body)
         return self
 

@@ -20,6 +20,8 @@ def read_table(data: bytes) -> Table:
     tree, attributes = load(data)
     loop = tree.get("loop", {})
     if "rows" not in loop:
-        raise ValueError("a table is needed, as sweeps and measurements have; got an archive")
+        raise ValueError(
+            "a table is needed, as sweeps, measurements and foldings have; got an archive"
+        )
     experiment = json.loads(attributes["spec"])["experiment"]
     return Table(experiment, json.loads(bytes(loop["rows"])))

@@ -13,6 +13,7 @@ from .network import from_graph, graph
 from .refine import Refined, subdivided
 from .shape import from_edges
 from .unfolding import Unfolded, drawn, unfolded
+from .walk import walk
 
 __all__ = [
     "MIN_GAP",
@@ -37,4 +38,5 @@ __all__ = [
     "together",
     "tree",
     "unfolded",
+    "walk",
 ]

@@ -23,7 +23,7 @@ def together(bodies: Sequence[Body]) -> Body:
     if not bodies:
         raise ValueError("`bodies` must hold at least one body, got none.")
     arrays = {}
-    for name in (f.name for f in fields(Body)):
+    for name in (f.name for f in fields(Body) if f.name != "crossing"):
         parts = [getattr(body, name) for body in bodies]
         arrays[name] = np.concatenate(parts)
         if name in NUMBERED:
@@ -31,7 +31,7 @@ def together(bodies: Sequence[Body]) -> Body:
             arrays[name] = arrays[name] + _offsets(sizes, parts)[:, None]
     counts = [body.count for body in bodies]
     arrays["member"] = arrays["member"] + _offsets(counts, [b.member for b in bodies])
-    return Body(**arrays)
+    return Body(**arrays, crossing=any(body.crossing for body in bodies))
 
 
 def _offsets(sizes: list[int], parts: list[np.ndarray]) -> np.ndarray:

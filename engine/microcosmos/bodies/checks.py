@@ -1,6 +1,7 @@
 """What makes arrays a body, and what keeps a body inside its world."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -23,14 +24,15 @@ SHAPES = {
 WHOLE = ("edges", "joints", "member")
 
 
-def refuse_malformed(arrays: Mapping[str, np.ndarray]) -> None:
+def refuse_malformed(arrays: Mapping[str, Any]) -> None:
     """Raise `ValueError` with the reason where `arrays` do not describe a body."""
     _refuse_shapes(arrays)
     _refuse_values(arrays)
     _refuse_members(arrays["member"])
     _refuse_edges(arrays["edges"], arrays["positions"], arrays["member"])
     _refuse_joints(arrays["joints"], arrays["edges"])
-    refuse_crowding(arrays["positions"])
+    if not arrays["crossing"]:
+        refuse_crowding(arrays["positions"])
 
 
 def refuse_crowding(positions: np.ndarray) -> None:

@@ -30,6 +30,9 @@ class Body:
     member: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
     """(node,) the creature that a node belongs to, ascending from 0; one if left out."""
 
+    crossing: bool = False
+    """Whether filaments may lie upon each other, nearer than the fluid tells nodes apart."""
+
     def __post_init__(self):
         if not len(self.member):
             object.__setattr__(self, "member", np.zeros(len(self.positions), int))

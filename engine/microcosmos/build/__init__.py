@@ -4,6 +4,7 @@ from .creatures import build_block, build_point, build_stroke_block, frame
 from .emitters import build_emitters, build_rates
 from .encodings import build_controls, build_encoding
 from .experiments import build, build_plan
+from .folding import build_descent, build_pictures
 from .niches import build_axes, build_niches
 from .peers import scoring_function, to_repertoire
 from .scene import (
@@ -23,12 +24,14 @@ __all__ = [
     "build_block",
     "build_controls",
     "build_crowd",
+    "build_descent",
     "build_emitters",
     "build_encoding",
     "build_energy",
     "build_gaits",
     "build_limits",
     "build_niches",
+    "build_pictures",
     "build_plan",
     "build_point",
     "build_rates",

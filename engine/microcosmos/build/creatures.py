@@ -25,7 +25,7 @@ def frame(scene: spec.Scene) -> dict[str, Any]:
     }
 
 
-def _genome(control: spec.Controller | spec.Gait) -> dict[str, Any]:
+def _genome(control: spec.Controller | spec.Gait | spec.Fold) -> dict[str, Any]:
     if isinstance(control, spec.Gait):
         return {"encoding": "gait", **spec.identity(control)}
     told: dict[str, Any] = {"encoding": control.encoding, "control": spec.identity(control)}

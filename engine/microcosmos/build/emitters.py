@@ -79,6 +79,29 @@ def _(emitter: words.CmaMeEmitter, slots, chosen, encoding):
     return qdax.cma_me(slots, encoding.newcomer, niches, step=emitter.step, emitters=asked)
 
 
+@_build.register
+def _(emitter: words.LamarckianEmitter, slots, chosen, encoding):
+    rates, inputs = build_rates(chosen), len(chosen.control.inputs)
+    return emitters.Lamarckian(
+        neat=emitters.Neat(slots, encoding.newcomer, rates, inputs, emitter.crossover),
+        outputs=1 + len(chosen.archive.descriptors),
+        lessons=emitter.lessons,
+        step=emitter.step,
+        diversity=emitter.diversity,
+    )
+
+
+@_build.register
+def _(emitter: words.CmaMegaEmitter, slots, chosen, encoding):
+    return emitters.CmaMega(
+        slots=slots,
+        newcomer=encoding.newcomer,
+        outputs=1 + len(chosen.archive.descriptors),
+        step=emitter.step,
+        rate=emitter.rate,
+    )
+
+
 def build_settings(
     emitter: words.PopulationEmitter, chosen: Search, slots: int
 ) -> neat.Settings:

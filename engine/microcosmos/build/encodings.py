@@ -7,6 +7,7 @@ import numpy as np
 from .. import bodies, genomes, spec
 
 TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
+LENGTHS = {"log": genomes.scaled, "raw": genomes.added}
 BASES = {"fourier": genomes.fourier, "table": genomes.table}
 
 
@@ -15,6 +16,9 @@ def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding
     control, body = scene.control, spec.shape(scene.body)
     if isinstance(control, spec.Gait):
         raise ValueError("`control` must be inherited, got a hand-made gait")
+    if isinstance(control, spec.Fold):
+        lengths = LENGTHS[control.lengths]
+        return genomes.Fold(body.rest_angle, body.rest_length, scene.task.steps, lengths)
     controls = build_controls(control, body, scene.task.steps)
     return _encoding(control, controls, body, room)
 

@@ -8,12 +8,15 @@ import jax
 from .. import device, neat, search, spec
 from ..experiments import Experiment, again
 from ..experiments.evolution import Evolution, Programs
+from ..experiments.learning import Lessons
 from ..experiments.state import Again, Limits, Plan
 from ..search.emitters.tensorneat import TensorNeat
 from .creatures import build_block, build_disturbed_block, frame
 from .emitters import Search, build_emitters
+from .folding import build_folding
 from .niches import build_niches
-from .scene import build_encoding
+from .refinement import build_refinement
+from .scene import build_encoding, build_task
 from .tables import build_gaits, build_scaling
 
 
@@ -23,7 +26,9 @@ def build(chosen: spec.Spec) -> Experiment:
     raise TypeError(f"`spec` must be an experiment's, got {type(chosen).__name__}")
 
 
+build.register(build_folding)
 build.register(build_gaits)
+build.register(build_refinement)
 build.register(build_scaling)
 
 
@@ -42,8 +47,31 @@ def build_evolution(chosen: Search) -> Evolution:
         insert=search.insert_program(),
         tell=compiled(lambda states, told: search.emitters.tell(emitters, states, told)),
         forget=jax.jit(search.reevaluation.forget),
+        lessons=build_lessons(chosen, emitters),
     )
     return Evolution(plan, programs, build_repeats(chosen, plan))
+
+
+def build_lessons(
+    chosen: Search, emitters: tuple[search.Emitter, ...]
+) -> tuple[Lessons | None, ...]:
+    """What the children of each emitter learn, where they do."""
+    pairs = zip(chosen.emitters, emitters, strict=True)
+    task = build_task(chosen.scene, room=room_of(chosen))
+    descriptors = tuple(axis.name for axis in chosen.archive.descriptors)
+
+    def lessons(words: spec.Emitter, emitter: search.Emitter) -> Lessons | None:
+        if not isinstance(emitter, search.emitters.Learner):
+            return None
+        segment, options = getattr(words, "segment", None), device.compiler_options()
+        return Lessons(
+            number=emitter.lessons,
+            asks=jax.jit(emitter.asks),
+            slopes=search.slopes_program(task, descriptors, segment, options),
+            learn=jax.jit(emitter.learn),
+        )
+
+    return tuple(lessons(words, emitter) for words, emitter in pairs)
 
 
 def build_repeats(chosen: Search, plan: Plan) -> again.Programs | None:

@@ -54,7 +54,23 @@ def build_task(
     encoding = None if gait else build_encoding(scene, room or ROOM)
     displacement, energy = GOALS[scene.task.fitness]
     goal = search.Goal(displacement, energy * scene.task.energy_weight)
-    return search.Task(place, start, encoding, goal, reach(body))
+    return search.Task(
+        place,
+        start,
+        encoding,
+        goal,
+        reach(body),
+        placements=build_placements(scene.world),
+    )
+
+
+def build_placements(place: spec.World) -> jnp.ndarray | None:
+    """How far the energy is moved in each world of a creature, where there are several."""
+    energy, size = place.energy, (place.width, place.height)
+    if energy is None or energy.placements == 1:
+        return None
+    shifts = fields.placements(size, energy.placements, energy.seed)
+    return jnp.asarray(shifts, jnp.int32)
 
 
 def build_world(
@@ -76,6 +92,7 @@ def build_world(
             layers=form.layers,
             kernel=KERNELS[form.kernel],
             magic=MAGIC[place.magic],
+            fluid=place.fluid,
         ),
         limits=build_limits(form, place.viscosity, dtype),
         nu_c=_scalar(form.nu_c, dtype),

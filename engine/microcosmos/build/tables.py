@@ -73,6 +73,7 @@ def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:
 
 def _sperm(scene: spec.Scene, joints: int, bend: float) -> float:
     coupling = scene.coupling
+    assert isinstance(scene.control, spec.Gait)
     if coupling.nu_c is not None:
         bend = bend / (1 + scene.world.viscosity / coupling.nu_c)
     slowest = units.relaxation(joints, bend, coupling.constraint_iterations)

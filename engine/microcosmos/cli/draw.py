@@ -19,7 +19,7 @@ def figure(
         typer.Argument(help=".png, .gif or .mp4 of a creature; .png, .svg or .pdf of a run."),
     ],
 ) -> None:
-    """A picture or a film of a creature or its replay; the figure of a sweep or of scaling."""
+    """A picture or a film of a creature or its replay; the figure of a run with a table."""
     try:
         _draw(file, out)
     except (ValueError, RuntimeError, ImportError, OSError) as error:
@@ -31,11 +31,9 @@ def _draw(file: Path, out: Path) -> None:
     """A creature file is simulated first; the file of a run holds its table."""
     data = file.read_bytes()
     if data[:8] == HDF5:
-        from ..archive.table import read_table
         from ..render import figures
 
-        table = read_table(data)
-        figures.save(figures.of(table), out)
+        figures.save(figures.of(data), out)
         return
     from ..render import export
 

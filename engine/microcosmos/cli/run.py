@@ -47,14 +47,14 @@ def evolve(
         fail(f"the run needs about {need.memory_bytes:,} bytes of memory; there are {memory:,}")
     prepare(cache=CACHE)
     console.print(f"{need.evaluations:,} evaluations on {device_kind()} into {path}")
-    if not _evolve(chosen, path, checkpoint_seconds, other_device):
+    if not carry_on(chosen, path, checkpoint_seconds, other_device):
         console.print(f"Stopped. The same command goes on from {path}.")
         raise typer.Exit(130)
     best = path.with_suffix(".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
 
 
-def _evolve(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: bool) -> bool:
+def carry_on(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: bool) -> bool:
     """Carry the run on behind a progress bar; the first Ctrl-C asks it to stop."""
     from .. import experiments, local
 

@@ -31,12 +31,12 @@ def _parse(path: Path) -> Spec:
     try:
         return parse(json.loads(path.read_bytes()))
     except ValidationError as error:
-        fail("\n".join(f"{path}: {_said(found)}" for found in error.errors()))
+        fail("\n".join(f"{path}: {said(found)}" for found in error.errors()))
     except (ValueError, RecursionError, OSError) as error:
         fail(f"{path}: {error}")
 
 
-def _said(error: Mapping[str, Any]) -> str:
+def said(error: Mapping[str, Any]) -> str:
     """The field, what was needed and what came, on one line."""
     field = field_path(error["loc"])
     needed = str(error["msg"]).removeprefix("Value error, ")

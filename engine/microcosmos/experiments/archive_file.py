@@ -57,7 +57,7 @@ def save(plan: Plan, state: State) -> bytes:
             **_clock(plan, state),
             "counters": _columns(state.counters),
             "kin": state.kin,
-            "emitters": _leaves(state.emitters),
+            "emitters": leaves(state.emitters),
         },
     }
     return file.dump(tree, _attributes(plan, state))
@@ -93,7 +93,7 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         niches=_niches(plan, archive),
         elites=jax.tree.map(lambda none, x: none.at[cells].set(x), state.elites, rows),
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
-        emitters=_filled(state.emitters, loop["emitters"]),
+        emitters=filled(state.emitters, loop["emitters"]),
         kin=loop["kin"],
         repeats=_placed(state.repeats, cells, archive["repeats"]),
         creatures=creatures,
@@ -183,16 +183,16 @@ def _columns(module: eqx.Module) -> dict[str, Any]:
     return dict(vars(module))
 
 
-def _leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:
+def leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:
     """Arrays of any tree by the way to them."""
     found = jax.tree_util.tree_leaves_with_path(tree)
     return {_way(path): np.asarray(leaf) for path, leaf in found}
 
 
-def _filled(tree: PyTree[Array], leaves: dict[str, np.ndarray]) -> PyTree[Array]:
-    """A tree of the same form with the arrays that `_leaves` wrote."""
+def filled(tree: PyTree[Array], arrays: dict[str, np.ndarray]) -> PyTree[Array]:
+    """A tree of the same form with the arrays that `leaves` wrote."""
     return jax.tree_util.tree_map_with_path(
-        lambda path, old: jnp.asarray(leaves[_way(path)], old.dtype), tree
+        lambda path, old: jnp.asarray(arrays[_way(path)], old.dtype), tree
     )
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from .. import neat, search
 from ..genomes import Genotype
 from . import again, archive_file, lineage
+from .learning import Lessons, teach
 from .report import Report
 from .state import CURVES, ENDS, KEPT, Diverged, Plan, State, start
 
@@ -29,6 +30,8 @@ class Programs:
     insert: Callable[..., tuple[search.Elites, search.Inserted]]
     tell: Callable[[tuple, search.Outcome], tuple]
     forget: Callable[..., search.reevaluation.Repeats]
+    lessons: tuple[Lessons | None, ...]
+    """Of each emitter, where its children learn before they live."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,14 @@ class Evolution:
             state.emitters, state.elites, state.counters, jnp.asarray(state.generation)
         )
         children, began = jax.device_get(children), time.monotonic()
+        children, emitters, taught = teach(
+            programs.lessons,
+            tuple(emitter.slots for emitter in self.plan.emitters),
+            children,
+            emitters,
+            block=self.plan.block,
+            stop=stop,
+        )
         evaluation = search.evaluate_blocks(
             programs.evaluate_block, children.genotypes, block=self.plan.block, stop=stop
         )
@@ -80,7 +91,7 @@ class Evolution:
         state = replace(
             state,
             generation=state.generation + 1,
-            evaluations=state.evaluations + len(evaluation.fitness),
+            evaluations=state.evaluations + taught.simulated + len(evaluation.fitness),
             diverged=state.diverged + int(np.count_nonzero(evaluation.status)),
             elites=elites,
             counters=counters,
@@ -102,7 +113,8 @@ class Evolution:
             corrected = again.figures(self.repeats, state)
         row = np.array([*_figures(state), clipped, *corrected])
         state = replace(state, curves=np.concatenate([state.curves, row[None]]))
-        return state, _report(self.plan, state, news.elites, state.device_seconds - spent)
+        report = _report(self.plan, state, news.elites, state.device_seconds - spent)
+        return state, replace(report, summary={**(report.summary or {}), **taught.told()})
 
     def creature(self, state: State, cell: int) -> dict[str, Any]:
         """The creature file of a cell's elite."""

@@ -30,8 +30,11 @@ class Table:
         return replace(self, generation=self.generation + 1, rows=self.rows + rows)
 
 
-def save(spec: str, table: Table) -> bytes:
-    """Rows as columns, numbers as float64, words as bytes; identities as one JSON text."""
+def save(spec: str, table: Table, arrays: file.Tree | None = None) -> bytes:
+    """Rows as columns, numbers as float64, words as bytes; identities as one JSON text.
+
+    `arrays` are groups of the file beside these.
+    """
     rows = table.rows
     names = list(rows[0].values) if rows else []
     whole = [
@@ -40,6 +43,7 @@ def save(spec: str, table: Table) -> bytes:
         for row in rows
     ]
     tree = {
+        **(arrays or {}),
         "table": {name: _column([row.values[name] for row in rows]) for name in names},
         "loop": {
             "generation": np.int64(table.generation),

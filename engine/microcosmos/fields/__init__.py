@@ -1,6 +1,7 @@
-"""Scalar fields on the grid: steric repulsion and energy."""
+"""Scalar fields on the grid: steric repulsion, energy, and how densely nodes lie."""
 
-from .energy import Energy, Packets, collect, diffuse, packets
+from .density import saturated, splat, unsaturated
+from .energy import Energy, Packets, collect, diffuse, packets, placements
 from .steric import Steric, binomial, capped, gaussian
 
 __all__ = [
@@ -13,4 +14,8 @@ __all__ = [
     "diffuse",
     "gaussian",
     "packets",
+    "placements",
+    "saturated",
+    "splat",
+    "unsaturated",
 ]

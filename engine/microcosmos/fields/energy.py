@@ -47,6 +47,13 @@ def packets(size: tuple[int, int], what: Packets) -> np.ndarray:
     return what.amplitude * np.einsum("px,py->xy", *planes)
 
 
+def placements(size: tuple[int, int], count: int, seed: int) -> np.ndarray:
+    """(placement, 2) cells by which all packets are moved in each of `count` worlds, the first
+    of which stays as it is."""
+    drawn = np.random.default_rng([seed, 1]).integers(0, size, (count - 1, 2))
+    return np.concatenate([np.zeros((1, 2), int), drawn])
+
+
 def diffuse(field: Plane, diffusion: Float[Array, ""]) -> Plane:
     """One explicit step of diffusion; the sum over the box stays."""
     around = sum(jnp.roll(field, shift, axis) for axis in (0, 1) for shift in (-1, 1))

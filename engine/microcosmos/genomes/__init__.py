@@ -5,6 +5,7 @@ from .cppn import ACTIVATIONS, CPPN, depths, evaluate, minimal
 from .development import OUTPUTS, Controls, develop, linear, respond, sine_cosine
 from .direct import Direct
 from .encoding import Drive, Encoding
+from .fold import Fold, added, scaled
 from .genes import empty, from_genes, take, to_genes
 from .genotype import Genotype, Vector, words
 from .grown import Grown
@@ -23,12 +24,14 @@ __all__ = [
     "Direct",
     "Drive",
     "Encoding",
+    "Fold",
     "Genotype",
     "Grown",
     "Layers",
     "Plan",
     "Vector",
     "Weights",
+    "added",
     "advance",
     "depths",
     "develop",
@@ -41,6 +44,7 @@ __all__ = [
     "minimal",
     "phases",
     "respond",
+    "scaled",
     "sine_cosine",
     "table",
     "take",

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from ..archive.table import Table
-from .needed import needed
+from ..archive.table import read_table
+from ..needed import needed
 from .scaling import scaling
 from .sweep import sweep
 
@@ -18,15 +18,21 @@ UNDATED = {
 """What is left out of each kind of file, so that the same figure gives the same bytes."""
 
 
-def of(table: Table) -> Any:
-    """The figure of a run's table. Raises `ValueError` where it has none."""
+def of(data: bytes) -> Any:
+    """The figure of a run's file. Raises `ValueError` where it has none."""
+    table = read_table(data)
     if table.experiment == "gaits":
         return sweep(table.rows)
     if table.experiment == "scaling":
         from ..experiments.scaling import summary  # Which loads JAX.
 
         return scaling(table.rows, summary(table.rows))
-    raise ValueError(f"`experiment` must be gaits or scaling, got {table.experiment!r}.")
+    if table.experiment == "folding":
+        from .folds import folds  # Which simulates the filaments.
+
+        return folds(data)
+    needed = "gaits, scaling or folding"
+    raise ValueError(f"`experiment` must be {needed}, got {table.experiment!r}.")
 
 
 def save(figure: Any, path: str | Path) -> None:

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from ..needed import needed
 from .frames import frame
-from .needed import needed
 from .reading import Replay
 
 ENCODER = "libx264"

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .needed import needed
+from ..needed import needed
 
 Row = Mapping[str, Any]
 """Names and values, flat, as an experiment reports them."""

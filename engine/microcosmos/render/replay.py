@@ -15,12 +15,14 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
 from .. import search, world
 from ..archive import creature
 from ..build import build_encoding, build_stroke, build_task
 from ..device import device_kind
 from ..fluid import vorticity
+from ..genomes import Drive
 from ..spec import Gait, Scene, shape
 from ..spec.estimate import simulation
 
@@ -154,6 +156,8 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
             lambda first, rest: jnp.concatenate([first[None], rest]), frame(driven.start), shown
         )
         values = search.motion_of(task, driven, end, seen)
+        if task.placements is not None:
+            values = _mean_motion(task, driven)
         if task.encoding is not None:
             values["hidden_nodes"], values["connections"] = task.encoding.size(actuator)
         there = driven.world.present
@@ -161,6 +165,17 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
         return positions, curl, values, everybody if there is None else there
 
     return jax.jit(run)
+
+
+def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
+    """What is measured on the mean over all placements of energy; the first one is shown."""
+
+    def motion(shift: Array) -> dict[str, Any]:
+        moved = search.elsewhere(driven, shift)
+        return search.motion_of(task, moved, *search.simulate(moved))
+
+    found = jax.lax.map(motion, task.placements)
+    return jax.tree.map(lambda x: jnp.mean(x, 0), found)
 
 
 def _pack(header: Mapping[str, Any], positions: np.ndarray, curl: np.ndarray) -> bytes:

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from ..needed import needed
 from .frames import frame, frame_number, theme_of
-from .needed import needed
 from .reading import Replay
 
 GAP = 8

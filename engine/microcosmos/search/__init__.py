@@ -1,9 +1,9 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
-from . import cvt, emitters, gradients, reevaluation
+from . import cvt, emitters, folding, gradients, reevaluation
 from .blocks import Stopped, evaluate_blocks, never
 from .cells import Axis, Cells, Grid, Voronoi, voronoi
-from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
+from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome, Slopes
 from .evaluation import (
     STATUSES,
     Actuator,
@@ -12,6 +12,7 @@ from .evaluation import (
     Task,
     block_program,
     drive,
+    elsewhere,
     evaluate,
     mapped,
     measured,
@@ -21,6 +22,7 @@ from .evaluation import (
 from .features import FEATURES, Seen, motion, observe
 from .health import Health, gradient_health
 from .insertion import Elites, Inserted, clipped, digest, insert, insert_program, no_elites
+from .slopes import slopes, slopes_program
 from .strokes import STROKE_FEATURES, Conditions, Watched, impulse, stroke_program, swim, watch
 
 __all__ = [
@@ -43,6 +45,7 @@ __all__ = [
     "Inserted",
     "Outcome",
     "Seen",
+    "Slopes",
     "Stopped",
     "Task",
     "Voronoi",
@@ -52,9 +55,11 @@ __all__ = [
     "cvt",
     "digest",
     "drive",
+    "elsewhere",
     "emitters",
     "evaluate",
     "evaluate_blocks",
+    "folding",
     "gradient_health",
     "gradients",
     "impulse",
@@ -69,6 +74,8 @@ __all__ = [
     "observe",
     "reevaluation",
     "simulate",
+    "slopes",
+    "slopes_program",
     "stroke_program",
     "swim",
     "voronoi",

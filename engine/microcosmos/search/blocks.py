@@ -2,13 +2,13 @@
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import TypeVar
 
 import jax
 import numpy as np
 from jaxtyping import PyTree
 
-from .evaluation import Evaluation
+Found = TypeVar("Found")
 
 
 class Stopped(Exception):
@@ -21,12 +21,12 @@ def never() -> bool:
 
 
 def evaluate_blocks(
-    program: Callable[[Any], Evaluation],
+    program: Callable[[PyTree], Found],
     items: PyTree[np.ndarray],
     *,
     block: int,
     stop: Callable[[], bool] = never,
-) -> Evaluation:
+) -> Found:
     """Evaluate networks (or other items) of NumPy arrays, their number first.
 
     The last block is padded with its first item.
@@ -35,8 +35,8 @@ def evaluate_blocks(
     where it says so.
     """
     devices = jax.local_devices()
-    flying: deque[Evaluation] = deque()
-    landed: list[Evaluation] = []
+    flying: deque[Found] = deque()
+    landed: list[Found] = []
     count = len(jax.tree.leaves(items)[0])
     for number, start in enumerate(range(0, count, block)):
         if stop():
@@ -47,5 +47,5 @@ def evaluate_blocks(
         rows = np.where(rows < count, rows, start)
         part = jax.tree.map(lambda x, rows=rows: x[rows], items)
         flying.append(program(jax.device_put(part, devices[number % len(devices)])))
-    landed += [jax.device_get(evaluation) for evaluation in flying]
+    landed += [jax.device_get(one) for one in flying]
     return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *landed)

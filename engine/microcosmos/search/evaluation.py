@@ -6,6 +6,7 @@ slot, neighbours or device, a creature goes through this same program.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -55,6 +56,9 @@ class Task(eqx.Module):
     """How far the body reaches, in cells: the length in the Reynolds number."""
     phase: Float[Array, ""] | None = None
     """How far a periodic timer is ahead, in rad."""
+    placements: Int[Array, "placement 2"] | None = None
+    """Cells by which the energy is moved in each of the worlds in which a creature is measured;
+    None: there is one, as it is."""
 
 
 def evaluate(task: Task, genotype: Genotype) -> Evaluation:
@@ -63,7 +67,24 @@ def evaluate(task: Task, genotype: Genotype) -> Evaluation:
 
 
 def measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
-    """Simulate what a genotype has become, and measure it."""
+    """Simulate what a genotype has become, and measure it: means over all placements."""
+    if task.placements is None:
+        return _measured(task, genotype, driven)
+    found = jax.lax.map(
+        lambda shift: _measured(task, genotype, elsewhere(driven, shift)), task.placements
+    )
+    means = jnp.mean(found.fitness), jnp.mean(found.features, 0)
+    return Evaluation(*means, jnp.max(found.status))
+
+
+def elsewhere(driven: Drive, shift: Int[Array, "2"]) -> Drive:
+    """The same with the energy moved by so many cells."""
+    assert driven.start.energy is not None
+    energy = jnp.roll(driven.start.energy, shift, (0, 1))
+    return replace(driven, start=replace(driven.start, energy=energy))
+
+
+def _measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     if task.encoding is None:
         raise ValueError("`task.encoding` must say what the genotype means; got None.")
     end, seen = simulate(driven)

@@ -16,7 +16,16 @@ from jaxtyping import Array, Float
 from ..filaments import Rest
 from ..genomes import CPPN, Drive, Vector
 from ..world import State, World
-from .evaluation import Actuator, Task, drive, fitness_of, mapped, motion_of, simulate
+from .evaluation import (
+    Actuator,
+    Task,
+    drive,
+    elsewhere,
+    fitness_of,
+    mapped,
+    motion_of,
+    simulate,
+)
 
 PARTS = ("genes", "rest_angle", "rest_length", "stretch", "shear", "bend", "viscosity")
 """What a derivative can be taken by."""
@@ -45,7 +54,7 @@ def parts(task: Task, actuator: Actuator, names: tuple[str, ...] = PARTS) -> Val
         "viscosity": task.world.viscosity,
     }
     if not isinstance(actuator, Rest):
-        found["genes"] = _genes(actuator).astype(dtype)
+        found["genes"] = genes_of(actuator).astype(dtype)
     unknown = [name for name in names if name not in found]
     if unknown:
         raise ValueError(f"`by` must be of {', '.join(found)}, got {', '.join(unknown)}")
@@ -63,7 +72,7 @@ def changed(task: Task, actuator: Actuator, values: Values) -> Drive:
     if "viscosity" in values:
         world = replace(world, viscosity=values["viscosity"])
     if "genes" in values:
-        actuator = _with_genes(actuator, values["genes"])
+        actuator = with_genes(actuator, values["genes"])
     driven = drive(replace(task, world=world), actuator)
     if not {"rest_angle", "rest_length"} & values.keys():
         return driven
@@ -92,9 +101,18 @@ def measures(
     driven = changed(task, actuator, values)
     if horizon is not None:
         driven = replace(driven, inputs=jax.tree.map(lambda x: x[:horizon], driven.inputs))
-    end, seen = simulate(driven, segment=segment)
-    found = motion_of(task, driven, end, seen)
-    found["fitness"] = fitness_of(task, found["displacement"], found["energy"])
+
+    def measure(driven: Drive) -> dict[str, Any]:
+        end, seen = simulate(driven, segment=segment)
+        found = motion_of(task, driven, end, seen)
+        fitness = fitness_of(task, found["displacement"], found["energy"])
+        return {**found, "fitness": fitness}
+
+    if task.placements is None:
+        found = measure(driven)
+    else:
+        worlds = jax.lax.map(lambda x: measure(elsewhere(driven, x)), task.placements)
+        found = jax.tree.map(lambda x: jnp.mean(x, 0), worlds)
     known = [name for name in found if name not in CONSTANT]
     unknown = [name for name in of if name not in known]
     if unknown:
@@ -123,13 +141,15 @@ def value_and_jacobian(
     return found, rows
 
 
-def _genes(actuator: Any) -> Float[Array, "gene"]:
+def genes_of(actuator: Any) -> Float[Array, "gene"]:
+    """The numbers that a derivative by genes is taken by."""
     if isinstance(actuator, Vector):
         return jnp.asarray(actuator.values)
     return jnp.concatenate([jnp.asarray(actuator.weight), jnp.asarray(actuator.bias)])
 
 
-def _with_genes(actuator: Any, genes: Float[Array, "gene"]) -> Any:
+def with_genes(actuator: Any, genes: Float[Array, "gene"]) -> Any:
+    """The same with other numbers."""
     if isinstance(actuator, Vector):
         return Vector(genes)
     assert isinstance(actuator, CPPN)

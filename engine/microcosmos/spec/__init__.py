@@ -9,11 +9,13 @@ from .encodings import Controller, Direct, Free, Grown, Weights, genes, lengthen
 from .estimate import Estimate, estimate
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
 from .fields import Energy, Steric
+from .folding import Digit, Folding, Picture, picture
 from .gaits import FORMS, Gaits
 from .neuroevolution import Neuroevolution
 from .quality_diversity import QualityDiversity
+from .refinement import Refinement
 from .scaling import Scaling
-from .scene import Gait, Scene
+from .scene import Fold, Gait, Scene
 from .search import Archive, Descriptor, Generations, Reevaluation, Search, Stop, Task
 from .world import World
 
@@ -28,11 +30,14 @@ __all__ = [
     "Controller",
     "Coupling",
     "Descriptor",
+    "Digit",
     "Direct",
     "Emitter",
     "Energy",
     "Estimate",
     "Experiment",
+    "Fold",
+    "Folding",
     "Free",
     "Gait",
     "Gaits",
@@ -42,9 +47,11 @@ __all__ = [
     "Known",
     "Neuroevolution",
     "Part",
+    "Picture",
     "Preset",
     "QualityDiversity",
     "Reevaluation",
+    "Refinement",
     "Scaling",
     "Scene",
     "Search",
@@ -60,5 +67,6 @@ __all__ = [
     "identity",
     "lengthening",
     "parse",
+    "picture",
     "shape",
 ]

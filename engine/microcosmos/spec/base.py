@@ -23,10 +23,21 @@ class Part(BaseModel):
 
 
 TAGS: dict[str, tuple[str, ...]] = {
-    "body": ("chain", "ring", "arc", "star", "tree", "polyline", "graph", "known"),
-    "genome": ("cppn", "direct", "weights", "cppn-body", "gait"),
-    "control": ("cppn", "direct", "weights", "cppn-body", "gait"),
-    "emitters": ("random", "neat", "population", "iso+line", "gaussian", "cma-mae", "cma-me"),
+    "body": ("chain", "ring", "arc", "walk", "star", "tree", "polyline", "graph", "known"),
+    "genome": ("cppn", "direct", "weights", "cppn-body", "gait", "fold"),
+    "control": ("cppn", "direct", "weights", "cppn-body", "gait", "fold"),
+    "targets": ("digit", "picture"),
+    "emitters": (
+        "random",
+        "neat",
+        "population",
+        "iso+line",
+        "gaussian",
+        "cma-mae",
+        "cma-me",
+        "lamarckian",
+        "cma-mega",
+    ),
 }
 """Fields that are one of several parts, and what pydantic puts behind them in errors."""
 

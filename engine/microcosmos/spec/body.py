@@ -70,6 +70,20 @@ class Arc(Elastic):
     """Share of the circle that is missing."""
 
 
+class Walk(Elastic):
+    """A filament along a random walk, which may cross itself."""
+
+    builder: Literal["walk"]
+    nodes: int = Field(default=1000, ge=3, le=MOST)
+    """Nodes of the filament."""
+    spacing: float = Field(default=0.4, ge=0.25, le=2.0, json_schema_extra=unit("cells"))
+    """Rest length of an edge."""
+    deviation: float = Field(default=0.3, ge=0.0, le=3.0, json_schema_extra=unit("rad"))
+    """Standard deviation of the angle at each joint."""
+    seed: int = Field(default=3, ge=0, lt=2**32)
+    """Which of many walks it is."""
+
+
 class Star(Elastic):
     """Straight arms from one middle node."""
 
@@ -131,7 +145,17 @@ class Known(Part):
     """Whose body."""
 
 
-NAMES = ("chain", "ring", "arc", "star", "tree", "polyline", "graph", *get_args(Swimmer))
+NAMES = (
+    "chain",
+    "ring",
+    "arc",
+    "walk",
+    "star",
+    "tree",
+    "polyline",
+    "graph",
+    *get_args(Swimmer),
+)
 
 
 def _tag(value: Any) -> Any:
@@ -147,6 +171,7 @@ Body = Annotated[
     Annotated[Chain, Tag("chain")]
     | Annotated[Ring, Tag("ring")]
     | Annotated[Arc, Tag("arc")]
+    | Annotated[Walk, Tag("walk")]
     | Annotated[Star, Tag("star")]
     | Annotated[Tree, Tag("tree")]
     | Annotated[Polyline, Tag("polyline")]

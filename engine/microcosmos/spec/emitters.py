@@ -102,6 +102,40 @@ class PopulationEmitter(Part):
     """Probability that a child has two parents."""
 
 
+class LamarckianEmitter(Part):
+    """NEAT's variation; then children learn by gradients, and pass on what they have learnt."""
+
+    operator: Literal["lamarckian"] = "lamarckian"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+    crossover: Rate = 0.0
+    """Probability that a child has two parents."""
+    lessons: int = Field(default=2, ge=1, le=100)
+    """Steps along the slopes of fitness and descriptors; each takes a simulation forwards and
+    one backwards for every slope, and counts as an evaluation."""
+    step: float = Field(default=0.3, gt=0.0, le=100.0)
+    """Length of a step in the space of weights and biases."""
+    diversity: float = Field(default=1.0, ge=0.0, le=100.0)
+    """Standard deviation of the random weight that each descriptor's slope has beside that of
+    fitness, which has 1; 0: fitness alone."""
+    segment: int | None = Field(default=None, ge=1)
+    """Steps that a gradient keeps in memory at a time, the others done twice; empty: all."""
+
+
+class CmaMegaEmitter(Part):
+    """CMA-MEGA: an evolution strategy over steps along slopes of fitness and descriptors."""
+
+    operator: Literal["cma-mega"] = "cma-mega"
+    share: Share = 1
+    """Its share of the batch, beside the other emitters' shares."""
+    step: float = Field(default=0.5, gt=0.0, le=100.0)
+    """Initial standard deviation of the weights on unit slopes; genes run from −1 to 1."""
+    rate: float = Field(default=1.0, gt=0.0, le=10.0)
+    """How far the solution in the middle follows its best children."""
+    segment: int | None = Field(default=None, ge=1)
+    """Steps that a gradient keeps in memory at a time, the others done twice; empty: all."""
+
+
 Emitter = Annotated[
     RandomEmitter
     | NeatEmitter
@@ -109,16 +143,24 @@ Emitter = Annotated[
     | LineEmitter
     | GaussianEmitter
     | CmaMaeEmitter
-    | CmaMeEmitter,
+    | CmaMeEmitter
+    | LamarckianEmitter
+    | CmaMegaEmitter,
     Field(discriminator="operator"),
 ]
 """One source of children."""
 
-OF_NUMBERS = ("iso+line", "gaussian", "cma-mae", "cma-me")
+OF_NUMBERS = ("iso+line", "gaussian", "cma-mae", "cma-me", "cma-mega")
 """Operators that vary numbers."""
 
-OF_NETWORKS = ("neat", "population")
+OF_NETWORKS = ("neat", "population", "lamarckian")
 """Operators that vary networks."""
+
+BY_SLOPES = ("lamarckian", "cma-mega")
+"""Operators that need derivatives of every descriptor."""
+
+WITHOUT_SLOPES = ("hidden_nodes", "connections", "nodes", "limited")
+"""Features that have none."""
 
 WITH_NUMBERS = ("direct", "weights")
 """Encodings whose genes are numbers; those of the others are networks."""

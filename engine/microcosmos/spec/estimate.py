@@ -5,19 +5,26 @@ from functools import singledispatch
 from math import ceil
 
 from ..bodies.unfolding import MOST as LAID_OUT
+from . import reverse
 from .body import shape
 from .encodings import Controller, Direct, Grown, Weights, genes
 from .experiments import Spec
+from .folding import Folding
 from .gaits import Gaits
 from .neuroevolution import Neuroevolution
 from .quality_diversity import QualityDiversity
+from .refinement import Refinement, parsed
+from .reverse import FLOAT
 from .scaling import Scaling
-from .scene import Gait, Scene
+from .scene import Fold, Gait, Scene
 
-FLOAT = 4
 PLANES = 9
 WINDOW = 16
 """Cells around a node."""
+GRADIENT = 7
+"""How much longer a gradient takes than the simulation alone."""
+MOST_NODES = 64
+"""Of a network whose size is not asked."""
 CHUNK = 2**13
 """Nodes that are worked on at a time."""
 
@@ -54,9 +61,39 @@ def _(spec: QualityDiversity | Neuroevolution) -> Estimate:
     computed = ceil(search.batch / search.block) * search.block * search.generations
     one = simulation(spec.scene, spec.genome.max_nodes)
     return Estimate(
-        memory_bytes=search.block * one + archive + vary + record,
+        memory_bytes=search.block * one + archive + vary + record + slopes(spec),
         evaluations=evaluations,
-        cell_steps=computed * spec.world.width * spec.world.height * spec.task.steps,
+        cell_steps=computed
+        * (spec.world.energy.placements if spec.world.energy else 1)
+        * spec.world.width
+        * spec.world.height
+        * spec.task.steps,
+    )
+
+
+@estimate.register
+def _(spec: Folding) -> Estimate:
+    cells, count = spec.world.width * spec.world.height, len(shape(spec.body).positions)
+    at_once = spec.block * (fluid(cells) + nodes(count * spec.coupling.layers))
+    updates = spec.updates * ceil(len(spec.targets) / spec.block) * spec.block
+    return Estimate(
+        memory_bytes=at_once + spec.gradient_bytes + 64 * FLOAT * count * len(spec.targets),
+        evaluations=spec.updates * len(spec.targets),
+        cell_steps=updates * spec.steps * GRADIENT * (cells if spec.world.fluid else count),
+    )
+
+
+@estimate.register
+def _(spec: Refinement) -> Estimate:
+    from ..archive.creature import scene_of  # Which reads specs itself.
+
+    scene = scene_of(parsed(spec.creature))
+    cells, steps = scene.world.width * scene.world.height, scene.task.steps
+    at_once = spec.block * simulation(scene, MOST_NODES)
+    return Estimate(
+        memory_bytes=at_once + gradient(scene, spec.segment),
+        evaluations=1 + spec.steps * (1 + spec.block),
+        cell_steps=cells * steps * (1 + spec.steps * (GRADIENT + spec.block)),
     )
 
 
@@ -88,6 +125,27 @@ def _(spec: Scaling) -> Estimate:
     )
 
 
+def slopes(spec: QualityDiversity | Neuroevolution) -> int:
+    """Bytes of the gradients that emitters ask for at once."""
+    pairs = zip(spec.emitters, spec.slots, strict=True)
+    asked = {"lamarckian": lambda slots: min(slots, spec.search.block), "cma-mega": lambda _: 1}
+    return max(
+        (
+            asked[one.operator](slots) * gradient(spec.scene, getattr(one, "segment", None))
+            for one, slots in pairs
+            if one.operator in asked
+        ),
+        default=0,
+    )
+
+
+def gradient(scene: Scene, segment: int | None) -> int:
+    """Bytes that one creature's gradient keeps."""
+    count = len(shape(scene.body).positions)
+    step = reverse.of_step(scene.world, scene.coupling, count)
+    return reverse.in_all(scene.task.steps, segment, step, reverse.of_state(scene.world, count))
+
+
 def simulation(scene: Scene, network_nodes: int) -> int:
     """Bytes of one simulated creature."""
     count = len(shape(scene.body).positions)
@@ -100,7 +158,7 @@ def simulation(scene: Scene, network_nodes: int) -> int:
     return fluid(cells) + nodes(count * scene.coupling.layers) + controls
 
 
-def _width(control: Controller | Gait) -> int:
+def _width(control: Controller | Gait | Fold) -> int:
     """Numbers at each node and time that a controller works with, where no network's."""
     if isinstance(control, Direct):
         return control.weights

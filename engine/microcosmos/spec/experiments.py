@@ -7,14 +7,16 @@ from typing import Any, cast
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from . import gaits, neuroevolution, quality_diversity, scaling
+from . import folding, gaits, neuroevolution, quality_diversity, refinement, scaling
 from .base import Part
+from .folding import Folding
 from .gaits import Gaits
 from .neuroevolution import Neuroevolution
 from .quality_diversity import QualityDiversity
+from .refinement import Refinement
 from .scaling import Scaling
 
-Spec = QualityDiversity | Neuroevolution | Gaits | Scaling
+Spec = QualityDiversity | Neuroevolution | Folding | Refinement | Gaits | Scaling
 """Any experiment's spec."""
 
 
@@ -45,6 +47,8 @@ _ALL = (
         "Quality-diversity: the best swimmer of every kind", quality_diversity, QualityDiversity
     ),
     _experiment("Neuroevolution: NEAT, one swimmer", neuroevolution, Neuroevolution),
+    _experiment("Folding: filaments that fold into pictures", folding, Folding),
+    _experiment("Refinement: one creature made fitter by gradients", refinement, Refinement),
     _experiment("Gaits: five known swimmers at every viscosity", gaits, Gaits),
     _experiment("Scaling: wall time against the number of nodes", scaling, Scaling),
 )

@@ -12,7 +12,7 @@ from .emitters import Emitter, refuse_unfit_emitters
 from .encodings import Controller, refuse_cramped
 from .fields import Steric
 from .scene import Scene, refuse_misfit, refuse_senseless
-from .search import Archive, Descriptor, Search, Task
+from .search import Archive, Descriptor, Search, Task, refuse_flat
 from .world import World
 
 
@@ -37,6 +37,7 @@ class QualityDiversity(Part):
         refuse_cramped(self.control, self.genome)
         refuse_senseless(self.world, self.control, self.task)
         refuse_unfit_emitters(self.search.emitters, self.control.encoding)
+        refuse_flat(self.archive, self.search.emitters)
         return self
 
     @property

@@ -1,7 +1,7 @@
 """A creature's scene: the world, body, coupling, controller and task that it means."""
 
 from math import ceil
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -26,6 +26,15 @@ class Gait(Part):
     """Over how many periods the stroke grows from nothing to its full size; 0: at once."""
 
 
+class Fold(Part):
+    """A rest shape that every joint and edge has for life."""
+
+    encoding: Literal["fold"] = "fold"
+    lengths: Literal["log", "raw"] = "log"
+    """Whether what is inherited of a rest length is the logarithm of a factor, which keeps it
+    positive, or cells that are added, as in the paper."""
+
+
 def _kind(value: Any) -> Any:
     """The tag of a controller or of a gait."""
     if isinstance(value, Gait) or (isinstance(value, dict) and "swimmer" in value):
@@ -44,7 +53,8 @@ class Scene(Part):
         | Annotated[Direct, Tag("direct")]
         | Annotated[Weights, Tag("weights")]
         | Annotated[Grown, Tag("cppn-body")]
-        | Annotated[Gait, Tag("gait")],
+        | Annotated[Gait, Tag("gait")]
+        | Annotated[Fold, Tag("fold")],
         Discriminator(_kind),
     ] = Control()
     task: Task = Task()
@@ -52,6 +62,8 @@ class Scene(Part):
     @model_validator(mode="after")
     def check(self) -> Self:
         refuse_senseless(self.world, self.control, self.task)
+        if isinstance(self.control, Fold):  # Which may lie in heaps and reach around the box.
+            return self
         if not isinstance(self.control, Gait):
             refuse_misfit(self.world, self.body, self.control)
             return self
@@ -82,7 +94,7 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
         )
 
 
-def refuse_senseless(world: World, control: Controller | Gait, task: Task) -> None:
+def refuse_senseless(world: World, control: Controller | Gait | Fold, task: Task) -> None:
     """Energy must be there to be sensed or to count."""
     senses = isinstance(control, Sight) and control.sense_energy
     if world.energy is None and (senses or task.fitness != "displacement"):

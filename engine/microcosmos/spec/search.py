@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from . import features
 from .base import LATER, Part, unit
-from .emitters import Emitter, NeatEmitter, slots
+from .emitters import BY_SLOPES, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
 
 
 class Task(Part):
@@ -104,6 +104,22 @@ class Archive(Part):
                 "any number of cells over many descriptors)"
             )
         return self
+
+
+def refuse_flat(archive: Archive, emitters: tuple[Emitter, ...]) -> None:
+    """What learns by gradients needs descriptors that have one."""
+    for emitter in emitters:
+        if emitter.operator in BY_SLOPES:
+            refuse_flat_axes(archive, emitter.operator)
+
+
+def refuse_flat_axes(archive: Archive, purpose: str) -> None:
+    """Descriptors must have derivatives."""
+    flat = [axis.name for axis in archive.descriptors if axis.name in WITHOUT_SLOPES]
+    if flat:
+        raise ValueError(
+            f"`archive.descriptors` must have derivatives for {purpose}, got {flat[0]!r}"
+        )
 
 
 class Stop(Part):

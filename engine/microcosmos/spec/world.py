@@ -21,6 +21,8 @@ class World(Part):
     """Kinematic viscosity ν; the relaxation time is τ = 3 ν + 1/2."""
     magic: Literal["capped", "fixed"] = "capped"
     """Magic parameter Λ of the two relaxation times: 3/16, or at most (τ − 1/2)/2."""
+    fluid: Annotated[bool, LATER] = True
+    """Whether there is a fluid; without it bodies are moved by their constraints alone."""
     steric: Annotated[Steric | None, LATER] = None
     """Repulsion between nodes; empty: filaments pass through each other."""
     energy: Annotated[Energy | None, LATER] = None

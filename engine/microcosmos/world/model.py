@@ -25,6 +25,8 @@ class Form:
     layers: int = 1
     kernel: coupling.Kernel = coupling.PESKIN
     magic: Callable = fluid.capped_magic
+    fluid: bool = True
+    """Whether there is a fluid; without it constraints alone move bodies."""
 
     def __post_init__(self):
         if self.projection is coupling.torque_free and self.theta_feedback == 0:

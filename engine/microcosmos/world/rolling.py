@@ -53,7 +53,7 @@ def rollout(
     whole = steps - steps % segment
 
     def cut(x):
-        return x[:whole].reshape(-1, segment, *x.shape[1:])
+        return x[:whole].reshape(whole // segment, segment, *x.shape[1:])
 
     def joined(many, few):
         return jnp.concatenate([many.reshape(-1, *many.shape[2:]), few])

@@ -27,6 +27,8 @@ class Motion(eqx.Module):
 
 def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
     """One step: the fluid carries the bodies, constraints move them, the fluid answers."""
+    if not world.form.fluid:
+        return step_alone(world, state, rest)
     rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
     at = _windows(world, state)
     velocity = coupling.interpolate(momentum, coupling.divided(at, rho))
@@ -58,6 +60,21 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
     held = _held(motion, forced, groups)
     pushed = Pushed(velocity, forcing, forced.target, motion.target, held)
     return collect(world, end, at), measure(world, end, rest, pushed)
+
+
+def step_alone(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
+    """One step without a fluid: repulsion and constraints move the bodies, nothing answers."""
+    push, drift = repel(world, state.positions)
+    motion = move(world, state, rest, push)
+    positions = state.positions + motion.target + drift
+    if world.present is not None:
+        positions = jnp.where(world.present[:, None], positions, state.positions)
+    end = replace(state, positions=positions, angles=motion.angles)
+    layers = world.form.layers
+    target = coupling.at_points(motion.target, layers)
+    nothing, held = jnp.zeros_like(target), (motion.shortened < 1).astype(positions.dtype)
+    pushed = Pushed(nothing, nothing, target, motion.target, held)
+    return collect(world, end, _windows(world, state)), measure(world, end, rest, pushed)
 
 
 def move(world: World, state: State, rest: filaments.Rest, velocity: Vectors) -> Motion:

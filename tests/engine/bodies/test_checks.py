@@ -65,7 +65,9 @@ def test_a_malformed_body_is_refused_with_the_reason(name):
 
 
 @pytest.mark.fast
-@pytest.mark.parametrize("name", [field.name for field in fields(bodies.Body)])
+@pytest.mark.parametrize(
+    "name", [field.name for field in fields(bodies.Body) if field.name != "crossing"]
+)
 def test_an_array_of_the_wrong_length_is_refused(name):
     body = bodies.chain(6, 1.0)
     longer = np.concatenate([getattr(body, name), getattr(body, name)[-1:]])

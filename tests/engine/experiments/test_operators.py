@@ -17,10 +17,13 @@ TINY = {
     "search": {"generations": 5, "batch": 8, "block": 4},
 }
 NUMBERS = {"experiment": "quality-diversity", "control": {"encoding": "direct", "period": 20}}
+SEARCHED = {"experiment": "quality-diversity", "control": {"period": 20}}
 NETWORKS = {"experiment": "neuroevolution", "control": {"period": 20}}
 
 SEARCHES = {
     "cma-mae": (None, NUMBERS, {"operator": "cma-mae"}),
+    "cma-mega": (None, NUMBERS, {"operator": "cma-mega"}),
+    "lamarckian": (None, SEARCHED, {"operator": "lamarckian", "lessons": 1}),
     "cma-me": ("qdax", NUMBERS, {"operator": "cma-me", "emitters": 2}),
     "tensorneat": ("tensorneat", NETWORKS, {"backend": "tensorneat", "preset": "tensorneat"}),
 }
@@ -46,11 +49,15 @@ def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(experiment):
     state, files = experiment.init(), []
     while not experiment.done(state):
         files.append(experiment.save(state))
-        state, _ = experiment.advance(state)
+        state, report = experiment.advance(state)
     whole = experiment.save(state)
     again = experiment.restore(files[2])
     while not experiment.done(again):
         again, _ = experiment.advance(again)
     assert experiment.save(again) == whole
     assert np.asarray(state.elites.occupied).sum() > 1
-    assert state.evaluations == 40
+    taught = {"cma-mega": 5, "lamarckian": 40}.get(experiment.plan.names[0], 0)
+    assert state.evaluations == 40 + taught
+    if taught:
+        assert report.summary["slopes: sound"] == 1
+        assert report.summary["slopes: length"] > 0

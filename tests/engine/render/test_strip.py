@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from microcosmos.needed import needed
 from microcosmos.render.frames import THEMES, frame
-from microcosmos.render.needed import needed
 from microcosmos.render.strip import GAP, LETTERS, moments, png, strip
 
 pytestmark = pytest.mark.fast

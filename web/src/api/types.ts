@@ -55,9 +55,9 @@ export interface Stroke {
   ramp: number;
 }
 
-/** Genes that are numbers from −1 to 1: a controller itself, or a network's weights. */
+/** Genes that are numbers: a controller itself, a network's weights, or a rest shape. */
 export interface Vector {
-  encoding: "direct" | "weights";
+  encoding: "direct" | "weights" | "fold";
   control: Spec;
   values: string;
 }

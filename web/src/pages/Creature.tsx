@@ -3,7 +3,7 @@
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Spec } from "../api/types";
+import type { Creature, Spec } from "../api/types";
 import { type Replay, decodeReplay } from "../frames/replay";
 import { useFetched } from "../live/fetching";
 import { poll } from "../live/polling";
@@ -16,6 +16,7 @@ import { AuditCard } from "./Audit";
 import { Facts } from "./Facts";
 import { Genome } from "./Genome";
 import { Pictures } from "./Pictures";
+import { Refine } from "./Refine";
 
 interface Props {
   sha: string;
@@ -43,6 +44,7 @@ export function CreaturePage({ sha, query }: Props) {
         </h1>
         {creature && !isFree(creature.identity.world.coupling) && <NotFree />}
         <span class="spring" />
+        {creature && searched(creature) && <Refine creature={creature} run={run} />}
         {creature && <Sharing sha={sha} />}
       </header>
       {error && <p class="banner wrong">{error}</p>}
@@ -60,6 +62,9 @@ export function CreaturePage({ sha, query }: Props) {
     </main>
   );
 }
+
+/** Whether it has genes that evolve, and so a fitness to climb. */
+const searched = ({ identity }: Creature) => !["gait", "fold"].includes(identity.genome.encoding);
 
 function Sharing({ sha }: { sha: string }) {
   const copy = async () => {

@@ -22,7 +22,7 @@ interface Props {
 }
 
 export function Genome({ sha, genome }: Props) {
-  if (genome.encoding === "gait") return null;
+  if (genome.encoding === "gait" || genome.encoding === "fold") return null;
   if ("nodes" in genome) return <Network sha={sha} genes={genome} />;
   return <Numbers genes={genome} />;
 }

@@ -12,11 +12,14 @@ import { formOf } from "../view/form/fields";
 import { SpecForm } from "../view/form/SpecForm";
 import { words } from "../view/format";
 import { Costs } from "../view/Costs";
+import { newKey } from "./key";
 
 const SETTLED_MS = 350;
 
 export function NewRunPage() {
-  const { value: experiments, error } = useExperiments();
+  const { value, error } = useExperiments();
+  // Those without a preset begin elsewhere: a refinement at its creature.
+  const experiments = value?.filter(({ presets }) => presets.length > 0);
   return (
     <main>
       <header class="page-head">
@@ -157,10 +160,4 @@ function useSubmission(spec: Spec) {
 function showFirstError(): void {
   document.querySelector<HTMLElement>("[aria-invalid=true]")?.focus();
   document.querySelector(".spec-form .wrong-text")?.scrollIntoView({ block: "center" });
-}
-
-/** Random enough for a key, on plain HTTP too, where `randomUUID` does not exist. */
-function newKey(): string {
-  const parts = crypto.getRandomValues(new Uint32Array(4));
-  return [...parts].map((part) => part.toString(16).padStart(8, "0")).join("");
 }

@@ -13,6 +13,7 @@ import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
 import { ArchiveRun } from "./ArchiveRun";
 import { Files } from "./Files";
 import { GaitsRun } from "./GaitsRun";
+import { LearningRun } from "./LearningRun";
 import { ScalingRun } from "./ScalingRun";
 import { ON } from "./wishes";
 
@@ -56,12 +57,16 @@ export function RunPage({ id, query }: Props) {
       <Standing run={run} />
       {run.status === "finished" && hasArchive(run) && <p class="quiet ending">{endingOf(run)}</p>}
       {run.experiment === "gaits" && <GaitsRun run={run} query={query} />}
+      {learns(run) && <LearningRun run={run} query={query} />}
       {run.experiment === "scaling" && <ScalingRun run={run} query={query} />}
       {hasArchive(run) && <ArchiveRun run={run} detail={detail} query={query} />}
       <Files run={run} />
     </main>
   );
 }
+
+/** By gradients, from step to step. */
+const learns = (run: Run) => ["folding", "refinement"].includes(run.experiment);
 
 function useTitle(run: Run | undefined): string {
   const experiments = useExperiments().value ?? [];

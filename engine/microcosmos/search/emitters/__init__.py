@@ -2,8 +2,11 @@
 
 from . import population
 from .cma_mae import CmaMae
+from .cma_mega import CmaMega
 from .elites import newcomers
 from .emitter import NO_PARENT, OPERATORS, Children, Emitter, Outcome, emit, tell
+from .lamarckian import Lamarckian
+from .learner import Learner, Slopes
 from .neat import Neat
 from .random import Random
 from .vectors import IsoLine
@@ -13,11 +16,15 @@ __all__ = [
     "OPERATORS",
     "Children",
     "CmaMae",
+    "CmaMega",
     "Emitter",
     "IsoLine",
+    "Lamarckian",
+    "Learner",
     "Neat",
     "Outcome",
     "Random",
+    "Slopes",
     "emit",
     "newcomers",
     "population",

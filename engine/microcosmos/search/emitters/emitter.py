@@ -22,6 +22,8 @@ OPERATORS = (
     "cma-me",
     "cma-mae",
     "tensorneat",
+    "lamarckian",
+    "cma-mega",
 )
 """How a child arose, by operator code."""
 

@@ -19,6 +19,13 @@ export function figuresOf(run: Run): Figure[] {
         ["With warnings", count(told(run, "warned") ?? 0)],
         ["Failed", count(told(run, "failed") ?? run.diverged)],
       ];
+    case "folding":
+      return [["Mean loss", number(told(run, "loss"))]];
+    case "refinement":
+      return [
+        ["Fitness before", number(told(run, "before"))],
+        ["Fitness", number(told(run, "fitness"))],
+      ];
     case "scaling":
       return [
         ["Exponent", number(told(run, "exponent"))],
@@ -45,6 +52,10 @@ export function keyFigureOf(run: Run): Figure {
       // The exponent is of many nodes only, which small measurements do not have.
       if (told(run, "exponent") === null) return ["peak memory", figures["Peak memory"]!];
       return ["exponent", figures["Exponent"]!];
+    case "folding":
+      return ["mean loss", figures["Mean loss"]!];
+    case "refinement":
+      return ["fitness", figures["Fitness"]!];
     case "neuroevolution":
       return ["best fitness", figures["Best fitness"]!];
     default:
@@ -56,7 +67,12 @@ function bytesOf(value: number | null): string {
   return value === null ? number(value) : bytes(value);
 }
 
-const GENERATIONS: Record<string, string> = { gaits: "Strokes", scaling: "Sizes" };
+const GENERATIONS: Record<string, string> = {
+  gaits: "Strokes",
+  scaling: "Sizes",
+  folding: "Updates",
+  refinement: "Steps",
+};
 
 /** What a generation of a run is called. */
 export const generationsOf = (run: Run) => GENERATIONS[run.experiment] ?? "Generation";

@@ -1,0 +1,46 @@
+"""From the spec of a folding to the experiment that carries it out."""
+
+import json
+
+import numpy as np
+
+from .. import device, fields, pictures, search, spec
+from ..experiments import folding
+from .creatures import frame
+from .scene import build_task
+
+DENSITIES = {"saturated": fields.saturated, "raw": fields.unsaturated}
+
+
+def build_folding(chosen: spec.Folding) -> folding.Folding:
+    """Folds, their program compiled when it is first used."""
+    descent = build_descent(chosen)
+    assert descent.task.encoding is not None
+    return folding.Folding(
+        spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
+        names=tuple(target.name for target in chosen.targets),
+        start=search.folding.start(descent, build_pictures(chosen)),
+        program=search.folding.update_program(descent, device.compiler_options()),
+        updates=chosen.updates,
+        block=chosen.block,
+        frame=frame(chosen.scene),
+        encoding=descent.task.encoding,
+        device=device.device_kind(),
+    )
+
+
+def build_descent(chosen: spec.Folding) -> search.folding.Descent:
+    """What an update needs to know of a spec."""
+    return search.folding.Descent(
+        task=build_task(chosen.scene),
+        width=chosen.width,
+        density=DENSITIES[chosen.density],
+        rate=chosen.rate,
+        segment=chosen.segment,
+    )
+
+
+def build_pictures(chosen: spec.Folding) -> np.ndarray:
+    """(fold, x, y) pictures on the lattice."""
+    size = (chosen.world.width, chosen.world.height)
+    return np.stack([pictures.field(one.ink, size, chosen.size) for one in chosen.targets])

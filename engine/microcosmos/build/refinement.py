@@ -1,0 +1,46 @@
+"""From the spec of a refinement to the experiment that carries it out."""
+
+import json
+
+import jax
+import numpy as np
+
+from .. import device, search, spec
+from ..archive import creature
+from ..experiments import refinement
+from ..spec.refinement import parsed
+from .creatures import build_block, frame
+from .niches import build_niches
+from .scene import build_task
+
+
+def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
+    """A refinement, its programs compiled when they are first used."""
+    found = parsed(chosen.creature)
+    scene, room = creature.scene_of(found), creature.room(found)
+    task, names = build_task(scene, room=room), _names(chosen)
+    assert task.encoding is not None
+    options = device.compiler_options()
+    genotype = task.encoding.read(found["identity"]["genome"])
+    return refinement.Refinement(
+        spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
+        genotype=jax.tree.map(lambda x: np.asarray(x)[None], genotype),
+        slopes=search.slopes_program(task, names, chosen.segment, options),
+        evaluate_block=build_block(scene, room),
+        niches=build_niches(chosen.archive),
+        names=names,
+        steps=chosen.steps,
+        length=chosen.length,
+        block=chosen.block,
+        frame=frame(scene),
+        encoding=task.encoding,
+        origin={
+            "name": found["sha256"],
+            "seed": (found["provenance"] or {}).get("seed", 0),
+        },
+        device=device.device_kind(),
+    )
+
+
+def _names(chosen: spec.Refinement) -> tuple[str, ...]:
+    return tuple(axis.name for axis in chosen.archive.descriptors)

@@ -1,0 +1,80 @@
+"""Pictures to fold into."""
+
+from hashlib import md5
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .. import pictures
+from ..archive.store import write_whole
+from ..spec import picture as target
+from .app import app, console, fail
+
+MNIST = "https://ossci-datasets.s3.amazonaws.com/mnist/"
+"""Where PyTorch keeps a copy of LeCun's files."""
+
+MNIST_FILES = {
+    "t10k-images-idx3-ubyte.gz": "9fb629c4189551a2d022fa330f9573f3",
+    "t10k-labels-idx1-ubyte.gz": "ec29112dd5afa0611ce80d1b7f02629c",
+}
+"""The test set and its digests, as torchvision has them."""
+
+data = typer.Typer(help="Data that others have published.", no_args_is_help=True)
+app.add_typer(data, name="data")
+
+
+@app.command()
+def picture(
+    file: Annotated[
+        Path | None, typer.Argument(help="A picture, or images as MNIST has them (IDX).")
+    ] = None,
+    number: Annotated[int | None, typer.Option(help="Which of an IDX file's images.")] = None,
+    text: Annotated[str | None, typer.Option(help="Words, in place of a file.")] = None,
+    font: Annotated[Path | None, typer.Option(help="A font file for the words.")] = None,
+    name: Annotated[str | None, typer.Option(help="What it is called in the run.")] = None,
+) -> None:
+    """A picture as it stands among a folding spec's `targets`, as JSON."""
+    if (file is None) == (text is None):
+        fail("picture needs a FILE or --text, and not both")
+    try:
+        if text is not None:
+            ink, own = pictures.text(text, font), text
+        elif file is not None and number is not None:
+            ink, own = pictures.mnist(file, number), f"{file.name} {number}"
+        else:
+            assert file is not None
+            ink, own = pictures.png(file), file.stem
+        print(target((name or own)[:64], ink).model_dump_json())
+    except (ValueError, ImportError, OSError) as error:
+        fail(str(error))
+
+
+@data.command()
+def mnist(
+    folder: Annotated[Path, typer.Argument(help="Where the files come to lie.")] = Path(
+        "mnist"
+    ),
+) -> None:
+    """Fetch the test images of MNIST and their labels, and verify them."""
+    import httpx
+
+    folder.mkdir(parents=True, exist_ok=True)
+    for file, digest in MNIST_FILES.items():
+        path = folder / file
+        if path.exists() and _digest(path.read_bytes()) == digest:
+            console.print(f"{path} is there")
+            continue
+        try:
+            answer = httpx.get(MNIST + file, follow_redirects=True, timeout=60)
+            answer.raise_for_status()
+        except httpx.HTTPError as error:
+            fail(f"{MNIST + file}: {error}")
+        if (found := _digest(answer.content)) != digest:
+            fail(f"{file} must have the MD5 digest {digest}, got {found}; nothing is kept")
+        write_whole(path, answer.content)
+        console.print(f"{path} is fetched and verified")
+
+
+def _digest(content: bytes) -> str:
+    return md5(content, usedforsecurity=False).hexdigest()

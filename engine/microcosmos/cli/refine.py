@@ -1,0 +1,74 @@
+"""A creature made fitter by gradients."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from pydantic import ValidationError
+
+from ..archive.creature import CreatureError, parse
+from ..spec import Archive, Refinement
+from .app import CACHE, app, console, fail
+from .run import carry_on
+from .specs import read_spec, said
+
+
+@app.command()
+def refine(
+    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    like: Annotated[
+        str | None,
+        typer.Option(help="A spec or preset whose archive's cells count; default: 20 × 20."),
+    ] = None,
+    steps: Annotated[int, typer.Option(min=1)] = 20,
+    length: Annotated[float, typer.Option(help="Of the first step.")] = 0.2,
+    out: Annotated[
+        Path | None, typer.Option(help="The run's file; default: NAME.refined.h5.")
+    ] = None,
+) -> None:
+    """Make a creature fitter by gradient steps that do not leave its cell."""
+    path = out or file.with_suffix("").with_suffix(".refined.h5")
+    try:
+        creature = parse(file.read_bytes())
+        chosen = Refinement(
+            creature=creature,
+            archive=_archive(like),
+            steps=steps,
+            length=length,
+        )
+    except (CreatureError, OSError) as error:
+        fail(f"{file}: {error}")
+    except ValidationError as error:
+        fail("\n".join(f"{file}: {said(found)}" for found in error.errors()))
+    from ..device import prepare
+
+    prepare(cache=CACHE)
+    if not carry_on(chosen, path, 60.0, False):
+        console.print(f"Stopped. The same command goes on from {path}.")
+        raise typer.Exit(130)
+    _tell(path)
+
+
+def _archive(like: str | None) -> Archive:
+    if like is None:
+        return Archive()
+    found = getattr(read_spec(like), "archive", None)
+    if found is None:
+        fail(f"--like needs a spec with an archive, got {like}")
+    return found
+
+
+def _tell(path: Path) -> None:
+    """The creature before and after, side by side."""
+    from ..archive.table import read_table
+
+    rows = read_table(path.read_bytes()).rows
+    before, after = rows[0], rows[-1]
+    print(f"{'':>20}  {'before':>12}  {'after':>12}")
+    for name in before:
+        if before[name] is not None and name != "step":
+            print(f"{name:>20}  {before[name]:>12.6g}  {after[name]:>12.6g}")
+    best = path.with_suffix(".best.json")
+    name = json.loads(best.read_bytes())["sha256"][:12]
+    print(f"{len(rows) - 1} steps into {path}; the creature {name}: {best}")

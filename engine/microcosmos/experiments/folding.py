@@ -1,0 +1,161 @@
+"""Filaments that fold into pictures, each learning its rest shape by gradients."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from .. import search
+from ..archive import file, naming
+from ..genomes import Encoding, Vector
+from ..version import VERSION
+from . import table_file
+from .archive_file import filled, leaves
+from .lineage import identity
+from .report import Report, Row
+from .table_file import Table
+
+
+@dataclass(frozen=True)
+class State:
+    """The folds, and the record of those before."""
+
+    folds: search.folding.Fold
+    losses: np.ndarray
+    """(update, fold) the loss before each update."""
+    table: Table
+    """One row a fold, once all updates are done."""
+
+
+@dataclass(frozen=True)
+class Folding:
+    """Folds, driven by whoever holds them: a generation is one update of all."""
+
+    spec: str
+    """The whole spec as JSON."""
+    names: tuple[str, ...]
+    """What the pictures are called."""
+    start: search.folding.Fold
+    """Before the first update."""
+    program: Callable[[search.folding.Fold], tuple[search.folding.Fold, Any]]
+    updates: int
+    block: int
+    frame: Mapping[str, Any]
+    """The identity of all creatures but for their genes."""
+    encoding: Encoding
+    device: str
+
+    def init(self) -> State:
+        """Before the first update."""
+        losses = np.zeros((0, len(self.names)), np.float32)
+        return State(self.start, losses, Table(0, (), (self.device,)))
+
+    def done(self, state: State) -> bool:
+        """Whether all updates are done."""
+        return state.table.generation >= self.updates
+
+    def generation(self, state: State) -> int:
+        """Updates that are done."""
+        return state.table.generation
+
+    def advance(
+        self, state: State, stop: Callable[[], bool] = search.never
+    ) -> tuple[State, Report]:
+        """One update of all folds, by blocks.
+
+        Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
+        """
+        folds, losses = search.evaluate_blocks(
+            self.program, state.folds, block=self.block, stop=stop
+        )
+        losses = np.concatenate([state.losses, np.asarray(losses)[None]])
+        state = replace(state, folds=folds, losses=losses)
+        last = state.table.generation + 1 == self.updates
+        rows = tuple(self._row(state, i) for i in range(len(self.names))) if last else ()
+        state = replace(state, table=state.table.grown(rows))
+        return state, self._report(state, rows)
+
+    def save(self, state: State) -> bytes:
+        """The file, from which the run can also be taken up again."""
+        folds = state.folds
+        arrays = {
+            "curves": {"loss": state.losses},
+            "folds": {"genes": folds.best, "loss": folds.least, "picture": folds.picture},
+            "next": {"genes": folds.genes, "optimiser": leaves(folds.optimiser)},
+        }
+        return table_file.save(self.spec, state.table, arrays)
+
+    def restore(self, data: bytes, *, other_device: bool = False) -> State:
+        """The state in a file of the same spec; raises `ValueError` or `OtherDevice`."""
+        table = table_file.restore(self.spec, self.device, data, other_device=other_device)
+        tree, _ = file.load(data)
+        try:
+            kept, after = tree["folds"], tree["next"]
+            folds = search.folding.Fold(
+                genes=jnp.asarray(after["genes"]),
+                optimiser=filled(self.start.optimiser, after["optimiser"]),
+                best=jnp.asarray(kept["genes"]),
+                least=jnp.asarray(kept["loss"]),
+                picture=jnp.asarray(kept["picture"]),
+            )
+            return State(jax.device_get(folds), tree["curves"]["loss"], table)
+        except KeyError as error:
+            raise ValueError(
+                f"a folding's file must hold {error}, which is not there"
+            ) from error
+
+    def best(self, state: State) -> dict[str, Any] | None:
+        """The creature file of the fold with the least loss, or None before the last update."""
+        if not state.table.rows:
+            return None
+        row = state.table.rows[int(np.argmin(state.folds.least))]
+        whole = self._identity(state, int(np.argmin(state.folds.least)))
+        return {
+            "identity": whole,
+            "sha256": row.creature,
+            "measured": None,
+            "provenance": dict(row.provenance or {}),
+            "licence": naming.LICENCE,
+        }
+
+    def _identity(self, state: State, fold: int) -> dict[str, Any]:
+        genotype = Vector(jnp.asarray(state.folds.best[fold]))
+        return identity(self.frame, self.encoding, genotype)
+
+    def _row(self, state: State, fold: int) -> Row:
+        course, whole = state.losses[:, fold], self._identity(state, fold)
+        row = {
+            "picture": self.names[fold],
+            "first": _finite(course[0]),
+            "last": _finite(course[-1]),
+            "least": _finite(state.folds.least[fold]),
+            "empty": float(np.mean(np.square(state.folds.picture[fold], dtype=np.float64))),
+            "failed": int(np.count_nonzero(~np.isfinite(course))),
+        }
+        provenance = {
+            "parents": [],
+            "operator": f"folding into {self.names[fold]}",
+            "generation": self.updates,
+            "seed": 0,
+            "version": VERSION,
+        }
+        name, canonical = naming.name(whole), naming.canonical(whole)
+        return Row(row, name, canonical, None, provenance)
+
+    def _report(self, state: State, rows: tuple[Row, ...]) -> Report:
+        now = dict(zip(self.names, state.losses[-1].tolist(), strict=True))
+        return Report(
+            generation=state.table.generation,
+            evaluations=state.losses.size,
+            diverged=int(np.count_nonzero(~np.isfinite(state.losses))),
+            rows=rows,
+            summary={"loss": float(np.mean(state.losses[-1]))}
+            | {f"loss of {name}": value for name, value in now.items()},
+        )
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,29 @@
+"""How densely nodes lie: each splatted onto the lattice as a Gaussian."""
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+Plane = Float[Array, "x y"]
+
+
+def splat(positions: Float[Array, "node 2"], size: tuple[int, int], width: float) -> Plane:
+    """The sum over nodes of exp(−r²/2σ²), σ = `width` cells, in a periodic box.
+
+    Of each node the nearest image alone counts, so that the box must be many widths wide.
+    """
+    planes = []
+    for axis, cells in enumerate(size):
+        away = jnp.arange(cells, dtype=positions.dtype)[None] - positions[:, axis, None]
+        away = away - cells * jnp.round(away / cells)
+        planes.append(jnp.exp(-0.5 * (away / width) ** 2))
+    return planes[0].T @ planes[1]
+
+
+def saturated(density: Plane) -> Plane:
+    """1 − exp(−ρ): the density of what covers a place once or often, from 0 to 1."""
+    return 1 - jnp.exp(-density)
+
+
+def unsaturated(density: Plane) -> Plane:
+    """As it is."""
+    return density

@@ -1,0 +1,18 @@
+"""Pictures that filaments fold into: digits, files and words; JAX-free."""
+
+from .digits import DIGITS, digit
+from .placing import MOST, decoded, encoded, field, fitted
+from .sources import mnist, png, text
+
+__all__ = [
+    "DIGITS",
+    "MOST",
+    "decoded",
+    "digit",
+    "encoded",
+    "field",
+    "fitted",
+    "mnist",
+    "png",
+    "text",
+]

@@ -1,0 +1,136 @@
+"""CMA-MEGA: an evolution strategy over steps along the slopes of fitness and descriptors.
+
+Fontaine and Nikolaidis, NeurIPS 2021, algorithm 2: one solution θ moves; its children are θ and
+random combinations of the unit slopes there, drawn from a distribution that adapts to what
+enters the archive. The distribution is the one of `matrix_adaptation`.
+"""
+
+from dataclasses import dataclass, replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
+
+from ...genomes import Genotype, Vector
+from ...neat import Counters
+from ..insertion import Elites
+from . import matrix_adaptation as es
+from .elites import Newcomer, draw, newcomers
+from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from .learner import Slopes, unit
+
+
+class Ascent(eqx.Module):
+    """What the emitter knows."""
+
+    theta: Float[Array, "gene"]
+    slopes: Float[Array, "output gene"]
+    """At θ, of length 1."""
+    distribution: es.Distribution
+    """Of weights on the slopes."""
+    z: Float[Array, "slot output"]
+    """What the present weights were drawn by."""
+    weights: Float[Array, "slot output"]
+    due: Bool[Array, ""]
+    """Whether the present children are its own: the first ones are newcomers."""
+    restart: Bool[Array, ""]
+    """Whether to begin anew at some elite."""
+
+
+@dataclass(frozen=True)
+class CmaMega:
+    """One θ whose children fill the emitter's slots."""
+
+    slots: int
+    newcomer: Newcomer
+    outputs: int
+    """Fitness and descriptors."""
+    step: float = 0.5
+    """Initial standard deviation of the weights."""
+    rate: float = 1.0
+    """How far θ follows its best children."""
+    lessons: int = 1
+
+    def init(self, *, key: PRNGKeyArray) -> Ascent:
+        """In the middle of all genes; the first elites are newcomers."""
+        theta = jnp.zeros_like(self.newcomer(key=key).values)
+        none = jnp.zeros((self.slots, self.outputs), theta.dtype)
+        return Ascent(
+            theta=theta,
+            slopes=jnp.zeros((self.outputs, theta.shape[0]), theta.dtype),
+            distribution=self._anew(theta),
+            z=none,
+            weights=none,
+            due=jnp.zeros((), bool),
+            restart=jnp.ones((), bool),
+        )
+
+    def emit(
+        self,
+        state: Ascent,
+        archive: Elites,
+        counters: Counters,
+        generation: Int[Array, ""],
+        *,
+        keys: Keys,
+    ) -> tuple[Children, Ascent, Counters]:
+        """θ for every slot until slopes are known; newcomers while the archive is empty."""
+        chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
+        genotypes = archive.genotypes
+        assert isinstance(genotypes, Vector)
+        theta = jnp.where(state.restart, genotypes.values[chosen], state.theta)
+        distribution = jax.tree.map(
+            lambda a, b: jnp.where(state.restart, a, b), self._anew(theta), state.distribution
+        )
+        weights, z = es.draw(distribution, keys=keys)
+        anyone, fresh = jnp.any(archive.occupied), newcomers(self.newcomer, keys)
+        assert isinstance(fresh.genotypes, Vector)
+        children = Children(
+            Vector(jnp.where(anyone, theta[None], fresh.genotypes.values)),
+            jnp.full((self.slots, 2), NO_PARENT, jnp.int32),
+            jnp.where(anyone, OPERATORS.index("cma-mega"), fresh.operator).astype(jnp.int32),
+        )
+        state = replace(
+            state,
+            theta=theta,
+            distribution=distribution,
+            z=z,
+            weights=weights.at[:, 0].set(jnp.abs(weights[:, 0])),
+            due=anyone,
+        )
+        return children, state, counters
+
+    def asks(self, state: Ascent, children: Children) -> Genotype:
+        """Of θ alone."""
+        return Vector(state.theta[None])
+
+    def learn(
+        self, state: Ascent, children: Children, slopes: Slopes
+    ) -> tuple[Children, Ascent]:
+        """Children along the slopes; genes are cut at −1 and 1."""
+        assert isinstance(children.genotypes, Vector)
+        rows = jnp.where(slopes.sound[0], unit(slopes.rows[0]), 0.0)
+        values = jnp.clip(state.theta[None] + state.weights @ rows, -1.0, 1.0)
+        values = jnp.where(state.due, values, children.genotypes.values)
+        return replace(children, genotypes=Vector(values)), replace(state, slopes=rows)
+
+    def tell(self, state: Ascent, outcome: Outcome) -> Ascent:
+        """Rank by what entered, those in empty cells first; move θ and adapt."""
+        gain = jnp.where(outcome.fresh, outcome.fitness, outcome.improvement)
+        gain = jnp.where(outcome.sound, gain, -jnp.inf)
+        order = jnp.lexsort((-gain, ~(outcome.fresh & outcome.entered)))
+        strategy = es.Strategy(self.outputs, self.slots)
+        best = state.weights[order[: len(strategy.weights)]]
+        ahead = jnp.asarray(strategy.weights, best.dtype) @ best @ state.slopes
+        distribution = es.update(state.distribution, state.z, order, strategy)
+        stuck = ~jnp.any(outcome.entered) | es.spent(distribution)
+        return replace(
+            state,
+            theta=jnp.clip(state.theta + self.rate * ahead, -1.0, 1.0),
+            distribution=distribution,
+            restart=stuck | ~state.due,
+        )
+
+    def _anew(self, theta: Float[Array, "gene"]) -> es.Distribution:
+        return es.start(jnp.zeros(self.outputs, theta.dtype), self.step)

@@ -1,0 +1,95 @@
+"""Folding: how far a filament is from a picture at the end of its life, and which way to go.
+
+As in the Microcosmos paper: the loss is the mean squared difference between the density of
+nodes, splatted as Gaussians, and the picture.
+"""
+
+from collections.abc import Callable
+from functools import partial
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from .. import fields
+from ..genomes import Vector
+from .adam import Adam, begin, descend
+from .evaluation import Task, drive, mapped, simulate
+
+Plane = Float[Array, "x y"]
+
+
+class Fold(eqx.Module):
+    """One filament on its way to a picture, or a block of them; all that an update needs."""
+
+    genes: Float[Array, "*block gene"]
+    optimiser: Adam
+    best: Float[Array, "*block gene"]
+    """The genes with the least loss so far."""
+    least: Float[Array, "*block"]
+    picture: Float[Array, "*block x y"]
+
+
+class Descent(eqx.Module):
+    """What an update needs to know besides."""
+
+    task: Task
+    width: float = eqx.field(static=True, default=1.5)
+    """Of a node's Gaussian, in cells."""
+    density: Callable[[Plane], Plane] = eqx.field(static=True, default=fields.saturated)
+    rate: float = eqx.field(static=True, default=0.04)
+    """Adam's."""
+    segment: int | None = eqx.field(static=True, default=None)
+    """Steps that reverse mode keeps at a time; None: all."""
+
+
+def loss(descent: Descent, genes: Float[Array, "gene"], picture: Plane) -> Float[Array, ""]:
+    """The mean squared difference between density and picture at the end."""
+    driven = drive(descent.task, Vector(genes))
+    end, _ = simulate(driven, lambda state, measures: None, segment=descent.segment)
+    found = fields.splat(end.positions, descent.task.world.size, descent.width)
+    return jnp.mean((descent.density(found) - picture) ** 2)
+
+
+def unfolded(descent: Descent, picture: Plane) -> Fold:
+    """Before the first update: the body as it is."""
+    assert descent.task.encoding is not None
+    genes = descent.task.encoding.newcomer(key=jax.random.key(0)).values
+    least = jnp.full((), jnp.inf, genes.dtype)
+    return Fold(genes, begin(genes), genes, least, picture)
+
+
+def update(descent: Descent, fold: Fold) -> tuple[Fold, Float[Array, ""]]:
+    """One step of Adam (Kingma and Ba, ICLR 2015), and the loss before it.
+
+    Where loss or slope are not finite, the next step begins anew from the best genes.
+    """
+    found, slope = jax.value_and_grad(partial(loss, descent))(fold.genes, fold.picture)
+    sound = jnp.isfinite(found) & jnp.all(jnp.isfinite(slope))
+    better = sound & (found < fold.least)
+    best = jnp.where(better, fold.genes, fold.best)
+    change, moved = descend(fold.optimiser, jnp.where(sound, slope, 0.0), descent.rate)
+    genes = jnp.where(sound, fold.genes + change, best)
+    optimiser = jax.tree.map(
+        lambda new, fresh: jnp.where(sound, new, fresh), moved, begin(best)
+    )
+    least = jnp.where(better, found, fold.least)
+    return Fold(genes, optimiser, best, least, fold.picture), found
+
+
+def start(descent: Descent, pictures: Float[np.ndarray, "fold x y"]) -> Fold:
+    """All folds before the first update, as NumPy arrays."""
+    block = jax.vmap(lambda picture: unfolded(descent, picture))(jnp.asarray(pictures))
+    return jax.device_get(block)
+
+
+def update_program(descent: Descent, options: dict) -> Callable[[Fold], tuple[Fold, Array]]:
+    """One compiled program that updates a block of folds."""
+    return jax.jit(partial(update_block, descent), compiler_options=options)
+
+
+def update_block(descent: Descent, block: Fold) -> tuple[Fold, Float[Array, "fold"]]:
+    """One step of each of a block's folds, and the losses before it."""
+    return mapped(partial(update, descent), block)

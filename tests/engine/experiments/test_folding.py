@@ -1,0 +1,184 @@
+"""Folding at a small size: it learns, goes on bit for bit, and shows what it has learnt."""
+
+import json
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from microcosmos import fields, render, search
+from microcosmos.archive import creature
+from microcosmos.archive.table import read_table
+from microcosmos.build import build, build_descent
+from microcosmos.render import figures, read_replay
+from microcosmos.spec import parse
+
+SMALL = {
+    "experiment": "folding",
+    "targets": [{"digit": 1}, {"digit": 3}],
+    "world": {"width": 32, "height": 32, "fluid": False},
+    "body": {"builder": "walk", "nodes": 64, "spacing": 0.5, "deviation": 0.6, "seed": 4},
+    "steps": 60,
+    "size": 20,
+    "width": 1.0,
+    "updates": 20,
+}
+
+
+@pytest.fixture(scope="module")
+def folding():
+    return build(parse(SMALL))
+
+
+@pytest.fixture(scope="module")
+def course(folding):
+    """Files before every update, the last state and all reports."""
+    state, files, reports = folding.init(), [], []
+    while not folding.done(state):
+        files.append(folding.save(state))
+        state, report = folding.advance(state)
+        reports.append(report)
+    return files, state, reports
+
+
+def test_losses_fall_from_update_to_update(course):
+    _, state, reports = course
+    first, least = state.losses[0], state.folds.least
+    assert (least < 0.6 * first).all()
+    assert len(state.losses) == 20
+    assert reports[-1].summary["loss of 3"] == pytest.approx(state.losses[-1, 1])
+    assert reports[-1].evaluations == 40
+
+
+def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(folding, course):
+    files, state, _ = course
+    again = folding.restore(files[7])
+    while not folding.done(again):
+        again, _ = folding.advance(again)
+    assert folding.save(again) == folding.save(state)
+
+
+def test_a_file_of_another_spec_is_refused(course):
+    other = build(parse(SMALL | {"rate": 0.05}))
+    with pytest.raises(ValueError, match="run's own"):
+        other.restore(course[0][3])
+
+
+def test_every_filament_is_a_creature_whose_replay_ends_at_its_loss(course):
+    _, state, _ = course
+    task = build_descent(parse(SMALL)).task
+    for number, row in enumerate(state.table.rows):
+        file = creature.document(json.loads(row.identity), row.measured, row.provenance)
+        assert creature.parse(file)["sha256"] == row.creature
+        replay = read_replay(render.record(file))
+        density = fields.splat(jnp.asarray(replay.positions[-1]), task.world.size, 1.0)
+        loss = np.mean((fields.saturated(density) - state.folds.picture[number]) ** 2)
+        np.testing.assert_allclose(loss, row.values["least"], rtol=1e-3)
+
+
+def test_the_best_is_the_creature_with_the_least_loss(folding, course):
+    _, state, _ = course
+    best = folding.best(state)
+    assert best["sha256"] == state.table.rows[np.argmin(state.folds.least)].creature
+    assert folding.best(folding.init()) is None
+
+
+def test_the_figure_shows_moments_pictures_and_losses(folding, course):
+    _, state, _ = course
+    figure = figures.of(folding.save(state))
+    titles = [axes.get_title() for axes in figure.axes]
+    assert sum(bool(title) for title in titles) == 2
+    assert len(figure.axes) == 2 * 4 + 1
+    losses = figure.axes[-1].get_lines()
+    np.testing.assert_array_equal(losses[1].get_ydata(), state.losses[:, 1])
+    with pytest.raises(ValueError, match="without"):
+        figures.of(folding.save(folding.init()))
+
+
+def test_a_step_that_is_not_finite_begins_anew_from_the_best(folding):
+    fold = jax.tree.map(lambda x: jnp.asarray(x[:1]), folding.start)
+    best = jnp.full_like(fold.genes, 0.01)
+    broken = replace(fold, genes=fold.genes.at[0, 3].set(jnp.inf), best=best)
+    after, loss = folding.program(broken)
+    assert not np.isfinite(loss[0])
+    np.testing.assert_array_equal(after.genes, best)
+    assert all(not np.any(leaf) for leaf in jax.tree.leaves(after.optimiser))
+
+
+def test_the_gradient_of_the_loss_agrees_with_central_differences(float64):
+    descent = build_descent(parse(SMALL | {"steps": 20}))
+    descent = jax.tree.map(
+        lambda x: x.astype(float64) if jnp.issubdtype(x.dtype, jnp.floating) else x, descent
+    )
+    picture = jnp.asarray(np.random.default_rng(0).uniform(size=(32, 32)))
+    genes, way = np.random.default_rng(1).normal(scale=0.05, size=(2, 62 + 63))
+    loss = jax.jit(lambda g: search.folding.loss(descent, g, picture))
+    h = 1e-6
+    difference = (loss(jnp.asarray(genes + h * way)) - loss(jnp.asarray(genes - h * way))) / 2
+    slope = jnp.sum(jax.grad(loss)(jnp.asarray(genes)) * way)
+    np.testing.assert_allclose(slope, difference / h, rtol=1e-6)
+
+
+def test_in_a_fluid_and_in_segments_it_learns_the_same_at_first():
+    place = {"width": 32, "height": 32, "viscosity": 0.16}
+    fluid = SMALL | {"targets": [{"digit": 1}], "world": place, "steps": 40}
+    whole = parse(fluid)
+    few = parse(fluid | {"memory": 0.004})
+    assert whole.segment is None
+    assert 1 < few.segment < 20
+    assert few.gradient_bytes < whole.gradient_bytes / 2
+    losses = []
+    for spec in (whole, few):
+        folding = build(spec)
+        state = folding.init()
+        for _ in range(4):
+            state, _ = folding.advance(state)
+        losses.append(state.losses[:, 0])
+    np.testing.assert_allclose(*losses, rtol=1e-3)
+    assert losses[0][-1] < losses[0][0]
+
+
+@pytest.mark.parametrize(
+    ("change", "needed"),
+    [
+        ({"targets": []}, "at least 1 item"),
+        ({"targets": [{"digit": 3}, {"digit": 3}]}, "names that differ"),
+        ({"targets": [{"digit": 10}]}, "less than or equal to 9"),
+        ({"targets": [{"kind": "film"}]}, "one of digit, picture"),
+        (
+            {
+                "targets": [
+                    {"kind": "picture", "name": "a", "width": 2, "height": 2, "pixels": "AA"}
+                ]
+            },
+            "pixels",
+        ),
+        (
+            {
+                "targets": [
+                    {"kind": "picture", "name": "a", "width": 1, "height": 1, "pixels": "AA=="}
+                ]
+            },
+            "must show something",
+        ),
+        ({"size": 40}, "shorter side of 32, got 40"),
+        ({"world": {"width": 32, "height": 32, "energy": {}}}, "`world.energy` must be empty"),
+        ({"memory": 1e-6}, "`memory` must be at least"),
+        ({"coupling": {"theta_feedback": 0}}, "`projection` must be"),
+    ],
+)
+def test_a_spec_that_cannot_be_carried_out_is_refused(change, needed):
+    with pytest.raises(ValidationError, match=needed):
+        parse(SMALL | change)
+
+
+def test_the_table_has_a_row_for_each_picture(folding, course):
+    _, state, _ = course
+    table = read_table(folding.save(state))
+    assert [row["picture"] for row in table.rows] == ["1", "3"]
+    assert [row["failed"] for row in table.rows] == [0, 0]
+    blank = [row["empty"] for row in table.rows]
+    np.testing.assert_allclose(blank, np.mean(state.folds.picture**2, (1, 2)), rtol=1e-6)

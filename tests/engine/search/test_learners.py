@@ -1,0 +1,148 @@
+"""Emitters that learn by slopes, on functions whose slopes are known."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import neat, search
+from microcosmos.genomes import Vector, minimal
+from microcosmos.search import emitters
+from microcosmos.search.gradients import CONSTANT, genes_of
+from microcosmos.spec.emitters import WITHOUT_SLOPES
+
+GENES, SLOTS, CELLS = 12, 8, 100
+COUNTERS = neat.first_counters(3, 2)
+KEYS = jax.random.split(jax.random.key(7), SLOTS)
+
+
+def mega(**changes):
+    return emitters.CmaMega(
+        slots=SLOTS, newcomer=lambda *, key: Vector(jax.random.uniform(key, (GENES,))),
+        outputs=3, **changes,
+    )  # fmt: skip
+
+
+def archive(genotype, occupied):
+    none = search.no_elites(CELLS, len(search.FEATURES), genotype)
+    first = jax.tree.map(lambda x, one: x.at[0].set(one), none.genotypes, genotype)
+    return replace(none, occupied=none.occupied.at[0].set(occupied), genotypes=first)
+
+
+def outcome(children, fitness, entered):
+    fitness = jnp.asarray(fitness)
+    return search.Outcome(
+        genotypes=children.genotypes,
+        fitness=fitness,
+        features=jnp.zeros((SLOTS, len(search.FEATURES))),
+        sound=jnp.isfinite(fitness),
+        cell=jnp.zeros(SLOTS, jnp.int32),
+        entered=jnp.asarray(entered),
+        fresh=jnp.zeros(SLOTS, bool),
+        improvement=fitness,
+    )
+
+
+def emitted(emitter, state, elites):
+    return emitter.emit(state, elites, COUNTERS, jnp.asarray(1), keys=KEYS)[:2]
+
+
+def slopes(rows, sound=True):
+    return search.Slopes(jnp.asarray(rows, jnp.float32)[None], jnp.asarray([sound]))
+
+
+def test_children_of_cma_mega_are_theta_and_combinations_of_unit_slopes():
+    emitter, theta = mega(), jnp.full(GENES, 0.1)
+    children, state = emitted(emitter, emitter.init(key=KEYS[0]), archive(Vector(theta), True))
+    np.testing.assert_array_equal(emitter.asks(state, children).values, theta[None])
+    rows = np.random.default_rng(0).normal(size=(3, GENES)) * [[10.0], [1.0], [0.1]]
+    children, state = emitter.learn(state, children, slopes(rows))
+    unit = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    expected = np.clip(0.1 + np.asarray(state.weights) @ unit, -1, 1)
+    np.testing.assert_allclose(children.genotypes.values, expected, atol=1e-5)
+    assert (state.weights[:, 0] >= 0).all()
+
+
+def test_cma_mega_begins_with_newcomers_and_then_at_an_elite():
+    emitter = mega()
+    nobody = archive(Vector(jnp.zeros(GENES)), False)
+    children, state = emitted(emitter, emitter.init(key=KEYS[0]), nobody)
+    first = children.genotypes.values
+    children, state = emitter.learn(state, children, slopes(np.ones((3, GENES))))
+    np.testing.assert_array_equal(children.genotypes.values, first)
+    assert not children.operator.any()
+    state = emitter.tell(state, outcome(children, np.zeros(SLOTS), [True] * SLOTS))
+    _, state = emitted(emitter, state, archive(Vector(jnp.full(GENES, 0.3)), True))
+    np.testing.assert_allclose(state.theta, 0.3)
+
+
+def test_cma_mega_climbs_a_sphere():
+    emitter, top = mega(step=0.2), np.linspace(-0.5, 0.5, GENES)
+    state = emitter.init(key=KEYS[0])
+    elites = archive(Vector(jnp.zeros(GENES)), True)
+    best = -np.inf
+    for generation in range(40):
+        keys = jax.random.split(jax.random.key(generation), SLOTS)
+        children, state, _ = emitter.emit(
+            state, elites, COUNTERS, jnp.asarray(generation), keys=keys
+        )
+        way = 2 * (top - np.asarray(state.theta))
+        rows = np.stack([way, *np.eye(GENES)[:2]])
+        children, state = emitter.learn(state, children, slopes(rows))
+        values = np.asarray(children.genotypes.values)
+        fitness = -np.sum((values - top) ** 2, 1)
+        state = emitter.tell(state, outcome(children, fitness, fitness > best))
+        best = max(best, fitness.max())
+        # Without this a step that overshoots would begin anew at the middle for ever.
+        elites = archive(Vector(jnp.asarray(values[np.argmax(fitness)])), True)
+    assert best > -0.02 * np.sum(top**2)
+
+
+def test_cma_mega_begins_anew_where_nothing_enters_and_stays_where_slopes_are_unsound():
+    emitter = mega()
+    elites = archive(Vector(jnp.full(GENES, 0.2)), True)
+    children, state = emitted(emitter, emitter.init(key=KEYS[0]), elites)
+    children, state = emitter.learn(state, children, slopes(np.ones((3, GENES)), sound=False))
+    np.testing.assert_allclose(children.genotypes.values, 0.2, atol=1e-7)
+    state = emitter.tell(state, outcome(children, np.zeros(SLOTS), [False] * SLOTS))
+    assert state.restart
+
+
+@pytest.fixture(scope="module")
+def lamarckian():
+    def newcomer(*, key):
+        return minimal(key, 3, 2, 12, 16)
+
+    varied = emitters.Neat(SLOTS, newcomer, neat.PRESETS["paper"].rates, 3)
+    return emitters.Lamarckian(varied, outputs=3, lessons=2, step=0.25)
+
+
+def test_a_lesson_is_one_step_of_the_given_length_up_the_wished_for_slope(lamarckian):
+    parent = minimal(jax.random.key(1), 3, 2, 12, 16)
+    children, wishes = emitted(lamarckian, lamarckian.init(key=KEYS[0]), archive(parent, True))
+    before = np.asarray(jax.vmap(genes_of)(children.genotypes))
+    rows = np.random.default_rng(1).normal(size=(SLOTS, 3, before.shape[1]))
+    sound = np.arange(SLOTS) != 2
+    told = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(sound))
+    learnt, _ = lamarckian.learn(wishes, children, told)
+    moved = np.asarray(jax.vmap(genes_of)(learnt.genotypes)) - before
+    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 0.25 * sound, atol=1e-4)
+    unit = rows / np.linalg.norm(rows, axis=2, keepdims=True)
+    wished = np.einsum("so,sog->sg", np.asarray(wishes.weights), unit)
+    gain = np.sum(moved * wished, 1)
+    assert (gain[sound] > 0).all()
+    assert np.array_equal(np.asarray(learnt.genotypes.innovation),
+                          np.asarray(children.genotypes.innovation))  # fmt: skip
+    assert {search.OPERATORS[i] for i in np.asarray(children.operator)} == {"lamarckian"}
+
+
+def test_both_are_learners_and_plain_neat_is_not(lamarckian):
+    assert isinstance(lamarckian, emitters.Learner)
+    assert isinstance(mega(), emitters.Learner)
+    assert not isinstance(lamarckian.neat, emitters.Learner)
+
+
+def test_the_spec_knows_which_features_have_no_slope():
+    assert set(WITHOUT_SLOPES) == set(CONSTANT)

@@ -1,0 +1,46 @@
+/** Asks for a creature to be made fitter by gradients, in a run of its own. */
+
+import { useState } from "preact/hooks";
+import * as api from "../api/client";
+import { messageOf } from "../api/problem";
+import type { Creature, Json } from "../api/types";
+import { dispatch } from "../live/live";
+import { tell } from "../live/toasts";
+import { navigate } from "../router";
+import { newKey } from "./key";
+
+interface Props {
+  creature: Creature;
+  /** The run whose cells count, where the creature was reached from one. */
+  run: string | null;
+}
+
+export function Refine({ creature, run }: Props) {
+  const [busy, setBusy] = useState(false);
+  const start = async () => {
+    setBusy(true);
+    try {
+      const archive = run ? (await api.readRun(run)).spec.archive : undefined;
+      const spec = {
+        experiment: "refinement",
+        creature: creature as unknown as Json,
+        ...(archive !== undefined && { archive }),
+      };
+      const made = await api.createRun(spec, newKey());
+      dispatch({ type: "run", run: made });
+      navigate(`/runs/${made.id}`);
+    } catch (error) {
+      tell({ kind: "wrong", text: messageOf(error) });
+      setBusy(false);
+    }
+  };
+  return (
+    <button
+      disabled={busy}
+      onClick={() => void start()}
+      title="Gradient steps towards higher fitness that do not leave its cell"
+    >
+      {busy ? "Starting …" : "Refine"}
+    </button>
+  );
+}

@@ -1,0 +1,64 @@
+/** Runs that learn by gradients: what falls, or rises, from step to step. */
+
+import type { Run } from "../../api/types";
+import type { Curves } from "../../live/curves";
+import { count, number } from "../format";
+import type { Axis, Line } from "../plot/Plot";
+import { fromZero, logAround } from "../plot/scale";
+
+/** Marks of a line; between them nothing would be seen. */
+const MARKS = 120;
+const LOSS = "loss of ";
+
+export interface Course {
+  title: string;
+  x: Axis;
+  y: Axis;
+  lines: Line[];
+}
+
+/** How far a folding's filaments are from their pictures, or how fit a creature has become. */
+export function courseOf(run: Run, curves: Curves): Course {
+  const folds = run.experiment === "folding";
+  const names = Object.keys(curves.summary).filter((name) =>
+    folds ? name.startsWith(LOSS) : name === "fitness",
+  );
+  const lines = names.map((name, k) => lineOf(name.replace(LOSS, ""), curves, name, k));
+  const values = lines.flatMap(({ points }) => points.map(({ y }) => y ?? 0));
+  const write = (value: number) => number(value, 2);
+  const steps = { log: false, low: 0, high: Math.max(1, run.generations) };
+  return {
+    title: folds ? "Loss against updates" : "Fitness against steps",
+    x: { title: folds ? "Update" : "Step", scale: steps, write: count },
+    y: folds
+      ? { title: "Loss", scale: logAround(values), write }
+      : { title: "Fitness", scale: around(values), write },
+    lines,
+  };
+}
+
+function lineOf(name: string, curves: Curves, column: string, k: number): Line {
+  const values = curves.summary[column]!;
+  const every = Math.max(1, Math.ceil(values.length / MARKS));
+  const kept = values.map((_, i) => i).filter((i) => i % every === 0 || i === values.length - 1);
+  return {
+    name,
+    colour: `--series-${1 + (k % 5)}`,
+    ...(k >= 5 && { dash: "6 4" }),
+    points: kept
+      .filter((i) => values[i] !== null)
+      .map((i) => ({
+        x: curves.generation[i]!,
+        y: values[i]!,
+        says: [name, `after ${count(curves.generation[i]!)}`, number(values[i]!)],
+      })),
+  };
+}
+
+/** Room for values that need not begin at zero. */
+function around(values: number[]): Axis["scale"] {
+  if (values.length === 0) return fromZero([1]);
+  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const beside = 0.07 * (high - low || Math.abs(high) || 1);
+  return { log: false, low: low - beside, high: high + beside };
+}
