@@ -12,10 +12,10 @@ import pytest
 
 @pytest.fixture
 def small_disk(tmp_path):
-    """A folder on a file system of its own, of half a megabyte."""
+    """A folder on a file system of its own, of four megabytes."""
     folder = tmp_path / "disk"
     folder.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=512k", "tmpfs", str(folder)]
+    mount = ["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", str(folder)]
     if os.geteuid() or subprocess.run(mount, check=False, capture_output=True).returncode:
         pytest.skip("mounting a small disk needs root")
     yield folder
