@@ -10,11 +10,8 @@ from ..search.emitters.tensorneat import TensorNeat
 from ..spec import emitters as words
 from .niches import build_niches
 
-Search = spec.QualityDiversity | spec.Neuroevolution
-"""Experiments that fill an archive."""
 
-
-def build_emitters(chosen: Search, encoding: Encoding) -> tuple[search.Emitter, ...]:
+def build_emitters(chosen: spec.Evolution, encoding: Encoding) -> tuple[search.Emitter, ...]:
     """The sources of children, each with its slots of a generation."""
     pairs = zip(chosen.emitters, chosen.slots, strict=True)
     return tuple(_build(emitter, slots, chosen, encoding) for emitter, slots in pairs)
@@ -24,7 +21,7 @@ def build_emitters(chosen: Search, encoding: Encoding) -> tuple[search.Emitter, 
 def _build(
     emitter: words.Emitter,
     slots: int,
-    chosen: Search,
+    chosen: spec.Evolution,
     encoding: Encoding,
 ) -> search.Emitter:
     raise TypeError(f"`emitters` must be known ones, got {type(emitter).__name__}")
@@ -103,7 +100,7 @@ def _(emitter: words.CmaMegaEmitter, slots, chosen, encoding):
 
 
 def build_settings(
-    emitter: words.PopulationEmitter, chosen: Search, slots: int
+    emitter: words.PopulationEmitter, chosen: spec.Evolution, slots: int
 ) -> neat.Settings:
     """How a population is divided, selected and varied."""
     whole = neat.PRESETS[emitter.preset]
@@ -116,7 +113,7 @@ def build_settings(
     return replace(whole, rates=rates, population=slots, **given)
 
 
-def build_rates(chosen: Search) -> neat.Rates:
+def build_rates(chosen: spec.Evolution) -> neat.Rates:
     """How often each of NEAT's mutations happens."""
     genome = chosen.genome
     return neat.Rates(

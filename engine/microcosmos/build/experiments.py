@@ -12,7 +12,7 @@ from ..experiments.learning import Lessons
 from ..experiments.state import Again, Limits, Plan
 from ..search.emitters.tensorneat import TensorNeat
 from .creatures import build_block, build_disturbed_block, frame
-from .emitters import Search, build_emitters
+from .emitters import build_emitters
 from .folding import build_folding
 from .niches import build_niches
 from .refinement import build_refinement
@@ -32,9 +32,8 @@ build.register(build_refinement)
 build.register(build_scaling)
 
 
-@build.register(spec.QualityDiversity)
-@build.register(spec.Neuroevolution)
-def build_evolution(chosen: Search) -> Evolution:
+@build.register
+def build_evolution(chosen: spec.Evolution) -> Evolution:
     """A search with an archive."""
     plan = build_plan(chosen)
     emitters, key = plan.emitters, plan.key
@@ -53,7 +52,7 @@ def build_evolution(chosen: Search) -> Evolution:
 
 
 def build_lessons(
-    chosen: Search, emitters: tuple[search.Emitter, ...]
+    chosen: spec.Evolution, emitters: tuple[search.Emitter, ...]
 ) -> tuple[Lessons | None, ...]:
     """What the children of each emitter learn, where they do."""
     pairs = zip(chosen.emitters, emitters, strict=True)
@@ -74,7 +73,7 @@ def build_lessons(
     return tuple(lessons(words, emitter) for words, emitter in pairs)
 
 
-def build_repeats(chosen: Search, plan: Plan) -> again.Programs | None:
+def build_repeats(chosen: spec.Evolution, plan: Plan) -> again.Programs | None:
     """What evaluates elites again, where they are."""
     asked = plan.again
     if asked is None:
@@ -87,7 +86,7 @@ def build_repeats(chosen: Search, plan: Plan) -> again.Programs | None:
     )
 
 
-def build_plan(chosen: Search) -> Plan:
+def build_plan(chosen: spec.Evolution) -> Plan:
     """What the experiment needs of the spec besides programs."""
     encoding = build_encoding(chosen.scene, room_of(chosen))
     fixed = len(chosen.control.inputs), len(chosen.control.outputs)
@@ -116,7 +115,7 @@ def build_limits(stop: spec.Stop) -> Limits:
     return Limits(**given)
 
 
-def build_again(chosen: Search) -> Again | None:
+def build_again(chosen: spec.Evolution) -> Again | None:
     """When elites are evaluated again, and under which conditions."""
     asked = chosen.search.reevaluation
     if asked is None:
@@ -137,6 +136,6 @@ def names_of(emitters: tuple[spec.Emitter, ...]) -> tuple[str, ...]:
     )
 
 
-def room_of(chosen: Search) -> tuple[int, int]:
+def room_of(chosen: spec.Evolution) -> tuple[int, int]:
     """Nodes and connections that networks have room for."""
     return chosen.genome.max_nodes, chosen.genome.max_connections

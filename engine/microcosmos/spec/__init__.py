@@ -7,6 +7,7 @@ from .coupling import Coupling
 from .emitters import Emitter
 from .encodings import Controller, Direct, Free, Grown, Weights, genes, lengthening
 from .estimate import Estimate, estimate
+from .evolution import Evolution
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
 from .fields import Energy, Steric
 from .folding import Digit, Folding, Picture, picture
@@ -35,6 +36,7 @@ __all__ = [
     "Emitter",
     "Energy",
     "Estimate",
+    "Evolution",
     "Experiment",
     "Fold",
     "Folding",

@@ -183,6 +183,13 @@ def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:
             )
 
 
+def gradients(emitter: Emitter, slots: int) -> int:
+    """Creatures whose slopes it asks for in a generation."""
+    if isinstance(emitter, LamarckianEmitter):
+        return emitter.lessons * slots
+    return int(isinstance(emitter, CmaMegaEmitter))
+
+
 def slots(batch: int, shares: tuple[int, ...]) -> tuple[int, ...]:
     """How a batch is divided among shares: whole numbers, the largest remainders rounded up."""
     exact = [batch * share / sum(shares) for share in shares]

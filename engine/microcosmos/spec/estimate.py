@@ -8,11 +8,10 @@ from ..bodies.unfolding import MOST as LAID_OUT
 from . import reverse
 from .body import shape
 from .encodings import Controller, Direct, Grown, Weights, genes
+from .evolution import Evolution
 from .experiments import Spec
 from .folding import Folding
 from .gaits import Gaits
-from .neuroevolution import Neuroevolution
-from .quality_diversity import QualityDiversity
 from .refinement import Refinement, parsed
 from .reverse import FLOAT
 from .scaling import Scaling
@@ -48,22 +47,22 @@ def estimate(spec: Spec) -> Estimate:
     raise TypeError(f"`spec` must be an experiment's, got {type(spec).__name__}")
 
 
-@estimate.register(QualityDiversity)
-@estimate.register(Neuroevolution)
-def _(spec: QualityDiversity | Neuroevolution) -> Estimate:
+@estimate.register
+def _(spec: Evolution) -> Estimate:
     search = spec.search
     rows = 3 * spec.genome.max_nodes + 5 * spec.genome.max_connections
     genome = FLOAT * (genes(spec.control, shape(spec.body)) or rows)
     archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 160)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
-    evaluations = search.batch * search.generations
+    gradients = sum(spec.gradients) * search.generations
+    evaluations = search.batch * search.generations + gradients
     record = 2 * (48 * search.generations + 96 * min(evaluations, 4 * spec.archive.cells))
     computed = ceil(search.batch / search.block) * search.block * search.generations
     one = simulation(spec.scene, spec.genome.max_nodes)
     return Estimate(
         memory_bytes=search.block * one + archive + vary + record + slopes(spec),
         evaluations=evaluations,
-        cell_steps=computed
+        cell_steps=(computed + GRADIENT * gradients)
         * (spec.world.energy.placements if spec.world.energy else 1)
         * spec.world.width
         * spec.world.height
@@ -125,15 +124,15 @@ def _(spec: Scaling) -> Estimate:
     )
 
 
-def slopes(spec: QualityDiversity | Neuroevolution) -> int:
+def slopes(spec: Evolution) -> int:
     """Bytes of the gradients that emitters ask for at once."""
-    pairs = zip(spec.emitters, spec.slots, strict=True)
-    asked = {"lamarckian": lambda slots: min(slots, spec.search.block), "cma-mega": lambda _: 1}
+    pairs = zip(spec.emitters, spec.gradients, strict=True)
     return max(
         (
-            asked[one.operator](slots) * gradient(spec.scene, getattr(one, "segment", None))
-            for one, slots in pairs
-            if one.operator in asked
+            min(asked, spec.search.block)
+            * gradient(spec.scene, getattr(emitter, "segment", None))
+            for emitter, asked in pairs
+            if asked
         ),
         default=0,
     )

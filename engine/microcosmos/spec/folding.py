@@ -136,7 +136,6 @@ class Folding(Part):
                 f"`memory` must be at least {needed:.3g} GiB for the gradient through "
                 f"{self.steps} steps, got {self.memory:g}"
             )
-        self.scene  # noqa: B018  # Which has rules of its own.
         return self
 
     @property

@@ -1,51 +1,24 @@
 """The spec of a NEAT run, and its presets."""
 
-from typing import Literal, Self
+from typing import Literal
 
-from pydantic import Field, model_validator
-
-from .base import Part
-from .body import Body, Chain
-from .control import Control, Genome
+from .body import Chain
+from .control import Control
 from .coupling import Coupling
-from .emitters import PopulationEmitter, refuse_unfit_emitters
-from .encodings import Controller, refuse_cramped
+from .emitters import PopulationEmitter
+from .evolution import Evolution
 from .fields import Energy, Steric
-from .scene import Scene, refuse_misfit, refuse_senseless
-from .search import Archive, Generations, Task
+from .search import Generations, Task
 from .world import World
 
 
-class Neuroevolution(Part):
+class Neuroevolution(Evolution[Literal["neuroevolution"], Generations]):
     """NEAT over swimmers: one population that gets fitter; an archive looks on."""
 
     experiment: Literal["neuroevolution"] = "neuroevolution"
-    seed: int = Field(default=0, ge=0, lt=2**32)
-    """The one source of randomness."""
-    world: World = World()
-    body: Body = Chain()
-    coupling: Coupling = Coupling()
-    control: Controller = Control()
-    genome: Genome = Genome()
-    task: Task = Task()
-    archive: Archive = Archive()
-    """Where the best creature of each kind is kept; it has no part in the search."""
-    neat: PopulationEmitter = PopulationEmitter()
     search: Generations = Generations(batch=150)
     """The population is a batch."""
-
-    @model_validator(mode="after")
-    def check_scene(self) -> Self:
-        refuse_misfit(self.world, self.body, self.control)
-        refuse_cramped(self.control, self.genome)
-        refuse_senseless(self.world, self.control, self.task)
-        refuse_unfit_emitters(self.emitters, self.control.encoding)
-        return self
-
-    @property
-    def generations(self) -> int:
-        """Generations of the whole run."""
-        return self.search.generations
+    neat: PopulationEmitter = PopulationEmitter()
 
     @property
     def emitters(self) -> tuple[PopulationEmitter, ...]:
@@ -56,17 +29,6 @@ class Neuroevolution(Part):
     def slots(self) -> tuple[int, ...]:
         """The population is all of a generation."""
         return (self.search.batch,)
-
-    @property
-    def scene(self) -> Scene:
-        """What is simulated for each creature."""
-        return Scene(
-            world=self.world,
-            body=self.body,
-            coupling=self.coupling,
-            control=self.control,
-            task=self.task,
-        )
 
 
 DEMO = Neuroevolution(

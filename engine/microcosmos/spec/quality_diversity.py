@@ -1,70 +1,37 @@
-"""The spec of a quality-diversity run, its presets, and what it will need."""
+"""The spec of a quality-diversity run, and its presets."""
 
 from typing import Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from .base import Part
-from .body import Body, Chain
-from .control import Control, Genome
+from .body import Chain
+from .control import Control
 from .coupling import Coupling
-from .emitters import Emitter, refuse_unfit_emitters
-from .encodings import Controller, refuse_cramped
+from .emitters import Emitter
+from .evolution import Evolution
 from .fields import Steric
-from .scene import Scene, refuse_misfit, refuse_senseless
 from .search import Archive, Descriptor, Search, Task, refuse_flat
 from .world import World
 
 
-class QualityDiversity(Part):
+class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
     """MAP-Elites over CPPN-controlled swimmers."""
 
     experiment: Literal["quality-diversity"] = "quality-diversity"
-    seed: int = Field(default=0, ge=0, lt=2**32)
-    """The one source of randomness."""
-    world: World = World()
-    body: Body = Chain()
-    coupling: Coupling = Coupling()
-    control: Controller = Control()
-    genome: Genome = Genome()
-    task: Task = Task()
-    archive: Archive = Archive()
     search: Search = Search()
 
     @model_validator(mode="after")
-    def check_scene(self) -> Self:
-        refuse_misfit(self.world, self.body, self.control)
-        refuse_cramped(self.control, self.genome)
-        refuse_senseless(self.world, self.control, self.task)
-        refuse_unfit_emitters(self.search.emitters, self.control.encoding)
+    def check_descriptors(self) -> Self:
         refuse_flat(self.archive, self.search.emitters)
         return self
 
     @property
-    def generations(self) -> int:
-        """Generations of the whole run."""
-        return self.search.generations
-
-    @property
     def emitters(self) -> tuple[Emitter, ...]:
-        """Where children come from."""
         return self.search.emitters
 
     @property
     def slots(self) -> tuple[int, ...]:
-        """Children of each emitter in a generation."""
         return self.search.slots
-
-    @property
-    def scene(self) -> Scene:
-        """What is simulated for each creature."""
-        return Scene(
-            world=self.world,
-            body=self.body,
-            coupling=self.coupling,
-            control=self.control,
-            task=self.task,
-        )
 
 
 DEMO = QualityDiversity(

@@ -32,11 +32,33 @@ def experiment(small):
 
 
 @pytest.fixture(scope="session")
-def course(experiment):
+def carry_out():
+    """A function that gives states and reports of a whole run, the initial state first."""
+
+    def run(experiment):
+        states, reports = [experiment.init()], []
+        while not experiment.done(states[-1]):
+            state, report = experiment.advance(states[-1])
+            states.append(state)
+            reports.append(report)
+        return states, reports
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def finish():
+    """A function that carries a run on to its end; the file."""
+
+    def run(experiment, state):
+        while not experiment.done(state):
+            state, _ = experiment.advance(state)
+        return experiment.save(state)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def course(experiment, carry_out):
     """States and reports of the whole run, the initial state first."""
-    states, reports = [experiment.init()], []
-    while not experiment.done(states[-1]):
-        state, report = experiment.advance(states[-1])
-        states.append(state)
-        reports.append(report)
-    return states, reports
+    return carry_out(experiment)

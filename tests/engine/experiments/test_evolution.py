@@ -13,25 +13,19 @@ from microcosmos.experiments.archive_file import OtherDevice
 from microcosmos.search import FEATURES
 
 
-def finish(experiment, state):
-    while not experiment.done(state):
-        state, _ = experiment.advance(state)
-    return experiment.save(state)
-
-
-def test_a_run_taken_up_from_any_generation_ends_with_the_same_bytes(experiment, course):
+def test_a_run_taken_up_from_any_generation_ends_the_same(experiment, course, finish):
     states, _ = course
     whole = experiment.save(states[-1])
     for state in states[:-1]:
         assert finish(experiment, experiment.restore(experiment.save(state))) == whole
 
 
-def test_a_new_build_of_the_same_spec_gives_the_same_bytes(small, course, experiment):
+def test_a_new_build_of_the_same_spec_gives_the_same_bytes(small, course, experiment, finish):
     again = build(small())
     assert finish(again, again.init()) == experiment.save(course[0][-1])
 
 
-def test_another_seed_gives_another_archive(small, course, experiment):
+def test_another_seed_gives_another_archive(small, course, experiment, finish):
     other = build(small().model_copy(update={"seed": 4}))
     assert finish(other, other.init()) != experiment.save(course[0][-1])
 

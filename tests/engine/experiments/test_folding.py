@@ -34,18 +34,13 @@ def folding():
 
 
 @pytest.fixture(scope="module")
-def course(folding):
-    """Files before every update, the last state and all reports."""
-    state, files, reports = folding.init(), [], []
-    while not folding.done(state):
-        files.append(folding.save(state))
-        state, report = folding.advance(state)
-        reports.append(report)
-    return files, state, reports
+def course(folding, carry_out):
+    """States and reports of the whole run, the initial state first."""
+    return carry_out(folding)
 
 
 def test_losses_fall_from_update_to_update(course):
-    _, state, reports = course
+    state, reports = course[0][-1], course[1]
     first, least = state.losses[0], state.folds.least
     assert (least < 0.6 * first).all()
     assert len(state.losses) == 20
@@ -53,22 +48,20 @@ def test_losses_fall_from_update_to_update(course):
     assert reports[-1].evaluations == 40
 
 
-def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(folding, course):
-    files, state, _ = course
-    again = folding.restore(files[7])
-    while not folding.done(again):
-        again, _ = folding.advance(again)
-    assert folding.save(again) == folding.save(state)
+def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(folding, course, finish):
+    states, _ = course
+    again = folding.restore(folding.save(states[7]))
+    assert finish(folding, again) == folding.save(states[-1])
 
 
-def test_a_file_of_another_spec_is_refused(course):
+def test_a_file_of_another_spec_is_refused(folding, course):
     other = build(parse(SMALL | {"rate": 0.05}))
     with pytest.raises(ValueError, match="run's own"):
-        other.restore(course[0][3])
+        other.restore(folding.save(course[0][3]))
 
 
 def test_every_filament_is_a_creature_whose_replay_ends_at_its_loss(course):
-    _, state, _ = course
+    state = course[0][-1]
     task = build_descent(parse(SMALL)).task
     for number, row in enumerate(state.table.rows):
         file = creature.document(json.loads(row.identity), row.measured, row.provenance)
@@ -80,14 +73,14 @@ def test_every_filament_is_a_creature_whose_replay_ends_at_its_loss(course):
 
 
 def test_the_best_is_the_creature_with_the_least_loss(folding, course):
-    _, state, _ = course
+    state = course[0][-1]
     best = folding.best(state)
     assert best["sha256"] == state.table.rows[np.argmin(state.folds.least)].creature
     assert folding.best(folding.init()) is None
 
 
 def test_the_figure_shows_moments_pictures_and_losses(folding, course):
-    _, state, _ = course
+    state = course[0][-1]
     figure = figures.of(folding.save(state))
     titles = [axes.get_title() for axes in figure.axes]
     assert sum(bool(title) for title in titles) == 2
@@ -176,7 +169,7 @@ def test_a_spec_that_cannot_be_carried_out_is_refused(change, needed):
 
 
 def test_the_table_has_a_row_for_each_picture(folding, course):
-    _, state, _ = course
+    state = course[0][-1]
     table = read_table(folding.save(state))
     assert [row["picture"] for row in table.rows] == ["1", "3"]
     assert [row["failed"] for row in table.rows] == [0, 0]

@@ -34,14 +34,9 @@ def sweep():
 
 
 @pytest.fixture(scope="module")
-def course(sweep):
+def course(sweep, carry_out):
     """States and reports of the whole run, the initial state first."""
-    states, reports = [sweep.init()], []
-    while not sweep.done(states[-1]):
-        state, report = sweep.advance(states[-1])
-        states.append(state)
-        reports.append(report)
-    return states, reports
+    return carry_out(sweep)
 
 
 def file_of(row):

@@ -33,23 +33,12 @@ def experiment():
 
 
 @pytest.fixture(scope="module")
-def course(experiment):
+def course(experiment, carry_out):
     """States and reports of the whole run, the initial state first."""
-    states, reports = [experiment.init()], []
-    while not experiment.done(states[-1]):
-        state, report = experiment.advance(states[-1])
-        states.append(state)
-        reports.append(report)
-    return states, reports
+    return carry_out(experiment)
 
 
-def finish(experiment, state):
-    while not experiment.done(state):
-        state, _ = experiment.advance(state)
-    return experiment.save(state)
-
-
-def test_a_run_taken_up_from_any_generation_ends_with_the_same_bytes(experiment, course):
+def test_a_run_taken_up_from_any_generation_ends_the_same(experiment, course, finish):
     states, _ = course
     whole = experiment.save(states[-1])
     for state in states[:-1]:

@@ -28,13 +28,10 @@ STEPS = 4
 
 
 @pytest.fixture(scope="module")
-def spec():
+def spec(carry_out):
     """The refinement of a short search's best creature."""
     search = build(parse(SEARCH))
-    state = search.init()
-    while not search.done(state):
-        state, _ = search.advance(state)
-    file = search.best(state)
+    file = search.best(carry_out(search)[0][-1])
     return parse({"experiment": "refinement", "creature": file, "steps": STEPS, "block": 4})
 
 
@@ -44,24 +41,20 @@ def refinement(spec):
 
 
 @pytest.fixture(scope="module")
-def course(refinement):
-    state, files, reports = refinement.init(), [], []
-    while not refinement.done(state):
-        files.append(refinement.save(state))
-        state, report = refinement.advance(state)
-        reports.append(report)
-    return files, state, reports
+def course(refinement, carry_out):
+    """States and reports of the whole run, the initial state first."""
+    return carry_out(refinement)
 
 
 def test_it_becomes_fitter_and_never_less_fit(course):
-    fitness = [row.values["fitness"] for row in course[1].table.rows]
+    fitness = [row.values["fitness"] for row in course[0][-1].table.rows]
     assert len(fitness) == 1 + STEPS
     assert all(b >= a for a, b in itertools.pairwise(fitness))
     assert fitness[-1] > fitness[0]
 
 
 def test_the_first_row_is_the_creature_as_it_was_measured_in_its_search(spec, course):
-    first = course[1].table.rows[0]
+    first = course[0][-1].table.rows[0]
     assert first.creature == spec.creature["sha256"]
     assert first.values["fitness"] == pytest.approx(
         spec.creature["measured"]["fitness"], rel=1e-4
@@ -70,29 +63,27 @@ def test_the_first_row_is_the_creature_as_it_was_measured_in_its_search(spec, co
 
 def test_it_does_not_leave_its_cell(spec, course):
     niches = build_niches(spec.archive)
-    features = [row.measured["features"] for row in course[1].table.rows]
+    features = [row.measured["features"] for row in course[0][-1].table.rows]
     places = np.array([[one[name] for name in FEATURES] for one in features], np.float32)
     assert len(set(niches.of(jnp.asarray(places)).tolist())) == 1
 
 
 def test_what_it_has_become_repeats_bit_for_bit_and_has_a_parent(spec, refinement, course):
-    best = refinement.best(course[1])
+    best = refinement.best(course[0][-1])
     assert creature.parse(best)["sha256"] == best["sha256"]
     assert best["provenance"]["parents"] == [spec.creature["sha256"]]
     assert best["provenance"]["operator"] == "refinement"
     assert check(best).exact
 
 
-def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(refinement, course):
-    files, state, _ = course
-    again = refinement.restore(files[2])
-    while not refinement.done(again):
-        again, _ = refinement.advance(again)
-    assert refinement.save(again) == refinement.save(state)
+def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(refinement, course, finish):
+    states, _ = course
+    again = refinement.restore(refinement.save(states[2]))
+    assert finish(refinement, again) == refinement.save(states[-1])
 
 
 def test_the_record_says_how_far_the_gradient_can_be_trusted(course):
-    rows = [row.values for row in course[1].table.rows]
+    rows = [row.values for row in course[0][-1].table.rows]
     assert rows[0]["slope"] is None
     assert all(row["slope"] > 0 for row in rows[1:])
     # The shortest trial of the first step is 0.05 long.
@@ -100,15 +91,15 @@ def test_the_record_says_how_far_the_gradient_can_be_trusted(course):
 
 
 def test_reports_count_gradients_and_trials(course):
-    assert [report.evaluations for report in course[2]] == [1, 6, 11, 16, 21]
-    assert course[2][-1].best == course[1].fitness
+    assert [report.evaluations for report in course[1]] == [1, 6, 11, 16, 21]
+    assert course[1][-1].best == course[0][-1].fitness
 
 
 def test_as_a_function(spec, course):
     refined, rows = microcosmos.refine(spec.creature, steps=2, block=4)
     assert rows[-1]["fitness"] >= rows[0]["fitness"]
     assert json.dumps(refined)
-    assert refined["sha256"] == course[1].table.rows[2].creature
+    assert refined["sha256"] == course[0][-1].table.rows[2].creature
 
 
 def test_what_cannot_be_refined_is_refused(spec):

@@ -16,8 +16,8 @@ from ...genomes import Vector
 from ...neat import Counters
 from ..insertion import Elites
 from . import matrix_adaptation as es
-from .elites import Newcomer, draw
-from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from .elites import Newcomer, draw, orphans
+from .emitter import Children, Keys, Outcome
 
 
 class Climb(eqx.Module):
@@ -67,15 +67,9 @@ class CmaMae:
         assert isinstance(genotypes, Vector)
         # Where the archive is empty, its first row of zeros is the middle again.
         anew = es.start(genotypes.values[chosen], self.step)
-        distribution = jax.tree.map(
-            lambda a, b: jnp.where(state.restart, a, b), anew, state.distribution
-        )
+        distribution = es.restarted(state.restart, anew, state.distribution)
         values, z = es.draw(distribution, keys=keys)
-        children = Children(
-            Vector(jnp.clip(values, -1.0, 1.0)),
-            jnp.full((self.slots, 2), NO_PARENT, jnp.int32),
-            jnp.full(self.slots, OPERATORS.index("cma-mae"), jnp.int32),
-        )
+        children = orphans(Vector(jnp.clip(values, -1.0, 1.0)), self.slots, "cma-mae")
         state = replace(state, distribution=distribution, z=z, restart=jnp.zeros((), bool))
         return children, state, counters
 

@@ -16,8 +16,8 @@ from ...genomes import Genotype, Vector
 from ...neat import Counters
 from ..insertion import Elites
 from . import matrix_adaptation as es
-from .elites import Newcomer, draw, newcomers
-from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from .elites import Newcomer, draw, either, newcomers, orphans
+from .emitter import Children, Keys, Outcome
 from .learner import Slopes, unit
 
 
@@ -80,16 +80,11 @@ class CmaMega:
         genotypes = archive.genotypes
         assert isinstance(genotypes, Vector)
         theta = jnp.where(state.restart, genotypes.values[chosen], state.theta)
-        distribution = jax.tree.map(
-            lambda a, b: jnp.where(state.restart, a, b), self._anew(theta), state.distribution
-        )
+        distribution = es.restarted(state.restart, self._anew(theta), state.distribution)
         weights, z = es.draw(distribution, keys=keys)
-        anyone, fresh = jnp.any(archive.occupied), newcomers(self.newcomer, keys)
-        assert isinstance(fresh.genotypes, Vector)
-        children = Children(
-            Vector(jnp.where(anyone, theta[None], fresh.genotypes.values)),
-            jnp.full((self.slots, 2), NO_PARENT, jnp.int32),
-            jnp.where(anyone, OPERATORS.index("cma-mega"), fresh.operator).astype(jnp.int32),
+        moved = Vector(jnp.broadcast_to(theta, (self.slots, *theta.shape)))
+        children = either(
+            archive, orphans(moved, self.slots, "cma-mega"), newcomers(self.newcomer, keys)
         )
         state = replace(
             state,
@@ -97,7 +92,7 @@ class CmaMega:
             distribution=distribution,
             z=z,
             weights=weights.at[:, 0].set(jnp.abs(weights[:, 0])),
-            due=anyone,
+            due=jnp.any(archive.occupied),
         )
         return children, state, counters
 

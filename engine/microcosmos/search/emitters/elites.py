@@ -29,10 +29,14 @@ def genotype(archive: Elites, cell: Int[Array, ""]) -> Genotype:
 
 def newcomers(newcomer: Newcomer, keys: Keys) -> Children:
     """Random genotypes, a key for each slot."""
-    slots = keys.shape[0]
     genotypes = jax.vmap(lambda key: newcomer(key=key))(keys)
+    return orphans(genotypes, keys.shape[0], "random")
+
+
+def orphans(genotypes: Genotype, slots: int, name: str) -> Children:
+    """What an operator has made of no parent that could be named."""
     parents = jnp.full((slots, 2), NO_PARENT, jnp.int32)
-    return Children(genotypes, parents, jnp.zeros(slots, jnp.int32))
+    return Children(genotypes, parents, jnp.full(slots, OPERATORS.index(name), jnp.int32))
 
 
 def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) -> Children:

@@ -12,7 +12,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int, Key
+from jaxtyping import Array, Bool, Float, Int, Key
 
 SMALLEST, LARGEST = 1e-10, 1e4
 """Standard deviations beyond which a distribution has converged or run away."""
@@ -79,6 +79,13 @@ def start(mean: Float[Array, "gene"], sigma: float) -> Distribution:
     return Distribution(mean, jnp.asarray(sigma, mean.dtype), eye, jnp.zeros_like(mean))
 
 
+def restarted(
+    restart: Bool[Array, ""], anew: Distribution, before: Distribution
+) -> Distribution:
+    """The new distribution where a search is to begin anew, or the one before."""
+    return jax.tree.map(lambda one, other: jnp.where(restart, one, other), anew, before)
+
+
 def draw(
     distribution: Distribution, *, keys: Key[Array, "child"]
 ) -> tuple[Float[Array, "child gene"], Float[Array, "child gene"]]:
@@ -113,7 +120,7 @@ def update(
     )
 
 
-def spent(distribution: Distribution) -> Array:
+def spent(distribution: Distribution) -> Bool[Array, ""]:
     """Whether nothing can come of it: converged, run away, or not finite."""
     deviations = distribution.sigma * jnp.sqrt(jnp.sum(distribution.m**2, 1))
     finite = jnp.all(jnp.isfinite(distribution.m)) & jnp.all(jnp.isfinite(distribution.mean))

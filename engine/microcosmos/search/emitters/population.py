@@ -11,7 +11,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray
 from ... import neat
 from ...genomes import CPPN
 from ..insertion import Elites
-from .elites import Newcomer
+from .elites import Newcomer, orphans
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
 
 AROSE = np.array(
@@ -62,9 +62,7 @@ class Neat:
     ) -> tuple[Children, Population, neat.Counters]:
         """The newcomers first, then the children of the generation before."""
         cells = archive.occupied.shape[0]
-        alone = jnp.full((self.slots, 2), NO_PARENT, jnp.int32)
-        random = jnp.zeros(self.slots, jnp.int32)
-        first = Children(state.networks, alone, random), state.species, counters
+        first = orphans(state.networks, self.slots, "random"), state.species, counters
 
         def bear():
             networks, species, numbered, parents, code = neat.next_generation(

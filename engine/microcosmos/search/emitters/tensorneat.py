@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ...neat import Counters
 from ..insertion import Elites
 from ..tensorneat import Backend
-from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from .elites import orphans
+from .emitter import Children, Keys, Outcome
 
 Arrays = dict[str, np.ndarray] | dict[str, Array]
 
@@ -40,9 +40,7 @@ class TensorNeat:
     ) -> tuple[Children, Arrays, Counters]:
         """Its population as our networks."""
         networks, _ = self.backend.population(self.backend.from_arrays(state))
-        parents = jnp.full((self.slots, 2), NO_PARENT, jnp.int32)
-        operator = jnp.full(self.slots, OPERATORS.index("tensorneat"), jnp.int32)
-        return Children(networks, parents, operator), state, counters
+        return orphans(networks, self.slots, "tensorneat"), state, counters
 
     def tell(self, state: Arrays, outcome: Outcome) -> Arrays:
         """Its next population; what diverged, or lacks an output, counts worst."""

@@ -11,8 +11,8 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray, PyTree
 from ...genomes import CPPN, Vector
 from ...neat import Counters
 from ..cells import Cells, places
-from ..emitters.elites import Newcomer, newcomers
-from ..emitters.emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from ..emitters.elites import Newcomer, either, newcomers, orphans
+from ..emitters.emitter import Children, Keys, Outcome
 from ..emitters.neat import Neat
 from ..insertion import Elites
 from .repertoires import needed, order, to_repertoire
@@ -73,16 +73,10 @@ class QdaxEmitter:
                 state.due, lambda: self._learnt(state, repertoire), lambda: state.emitter
             )
             genes, _ = self.emitter.emit(repertoire, learnt, _raw(keys[0]))
-        anyone = jnp.any(archive.occupied)
-        fresh = newcomers(self.newcomer, keys)
-        assert isinstance(fresh.genotypes, Vector)
-        operator = OPERATORS.index(self.operator)
-        children = Children(
-            Vector(jnp.where(anyone, jnp.clip(genes, -1.0, 1.0), fresh.genotypes.values)),
-            jnp.full((self.slots, 2), NO_PARENT, jnp.int32),
-            jnp.where(anyone, operator, fresh.operator).astype(jnp.int32),
-        )
-        return children, replace(state, emitter=learnt, due=anyone), counters
+        bred = orphans(Vector(jnp.clip(genes, -1.0, 1.0)), self.slots, self.operator)
+        children = either(archive, bred, newcomers(self.newcomer, keys))
+        due = jnp.any(archive.occupied)
+        return children, replace(state, emitter=learnt, due=due), counters
 
     def tell(self, state: Told, outcome: Outcome) -> Told:
         """Kept until the next generation."""

@@ -1,0 +1,74 @@
+"""What the specs of searches for creatures have in common."""
+
+from typing import Generic, Self, TypeVar
+
+from pydantic import Field, model_validator
+
+from .base import Part
+from .body import Body, Chain
+from .control import Control, Genome
+from .coupling import Coupling
+from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
+from .encodings import Controller, refuse_cramped
+from .scene import Scene, refuse_misfit, refuse_senseless
+from .search import Archive, Generations, Task
+from .world import World
+
+Name = TypeVar("Name", bound=str)
+How = TypeVar("How", bound=Generations)
+
+
+class Evolution(Part, Generic[Name, How]):
+    """Generations of creatures that live in one scene, and an archive of the best."""
+
+    experiment: Name
+    seed: int = Field(default=0, ge=0, lt=2**32)
+    """The one source of randomness."""
+    world: World = World()
+    body: Body = Chain()
+    coupling: Coupling = Coupling()
+    control: Controller = Control()
+    genome: Genome = Genome()
+    task: Task = Task()
+    archive: Archive = Archive()
+    """Where the best creature of each kind is kept."""
+    search: How
+
+    @model_validator(mode="after")
+    def check_scene(self) -> Self:
+        refuse_misfit(self.world, self.body, self.control)
+        refuse_cramped(self.control, self.genome)
+        refuse_senseless(self.world, self.control, self.task)
+        refuse_unfit_emitters(self.emitters, self.control.encoding)
+        return self
+
+    @property
+    def generations(self) -> int:
+        """Generations of the whole run."""
+        return self.search.generations
+
+    @property
+    def emitters(self) -> tuple[Emitter | PopulationEmitter, ...]:
+        """Where children come from."""
+        raise NotImplementedError
+
+    @property
+    def slots(self) -> tuple[int, ...]:
+        """Children of each emitter in a generation."""
+        raise NotImplementedError
+
+    @property
+    def gradients(self) -> tuple[int, ...]:
+        """Creatures that each emitter asks the slopes of in a generation."""
+        return tuple(map(gradients, self.emitters, self.slots))
+
+    @property
+    def scene(self) -> Scene:
+        """What is simulated for each creature."""
+        return Scene(
+            world=self.world,
+            body=self.body,
+            coupling=self.coupling,
+            control=self.control,
+            task=self.task,
+        )
