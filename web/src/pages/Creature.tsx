@@ -1,12 +1,11 @@
 /** One creature: its motion, its network, what was measured, where it comes from. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useMemo } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Spec } from "../api/types";
-import { type Replay, decodeReplay } from "../frames/replay";
+import type { Replay } from "../frames/replay";
 import { useFetched } from "../live/fetching";
-import { poll } from "../live/polling";
 import { tell } from "../live/toasts";
 import { number, short, words } from "../view/format";
 import { isFree } from "../view/coupling";
@@ -17,6 +16,7 @@ import { Facts } from "./Facts";
 import { Genome } from "./Genome";
 import { Pictures } from "./Pictures";
 import { Refine } from "./Refine";
+import { Rendering, useReplays } from "./rendering";
 
 interface Props {
   sha: string;
@@ -84,54 +84,17 @@ function Sharing({ sha }: { sha: string }) {
 }
 
 function Motion({ sha, task }: { sha: string; task: Spec }) {
-  const { replay, note, error } = useReplay(sha);
+  const rendering = useReplays([sha]);
+  const replay = rendering.replays?.[0];
+  const films = useMemo(() => (replay ? [{ replay }] : []), [replay]);
   return (
     <section class="card motion" aria-label="Replay">
-      {error && <p class="banner wrong">{error}</p>}
-      {!replay && !error && (
-        <div class="stage rendering" role="status">
-          <p>
-            <span class="ripple" aria-hidden="true" />
-            <span>Simulating this creature again to record its motion …</span>
-            <span class="small">
-              {note ? `${note} Trying again …` : "The first one takes longest."}
-            </span>
-          </p>
-        </div>
-      )}
-      {replay && <ReplayPlayer replay={replay} />}
+      <Rendering {...rendering} what="Simulating this creature again to record its motion …" />
+      {replay && <ReplayPlayer films={films} />}
       {replay && <Difference replay={replay} task={task} />}
       {replay && <Pictures sha={sha} />}
     </section>
   );
-}
-
-interface Rendering {
-  replay: Replay | null;
-  note: string | null;
-  error: string | null;
-}
-
-/** The replay, asked for until it has been rendered. */
-function useReplay(sha: string): Rendering {
-  const [state, setState] = useState<Rendering>({ replay: null, note: null, error: null });
-  useEffect(() => {
-    const change = (part: Partial<Rendering>) => setState((old) => ({ ...old, ...part }));
-    return poll(() => api.readReplay(sha), {
-      value: (bytes) => change(read(bytes)),
-      note: (note) => change({ note }),
-      error: (error) => change({ error }),
-    });
-  }, [sha]);
-  return state;
-}
-
-function read(bytes: ArrayBuffer): Partial<Rendering> {
-  try {
-    return { replay: decodeReplay(bytes) };
-  } catch (error) {
-    return { error: messageOf(error) };
-  }
 }
 
 function Difference({ replay, task }: { replay: Replay; task: Spec }) {

@@ -1,5 +1,6 @@
-/** A replay to watch: play, pause, scrub, speed. */
+/** Replays to watch, one or several side by side: play, pause, scrub, speed. */
 
+import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Replay } from "../../frames/replay";
 import { useSize } from "../canvas";
@@ -15,10 +16,17 @@ const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 /** Steps of the simulation in a second at speed 1. */
 const PACE = 40;
 
-export function ReplayPlayer({ replay }: { replay: Replay }) {
-  const { frames, every, steps } = replay.header;
+/** A replay, and what it is called where it is not alone. */
+export interface Film {
+  replay: Replay;
+  name?: ComponentChildren;
+}
+
+/** Films of one task: equally long, in one clock and on one scale of colours. */
+export function ReplayPlayer({ films }: { films: Film[] }) {
+  const { frames, every, steps } = films[0]!.replay.header;
   const theme = useTheme();
-  const strength = useMemo(() => strongest(replay), [replay]);
+  const strength = useMemo(() => Math.max(...films.map(({ replay }) => strongest(replay))), [films]);
   const [playing, setPlaying] = useState(() => !prefersStillness());
   const [speed, setSpeed] = useState(1);
   const [follow, setFollow] = useState(true);
@@ -34,7 +42,14 @@ export function ReplayPlayer({ replay }: { replay: Replay }) {
   };
   return (
     <div class="player">
-      <Stage {...{ replay, theme, strength, follow, time }} onClick={toggle} />
+      <div class="stages">
+        {films.map(({ replay, name }, i) => (
+          <figure key={i}>
+            <Stage {...{ replay, theme, strength, follow, time }} onClick={toggle} />
+            {name && <figcaption>{name}</figcaption>}
+          </figure>
+        ))}
+      </div>
       <div class="controls">
         <PlayButton playing={playing} onClick={toggle} />
         <Scrubber time={time} last={frames - 1} every={every} steps={steps} onScrub={scrub} />

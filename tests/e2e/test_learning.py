@@ -1,0 +1,77 @@
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+
+FAST, SLOW = 10_000, 120_000
+SEARCH = {
+    "experiment": "quality-diversity",
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 12},
+    "control": {"period": 40, "angle_scale": 0.3},
+    "task": {"steps": 60},
+    "search": {"generations": 2, "batch": 8, "block": 4},
+}
+
+
+@pytest.mark.e2e
+def test_a_filament_folds_and_is_watched(page: Page, address: str):
+    page.goto(f"{address}/new")
+    page.get_by_role("button", name=re.compile("fold into two digits without")).click()
+    page.get_by_label("Updates", exact=False).fill("4")
+    page.get_by_role("button", name="Start the run").click()
+    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    expect(page.get_by_text("4 / 4")).to_be_visible(timeout=SLOW)
+    plot = page.get_by_role("group", name="Loss against updates")
+    expect(plot).to_be_visible(timeout=FAST)
+    rows = page.locator("table.results tbody tr")
+    expect(rows).to_have_count(2, timeout=FAST)
+    rows.first.get_by_role("link").click()
+    page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"), timeout=FAST)
+    expect(page.get_by_role("button", name="Refine")).to_have_count(0)
+    see_it_move(page, 1)
+
+
+@pytest.mark.e2e
+def test_an_elite_is_refined_and_watched_beside_what_it_was(page: Page, address: str):
+    page.goto(f"{address}/creatures/{elite(page, address)}")
+    page.get_by_role("button", name="Refine").click()
+    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    expect(page.get_by_text("21 / 21")).to_be_visible(timeout=SLOW)
+    expect(page.get_by_role("group", name="Fitness against steps")).to_be_visible()
+    expect(page.get_by_role("heading", name="Before and after")).to_be_visible(timeout=FAST)
+    see_it_move(page, 2)
+    expect(page.locator("figcaption")).to_have_count(2)
+    first, last = (one.inner_text() for one in page.locator("figcaption").all())
+    assert (first.split()[0], last.split()[0]) == ("Before", "After")
+    assert fitness(last) > fitness(first)
+
+
+def elite(page: Page, address: str) -> str:
+    """The creature of a short search's first cell."""
+    run = page.request.post(f"{address}/api/v1/runs", data=SEARCH).json()["id"]
+    page.goto(f"{address}/runs/{run}")
+    expect(page.get_by_text("2 / 2")).to_be_visible(timeout=SLOW)
+    found = page.request.get(f"{address}/api/v1/runs/{run}/archive").json()
+    return found["creature"][0]
+
+
+def see_it_move(page: Page, films: int) -> None:
+    canvas = page.get_by_role("img", name=re.compile("The creature swimming"))
+    expect(canvas).to_have_count(films, timeout=SLOW)
+    before = pixels(page)
+    page.get_by_label("Moment of the replay").focus()
+    page.keyboard.press("End")
+    page.wait_for_timeout(300)
+    assert all(one != other for one, other in zip(before, pixels(page), strict=True))
+
+
+def pixels(page: Page) -> list[str]:
+    script = "[...document.querySelectorAll('.stage canvas')].map((one) => one.toDataURL())"
+    return page.evaluate(script)
+
+
+def fitness(caption: str) -> float:
+    found = re.search(r"fitness ([\d.]+)", caption)
+    assert found
+    return float(found[1])
