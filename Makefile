@@ -54,6 +54,7 @@ peers: install
 bench: peers
 	$(BIN)/python engine/benchmarks/physics.py
 	$(BIN)/python engine/benchmarks/gradients.py
+	$(BIN)/python engine/benchmarks/derivatives.py
 	$(BIN)/python engine/benchmarks/archive.py
 	$(BIN)/python engine/benchmarks/networks.py
 	$(BIN)/python engine/benchmarks/xor.py

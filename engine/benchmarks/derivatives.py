@@ -170,7 +170,7 @@ def pyribs(function: Function, seed: int) -> np.ndarray:
     evaluate = jax.jit(jax.vmap(function))
     slopes = jax.jit(jax.vmap(lambda one: told(function, one)))
     for _ in range(GENERATIONS):
-        scheduler.tell_dqd(*(np.asarray(x) for x in slopes(scheduler.ask_dqd())))
+        scheduler.tell_dqd(*(np.array(x) for x in slopes(scheduler.ask_dqd())))
         scheduler.tell(*(np.asarray(x) for x in evaluate(scheduler.ask())))
     return np.asarray(archive.data("objective"))
 

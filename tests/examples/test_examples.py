@@ -36,6 +36,13 @@ def test_their_map_elites_evolves_our_creatures():
     assert np.isfinite(repertoire.fitnesses).any()
 
 
+def test_their_cma_mega_climbs_our_slopes():
+    module = example("qdax_cma_mega", "qdax")
+    longer = {**TINY, "task": {"steps": 80}}
+    repertoire = module.main(generations=4, batch=8, **longer)
+    assert np.isfinite(repertoire.fitnesses).sum() > 1
+
+
 def test_their_map_elites_evolves_our_networks():
     repertoire = example("qdax_neat", "qdax").main(generations=3, batch=4, **TINY)
     assert np.isfinite(repertoire.fitnesses).any()

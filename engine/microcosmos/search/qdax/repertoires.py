@@ -16,6 +16,7 @@ from jaxtyping import Array, Float, Int
 
 from ...genomes import Genotype, Vector
 from ..cells import Axis, Cells, Grid, places
+from ..emitters.learner import Slopes, unit
 from ..evaluation import Evaluation
 from ..insertion import Elites
 
@@ -33,20 +34,32 @@ def needed(module: str) -> Any:
         ) from error
 
 
-def scoring_function(evaluate: Callable[[Genotype], Evaluation], cells: Cells) -> Callable:
+def scoring_function(
+    evaluate: Callable[[Genotype], Evaluation],
+    cells: Cells,
+    slopes: Callable[[Genotype], Slopes] | None = None,
+) -> Callable:
     """QDax's protocol around an evaluation of a batch: fitness, descriptors, extra scores.
 
     Genotypes are networks, or plain arrays of genes from −1 to 1. What diverged has fitness
-    −inf, so that no repertoire takes it.
+    −inf, so that no repertoire takes it. With `slopes` the extra scores hold what QDax's
+    CMA-MEGA asks for: (creature, gene, output) unit slopes of fitness and descriptors, 0 where
+    they are not finite. A descriptor's direction is the same on any of its scales.
     """
 
     def score(genotypes: Any, key: Any = None) -> tuple[Array, Array, dict[str, Array]]:
         plain = isinstance(genotypes, jax.Array | np.ndarray)
-        found = evaluate(Vector(jnp.asarray(genotypes)) if plain else genotypes)
+        genotypes = Vector(jnp.asarray(genotypes)) if plain else genotypes
+        found = evaluate(genotypes)
         sound = (found.status == 0) & jnp.isfinite(found.fitness)
         fitness = jnp.where(sound, found.fitness, -jnp.inf)
         place = jnp.where(sound[:, None], places(found.features, cells.axes), 0.0)
-        return fitness, place, {"features": found.features, "status": found.status}
+        extra = {"features": found.features, "status": found.status}
+        if slopes is not None:
+            known = slopes(genotypes)
+            rows = jnp.where(known.sound[:, None, None], unit(known.rows), 0.0)
+            extra["normalized_grads"] = jnp.swapaxes(rows, 1, 2)
+        return fitness, place, extra
 
     return score
 
