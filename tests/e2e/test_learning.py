@@ -41,8 +41,8 @@ def test_an_elite_is_refined_and_watched_beside_what_it_was(page: Page, address:
     expect(page.get_by_role("group", name="Fitness against steps")).to_be_visible()
     expect(page.get_by_role("heading", name="Before and after")).to_be_visible(timeout=FAST)
     see_it_move(page, 2)
-    expect(page.locator("figcaption")).to_have_count(2)
-    first, last = (one.inner_text() for one in page.locator("figcaption").all())
+    expect(page.locator(".stages figcaption")).to_have_count(2)
+    first, last = (one.inner_text() for one in page.locator(".stages figcaption").all())
     assert (first.split()[0], last.split()[0]) == ("Before", "After")
     assert fitness(last) > fitness(first)
 

@@ -1,9 +1,11 @@
 import { describe, expect, it } from "vitest";
+import { NO_CURVES } from "../src/live/curves";
 import type { ResultRow, Run, Spec } from "../src/api/types";
 import { fromZero, logAround, place, ticksOf } from "../src/view/plot/scale";
 import { columnsOf, sortRows } from "../src/view/results/columns";
 import { figuresOf, keyFigureOf } from "../src/view/results/figures";
 import { reynoldsAxis, sweepAxes, sweepLines } from "../src/view/results/gaits";
+import { courseOf } from "../src/view/results/learning";
 import { timeLines } from "../src/view/results/scaling";
 
 const row = (values: Partial<ResultRow>): ResultRow => ({ creature: null, ...values });
@@ -150,5 +152,24 @@ describe("a measurement of scaling", () => {
     expect(keyFigureOf(run)).toEqual(["exponent", "1.02"]);
     const small = { ...run, summary: { exponent: null, peak_memory_bytes: 2_500_000 } };
     expect(keyFigureOf(small)).toEqual(["peak memory", "2.5 MB"]);
+  });
+});
+
+describe("a course", () => {
+  const curves = (summary: Record<string, number[]>) => ({ ...NO_CURVES, generation: [1, 2, 3], summary });
+  const run = (experiment: string) => ({ experiment, generations: 3 }) as unknown as Run;
+
+  it("names values apart that hardly differ", () => {
+    const { y } = courseOf(run("refinement"), curves({ fitness: [2.956, 3.01, 3.018] }));
+    const names = ticksOf(y.scale, 8).map(y.write);
+    expect(names.length).toBeGreaterThan(3);
+    expect(new Set(names).size).toBe(names.length);
+  });
+
+  it("has a line for each picture that a filament folds into", () => {
+    const told = { "loss of 3": [0.1, 0.05, 0.02], "loss of 7": [0.1, 0.04, 0.01], loss: [0.1, 0.045, 0.015] };
+    const { lines } = courseOf(run("folding"), curves(told));
+    expect(lines.map(({ name }) => name)).toEqual(["3", "7"]);
+    expect(lines[1]!.points.map(({ y }) => y)).toEqual([0.1, 0.04, 0.01]);
   });
 });

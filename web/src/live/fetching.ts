@@ -9,7 +9,7 @@ import { current, dispatch, useLive } from "./live";
 import { epochOf } from "./store";
 
 /** Whether a run searches for elites; others measure, and their result is a table. */
-export const hasArchive = ({ spec }: Run) => "archive" in spec;
+export const hasArchive = ({ spec }: Run) => "search" in spec;
 
 const PAGE = 30;
 /** Points of a curve that a snapshot carries; a screen shows no more. */

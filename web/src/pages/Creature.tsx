@@ -51,10 +51,10 @@ export function CreaturePage({ sha, query }: Props) {
       {!creature && !error && <p class="quiet loading">Loading creature …</p>}
       {creature && (
         <div class="creature-columns">
-          <Motion key={sha} sha={sha} task={creature.identity.task} />
+          <Motion key={sha} creature={creature} />
           <div class="stack">
             <Genome sha={sha} genome={creature.identity.genome} />
-            <AuditCard key={sha} sha={sha} query={query} />
+            {swims(creature) && <AuditCard key={sha} sha={sha} query={query} />}
             <Facts creature={creature} run={run} />
           </div>
         </div>
@@ -63,8 +63,12 @@ export function CreaturePage({ sha, query }: Props) {
   );
 }
 
+/** Whether it moves by itself; what folds only takes a shape. */
+const swims = ({ identity }: Creature) => identity.genome.encoding !== "fold";
+
 /** Whether it has genes that evolve, and so a fitness to climb. */
-const searched = ({ identity }: Creature) => !["gait", "fold"].includes(identity.genome.encoding);
+const searched = (creature: Creature) =>
+  swims(creature) && creature.identity.genome.encoding !== "gait";
 
 function Sharing({ sha }: { sha: string }) {
   const copy = async () => {
@@ -83,7 +87,8 @@ function Sharing({ sha }: { sha: string }) {
   );
 }
 
-function Motion({ sha, task }: { sha: string; task: Spec }) {
+function Motion({ creature }: { creature: Creature }) {
+  const { sha256: sha, identity } = creature;
   const rendering = useReplays([sha]);
   const replay = rendering.replays?.[0];
   const films = useMemo(() => (replay ? [{ replay }] : []), [replay]);
@@ -91,7 +96,7 @@ function Motion({ sha, task }: { sha: string; task: Spec }) {
     <section class="card motion" aria-label="Replay">
       <Rendering {...rendering} what="Simulating this creature again to record its motion …" />
       {replay && <ReplayPlayer films={films} />}
-      {replay && <Difference replay={replay} task={task} />}
+      {replay && swims(creature) && <Difference replay={replay} task={identity.task} />}
       {replay && <Pictures sha={sha} />}
     </section>
   );

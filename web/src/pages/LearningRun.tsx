@@ -44,7 +44,7 @@ interface Ends {
 
 function Improvement({ run, before, after }: Ends) {
   return (
-    <section class="card" aria-labelledby="films-title">
+    <section class="card films" aria-labelledby="films-title">
       <h2 id="films-title">Before and after</h2>
       {before.creature === after.creature ? (
         <p class="quiet">No step made it fitter: it is as it was.</p>

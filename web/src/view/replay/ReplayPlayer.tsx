@@ -63,7 +63,7 @@ export function ReplayPlayer({ films }: { films: Film[] }) {
           Follow
         </label>
       </div>
-      <VorticityLegend strength={strength} theme={theme} />
+      {strength > 0 && <VorticityLegend strength={strength} theme={theme} />}
     </div>
   );
 }

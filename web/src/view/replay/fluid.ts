@@ -7,11 +7,12 @@ import type { Point } from "./motion";
 /** Cells drawn beyond the view, so that smoothing never sees the image's edge. */
 const MARGIN = 2;
 
-/** The vorticity that only one value in a hundred exceeds, of those that are not zero. */
+/** The vorticity that only one value in a hundred exceeds, of those that are not zero; 0: none. */
 export function strongest({ vorticity, header }: Replay): number {
   const counts = new Array<number>(129).fill(0);
   for (const value of vorticity) counts[Math.abs(value)]!++;
   const moving = vorticity.length - counts[0]!;
+  if (moving === 0) return 0;
   let above = 0;
   for (let level = 128; level > 1; level--) {
     above += counts[level]!;
@@ -33,7 +34,7 @@ export class FluidPainter {
     const [width, height] = replay.header.size;
     this.canvas = new OffscreenCanvas(width + 2 * MARGIN, height + 2 * MARGIN);
     this.image = new ImageData(this.canvas.width, this.canvas.height);
-    const most = replay.header.vorticity.scale / strength;
+    const most = strength > 0 ? replay.header.vorticity.scale / strength : 1;
     this.colours = table((value) => diverging(value, theme), 255, [-most, most]);
   }
 

@@ -39,6 +39,13 @@ const KNOWN: Record<string, Partial<Column>> = {
   coupling: seconds,
   constraints: seconds,
   steric: seconds,
+  first: { title: "First loss" },
+  last: { title: "Last loss" },
+  least: { title: "Least loss" },
+  empty: { title: "Loss of an empty picture" },
+  failed: { title: "Failed updates", write: as(count) },
+  slope: { title: "Slope’s length" },
+  agreement: { title: "Gain over predicted" },
   memory_bytes: { title: "Memory", write: as(bytes) },
 };
 

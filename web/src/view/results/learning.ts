@@ -23,22 +23,25 @@ export function courseOf(run: Run, curves: Curves): Course {
   const names = Object.keys(curves.summary).filter((name) =>
     folds ? name.startsWith(LOSS) : name === "fitness",
   );
-  const lines = names.map((name, k) => lineOf(name.replace(LOSS, ""), curves, name, k));
+  const lines = names.map((name, k) => lineOf(name, curves, before, k));
   const values = lines.flatMap(({ points }) => points.map(({ y }) => y ?? 0));
-  const write = (value: number) => number(value, 2);
-  const steps = { log: false, low: 0, high: Math.max(1, run.generations) };
+  const rises = around(values);
+  // A refinement measures its creature before the first step.
+  const before = folds ? 0 : 1;
+  const steps = { log: false, low: 0, high: Math.max(1, run.generations - before) };
   return {
     title: folds ? "Loss against updates" : "Fitness against steps",
     x: { title: folds ? "Update" : "Step", scale: steps, write: count },
     y: folds
-      ? { title: "Loss", scale: logAround(values), write }
-      : { title: "Fitness", scale: around(values), write },
+      ? { title: "Loss", scale: logAround(values), write: (value) => number(value, 2) }
+      : { title: "Fitness", scale: rises, write: (value) => number(value, digitsOf(rises)) },
     lines,
   };
 }
 
-function lineOf(name: string, curves: Curves, column: string, k: number): Line {
-  const values = curves.summary[column]!;
+function lineOf(column: string, curves: Curves, before: number, k: number): Line {
+  const [name, values] = [column.replace(LOSS, ""), curves.summary[column]!];
+  const step = (i: number) => curves.generation[i]! - before;
   const every = Math.max(1, Math.ceil(values.length / MARKS));
   const kept = values.map((_, i) => i).filter((i) => i % every === 0 || i === values.length - 1);
   return {
@@ -48,9 +51,9 @@ function lineOf(name: string, curves: Curves, column: string, k: number): Line {
     points: kept
       .filter((i) => values[i] !== null)
       .map((i) => ({
-        x: curves.generation[i]!,
+        x: step(i),
         y: values[i]!,
-        says: [name, `after ${count(curves.generation[i]!)}`, number(values[i]!)],
+        says: [name, `after ${count(step(i))}`, number(values[i]!)],
       })),
   };
 }
@@ -62,3 +65,7 @@ function around(values: number[]): Axis["scale"] {
   const beside = 0.07 * (high - low || Math.abs(high) || 1);
   return { log: false, low: low - beside, high: high + beside };
 }
+
+/** Digits by which values that are named on the axis differ. */
+const digitsOf = ({ low, high }: Axis["scale"]) =>
+  2 + Math.max(0, Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low))));
