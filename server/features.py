@@ -15,6 +15,11 @@ from .problems import Refused
 from .schemas import Axis, Feature, FieldError
 
 
+def searched(run: Run) -> bool:
+    """Whether it fills an archive; others measure, and their result is a table."""
+    return "search" in run.spec
+
+
 def axes(run: Run) -> list[Axis]:
     """The archive's own axes."""
     return [Axis(**axis) for axis in run.spec["archive"]["descriptors"]]

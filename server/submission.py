@@ -23,6 +23,8 @@ OF_SEARCHES = ("search.block", "search.batch", "archive")
 DECISIVE = {
     "quality-diversity": OF_SEARCHES,
     "neuroevolution": OF_SEARCHES,
+    "folding": ("memory",),
+    "refinement": ("segment",),
     "gaits": ("block",),
     "scaling": ("nodes",),
 }

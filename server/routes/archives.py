@@ -70,7 +70,7 @@ def read_archive(
 
 
 def _refuse_without(run: Run) -> None:
-    if "archive" not in run.spec:
+    if not of_elites.searched(run):
         detail = (
             f"A run of `{run.experiment}` fills no archive; its result is at "
             f"/api/v1/runs/{run.id}/results."
@@ -123,6 +123,6 @@ def _checkpoint(session: Session, run: Run) -> Artifact:
 
 
 def _attachment(run: Run, ending: str) -> dict[str, str]:
-    kind = "archive" if "archive" in run.spec else run.experiment
+    kind = "archive" if of_elites.searched(run) else run.experiment
     name = f"{kind}-{str(run.id)[:8]}.{ending}"
     return {"Content-Disposition": f'attachment; filename="{name}"'}

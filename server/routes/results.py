@@ -9,6 +9,7 @@ from fastapi.responses import Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from .. import features as of_elites
 from ..deps import RunDep, SessionDep
 from ..models import Result, Run
 from ..problems import Refused
@@ -39,7 +40,7 @@ def download_results(run: RunDep, session: SessionDep) -> Response:
 
 
 def _refuse_archive(run: Run) -> None:
-    if "archive" in run.spec:
+    if of_elites.searched(run):
         detail = (
             f"A run of `{run.experiment}` fills an archive, at "
             f"/api/v1/runs/{run.id}/archive, and has no table."

@@ -3,11 +3,14 @@
 import csv
 import io
 import json
+from uuid import UUID
 
 import pytest
 from sqlalchemy import func, select
 from sqlalchemy.exc import OperationalError
 
+from microcosmos.archive import creature
+from server import workers
 from server.claims import claim
 from server.db import Sessions
 from server.models import Result, Run
@@ -62,6 +65,22 @@ def test_what_is_no_table_says_where_its_archive_is(api, run_id):
     answer = api.get(f"runs/{run_id}/results.csv")
     assert answer.status_code == 404
     assert f"/api/v1/runs/{run_id}/archive" in answer.json()["detail"]
+
+
+def test_a_refinement_has_cells_to_keep_to_and_a_table_all_the_same(
+    api, services, identity, table
+):
+    file = creature.document(identity(1), None, None)
+    run = api.post("runs", json={"experiment": "refinement", "creature": file}).json()["id"]
+    claim(services, UUID(run), "worker").record(table(1, {"step": 0, "fitness": 2.5}), 1.0)
+    answer = api.get(f"runs/{run}/results.csv")
+    assert "refinement-" in answer.headers["content-disposition"]
+    assert answer.text.splitlines()[0] == "step,fitness,creature"
+    for path in ("archive", "archive.csv"):
+        assert api.get(f"runs/{run}/{path}").status_code == 404
+    workers.report(services.sessions, "small", "cpu", 1000, "idle")
+    large = api.post("runs", json={"experiment": "refinement", "creature": file})
+    assert large.json()["errors"][0]["field"] == "segment"
 
 
 def test_numbers_that_json_lacks_are_told_as_none(api, services, sweep_id, table):

@@ -92,6 +92,7 @@ def test_bad_input_is_refused_with_field_and_reason(
         ("quality-diversity", {"archive": {"descriptors": FINE}}, "archive"),
         ("gaits", {}, "block"),
         ("scaling", {}, "nodes"),
+        ("folding", {}, "memory"),
     ],
 )
 def test_a_run_that_needs_too_much_memory_is_told_which_field_decides(

@@ -47,6 +47,7 @@ def subdivided(body: Body) -> Refined:
             bend=np.concatenate([body.bend, np.ones(count)]),
             arc=np.concatenate([body.arc, _between(body.arc[first], body.arc[second])])[order],
             member=np.concatenate([body.member, body.member[first]])[order],
+            crossing=body.crossing,
         ),
         nodes=number[: len(body.positions)],
         edges=np.repeat(np.arange(count), 2),

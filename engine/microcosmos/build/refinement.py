@@ -34,10 +34,8 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         block=chosen.block,
         frame=frame(scene),
         encoding=task.encoding,
-        origin={
-            "name": found["sha256"],
-            "seed": (found["provenance"] or {}).get("seed", 0),
-        },
+        origin=found["sha256"],
+        provenance=found["provenance"],
         device=device.device_kind(),
     )
 

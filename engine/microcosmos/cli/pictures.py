@@ -59,7 +59,10 @@ def mnist(
     """Fetch the test images of MNIST and their labels, and verify them."""
     import httpx
 
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        fail(f"FOLDER must be a folder, or none yet: {error}")
     for file, digest in MNIST_FILES.items():
         path = folder / file
         if path.exists() and _digest(path.read_bytes()) == digest:

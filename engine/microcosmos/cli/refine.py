@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from ..archive.creature import CreatureError, parse
 from ..spec import Archive, Refinement
 from .app import CACHE, app, console, fail
-from .run import carry_on
+from .run import carry_on, evaluations_of
 from .specs import read_spec, said
 
 
@@ -26,9 +26,16 @@ def refine(
     out: Annotated[
         Path | None, typer.Option(help="The run's file; default: NAME.refined.h5.")
     ] = None,
+    segment: Annotated[
+        int | None,
+        typer.Option(min=1, help="Steps that a gradient keeps at a time; default: all."),
+    ] = None,
+    other_device: Annotated[
+        bool, typer.Option(help="Go on although another kind of device began the run.")
+    ] = False,
 ) -> None:
     """Make a creature fitter by gradient steps that do not leave its cell."""
-    path = out or file.with_suffix("").with_suffix(".refined.h5")
+    path = out or file.with_name(f"{file.name.removesuffix('.json')}.refined.h5")
     try:
         creature = parse(file.read_bytes())
         chosen = Refinement(
@@ -36,15 +43,17 @@ def refine(
             archive=_archive(like),
             steps=steps,
             length=length,
+            segment=segment,
         )
     except (CreatureError, OSError) as error:
         fail(f"{file}: {error}")
     except ValidationError as error:
         fail("\n".join(f"{file}: {said(found)}" for found in error.errors()))
+    evaluations_of(chosen, path)
     from ..device import prepare
 
     prepare(cache=CACHE)
-    if not carry_on(chosen, path, 60.0, False):
+    if not carry_on(chosen, path, 60.0, other_device):
         console.print(f"Stopped. The same command goes on from {path}.")
         raise typer.Exit(130)
     _tell(path)

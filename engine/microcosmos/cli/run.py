@@ -37,21 +37,27 @@ def evolve(
     path = archive or Path(spec.replace("/", "-") if spec in presets() else spec).with_suffix(
         ".h5"
     )
-    if not path.parent.is_dir():
-        fail(f"--out needs an existing folder; got {path.parent}")
     from ..device import device_kind, prepare
 
-    need = estimate(chosen)
-    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    if need.memory_bytes > memory:
-        fail(f"the run needs about {need.memory_bytes:,} bytes of memory; there are {memory:,}")
+    evaluations = evaluations_of(chosen, path)
     prepare(cache=CACHE)
-    console.print(f"{need.evaluations:,} evaluations on {device_kind()} into {path}")
+    console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
     if not carry_on(chosen, path, checkpoint_seconds, other_device):
         console.print(f"Stopped. The same command goes on from {path}.")
         raise typer.Exit(130)
     best = path.with_suffix(".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
+
+
+def evaluations_of(spec: Spec, path: Path) -> int:
+    """How many a run takes; it ends here where there is no folder or memory for it."""
+    if not path.parent.is_dir():
+        fail(f"--out needs an existing folder; got {path.parent}")
+    need = estimate(spec)
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if need.memory_bytes > memory:
+        fail(f"the run needs about {need.memory_bytes:,} bytes of memory; there are {memory:,}")
+    return need.evaluations
 
 
 def carry_on(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: bool) -> bool:

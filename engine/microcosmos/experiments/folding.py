@@ -84,7 +84,11 @@ class Folding:
         arrays = {
             "curves": {"loss": state.losses},
             "folds": {"genes": folds.best, "loss": folds.least, "picture": folds.picture},
-            "next": {"genes": folds.genes, "optimiser": leaves(folds.optimiser)},
+            "next": {
+                "genes": folds.genes,
+                "pace": folds.pace,
+                "optimiser": leaves(folds.optimiser),
+            },
         }
         return table_file.save(self.spec, state.table, arrays)
 
@@ -99,6 +103,7 @@ class Folding:
                 optimiser=filled(self.start.optimiser, after["optimiser"]),
                 best=jnp.asarray(kept["genes"]),
                 least=jnp.asarray(kept["loss"]),
+                pace=jnp.asarray(after["pace"]),
                 picture=jnp.asarray(kept["picture"]),
             )
             return State(jax.device_get(folds), tree["curves"]["loss"], table)

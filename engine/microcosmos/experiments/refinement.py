@@ -54,8 +54,10 @@ class Refinement:
     block: int
     frame: Mapping[str, Any]
     encoding: Encoding
-    origin: Mapping[str, Any]
-    """The creature's name and the seed of its run."""
+    origin: str
+    """The creature's name."""
+    provenance: Mapping[str, Any] | None
+    """How it came to be, if that is known."""
     device: str
 
     def init(self) -> State:
@@ -121,12 +123,11 @@ class Refinement:
             return None
         row = state.table.rows[-1]
         assert row.measured is not None
-        assert row.provenance is not None
         return {
             "identity": self._identity(state.genes),
             "sha256": row.creature,
             "measured": dict(row.measured),
-            "provenance": dict(row.provenance),
+            "provenance": row.provenance and dict(row.provenance),
             "licence": naming.LICENCE,
         }
 
@@ -183,13 +184,14 @@ class Refinement:
             "room": list(self.encoding.room) if self.encoding.room else None,
             "device": self.device,
         }
-        provenance = {
-            "parents": [] if first else [self.origin["name"]],
+        refined = {
+            "parents": [self.origin],
             "operator": "refinement",
             "generation": state.table.generation,
-            "seed": self.origin["seed"],
+            "seed": (self.provenance or {}).get("seed", 0),
             "version": VERSION,
         }
+        provenance = self.provenance if first else refined
         whole = self._identity(genes)
         return Row(values, naming.name(whole), naming.canonical(whole), measured, provenance)
 

@@ -12,6 +12,9 @@ from .placing import MOST, Ink, fitted
 IMAGES = 2051
 """What an IDX file of images begins with (LeCun, Cortes and Burges, The MNIST database)."""
 
+LARGEST = 4096
+"""Pixels along a side beyond which a picture is made smaller before it is looked at."""
+
 
 def png(path: str | Path) -> Ink:
     """The ink of a picture file: dark on light, or what is opaque where it is transparent.
@@ -22,8 +25,9 @@ def png(path: str | Path) -> Ink:
     images = needed("PIL.Image")
     try:
         with images.open(path) as image:
+            image.thumbnail((LARGEST, LARGEST))
             grey = np.asarray(image.convert("LA"), float) / 255
-    except (OSError, SyntaxError) as error:
+    except (OSError, SyntaxError, images.DecompressionBombError) as error:
         raise ValueError(f"`path` must be a picture, got {str(path)!r}: {error}") from error
     light, opaque = grey[..., 0], grey[..., 1]
     return _small(opaque if opaque.min() < 1 else 1 - light, str(path))

@@ -24,7 +24,7 @@ from ..device import device_kind
 from ..fluid import vorticity
 from ..genomes import Drive
 from ..spec import Gait, Scene, shape
-from ..spec.estimate import simulation
+from ..spec.estimate import placements, simulation
 
 FORMAT = "microcosmos-replay/1"
 FRAMES = 250
@@ -98,8 +98,10 @@ def interval(scene: Scene, network_nodes: int) -> int:
     Raises `creature.CreatureError` where the simulation is too long or too large to watch.
     """
     cells = scene.world.width * scene.world.height
+    several = placements(scene.world)
+    lives = 1 + several if several > 1 else 1  # The one that is shown, and those of the mean.
     for field, limit, found, unit in (
-        ("task.steps", CELL_STEPS, cells * scene.task.steps, "cell steps"),
+        ("task.steps", CELL_STEPS, cells * scene.task.steps * lives, "cell steps"),
         ("body.nodes", 2**32, simulation(scene, network_nodes), "bytes of memory"),
     ):
         if found > limit:

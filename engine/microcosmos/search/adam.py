@@ -27,7 +27,7 @@ def begin(genes: Float[Array, "gene"]) -> Adam:
 
 
 def descend(
-    adam: Adam, slope: Float[Array, "gene"], rate: float
+    adam: Adam, slope: Float[Array, "gene"], rate: float | Float[Array, ""]
 ) -> tuple[Float[Array, "gene"], Adam]:
     """The change of genes that leads down, and what is remembered then."""
     count = adam.count + 1

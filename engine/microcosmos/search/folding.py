@@ -29,6 +29,8 @@ class Fold(eqx.Module):
     best: Float[Array, "*block gene"]
     """The genes with the least loss so far."""
     least: Float[Array, "*block"]
+    pace: Float[Array, "*block"]
+    """Share of the learning rate; halved where an update failed, so that it does not again."""
     picture: Float[Array, "*block x y"]
 
 
@@ -58,25 +60,29 @@ def unfolded(descent: Descent, picture: Plane) -> Fold:
     assert descent.task.encoding is not None
     genes = descent.task.encoding.newcomer(key=jax.random.key(0)).values
     least = jnp.full((), jnp.inf, genes.dtype)
-    return Fold(genes, begin(genes), genes, least, picture)
+    return Fold(genes, begin(genes), genes, least, jnp.ones_like(least), picture)
 
 
 def update(descent: Descent, fold: Fold) -> tuple[Fold, Float[Array, ""]]:
     """One step of Adam (Kingma and Ba, ICLR 2015), and the loss before it.
 
-    Where loss or slope are not finite, the next step begins anew from the best genes.
+    Where loss or slope are not finite the loss is told as NaN, and the next step begins anew
+    from the best genes, at half the pace.
     """
     found, slope = jax.value_and_grad(partial(loss, descent))(fold.genes, fold.picture)
     sound = jnp.isfinite(found) & jnp.all(jnp.isfinite(slope))
     better = sound & (found < fold.least)
     best = jnp.where(better, fold.genes, fold.best)
-    change, moved = descend(fold.optimiser, jnp.where(sound, slope, 0.0), descent.rate)
+    rate = descent.rate * fold.pace
+    change, moved = descend(fold.optimiser, jnp.where(sound, slope, 0.0), rate)
     genes = jnp.where(sound, fold.genes + change, best)
     optimiser = jax.tree.map(
         lambda new, fresh: jnp.where(sound, new, fresh), moved, begin(best)
     )
     least = jnp.where(better, found, fold.least)
-    return Fold(genes, optimiser, best, least, fold.picture), found
+    pace = jnp.where(sound, 1.0, 0.5) * fold.pace
+    told = jnp.where(sound, found, jnp.nan)
+    return Fold(genes, optimiser, best, least, pace, fold.picture), told
 
 
 def start(descent: Descent, pictures: Float[np.ndarray, "fold x y"]) -> Fold:

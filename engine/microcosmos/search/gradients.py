@@ -111,7 +111,9 @@ def measures(
     if task.placements is None:
         found = measure(driven)
     else:
-        worlds = jax.lax.map(lambda x: measure(elsewhere(driven, x)), task.placements)
+        # Checkpointed: what reverse mode keeps is one world's, not all of them.
+        anew = jax.checkpoint(lambda x: measure(elsewhere(driven, x)))
+        worlds = jax.lax.map(anew, task.placements)
         found = jax.tree.map(lambda x: jnp.mean(x, 0), worlds)
     known = [name for name in found if name not in CONSTANT]
     unknown = [name for name in of if name not in known]

@@ -156,6 +156,9 @@ OF_NUMBERS = ("iso+line", "gaussian", "cma-mae", "cma-me", "cma-mega")
 OF_NETWORKS = ("neat", "population", "lamarckian")
 """Operators that vary networks."""
 
+GROWING = ("neat", "lamarckian")
+"""Operators that give elites new genes, which they number."""
+
 BY_SLOPES = ("lamarckian", "cma-mega")
 """Operators that need derivatives of every descriptor."""
 

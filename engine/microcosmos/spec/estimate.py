@@ -16,14 +16,13 @@ from .refinement import Refinement, parsed
 from .reverse import FLOAT
 from .scaling import Scaling
 from .scene import Fold, Gait, Scene
+from .world import World
 
 PLANES = 9
 WINDOW = 16
 """Cells around a node."""
 GRADIENT = 7
 """How much longer a gradient takes than the simulation alone."""
-MOST_NODES = 64
-"""Of a network whose size is not asked."""
 CHUNK = 2**13
 """Nodes that are worked on at a time."""
 
@@ -63,7 +62,7 @@ def _(spec: Evolution) -> Estimate:
         memory_bytes=search.block * one + archive + vary + record + slopes(spec),
         evaluations=evaluations,
         cell_steps=(computed + GRADIENT * gradients)
-        * (spec.world.energy.placements if spec.world.energy else 1)
+        * placements(spec.world)
         * spec.world.width
         * spec.world.height
         * spec.task.steps,
@@ -84,15 +83,20 @@ def _(spec: Folding) -> Estimate:
 
 @estimate.register
 def _(spec: Refinement) -> Estimate:
-    from ..archive.creature import scene_of  # Which reads specs itself.
+    from ..archive.creature import room, scene_of  # Which reads specs itself.
 
-    scene = scene_of(parsed(spec.creature))
+    file = parsed(spec.creature)
+    scene = scene_of(file)
     cells, steps = scene.world.width * scene.world.height, scene.task.steps
-    at_once = spec.block * simulation(scene, MOST_NODES)
+    nodes, _ = room(file) or (0, 0)
+    at_once = spec.block * simulation(scene, nodes)
     return Estimate(
         memory_bytes=at_once + gradient(scene, spec.segment),
         evaluations=1 + spec.steps * (1 + spec.block),
-        cell_steps=cells * steps * (1 + spec.steps * (GRADIENT + spec.block)),
+        cell_steps=cells
+        * steps
+        * placements(scene.world)
+        * (1 + spec.steps * (GRADIENT + spec.block)),
     )
 
 
@@ -136,6 +140,11 @@ def slopes(spec: Evolution) -> int:
         ),
         default=0,
     )
+
+
+def placements(world: World) -> int:
+    """Worlds that a creature lives in."""
+    return world.energy.placements if world.energy else 1
 
 
 def gradient(scene: Scene, segment: int | None) -> int:

@@ -69,8 +69,10 @@ def picture(name: str, ink: np.ndarray) -> Picture:
 
 
 def _kind(value: Any) -> Any:
-    """The tag of a target; a number is a digit."""
-    return value.get("kind", "digit") if isinstance(value, dict) else value.kind
+    """The tag of a target."""
+    return (
+        value.get("kind", "digit") if isinstance(value, dict) else getattr(value, "kind", None)
+    )
 
 
 Target = Annotated[
@@ -115,8 +117,9 @@ class Folding(Part):
     block: int = Field(default=1, ge=1, le=64)
     """Filaments updated by one call of the compiled program; results depend on its bits."""
     memory: float = Field(default=2.0, gt=0.0, le=1000.0, json_schema_extra=unit("GiB"))
-    """What a block may occupy: where keeping all steps for the gradient takes more, as few are
-    kept as can be and the others are done twice. Results depend on its bits."""
+    """What a block may occupy, of which every device has one: where keeping all steps for the
+    gradient takes more, as few are kept as can be and the others are done twice. Results depend
+    on its bits."""
 
     @model_validator(mode="after")
     def check(self) -> Self:

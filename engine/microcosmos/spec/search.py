@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from . import features
 from .base import LATER, Part, unit
-from .emitters import BY_SLOPES, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
+from .emitters import BY_SLOPES, GROWING, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
 
 
 class Task(Part):
@@ -187,9 +187,10 @@ class Search(Generations):
                 f"`batch` must leave a creature for each of the `emitters`, got "
                 f"{self.batch}, none of them for {idle!r}"
             )
-        if [emitter.operator for emitter in self.emitters].count("neat") > 1:
+        growing = [one.operator for one in self.emitters if one.operator in GROWING]
+        if len(growing) > 1:
             raise ValueError(
-                '`emitters` must hold "neat" once, so that equal mutations of a generation '
-                "get equal numbers; got it twice"
+                f"`emitters` must hold one of {' and '.join(GROWING)} at most, so that equal "
+                f"mutations of a generation get equal numbers; got {', '.join(growing)}"
             )
         return self

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies
+from microcosmos.bodies.refine import subdivided
 
 pytestmark = pytest.mark.fast
 
@@ -32,6 +33,7 @@ def test_it_may_cross_itself_where_other_bodies_may_not():
     body = bodies.walk(300, 0.4, 1.0, 0)
     assert body.crossing
     assert bodies.together([body, body]).crossing
+    assert len(subdivided(body).body.positions) == 599
     with pytest.raises(ValueError, match="cells apart"):
         bodies.polyline([(0, 0), (4, 0), (2, 0.01)], 0.5)
 

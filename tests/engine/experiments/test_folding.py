@@ -98,6 +98,7 @@ def test_a_step_that_is_not_finite_begins_anew_from_the_best(folding):
     after, loss = folding.program(broken)
     assert not np.isfinite(loss[0])
     np.testing.assert_array_equal(after.genes, best)
+    assert after.pace[0] == 0.5
     assert all(not np.any(leaf) for leaf in jax.tree.leaves(after.optimiser))
 
 
@@ -141,6 +142,7 @@ def test_in_a_fluid_and_in_segments_it_learns_the_same_at_first():
         ({"targets": [{"digit": 3}, {"digit": 3}]}, "names that differ"),
         ({"targets": [{"digit": 10}]}, "less than or equal to 9"),
         ({"targets": [{"kind": "film"}]}, "one of digit, picture"),
+        ({"targets": [3]}, "one of digit, picture"),
         (
             {
                 "targets": [

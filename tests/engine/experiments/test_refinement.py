@@ -56,6 +56,7 @@ def test_it_becomes_fitter_and_never_less_fit(course):
 def test_the_first_row_is_the_creature_as_it_was_measured_in_its_search(spec, course):
     first = course[0][-1].table.rows[0]
     assert first.creature == spec.creature["sha256"]
+    assert first.provenance == spec.creature["provenance"]
     assert first.values["fitness"] == pytest.approx(
         spec.creature["measured"]["fitness"], rel=1e-4
     )

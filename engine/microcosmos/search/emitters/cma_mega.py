@@ -1,7 +1,7 @@
 """CMA-MEGA: an evolution strategy over steps along the slopes of fitness and descriptors.
 
-Fontaine and Nikolaidis, NeurIPS 2021, algorithm 2: one solution θ moves; its children are θ and
-random combinations of the unit slopes there, drawn from a distribution that adapts to what
+Fontaine and Nikolaidis, NeurIPS 2021, algorithm 2: one solution θ moves; its children are θ
+plus random combinations of the unit slopes there, drawn from a distribution that adapts to what
 enters the archive. The distribution is the one of `matrix_adaptation`.
 """
 

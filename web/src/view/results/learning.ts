@@ -20,14 +20,14 @@ export interface Course {
 /** How far a folding's filaments are from their pictures, or how fit a creature has become. */
 export function courseOf(run: Run, curves: Curves): Course {
   const folds = run.experiment === "folding";
+  // A refinement measures its creature before the first step.
+  const before = folds ? 0 : 1;
   const names = Object.keys(curves.summary).filter((name) =>
     folds ? name.startsWith(LOSS) : name === "fitness",
   );
   const lines = names.map((name, k) => lineOf(name, curves, before, k));
   const values = lines.flatMap(({ points }) => points.map(({ y }) => y ?? 0));
   const rises = around(values);
-  // A refinement measures its creature before the first step.
-  const before = folds ? 0 : 1;
   const steps = { log: false, low: 0, high: Math.max(1, run.generations - before) };
   return {
     title: folds ? "Loss against updates" : "Fitness against steps",
