@@ -9,7 +9,7 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
 
-.PHONY: run install web test check peers bench acceptance validate lock
+.PHONY: run install web test test-server test-product check peers bench acceptance validate lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -41,11 +41,20 @@ check: install web
 	$(STYLE)
 	$(BIN)/pytest -m fast tests/engine
 
-# Two processes: the tests of the server fork, which a process with JAX in it must not.
+# The tests of the server fork, which a process with JAX in it must not: they have their own.
+# Beside them, which mostly wait, goes the product whole: real processes, and a browser.
 test: install web
 	$(STYLE)
 	$(BIN)/pytest -n auto --maxprocesses 4 --dist loadfile tests/engine tests/examples
-	$(BIN)/pytest --ignore=tests/engine --ignore=tests/examples
+	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target test-server test-product
+
+BESIDE_ENGINE = --ignore=tests/engine --ignore=tests/examples
+
+test-server:
+	$(BIN)/pytest $(BESIDE_ENGINE) --ignore=tests/faults --ignore=tests/e2e
+
+test-product:
+	$(BIN)/pytest tests/faults tests/e2e
 
 # What benchmarks compare with; not needed for anything else.
 peers: install
