@@ -62,6 +62,8 @@ def test_a_run_stopped_by_a_signal_goes_on_and_ends_with_the_same_bytes(run, tmp
     assert archive.read_bytes() == (tmp_path / "whole.h5").read_bytes()
     text = finished(run("replay", "spec.best.json", "--check"))
     assert "The same, bit for bit." in text
+    text = finished(run("refine", "spec.best.json", "--out", "none/x.h5"), code=2)
+    assert "--out needs an existing folder" in text
 
 
 def test_a_wrong_spec_is_refused_with_its_field(run, tmp_path):
