@@ -1,5 +1,6 @@
 """What the specs of searches for creatures have in common."""
 
+from abc import abstractmethod
 from typing import Generic, Self, TypeVar
 
 from pydantic import Field, model_validator
@@ -48,14 +49,14 @@ class Evolution(Part, Generic[Name, How]):
         return self.search.generations
 
     @property
+    @abstractmethod
     def emitters(self) -> tuple[Emitter | PopulationEmitter, ...]:
         """Where children come from."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def slots(self) -> tuple[int, ...]:
         """Children of each emitter in a generation."""
-        raise NotImplementedError
 
     @property
     def gradients(self) -> tuple[int, ...]:
