@@ -9,7 +9,7 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
 
-.PHONY: run install web test test-server test-product check peers bench acceptance validate lock
+.PHONY: run install web test test-server test-product check peers bench acceptance validate pictures lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -60,7 +60,7 @@ test-product:
 peers: install
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-peers.lock
 
-bench: peers
+bench: peers web
 	$(BIN)/python engine/benchmarks/physics.py
 	$(BIN)/python engine/benchmarks/gradients.py
 	$(BIN)/python engine/benchmarks/derivatives.py
@@ -68,9 +68,14 @@ bench: peers
 	$(BIN)/python engine/benchmarks/networks.py
 	$(BIN)/python engine/benchmarks/xor.py
 	$(BIN)/python engine/benchmarks/generation.py
+	$(BIN)/python web/benchmarks/page.py
 
 acceptance: install web
 	$(BIN)/python tests/faults/acceptance.py
+
+# Every page into docs/pictures/page; DATA names a folder with finished runs.
+pictures: install web
+	DATA=$(DATA) $(BIN)/python tests/e2e/pictures.py
 
 validate: install
 	$(BIN)/python -m validation

@@ -13,10 +13,11 @@ from uuid import UUID
 from sqlalchemy import case, func, or_
 from sqlalchemy.orm import Session
 
-from . import records
+from . import journal, records
 from .artifacts import Stored, checkpoint_path
 from .checkpoints import fall_back, last_checkpoint, point_at, rewind
 from .db import clock
+from .journal import UNSAVED, Level, note
 from .lifecycle import announce, change, hand_back, lost, release
 from .models import (
     CANCEL,
@@ -53,7 +54,10 @@ def claim(services: Services, run_id: UUID, worker: str) -> "Claim | None":
         over = or_(Run.worker == worker, lost(session, services.settings.lease))
         release(session, run_id, over, error="the worker ended without a word")
         run = change(session, run_id, Run.status == QUEUED, **_begun(worker))
+        before = run.generation if run else 0
         rewound = run is not None and rewind(session, run)
+        if run:
+            journal.note_beginning(session, run, before)
         begun = _begin(services, session, run) if run else None
     if rewound and begun:
         _tell_rewind(begun)
@@ -127,7 +131,7 @@ class Claim:
 
     def use(self, device: str) -> None:
         """Say which kind of device computes."""
-        self._end(device=device)
+        self._end(f"Computing on {device}.", device=device)
 
     def restore(self) -> bytes | None:
         """The content of the newest checkpoint whose file is sound, if there is one.
@@ -146,10 +150,11 @@ class Claim:
             run = self._prove(session)
             row = fall_back(session, run, unsound.path)
             place = f"generation {run.checkpoint_generation}" if row else "the beginning"
-            run.warning = (
+            text = run.warning = (
                 f"The checkpoint of generation {damaged} is missing or damaged; "
                 f"the run goes on from {place}."
             )
+            note(session, run, text, "warning")
         log.warning("run %s: %s (%s)", self.run_id, run.warning, unsound.path)
         self.checkpoint = _stored(row)
         self.generation, self.seconds = run.checkpoint_generation, run.seconds
@@ -201,6 +206,7 @@ class Claim:
                     attempts_without_checkpoint=0,
                     warning=None,
                 )
+            journal.note_checkpoint(session, before, generation, stored.size)
         self.checkpoint, self.generation = stored, generation
         for path in superfluous:
             try:
@@ -210,20 +216,22 @@ class Claim:
 
     def warn(self, text: str) -> None:
         """Say something on the run that people should know; the next checkpoint clears it."""
-        self._end(warning=text)
+        self._end(text, "warning", UNSAVED, warning=text)
 
     def finish(self) -> None:
-        self._end(status=FINISHED, finished_at=clock(), error=None, wish=None, wished_at=None)
+        ended = {"status": FINISHED, "finished_at": clock(), "error": None}
+        self._end(None, **ended, wish=None, wished_at=None)
 
     def pause(self) -> None:
-        self._end(**_paused())
+        self._end(f"Stopped after generation {self.generation}.", **_paused())
 
     def wait_for_leave(self, text: str) -> None:
         """Pause until people say that another kind of device will do, by resuming it."""
-        self._end(**_paused(), warning=text, device_leave=NEEDED)
+        self._end(text, "warning", **_paused(), warning=text, device_leave=NEEDED)
 
     def cancel(self) -> None:
-        self._end(status=CANCELLED, finished_at=clock(), wish=None, wished_at=None)
+        ended = {"status": CANCELLED, "finished_at": clock()}
+        self._end(None, **ended, wish=None, wished_at=None)
 
     def requeue(self) -> None:
         """Hand the run back in good order, as on SIGTERM: not one of the three chances."""
@@ -239,9 +247,16 @@ class Claim:
                 raise Fenced(f"run {self.run_id}, attempt {self.attempt}")
         announce(self.services, self.run_id)
 
-    def _end(self, **values: Any) -> None:
+    def _end(
+        self, text: str | None, level: Level = "info", kind: str | None = None, **values: Any
+    ) -> None:
+        """Change the run, and say in its journal why and how it stands."""
         with self.services.sessions.write.begin() as session:
-            self._prove(session, **values)
+            run = self._prove(session, **values)
+            if text is not None:
+                note(session, run, text, level, kind)
+            if run.status != RUNNING:
+                journal.note_standing(session, run)
         announce(self.services, self.run_id)
 
     def _prove(self, session: Session, **values: Any) -> Run:

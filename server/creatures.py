@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 from microcosmos.archive import creature
 
 from .models import Creature
-from .records import creature_columns, insert_missing
+from .records import creature_columns, insert_missing, link
 
 
 def document(row: Creature) -> dict[str, Any]:
@@ -39,4 +39,5 @@ def add(session: Session, file: dict[str, Any]) -> bool:
         file["licence"],
     )
     insert_missing(session, Creature, [row])
+    link(session, [file["sha256"]])
     return True

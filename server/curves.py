@@ -10,6 +10,9 @@ from sqlalchemy.orm import Session
 
 from .models import Generation
 
+COUNTED = "diverged: "
+"""What names begin with whose numbers are counts of their generation alone."""
+
 
 def told(
     session: Session, run_id: UUID, generations: Sequence[int]
@@ -17,7 +20,8 @@ def told(
     """The numbers in the summaries, as columns with an entry for each of the generations.
 
     Some are told now and then: each entry is the newest since the generation before it in
-    the list, so that nothing told between two points is lost.
+    the list, so that nothing told between two points is lost. Diverged evaluations are added
+    up instead.
     """
     mine = (Generation.run_id == run_id) & Generation.summary.is_not(None)
     rows = select(Generation.generation, Generation.summary).where(mine)
@@ -26,9 +30,18 @@ def told(
     for generation, summary in session.execute(ordered):
         place = bisect_left(generations, generation)
         if place < len(points):
-            points[place] |= _numbers(summary or {})
+            points[place] = _joined(points[place], _numbers(summary or {}))
     names = dict.fromkeys(name for point in points for name in point)
     return {name: [point.get(name) for point in points] for name in names}
+
+
+def _joined(before: dict[str, float], later: dict[str, float]) -> dict[str, float]:
+    added = {
+        name: before.get(name, 0) + value
+        for name, value in later.items()
+        if name.startswith(COUNTED)
+    }
+    return before | later | added
 
 
 def _numbers(summary: Mapping[str, Any]) -> dict[str, float]:

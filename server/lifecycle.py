@@ -13,6 +13,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from .db import ago, clock
+from .journal import note, note_standing
 from .models import (
     CANCEL,
     CANCELLED,
@@ -51,7 +52,7 @@ def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | 
 
 def pause(session: Session, run: Run) -> Run:
     """At once where it waits; where it runs, its worker is asked to."""
-    return (
+    changed = (
         change(session, run.id, Run.status == QUEUED, status=PAUSED)
         or change(
             session,
@@ -63,11 +64,13 @@ def pause(session: Session, run: Run) -> Run:
         )
         or _refuse(session, "pause", run, "queued or running, not asked to cancel")
     )
+    note(session, changed, "Paused." if changed.status == PAUSED else "Asked to pause.")
+    return changed
 
 
 def cancel(session: Session, run: Run) -> Run:
     """At once where it waits or is paused; where it runs, its worker is asked to."""
-    return (
+    changed = (
         change(
             session,
             run.id,
@@ -84,6 +87,8 @@ def cancel(session: Session, run: Run) -> Run:
         )
         or _refuse(session, "cancel", run, "queued, running or paused")
     )
+    note(session, changed, "Cancelled." if changed.status == CANCELLED else "Asked to cancel.")
+    return changed
 
 
 def resume(session: Session, run: Run) -> Run:
@@ -91,9 +96,14 @@ def resume(session: Session, run: Run) -> Run:
     # Whoever resumes a run that waits for leave to change its kind of device gives it.
     leave = case((Run.device_leave == NEEDED, GIVEN), else_=Run.device_leave)
     values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_leave": leave}
-    return change(session, run.id, Run.status == PAUSED, **values) or _refuse(
+    values |= {"queued_at": clock()}
+    waited = run.device_leave == NEEDED
+    changed = change(session, run.id, Run.status == PAUSED, **values) or _refuse(
         session, "resume", run, "paused"
     )
+    leave = " Another kind of device is allowed." if waited else ""
+    note(session, changed, f"Resumed: queued again.{leave}")
+    return changed
 
 
 def _refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
@@ -107,9 +117,17 @@ def release(session: Session, run_id: UUID, *where: Any, error: str) -> Run | No
     It waits for another attempt, unless it is paused, cancelled, or had its last chance.
     """
     run = yield_up(session, run_id, *where, error=error)
-    if run and run.status == QUEUED and run.attempts_without_checkpoint >= ATTEMPTS:
-        text = f"{ATTEMPTS} attempts without a new checkpoint; the last one: {error}"
-        return change(session, run_id, status=FAILED, finished_at=clock(), error=text)
+    if run is None:
+        return None
+    note(session, run, f"Attempt {run.attempt} ended badly: {error}", "error")
+    if run.status == QUEUED and run.attempts_without_checkpoint >= ATTEMPTS:
+        lost = f"{ATTEMPTS} attempts without a new checkpoint"
+        text = f"{lost}; the last one: {error}"
+        run = change(session, run_id, status=FAILED, finished_at=clock(), error=text)
+        assert run is not None
+        note(session, run, f"Failed: {lost}.", "error")
+    else:
+        note_standing(session, run)
     return run
 
 
@@ -117,6 +135,7 @@ def yield_up(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run 
     """A running run without its worker: queued again, unless paused or cancelled meanwhile."""
     status = case((Run.wish == CANCEL, CANCELLED), (Run.wish == PAUSE, PAUSED), else_=QUEUED)
     values |= {"wish": None, "wished_at": None, "worker": None, "status": status}
+    values |= {"queued_at": clock()}
     over = case((Run.wish == CANCEL, clock()), else_=None)
     return change(session, run_id, Run.status == RUNNING, *where, finished_at=over, **values)
 
@@ -125,7 +144,11 @@ def hand_back(session: Session, run_id: UUID, *where: Any) -> Run | None:
     """A running run given up in good order: its attempt is not one of the three chances."""
     strikes = Run.attempts_without_checkpoint
     kept = case((strikes > 0, strikes - 1), else_=0)
-    return yield_up(session, run_id, *where, attempts_without_checkpoint=kept)
+    run = yield_up(session, run_id, *where, attempts_without_checkpoint=kept)
+    if run:
+        note(session, run, f"Worker stopped after generation {run.generation}.")
+        note_standing(session, run)
+    return run
 
 
 def lost(session: Session, lease: float) -> Any:
@@ -143,7 +166,7 @@ def announce(services: Services, run_id: UUID, *, without: Collection[str] = ())
     try:
         with services.sessions.read() as session:
             run = session.get(Run, run_id)
-            told = read_run(session, run) if run else None
+            told = read_run(services, session, run) if run else None
     except SQLAlchemyError as error:
         log.warning("no event of run %s: %s", run_id, error)
         return

@@ -81,10 +81,16 @@ class Run(Base):
     spec: Mapped[dict[str, Any]]
     version: Mapped[str] = mapped_column(String(64))
     demonstration: Mapped[bool] = mapped_column(default=False)
+    name: Mapped[str | None] = mapped_column(String(200))
+    """What people call it; this, the tags and the note decide nothing."""
+    tags: Mapped[list[str]] = mapped_column(default=list)
+    note: Mapped[str | None] = mapped_column(Text)
     status: Mapped[str] = mapped_column(String(16), default=QUEUED)
     wish: Mapped[str | None] = mapped_column(String(16))
     wished_at: Mapped[datetime | None]
     created_at: Mapped[datetime] = mapped_column(default=clock())
+    queued_at: Mapped[datetime] = mapped_column(default=clock())
+    """Since when it waits, or when it last began to: its place in the queue."""
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
     attempt: Mapped[int] = mapped_column(default=0)
@@ -182,6 +188,18 @@ class Creature(Base):
     created_at: Mapped[datetime] = mapped_column(default=clock())
 
 
+class Parent(Base):
+    """One parent of a creature; narrow, so that children are found as fast as parents."""
+
+    __tablename__ = "parents"
+    __table_args__ = (Index(None, "parent"),)
+
+    child: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), primary_key=True)
+    place: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    parent: Mapped[str] = mapped_column(Sha256)
+    """Its name; only who became an elite is kept as a creature."""
+
+
 class Artifact(Base):
     """A file that is completely written; without a row, a file does not count."""
 
@@ -195,12 +213,28 @@ class Artifact(Base):
     kind: Mapped[str] = mapped_column(String(16))
     run_id: Mapped[UUID | None] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
     number: Mapped[int | None]
-    """Counts the checkpoints of a run."""
+    """Counts the checkpoints of a run; of a replay the version of its format."""
     generation: Mapped[int | None]
     creature: Mapped[str | None] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
     size: Mapped[int] = mapped_column(BigInteger)
     sha256: Mapped[str] = mapped_column(Sha256)
     created_at: Mapped[datetime] = mapped_column(default=clock())
+
+
+class Entry(Base):
+    """A line of a run's journal; append-only but for entries that come again and again."""
+
+    __tablename__ = "journal"
+    __table_args__ = (Index(None, "run_id", "id"),)
+
+    id: Mapped[int] = mapped_column(primary_key=True)
+    run_id: Mapped[UUID] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    at: Mapped[datetime] = mapped_column(default=clock())
+    level: Mapped[str] = mapped_column(String(16))
+    attempt: Mapped[int]
+    kind: Mapped[str | None] = mapped_column(String(16))
+    """What it is one of, where there may be many."""
+    text: Mapped[str] = mapped_column(Text)
 
 
 class Worker(Base):
@@ -210,9 +244,15 @@ class Worker(Base):
 
     name: Mapped[str] = mapped_column(String(255), primary_key=True)
     device: Mapped[str] = mapped_column(Text)
+    kind: Mapped[str] = mapped_column(String(16))
     memory_bytes: Mapped[int] = mapped_column(BigInteger)
+    memory_used_bytes: Mapped[int | None] = mapped_column(BigInteger)
+    load: Mapped[float | None]
+    """How busy the device is with anything at all: 1 is fully."""
     status: Mapped[str] = mapped_column(String(16))
     run_id: Mapped[UUID | None]
+    since: Mapped[datetime] = mapped_column(default=clock())
+    """When its status or its run last changed."""
     heartbeat_at: Mapped[datetime] = mapped_column(default=clock())
 
 

@@ -7,8 +7,10 @@ from uuid import UUID
 from sqlalchemy import and_, or_, select
 from sqlalchemy.orm import Session
 
+from . import waiting
 from .models import FAILED, FINISHED, RUNNING, Generation, Run
-from .schemas import RunRead
+from .schemas import Carried, RunRead
+from .services import Services
 
 POINTS = 32
 
@@ -20,13 +22,14 @@ def evenly(last: int, points: int) -> list[int]:
     return sorted({1 + round(i * (last - 1) / (points - 1)) for i in range(points)})
 
 
-def read_runs(session: Session, runs: Sequence[Run]) -> list[RunRead]:
+def read_runs(services: Services, session: Session, runs: Sequence[Run]) -> list[RunRead]:
     curves = _curves(session, runs)
-    return [_read(run, curves[run.id]) for run in runs]
+    reasons = waiting.reasons(services, session, runs)
+    return [_read(run, curves[run.id], reasons.get(run.id)) for run in runs]
 
 
-def read_run(session: Session, run: Run) -> RunRead:
-    return read_runs(session, [run])[0]
+def read_run(services: Services, session: Session, run: Run) -> RunRead:
+    return read_runs(services, session, [run])[0]
 
 
 def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation]]:
@@ -47,21 +50,28 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
     return curves
 
 
-def _read(run: Run, curve: list[Generation]) -> RunRead:
+def _read(run: Run, curve: list[Generation], reason: str | None) -> RunRead:
     generations, evaluations = _rates(curve)
     left = max(0, run.generations - run.generation)
     columns = {column.key: getattr(run, column.key) for column in Run.__table__.columns}
     columns["error"] = run.error if run.status == FAILED else None
     return RunRead(
         **{name: columns[name] for name in RunRead.model_fields if name in columns},
-        progress=_progress(run),
+        waiting=reason,
+        progress=progress(run),
         eta_seconds=left / generations if generations and run.status == RUNNING else None,
         evaluations_per_second=evaluations,
         sparkline=[row.qd_score for row in curve if row.qd_score is not None],
     )
 
 
-def _progress(run: Run) -> float:
+def carried(run: Run) -> Carried:
+    """A run as it is named beside others."""
+    names = (name for name in Carried.model_fields if name != "progress")
+    return Carried(**{name: getattr(run, name) for name in names}, progress=progress(run))
+
+
+def progress(run: Run) -> float:
     """A run may end before its generations are through: a finished one is done."""
     return 1.0 if run.status == FINISHED else min(1.0, run.generation / run.generations)
 

@@ -14,9 +14,11 @@ from sqlalchemy import delete, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from .db import ago
+from .journal import note
 from .lifecycle import announce, hand_back, lost, release, yield_up
 from .models import CANCEL, QUEUED, RUNNING, Run, Worker
 from .services import Services
+from .waiting import in_line
 
 FORGOTTEN_AFTER = 3600.0
 """Seconds after which a silent worker is no longer remembered."""
@@ -71,6 +73,9 @@ def end_disobedient(services: Services) -> None:
     for run_id in found:
         with services.sessions.write.begin() as session:
             ended = yield_up(session, run_id, *overdue)
+            if ended:
+                text = f"Cancelled: its worker did not stop within {grace:g} s."
+                note(session, ended, text, "warning")
         if ended:
             announce(services, run_id)
 
@@ -93,12 +98,11 @@ def take_back_lost(services: Services) -> None:
 def enqueue_missing(services: Services) -> None:
     """Enqueue runs that wait and have no job, in the order in which they came."""
     with services.sessions.read() as session:
-        waiting = select(Run).where(Run.status == QUEUED).order_by(Run.created_at, Run.id)
-        runs = list(session.scalars(waiting))
-    at_hand = services.jobs.runs_at_hand() if runs else set()
-    for run in runs:
-        if str(run.id) not in at_hand:
-            services.jobs.evolve(run.id)
+        line = in_line(session)
+    at_hand = services.jobs.runs_at_hand() if line else set()
+    for run_id in line:
+        if str(run_id) not in at_hand:
+            services.jobs.evolve(run_id)
 
 
 def forget_workers(services: Services) -> None:

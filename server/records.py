@@ -13,8 +13,11 @@ from sqlalchemy.orm import Session
 from microcosmos.archive.creature import LICENCE
 
 from .events import finite
-from .models import Base, Creature, Elite, Generation, Result
+from .models import Base, Creature, Elite, Generation, Parent, Result
 from .reports import NewElite, NewRow, Report
+
+AT_ONCE = 500
+"""Names in one question to the database."""
 
 
 @dataclass(frozen=True)
@@ -128,12 +131,28 @@ def insert_missing(session: Session, table: type[Base], rows: Sequence[dict[str,
         session.execute(dialect.insert(table).on_conflict_do_nothing(), rows)
 
 
+def link(session: Session, names: Sequence[str]) -> None:
+    """Keep the links of creatures that are there to their parents, as their rows have them."""
+    for first in range(0, len(names), AT_ONCE):
+        mine = Creature.sha256.in_(names[first : first + AT_ONCE])
+        found = session.execute(select(Creature.sha256, Creature.parents).where(mine))
+        insert_missing(session, Parent, [row for one in found for row in links(*one)])
+
+
+def links(child: str, parents: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """A row for each parent of a creature."""
+    for place, parent in enumerate(parents):
+        yield {"child": child, "place": place, "parent": parent}
+
+
 def write(session: Session, run_id: UUID, rows: Rows) -> None:
     session.execute(
         insert(Generation), [{"run_id": run_id, **rows.curve, "summary": rows.summary}]
     )
     # In one order, so that two runs with the same creatures cannot wait for each other.
-    insert_missing(session, Creature, sorted(rows.creatures, key=itemgetter("sha256")))
+    found = sorted(rows.creatures, key=itemgetter("sha256"))
+    insert_missing(session, Creature, found)
+    link(session, [row["sha256"] for row in found])
     if rows.elites:
         session.execute(insert(Elite), [{"run_id": run_id, **row} for row in rows.elites])
     if rows.results:

@@ -7,6 +7,8 @@ from rq.job import JobStatus
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
+from microcosmos.archive.naming import REPLAY_VERSION
+
 from . import creatures
 from .artifacts import Stored, rendering_path
 from .models import REPLAY, Artifact, Creature
@@ -15,6 +17,8 @@ from .services import Services
 
 REFUSAL = re.compile(r"^[\w.]*CreatureError: ")
 """Before the words in which the engine refuses a creature; other errors say what they are."""
+VERSIONS = {REPLAY: REPLAY_VERSION}
+"""Of formats that have changed: what was kept in an earlier one counts as not there."""
 UNDERWAY = (JobStatus.QUEUED, JobStatus.STARTED, JobStatus.DEFERRED, JobStatus.SCHEDULED)
 
 
@@ -24,7 +28,8 @@ class RenderingFailed(Exception):
 
 def find(session: Session, creature: str, kind: str = REPLAY) -> Artifact | None:
     mine = (Artifact.creature == creature) & (Artifact.kind == kind)
-    return session.scalars(select(Artifact).where(mine)).one_or_none()
+    found = session.scalars(select(Artifact).where(mine)).one_or_none()
+    return found if found and found.number == VERSIONS.get(kind) else None
 
 
 def order(services: Services, creature: str, kind: str = REPLAY) -> None:
@@ -53,6 +58,7 @@ def save(services: Services, creature: str, kind: str, data: bytes) -> None:
     row = {
         "path": stored.path,
         "kind": kind,
+        "number": VERSIONS.get(kind),
         "creature": creature,
         "size": stored.size,
         "sha256": stored.sha256,

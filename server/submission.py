@@ -13,6 +13,7 @@ from microcosmos.spec import Spec, estimate
 from microcosmos.version import VERSION
 
 from . import workers
+from .journal import note
 from .lifecycle import announce
 from .models import Idempotency, Run
 from .problems import FieldError, Refused
@@ -94,6 +95,7 @@ def submit(
         with services.sessions.write.begin() as session:
             session.add(run)
             session.flush()
+            note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
             if key is not None:
                 session.add(Idempotency(key=key, body_sha256=_digest(run), run_id=run.id))
     except IntegrityError:

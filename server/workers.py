@@ -1,5 +1,6 @@
-"""What workers say about themselves, and that a run is still in good hands."""
+"""What workers say about themselves."""
 
+from collections.abc import Sequence
 from typing import Literal
 from uuid import UUID
 
@@ -7,10 +8,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from .db import Sessions, ago, clock
-from .lifecycle import change
-from .models import QUEUED, RUNNING, Run, Worker
-
-Lease = Literal["held", "waiting", "over", "lost"]
+from .models import RUNNING, Run, Worker
 
 
 def report(
@@ -20,13 +18,29 @@ def report(
     memory_bytes: int,
     status: Literal["idle", "busy"],
     run_id: UUID | None = None,
+    *,
+    kind: Literal["cpu", "gpu"] = "cpu",
+    memory_used_bytes: int | None = None,
+    load: float | None = None,
 ) -> None:
-    """Say that a worker is alive."""
+    """Say that a worker is alive, what it is at, and how busy its device is."""
+    said = Worker(
+        name=name,
+        device=device,
+        kind=kind,
+        memory_bytes=memory_bytes,
+        memory_used_bytes=memory_used_bytes,
+        load=load,
+        status=status,
+        run_id=run_id,
+    )
     with sessions.write.begin() as session:
-        row = Worker(
-            name=name, device=device, memory_bytes=memory_bytes, status=status, run_id=run_id
-        )
-        session.merge(row).heartbeat_at = clock()
+        known = session.get(Worker, name)
+        same = known is not None and (known.status, known.run_id) == (status, run_id)
+        row = session.merge(said)
+        row.heartbeat_at = clock()
+        if not same:
+            row.since = clock()
 
 
 def retire(sessions: Sessions, name: str) -> None:
@@ -41,17 +55,8 @@ def live(session: Session, lease: float) -> list[Worker]:
     return list(session.scalars(select(Worker).where(alive).order_by(Worker.name)))
 
 
-def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> Lease:
-    """Renew a worker's lease on a run, by its supervisor: how the run stands for it.
-
-    `waiting`: not claimed yet. `over`: nobody computes it any more, the job is about to end.
-    `lost`: another worker has it, so the job is to be killed.
-    """
-    with sessions.write.begin() as session:
-        mine = (Run.status == RUNNING, Run.worker == worker)
-        if change(session, run_id, *mine, heartbeat_at=clock()):
-            return "held"
-        run = session.get(Run, run_id)
-        if run and run.status == RUNNING:
-            return "lost"
-        return "waiting" if run and run.status == QUEUED else "over"
+def at_work(session: Session, alive: Sequence[Worker]) -> dict[str, Run]:
+    """The run that each of the workers carries out, by the worker's name."""
+    names = [worker.name for worker in alive]
+    running = select(Run).where(Run.status == RUNNING, Run.worker.in_(names))
+    return {str(run.worker): run for run in session.scalars(running)}

@@ -23,6 +23,7 @@ def test_the_library_example_runs_and_its_check_is_exact():
 
 
 def test_the_pictures_and_documents_that_are_linked_are_there():
-    links = re.findall(r"\]\(([^)#]+)\)", README.read_text())
+    links = re.findall(r'\]\(([^)#]+)\)|src(?:set)?="([^"]+)"', README.read_text())
+    links = [link or picture for link, picture in links]
     assert links
     assert [link for link in links if not (README.parent / link).exists()] == []

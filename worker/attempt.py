@@ -1,6 +1,7 @@
 """One attempt at a run: what is written down when, and when it has to stop."""
 
 import logging
+import math
 import time
 import traceback
 from collections.abc import Callable, Iterator
@@ -51,7 +52,8 @@ class Attempt:
         self._claim = held
         self._wish: str | None = None
         self._looked = time.monotonic()
-        self._saved = time.monotonic()
+        # The first generation is saved at once: its file says where the cells of a CVT are.
+        self._saved = time.monotonic() if held.generation else -math.inf
 
     @property
     def spec(self) -> dict[str, Any]:

@@ -18,6 +18,8 @@ class Device:
     name: str
     memory_bytes: int
     environment: dict[str, str]
+    gpu: str | None = None
+    """As `nvidia-smi -i` takes it; None where it is the machine's processor."""
 
 
 def find(index: int) -> Device:
@@ -29,7 +31,7 @@ def find(index: int) -> Device:
     names = allowed.split(",") if allowed else [str(i) for i in range(len(gpus))]
     chosen = names[index % len(names)]
     name, size = gpus[int(chosen)] if chosen.isdigit() else gpus[0]
-    return Device(name, size, {"CUDA_VISIBLE_DEVICES": chosen})
+    return Device(name, size, {"CUDA_VISIBLE_DEVICES": chosen}, chosen)
 
 
 def nvidia() -> list[tuple[str, int]]:

@@ -4,15 +4,17 @@ import logging
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from uuid import UUID
 
 from sqlalchemy.exc import SQLAlchemyError
 
-from server import workers
+from server import leases, workers
 from server.db import Sessions
-from server.workers import Lease
+from server.leases import Lease
 
 from .device import Device
+from .usage import Gauge, usage
 
 BEATS = 4
 """Heartbeats in a lease."""
@@ -39,27 +41,35 @@ class Pulse(threading.Thread):
         super().__init__(name="pulse", daemon=True)
         self._sessions, self._worker, self._device = sessions, worker, device
         self._interval = lease / BEATS
+        self.gauge = Gauge(partial(usage, device), self._interval)
         self._ended = threading.Event()
+        self._due = threading.Event()
         self._watch: Watch | None = None
 
     def run(self) -> None:
+        self.gauge.start()
         while not self._ended.is_set():
             try:
                 self.beat()
             except SQLAlchemyError as error:
                 log.warning("No heartbeat: the database does not answer: %s", error)
-            self._ended.wait(self._interval)
+            self._due.wait(self._interval)
+            self._due.clear()
 
     def watch(self, run: UUID, kill: Callable[[], None]) -> None:
         """From now on this run's heartbeat too; `kill` ends its job should the run be lost."""
         self._watch = Watch(run, kill)
+        self._due.set()  # People see at once who is busy.
 
     def let_go(self) -> None:
         self._watch = None
+        self._due.set()
 
     def end(self) -> None:
         """Stop, and take the worker off the list."""
         self._ended.set()
+        self._due.set()
+        self.gauge.end()
         self.join()
         workers.retire(self._sessions, self._worker)
 
@@ -67,7 +77,7 @@ class Pulse(threading.Thread):
         watch = self._watch
         lease: Lease | None = None
         if watch:
-            lease = workers.heartbeat(self._sessions, watch.run, self._worker)
+            lease = leases.heartbeat(self._sessions, watch.run, self._worker)
             self._judge(watch, lease)
         workers.report(
             self._sessions,
@@ -76,6 +86,9 @@ class Pulse(threading.Thread):
             self._device.memory_bytes,
             "busy" if watch else "idle",
             watch.run if watch and lease == "held" else None,
+            kind="cpu" if self._device.gpu is None else "gpu",
+            memory_used_bytes=self.gauge.last.memory_bytes,
+            load=self.gauge.last.load,
         )
 
     def _judge(self, watch: Watch, lease: Lease) -> None:

@@ -9,10 +9,14 @@ from . import (
     events,
     experiments,
     generations,
+    journal,
     networks,
+    queue,
     renderings,
     results,
     runs,
+    tags,
+    targets,
     workers,
 )
 
@@ -21,12 +25,16 @@ for noun in (
     experiments,
     runs,
     generations,
+    journal,
     archives,
     results,
+    targets,
     creatures,
     networks,
     renderings,
     events,
     workers,
+    queue,
+    tags,
 ):
     api.include_router(noun.router)

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
-from sqlalchemy import func, select
+from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
@@ -16,7 +16,7 @@ from ..checkpoints import last_checkpoint
 from ..deps import RunDep, ServicesDep, SessionDep
 from ..models import Artifact, Creature, Elite, Run
 from ..problems import Refused
-from ..schemas import ArchiveRead
+from ..schemas import ArchiveRead, CentroidsRead, Feature, HistoryRead
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
 binary: dict[int | str, dict[str, Any]] = {
@@ -24,6 +24,8 @@ binary: dict[int | str, dict[str, Any]] = {
     404: {},
 }
 
+HISTORY_ENTRIES = 400_000
+"""About 50 MB."""
 COLUMNS = (
     Elite.cell,
     Elite.generation,
@@ -48,9 +50,7 @@ def read_archive(
     _refuse_without(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
     recorded = of_elites.recorded(session, run)
-    names = list(dict.fromkeys(filter(None, features.split(","))))
-    of_elites.refuse_unknown(names, recorded)
-    elites = _elites(session, run, as_of, names)
+    names = _asked(features, recorded)
     kind, cells = of_elites.kind(run)
     return ArchiveRead(
         generation=as_of,
@@ -58,15 +58,63 @@ def read_archive(
         cells=cells,
         axes=of_elites.axes(run),
         recorded=recorded,
-        cell=[elite.cell for elite in elites],
-        fitness=[elite.fitness for elite in elites],
-        descriptors=[elite.descriptors for elite in elites],
-        elite_generation=[elite.generation for elite in elites],
-        creature=[elite.creature for elite in elites],
-        features={
+        **_columns(session.execute(_now(run, as_of, names)).all(), names),
+    )
+
+
+@router.get("/archive/history")
+def read_history(run: RunDep, session: SessionDep, features: str = "") -> HistoryRead:
+    """Every elite that ever entered: the archive of each generation can be told from it."""
+    _refuse_without(run)
+    names = _asked(features, of_elites.recorded(session, run))
+    _refuse_too_long(session, run)
+    ordered = _all(run, names).order_by(Elite.generation, Elite.cell)
+    columns = _columns(session.execute(ordered).all(), names)
+    return HistoryRead(generation=run.generation, **columns)
+
+
+@router.get("/archive/centroids")
+def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> CentroidsRead:
+    """The cells of a CVT archive, once its first checkpoint is there."""
+    _refuse_without(run)
+    if of_elites.kind(run)[0] != "cvt":
+        detail = "The cells of this archive are a grid's: its axes say where they are."
+        raise Refused(404, "No centroids", detail)
+    found = export.centroids(services.artifacts.read(_checkpoint(session, run).path))
+    return CentroidsRead(centroids=found.tolist())
+
+
+def _refuse_too_long(session: Session, run: Run) -> None:
+    """A history is sent whole, and has to find room in a page."""
+    mine = select(func.count()).select_from(Elite).where(Elite.run_id == run.id)
+    entries = session.execute(mine).scalar_one()
+    if entries > HISTORY_ENTRIES:
+        detail = (
+            f"The history of this archive has {entries:,} entries, of which at most "
+            f"{HISTORY_ENTRIES:,} are sent at once; single generations are at "
+            f"/api/v1/runs/{run.id}/archive?generation=."
+        )
+        raise Refused(422, "Too long a history", detail)
+
+
+def _asked(features: str, recorded: Sequence[Feature]) -> list[str]:
+    """Names of features with commas between them; `Refused` where one was not recorded."""
+    names = list(dict.fromkeys(filter(None, features.split(","))))
+    of_elites.refuse_unknown(names, recorded)
+    return names
+
+
+def _columns(elites: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
+    return {
+        "cell": [elite.cell for elite in elites],
+        "fitness": [elite.fitness for elite in elites],
+        "descriptors": [elite.descriptors for elite in elites],
+        "elite_generation": [elite.generation for elite in elites],
+        "creature": [elite.creature for elite in elites],
+        "features": {
             name: [elite[len(COLUMNS) + i] for elite in elites] for i, name in enumerate(names)
         },
-    )
+    }
 
 
 def _refuse_without(run: Run) -> None:
@@ -78,8 +126,15 @@ def _refuse_without(run: Run) -> None:
         raise Refused(404, "No archive", detail)
 
 
-def _elites(session: Session, run: Run, as_of: int, names: Sequence[str]) -> Sequence[Any]:
-    """The last of each cell that is not after a generation, and their features by name."""
+def _all(run: Run, names: Sequence[str]) -> Select[*tuple[Any, ...]]:
+    """A run's elites, past ones too, and their features by name."""
+    features = [of_elites.column(name) for name in names]
+    statement = select(*COLUMNS, *features).where(Elite.run_id == run.id)
+    return statement.join(Creature, Creature.sha256 == Elite.creature) if names else statement
+
+
+def _now(run: Run, as_of: int, names: Sequence[str]) -> Select[*tuple[Any, ...]]:
+    """The last of each cell that is not after a generation."""
     last = (
         select(Elite.cell, func.max(Elite.generation).label("generation"))
         .where(Elite.run_id == run.id, Elite.generation <= as_of)
@@ -87,11 +142,7 @@ def _elites(session: Session, run: Run, as_of: int, names: Sequence[str]) -> Seq
         .subquery()
     )
     same = (Elite.cell == last.c.cell) & (Elite.generation == last.c.generation)
-    features = [of_elites.column(name) for name in names]
-    statement = select(*COLUMNS, *features).join(last, same).where(Elite.run_id == run.id)
-    if names:
-        statement = statement.join(Creature, Creature.sha256 == Elite.creature)
-    return session.execute(statement.order_by(Elite.cell)).all()
+    return _all(run, names).join(last, same).order_by(Elite.cell)
 
 
 @router.get("/archive.h5", response_class=Response, responses=binary)

@@ -2,17 +2,18 @@
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import JSONResponse, Response
 
-from microcosmos.archive import creature
+from microcosmos.archive import creature, creature_h5
 
-from .. import creatures
-from ..deps import CreatureDep, ServicesDep
-from ..schemas import CreatureName
+from .. import creatures, lineage
+from ..deps import CreatureDep, ServicesDep, SessionDep
+from ..schemas import Ancestors, Children, CreatureName
 from ..uploads import json_object
 
 FILE_BYTES = 8 << 20
+H5 = "application/x-hdf5"
 FOR_EVER = "public, max-age=31536000, immutable"
 
 router = APIRouter(prefix="/creatures", tags=["creatures"])
@@ -35,6 +36,40 @@ def read_creature(request: Request, row: CreatureDep, download: bool = False) ->
         name = f"creature-{row.sha256[:12]}.json"
         headers["Content-Disposition"] = f'attachment; filename="{name}"'
     return JSONResponse(creatures.document(row), headers=headers)
+
+
+@router.get(
+    "/{sha}/creature.h5",
+    response_class=Response,
+    responses={200: {"content": {H5: {}}}},
+)
+def read_creature_h5(row: CreatureDep) -> Response:
+    """The creature file as HDF5, with its body and genes as arrays."""
+    name = f"creature-{row.sha256[:12]}.h5"
+    headers = {
+        "Cache-Control": "no-cache",
+        "Content-Disposition": f'attachment; filename="{name}"',
+    }
+    data = creature_h5.dump(creature.parse(creatures.document(row)))
+    return Response(data, headers=headers, media_type=H5)
+
+
+@router.get("/{sha}/ancestors")
+def read_ancestors(
+    row: CreatureDep, session: SessionDep, depth: Annotated[int, Query(ge=1, le=32)] = 3
+) -> Ancestors:
+    """Parents and theirs, nearest first; who never was an elite is known by name alone."""
+    return lineage.ancestors(session, row, depth)
+
+
+@router.get("/{sha}/children")
+def read_children(
+    row: CreatureDep,
+    session: SessionDep,
+    limit: Annotated[int, Query(ge=1, le=lineage.MOST)] = 50,
+) -> Children:
+    """Elites that came from this creature, best first, and how many there are in all."""
+    return lineage.children(session, row, limit)
 
 
 @router.post("", status_code=201, responses={200: {"model": CreatureName}}, openapi_extra=body)

@@ -9,12 +9,13 @@ from ..curves import told
 from ..deps import RunDep, SessionDep
 from ..models import Generation
 from ..progress import evenly
-from ..schemas import Curves
+from ..schemas import Curves, Species
+from ..species import history
 
-router = APIRouter(prefix="/runs/{run_id}/generations", tags=["runs"])
+router = APIRouter(prefix="/runs/{run_id}", tags=["runs"])
 
 
-@router.get("")
+@router.get("/generations")
 def read_generations(
     run: RunDep,
     session: SessionDep,
@@ -34,3 +35,16 @@ def read_generations(
     values = [list(column) for column in zip(*rows, strict=True)] or [[] for _ in names]
     columns = dict(zip(names, values, strict=True))
     return Curves(**columns, summary=told(session, run.id, columns["generation"]))
+
+
+@router.get("/species")
+def read_species(
+    run: RunDep,
+    session: SessionDep,
+    points: Annotated[int, Query(ge=2, le=10_000)] = 400,
+) -> Species:
+    """How many members each species had, in about so many generations, evenly spaced.
+
+    There are none where the search keeps no species, or was computed before they were told.
+    """
+    return Species(**history(session, run.id, evenly(run.generation, points)))

@@ -1,8 +1,12 @@
 """The page, as `make` has built it."""
 
+import gzip
+from functools import lru_cache
+from mimetypes import guess_type
 from pathlib import Path
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Header
 from fastapi.responses import FileResponse, HTMLResponse, Response
 from starlette.exceptions import HTTPException
 
@@ -17,16 +21,33 @@ router = APIRouter(include_in_schema=False)
 
 
 @router.get("/{path:path}")
-def page(path: str) -> Response:
+def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
     """A built file, else the page itself, which knows what its paths mean."""
     if path == "api" or (path.startswith(("api/", "assets/")) and not _file(path)):
         raise HTTPException(404, f"There is nothing at /{path}")
-    if file := _file(path):  # The names of assets change with their content.
-        return FileResponse(file, headers=FOR_EVER if path.startswith("assets/") else FRESH)
+    if file := _file(path):
+        if not path.startswith("assets/"):
+            return FileResponse(file, headers=FRESH)
+        return _asset(file, "gzip" in accept_encoding)
     index = BUILT / "index.html"
     if not index.is_file():
         return HTMLResponse(MISSING, 503)
     return FileResponse(index, headers=FRESH)
+
+
+def _asset(file: Path, compressed: bool) -> Response:
+    """Script or style; their names change with their content, so both can be kept."""
+    headers = {**FOR_EVER, "Vary": "Accept-Encoding"}
+    if not compressed:
+        return FileResponse(file, headers=headers)
+    media_type, _ = guess_type(file.name)
+    headers["Content-Encoding"] = "gzip"
+    return Response(_gzip(file), headers=headers, media_type=media_type)
+
+
+@lru_cache(maxsize=256)
+def _gzip(file: Path) -> bytes:
+    return gzip.compress(file.read_bytes(), mtime=0)
 
 
 def _file(path: str) -> Path | None:

@@ -1,37 +1,41 @@
-"""Runs: submit, list, read, pause, resume, cancel."""
+"""Runs: estimate, submit, list, read, name, pause, resume, cancel."""
 
-from base64 import urlsafe_b64decode, urlsafe_b64encode
 from collections.abc import Callable
-from datetime import datetime
 from typing import Annotated, Any
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Header, Query, Response
-from sqlalchemy import and_, or_, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from microcosmos.spec import Spec, estimate, parse
+from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate, parse
 
-from .. import lifecycle
+from .. import lifecycle, listing, waiting
 from ..deps import RunDep, ServicesDep, SessionDep, find_run
+from ..drawings import drawing_read
 from ..models import Run
+from ..pace import pace_of
 from ..problems import Refused
 from ..progress import read_run, read_runs
 from ..reconcile import requeue
-from ..schemas import EstimateRead, RunPage, RunRead, Status
+from ..schemas import EstimateRead, FieldError, RunChange, RunPage, RunRead, Status
 from ..services import Services
 from ..submission import memory_limit, refuse_too_large, submit
 from ..uploads import json_object
 
 SPEC_BYTES = 1 << 20
+CHANGE_BYTES = 1 << 18
 
 router = APIRouter(prefix="/runs", tags=["runs"])
-body: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {"application/json": {"schema": {"type": "object"}}},
-    }
-}
+
+
+def described(schema: dict[str, Any]) -> dict[str, Any]:
+    """What OpenAPI says of a body that is read by `json_object`."""
+    content = {"application/json": {"schema": schema}}
+    return {"requestBody": {"required": True, "content": content}}
+
+
+body = described({"type": "object"})
 
 
 def spec_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))]) -> Spec:
@@ -56,40 +60,80 @@ def create_run(
 
 @router.post("/estimate", openapi_extra=body)
 def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> EstimateRead:
-    """What a run will need, without queueing it."""
+    """What a run will need, and what it is about, without queueing it."""
     needed = estimate(spec)
+    line = waiting.line(services, session)
+    pace = pace_of(session, spec, line.alive)
     return EstimateRead(
         memory_bytes=needed.memory_bytes,
         memory_limit_bytes=memory_limit(services, session),
         evaluations=needed.evaluations,
         cell_steps=needed.cell_steps,
+        seconds=pace.seconds(needed.cell_steps) if pace else None,
+        pace=pace.read(needed.cell_steps) if pace else None,
+        queue=line.ahead(),
+        drawing=drawing_read(drawing(spec)),
     )
+
+
+Text = Annotated[str, Query(min_length=1, max_length=200, pattern=r"^[^\x00]*$")]
 
 
 @router.get("")
 def list_runs(
+    services: ServicesDep,
     session: SessionDep,
     cursor: str | None = None,
     limit: Annotated[int, Query(ge=1, le=200)] = 50,
-    status: Status | None = None,
+    status: Annotated[list[Status], Query()] = [],  # noqa: B006
+    experiment: Annotated[list[str], Query()] = [],  # noqa: B006
+    tag: Text | None = None,
+    q: Text | None = None,
+    sort: listing.Sort = "-created",
 ) -> RunPage:
-    """The newest first."""
-    statement = select(Run).order_by(Run.created_at.desc(), Run.id.desc()).limit(limit + 1)
-    if status:
-        statement = statement.where(Run.status == status)
-    if cursor:
-        created, last = _position(cursor)
-        same = and_(Run.created_at == created, Run.id < last)
-        statement = statement.where(or_(Run.created_at < created, same))
-    runs = list(session.scalars(statement))
-    more = len(runs) > limit
-    items = read_runs(session, runs[:limit])
-    return RunPage(items=items, next=_cursor(runs[limit - 1]) if more else None)
+    """Runs of any of these states and experiments, with this tag and this text.
+
+    `q` is looked for in names, tags and notes and at the beginning of ids. With `-`, the sort
+    is descending; runs without a value come last.
+    """
+    _refuse_unknown(experiment)
+    statement = listing.matching(select(Run), status, experiment, tag, q)
+    rows = listing.page(session, statement, sort, cursor, limit)
+    items = read_runs(services, session, [run for run, _ in rows[:limit]])
+    return RunPage(items=items, next=listing.cursor(sort, rows, limit))
+
+
+def _refuse_unknown(experiments: list[str]) -> None:
+    for name in experiments:
+        if name not in EXPERIMENTS:
+            known = ", ".join(EXPERIMENTS)
+            message = f"needs one of {known}; got {name!r}"
+            error = FieldError(field="experiment", message=message, needed=known, got=name)
+            raise Refused(422, "Invalid input", f"experiment: {message}", [error])
 
 
 @router.get("/{run_id}")
-def read(run: RunDep, session: SessionDep) -> RunRead:
-    return read_run(session, run)
+def read(run: RunDep, services: ServicesDep, session: SessionDep) -> RunRead:
+    return read_run(services, session, run)
+
+
+def change_sent(
+    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
+) -> RunChange:
+    return RunChange.model_validate(document)
+
+
+@router.patch("/{run_id}", openapi_extra=described(RunChange.model_json_schema()))
+def change_run(
+    run_id: UUID, services: ServicesDep, sent: Annotated[RunChange, Depends(change_sent)]
+) -> RunRead:
+    """Say what a run is called, its tags or a note; what it computes stays as it is."""
+    said = sent.said()
+
+    def say(session: Session, run: Run) -> Run:
+        return lifecycle.change(session, run.id, **said) or run if said else run
+
+    return _changed(services, run_id, say)
 
 
 @router.post("/{run_id}/pause", status_code=202)
@@ -121,17 +165,4 @@ def _changed(
 
 def _current(services: Services, run_id: UUID) -> RunRead:
     with services.sessions.read() as session:
-        return read_run(session, session.get_one(Run, run_id))
-
-
-def _cursor(run: Run) -> str:
-    return urlsafe_b64encode(f"{run.created_at.isoformat()} {run.id}".encode()).decode()
-
-
-def _position(cursor: str) -> tuple[datetime, UUID]:
-    try:
-        created, _, last = urlsafe_b64decode(cursor).decode().partition(" ")
-        return datetime.fromisoformat(created), UUID(last)
-    except ValueError:
-        detail = f"`cursor` must be the `next` of an earlier answer; got {cursor!r:.80}."
-        raise Refused(422, "Invalid input", detail) from None
+        return read_run(services, session, session.get_one(Run, run_id))

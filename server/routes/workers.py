@@ -4,6 +4,8 @@ from fastapi import APIRouter
 
 from .. import workers
 from ..deps import ServicesDep, SessionDep
+from ..models import Run, Worker
+from ..progress import carried
 from ..schemas import WorkerRead
 
 router = APIRouter(prefix="/workers", tags=["workers"])
@@ -11,14 +13,15 @@ router = APIRouter(prefix="/workers", tags=["workers"])
 
 @router.get("")
 def list_workers(services: ServicesDep, session: SessionDep) -> list[WorkerRead]:
-    return [
-        WorkerRead(
-            name=worker.name,
-            device=worker.device,
-            memory_bytes=worker.memory_bytes,
-            status=worker.status,
-            run=worker.run_id,
-            heartbeat_at=worker.heartbeat_at,
-        )
-        for worker in workers.live(session, services.settings.lease)
-    ]
+    """By name, each with how busy its device is and the run that it carries out."""
+    alive = workers.live(session, services.settings.lease)
+    runs = workers.at_work(session, alive)
+    return [_read(worker, runs.get(worker.name)) for worker in alive]
+
+
+def _read(worker: Worker, run: Run | None) -> WorkerRead:
+    columns = {column.key: getattr(worker, column.key) for column in Worker.__table__.columns}
+    told = columns.pop("run_id")
+    return WorkerRead(
+        **columns, run=run.id if run else told, carries=carried(run) if run else None
+    )

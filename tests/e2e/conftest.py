@@ -1,101 +1,185 @@
-import json
-import os
-import shutil
-import signal
-import socket
-import subprocess
+"""The whole product in a browser: started as `make run` does, and looked at.
+
+Starting a product and compiling its programs take longer than most tests. So tests share:
+`shared_address` has small runs of each kind, and computes what else is submitted there;
+at `idle.product` nobody computes. A test that needs a list of runs of its own, or ends the
+server, has an `address` of its own; it comes last, when all programs are compiled.
+"""
+
 import sys
-import time
-import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
-ROOT = Path(__file__).parents[2]
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-FLAGS = [
-    "--no-sandbox",
-    "--disable-dev-shm-usage",
-    "--disable-gpu",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]
+sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
+
+from browser import executable, launched, overhear
+from drive import ROOT, Installation
+from small import submit_small_runs
+
+from server.redis_embedded import prepare
+from server.services import Services, connect
+from server.settings import Settings
+
+HERE = Path(__file__).parent
+SETTINGS = {
+    "MICROCOSMOS_DEMONSTRATION": "false",
+    # Programs are compiled in half the time; such small ones run about as fast.
+    "XLA_FLAGS": "--xla_backend_optimization_level=0",
+}
+WINDOW = {"width": 1280, "height": 900}
 PATIENCE_S = 120
+
+
+class Shared(NamedTuple):
+    """A running product with small runs, by name."""
+
+    product: Installation
+    submitted: Mapping[str, str]
+
+    def finished(self, name: str) -> str:
+        """The id of a small run, once it is finished."""
+        self.product.wait(self.submitted[name], "finished", seconds=300)
+        return self.submitted[name]
+
+
+class Idle(NamedTuple):
+    """A running product without workers: tests write what a worker would, with its services."""
+
+    product: Installation
+    services: Services
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What needs no worker first: the runs that all share are computed meanwhile."""
+    items.sort(key=turn)
+
+
+def turn(item: pytest.Item) -> int:
+    if item.path.parent != HERE:
+        return 0
+    return 2 if needs(item, "shared") else 1 if needs(item, "idle") else 3
+
+
+def needs(item: pytest.Item, fixture: str) -> bool:
+    return fixture in getattr(item, "fixturenames", ())
 
 
 @pytest.fixture(scope="session")
 def chromium() -> str:
-    found = next(filter(None, map(shutil.which, BROWSERS)), None)
+    found = executable()
     if found is None:
         pytest.skip("needs Chromium on PATH")
     return found
 
 
-@pytest.fixture
-def address(chromium: str, tmp_path: Path) -> Iterator[str]:
-    """The whole product, started as `make run` does, over an empty data folder."""
+@pytest.fixture(scope="session")
+def browser(chromium: str) -> Iterator[Browser]:
+    with launched(chromium) as browser:
+        yield browser
+
+
+@pytest.fixture(scope="session")
+def common(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """What every product of the session finds in its environment: programs compiled once."""
     if not (ROOT / "web" / "dist" / "index.html").exists():
         pytest.fail("web/dist is missing: build the page first")
-    port = free_port()
-    environment = {
-        **os.environ,
-        "PORT": str(port),
-        "MICROCOSMOS_DATA": str(tmp_path / "data"),
-        "MICROCOSMOS_DEMONSTRATION": "false",
-    }
-    environment.pop("MICROCOSMOS_REDIS_URL", None)
-    environment.pop("MICROCOSMOS_DATABASE_URL", None)
-    with (tmp_path / "local.log").open("wb") as log:
-        command = [sys.executable, "-m", "server.local"]
-        process = subprocess.Popen(
-            command, cwd=ROOT, env=environment, stdout=log, stderr=subprocess.STDOUT
-        )
-        try:
-            url = f"http://127.0.0.1:{port}"
-            wait_until_healthy(url, process, tmp_path / "local.log")
-            yield url
-        finally:
-            process.send_signal(signal.SIGINT)
-            process.wait(60)
+    compiled = tmp_path_factory.mktemp("compiled")
+    return SETTINGS | {"JAX_COMPILATION_CACHE_DIR": str(compiled)}
 
 
 @pytest.fixture
-def page(chromium: str, address: str) -> Iterator[Page]:
+def product(chromium: str, common: dict[str, str], tmp_path: Path) -> Iterator[Installation]:
+    """The whole product over an empty data folder."""
+    place = Installation(tmp_path / "data", common)
+    place.start(PATIENCE_S)
+    yield place
+    place.end()
+    place.close()
+
+
+@pytest.fixture
+def address(product: Installation) -> str:
+    """Where the product answers; nothing has been run there."""
+    return product.url
+
+
+@pytest.fixture(scope="session")
+def shared(
+    chromium: str, common: dict[str, str], tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Shared]:
+    """One product for most tests, which computes a run of each kind."""
+    place = Installation(tmp_path_factory.mktemp("shared") / "data", common)
+    place.start(PATIENCE_S)
+    yield Shared(place, submit_small_runs(place))
+    place.end()
+    place.close()
+
+
+@pytest.fixture(scope="session")
+def idle(
+    request: pytest.FixtureRequest,
+    chromium: str,
+    common: dict[str, str],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[Idle]:
+    """One product where nobody computes; its Redis is one that tests know too."""
+    if any(needs(item, "shared") for item in request.session.items):
+        request.getfixturevalue("shared")  # It computes while these tests look.
+    folder = tmp_path_factory.mktemp("idle")
+    own = prepare(folder / "redis")
+    redis = own.start(folder / "redis.log")
+    own.wait(redis, folder / "redis.log")
+    environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": own.url}
+    place = Installation(folder / "data", common | environment)
+    place.start(PATIENCE_S)
+    services = connect(Settings(data=folder / "data", redis_url=own.url))
+    yield Idle(place, services)
+    services.close()
+    place.end()
+    place.close()
+    redis.terminate()
+    redis.wait()
+
+
+@pytest.fixture
+def shared_address(shared: Shared) -> str:
+    return shared.product.url
+
+
+@pytest.fixture
+def complaints() -> list[str]:
+    """What pages complain of; a test that expects some takes them out."""
+    return []
+
+
+@pytest.fixture
+def page(browser: Browser, address: str, complaints: list[str]) -> Iterator[Page]:
     """A page that is closed before the server ends; any complaint of it fails the test."""
-    complaints: list[str] = []
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
-        page = browser.new_page(viewport={"width": 1280, "height": 900})
-        page.on("pageerror", lambda error: complaints.append(f"error: {error}"))
-        page.on(
-            "console",
-            lambda message: (
-                complaints.append(f"{message.type}: {message.text}")
-                if message.type in ("error", "warning")
-                else None
-            ),
-        )
-        page.set_default_timeout(PATIENCE_S * 1000)
-        yield page
-        browser.close()
+    yield from opened(browser, complaints)
+
+
+@pytest.fixture
+def shared_page(browser: Browser, shared: Shared, complaints: list[str]) -> Iterator[Page]:
+    """The same, for the product that all share."""
+    yield from opened(browser, complaints)
+
+
+@pytest.fixture
+def idle_page(browser: Browser, idle: Idle, complaints: list[str]) -> Iterator[Page]:
+    """The same, for the product where nobody computes."""
+    yield from opened(browser, complaints)
+
+
+def opened(browser: Browser, complaints: list[str]) -> Iterator[Page]:
+    context = browser.new_context(viewport=WINDOW)
+    page = context.new_page()
+    overhear(page, complaints)
+    page.set_default_timeout(PATIENCE_S * 1000)
+    yield page
+    context.close()
     assert complaints == []
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def wait_until_healthy(url: str, process: subprocess.Popen[bytes], log: Path) -> None:
-    deadline = time.monotonic() + PATIENCE_S
-    while time.monotonic() < deadline and process.poll() is None:
-        try:
-            with urllib.request.urlopen(f"{url}/healthz", timeout=2) as answer:
-                if json.load(answer)["status"] == "ok":
-                    return
-        except OSError:
-            time.sleep(0.2)
-    pytest.fail(f"the server did not come up:\n{log.read_text()}")

@@ -7,8 +7,11 @@ FAST, SLOW = 10_000, 120_000
 
 
 @pytest.mark.e2e
-def test_a_sweep_is_submitted_plotted_and_one_of_its_swimmers_watched(page: Page, address: str):
-    submit_a_small_sweep(page, address)
+def test_a_sweep_is_submitted_plotted_and_one_of_its_swimmers_watched(
+    shared_page: Page, shared_address: str
+):
+    page = shared_page
+    submit_a_small_sweep(page, shared_address)
     watch_points_appear(page)
     sort_the_table(page)
     swimmer = open_a_point(page)
@@ -17,6 +20,7 @@ def test_a_sweep_is_submitted_plotted_and_one_of_its_swimmers_watched(page: Page
 
 def submit_a_small_sweep(page: Page, address: str) -> None:
     page.goto(f"{address}/new")
+    page.get_by_role("radio", name=re.compile("^Gaits")).check()
     page.get_by_role("button", name=re.compile("Worm and ray")).click()
     page.get_by_role("checkbox", name="paper", exact=True).check()
     viscosities = page.get_by_label("Viscosities", exact=False)
@@ -66,7 +70,10 @@ def open_a_point(page: Page) -> str:
     assert box
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
-    expect(page.get_by_text("Worm at ν = 1", exact=True)).to_be_visible(timeout=FAST)
+    expect(point.get_by_text("Worm at ν = 1", exact=True)).to_be_visible(timeout=FAST)
+    beside = page.get_by_role("complementary", name="Replay of the mark")
+    expect(beside.get_by_text("Worm at ν = 1", exact=True)).to_be_visible(timeout=FAST)
+    expect(beside.get_by_role("img", name=re.compile("swimming"))).to_be_visible(timeout=SLOW)
     page.mouse.click(x, y)
     page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"), timeout=FAST)
     return "Worm"
@@ -75,7 +82,7 @@ def open_a_point(page: Page) -> str:
 def see_it_swim(page: Page, swimmer: str) -> None:
     expect(page.get_by_role("heading", name=swimmer)).to_be_visible(timeout=FAST)
     expect(page.get_by_text("not force-free", exact=True)).to_be_visible()
-    expect(page.get_by_role("img", name=re.compile("^Network"))).to_have_count(0)
+    expect(page.get_by_role("group", name=re.compile("^Network:"))).to_have_count(0)
     canvas = page.get_by_role("img", name=re.compile("The creature swimming"))
     expect(canvas).to_be_visible(timeout=SLOW)
     page.wait_for_timeout(300)

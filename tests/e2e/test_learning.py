@@ -4,19 +4,13 @@ import pytest
 from playwright.sync_api import Page, expect
 
 FAST, SLOW = 10_000, 120_000
-SEARCH = {
-    "experiment": "quality-diversity",
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 12},
-    "control": {"period": 40, "angle_scale": 0.3},
-    "task": {"steps": 60},
-    "search": {"generations": 2, "batch": 8, "block": 4},
-}
 
 
 @pytest.mark.e2e
-def test_a_filament_folds_and_is_watched(page: Page, address: str):
-    page.goto(f"{address}/new")
+def test_a_filament_folds_and_is_watched(shared_page: Page, shared_address: str):
+    page = shared_page
+    page.goto(f"{shared_address}/new")
+    page.get_by_role("radio", name=re.compile("^Folding")).check()
     page.get_by_role("button", name=re.compile("fold into two digits without")).click()
     page.get_by_label("Updates", exact=False).fill("4")
     page.get_by_role("button", name="Start the run").click()
@@ -33,8 +27,12 @@ def test_a_filament_folds_and_is_watched(page: Page, address: str):
 
 
 @pytest.mark.e2e
-def test_an_elite_is_refined_and_watched_beside_what_it_was(page: Page, address: str):
-    page.goto(f"{address}/creatures/{elite(page, address)}")
+def test_an_elite_is_refined_and_watched_beside_what_it_was(shared, shared_page: Page):
+    page, address = shared_page, shared.product.url
+    found = page.request.get(
+        f"{address}/api/v1/runs/{shared.finished('voronoi')}/archive"
+    ).json()
+    page.goto(f"{address}/creatures/{found['creature'][0]}")
     page.get_by_role("button", name="Refine").click()
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
     expect(page.get_by_text("21 / 21")).to_be_visible(timeout=SLOW)
@@ -45,15 +43,6 @@ def test_an_elite_is_refined_and_watched_beside_what_it_was(page: Page, address:
     first, last = (one.inner_text() for one in page.locator(".stages figcaption").all())
     assert (first.split()[0], last.split()[0]) == ("Before", "After")
     assert fitness(last) > fitness(first)
-
-
-def elite(page: Page, address: str) -> str:
-    """The creature of a short search's first cell."""
-    run = page.request.post(f"{address}/api/v1/runs", data=SEARCH).json()["id"]
-    page.goto(f"{address}/runs/{run}")
-    expect(page.get_by_text("2 / 2")).to_be_visible(timeout=SLOW)
-    found = page.request.get(f"{address}/api/v1/runs/{run}/archive").json()
-    return found["creature"][0]
 
 
 def see_it_move(page: Page, films: int) -> None:

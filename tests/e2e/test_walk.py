@@ -11,19 +11,19 @@ FAST, SLOW = 10_000, 120_000
 
 @pytest.mark.e2e
 def test_a_run_is_submitted_watched_opened_and_its_creature_swims_and_travels(
-    page: Page, address: str, tmp_path: Path
+    shared_page: Page, shared_address: str, tmp_path: Path
 ):
-    run = submit_a_short_run(page, address)
+    page = shared_page
+    run = submit_a_short_run(page, shared_address)
     watch_it_live(page)
-    sha = open_an_elite(page, address, run)
+    sha = open_an_elite(page, shared_address, run)
     see_it_move(page)
     file = download_it(page, sha, tmp_path)
     drop_it_back_in(page, file, sha)
 
 
 def submit_a_short_run(page: Page, address: str) -> str:
-    page.goto(address)
-    page.get_by_role("link", name="Start the first run").click()
+    page.goto(f"{address}/new")
     presets = page.get_by_role("group", name=re.compile("^Quality-diversity"))
     demo = presets.get_by_role("button", name=re.compile("^Demo A small"))
     demo.click()
@@ -82,7 +82,7 @@ def see_it_move(page: Page) -> None:
     still = pixels(page)
     page.wait_for_timeout(300)
     assert pixels(page) == still
-    expect(page.get_by_role("img", name=re.compile("^Network"))).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("group", name=re.compile("^Network:"))).to_be_visible(timeout=FAST)
 
 
 def pixels(page: Page) -> str:
@@ -91,7 +91,7 @@ def pixels(page: Page) -> str:
 
 def download_it(page: Page, sha: str, folder: Path) -> Path:
     with page.expect_download() as download:
-        page.get_by_role("link", name="Download file").click()
+        page.get_by_role("link", name="JSON").click()
     assert download.value.suggested_filename == f"creature-{sha[:12]}.json"
     file = folder / download.value.suggested_filename
     download.value.save_as(file)
@@ -101,7 +101,7 @@ def download_it(page: Page, sha: str, folder: Path) -> Path:
 
 def drop_it_back_in(page: Page, file: Path, sha: str) -> None:
     page.get_by_role("link", name="Microcosmos").click()
-    expect(page.get_by_role("heading", name="Runs")).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("heading", name="Runs", exact=True)).to_be_visible(timeout=FAST)
     transfer = page.evaluate_handle(
         """([text, name]) => {
             const transfer = new DataTransfer();

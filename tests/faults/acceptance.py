@@ -2,9 +2,11 @@
 
 Four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
-one; creatures that sense and collect energy; and searches with derivatives and without.
+one; creatures that sense and collect energy; searches with derivatives and without; and a page
+that is left open for half an hour, or for as many minutes as `MINUTES` says.
 """
 
+import os
 import random
 import sys
 import tempfile
@@ -14,6 +16,7 @@ from pathlib import Path
 from comparison import METHODS, SEEDS, compare, draw, sinusoidal, spec
 from drive import Installation, interrupt, kill_job, pause_and_resume, stop_worker
 from foraging import forage
+from left_open import leave_open
 from rich.console import Console
 from slopes import compare_slopes
 
@@ -21,6 +24,7 @@ FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
 PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
 HOURS = 3600
+MINUTES = float(os.environ.get("MINUTES", "30"))
 
 console = Console(width=110)
 
@@ -78,7 +82,12 @@ def slopes(place: Installation) -> bool:
     return True
 
 
-PARTS = {"searches": searches, "foraging": foraging, "slopes": slopes}
+def page(place: Installation) -> bool:
+    """Whether a page that is left open holds on to nothing it does not need."""
+    return leave_open(place, console, MINUTES)
+
+
+PARTS = {"searches": searches, "foraging": foraging, "slopes": slopes, "page": page}
 
 
 def main(names: list[str]) -> None:

@@ -18,6 +18,8 @@ import psutil
 
 ROOT = Path(__file__).parents[2]
 TERMINAL = ("finished", "failed", "cancelled")
+SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_ARTIFACTS_URL")
+"""What an installation of its own has of its own, unless it is told otherwise."""
 
 
 def wait_until(condition: Callable[[], Any], seconds: float, what: str) -> Any:
@@ -46,23 +48,28 @@ class Installation:
     port: int = field(default_factory=free_port)
 
     def __post_init__(self) -> None:
-        self.http = httpx.Client(base_url=f"http://127.0.0.1:{self.port}", timeout=30)
+        self.http = httpx.Client(base_url=self.url, timeout=30)
 
     def start(self, seconds: float = 60) -> None:
         """Start it and return when its server answers."""
         self.folder.mkdir(parents=True, exist_ok=True)
         settings = {"MICROCOSMOS_DATA": str(self.folder), "PORT": str(self.port)}
+        inherited = {name: value for name, value in os.environ.items() if name not in SERVICES}
         with self.output.open("ab") as output:
             self.process = subprocess.Popen(
                 [self.python, "-m", "server.local"],
                 cwd=ROOT,
-                env=os.environ | self.environment | settings,
+                env=inherited | self.environment | settings,
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=output,
                 start_new_session=True,
             )
         wait_until(self.answers, seconds, f"the server answers; {self.output.read_text()}")
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
 
     @property
     def output(self) -> Path:

@@ -64,6 +64,14 @@ def test_assets_are_cached_for_ever(built, address):
     assert httpx.get(f"{address}/assets/gone.js").status_code == 404
 
 
+def test_assets_are_compressed_for_who_understands_it(built, address):
+    for accepted, encoding in (("gzip", "gzip"), ("identity", None)):
+        headers = {"Accept-Encoding": accepted}
+        answer = httpx.get(f"{address}/assets/a1b2.js", headers=headers)
+        assert (answer.text, answer.headers.get("content-encoding")) == ("script", encoding)
+        assert answer.headers["content-type"].startswith("text/javascript")
+
+
 def test_a_page_that_is_not_built_says_how(address, tmp_path, monkeypatch):
     monkeypatch.setattr(page, "BUILT", tmp_path / "nowhere")
     answer = httpx.get(f"{address}/")

@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from microcosmos.archive import file
+from microcosmos.spec import parse
 from server.claims import claim
+from server.routes import archives
+from server.submission import submit
 
 
 @pytest.fixture
@@ -214,3 +217,62 @@ def test_a_feature_comes_with_title_unit_and_ends(api, services, run_id, report)
         "high": None,
         "scale": "linear",
     }
+
+
+def test_the_history_tells_the_archive_of_every_generation(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}, features={"turning": 0.5}), 1.0)
+    attempt.record(report(2, {5: 1.5}, features={"turning": 0.25}), 1.0)
+    attempt.record(report(3, {255: 0.5, 5: 4.0}, features={"turning": 1.0}), 1.0)
+    asked = {"features": "turning"}
+    history = api.get(f"runs/{run_id}/archive/history", params=asked).json()
+    assert history["generation"] == 3
+    assert history["cell"] == [3, 5, 5, 5, 255]
+    assert history["elite_generation"] == [1, 1, 2, 3, 3]
+    assert history["features"] == {"turning": [0.5, 0.5, 0.25, 1.0, 1.0]}
+    columns = ("fitness", "descriptors", "creature")
+    for generation in range(4):
+        then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
+        last = {
+            cell: [history[name][i] for name in columns]
+            for i, cell in enumerate(history["cell"])
+            if history["elite_generation"][i] <= generation
+        }
+        assert last == {
+            cell: [then[name][i] for name in columns] for i, cell in enumerate(then["cell"])
+        }
+
+
+def test_a_history_with_what_was_not_recorded_is_refused(api, services, run_id, report):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
+    answer = api.get(f"runs/{run_id}/archive/history", params={"features": "beauty"})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == "features"
+
+
+def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, spec, report):
+    spec["archive"]["centroids"] = 3
+    run_id = submit(services, parse(spec))[0].id
+    assert api.get(f"runs/{run_id}/archive/centroids").status_code == 404
+    places = np.array([[0.25, 0.5], [0.75, 0.125], [0.5, 1.0]], np.float32)
+    attributes = {"format": file.FORMAT}
+    data = file.dump({"archive": {"centroids": places}}, attributes)
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {2: 1.0}), 1.0)
+    attempt.save(1, data)
+    answer = api.get(f"runs/{run_id}/archive/centroids").json()
+    assert answer["centroids"] == places.tolist()
+
+
+def test_a_grid_has_no_centroids(api, run_id):
+    answer = api.get(f"runs/{run_id}/archive/centroids")
+    assert (answer.status_code, answer.json()["title"]) == (404, "No centroids")
+
+
+def test_a_history_too_long_to_be_sent_is_refused(api, services, run_id, report, monkeypatch):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
+    monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
+    answer = api.get(f"runs/{run_id}/archive/history")
+    assert answer.status_code == 422
+    assert "has 2 entries, of which at most 1" in answer.json()["detail"]

@@ -8,7 +8,7 @@ import pytest
 from sqlalchemy import func, select, update
 from sqlalchemy.exc import OperationalError
 
-from server import lifecycle, workers
+from server import leases, lifecycle
 from server.artifacts import Artifacts
 from server.claims import Claim, Fenced, claim
 from server.db import ago
@@ -187,7 +187,7 @@ def test_a_finished_run_forgets_earlier_errors(services, run_id, row):
 
 def test_a_lease_is_renewed_by_whoever_holds_it(services, run_id, row):
     def beat(worker):
-        return workers.heartbeat(services.sessions, run_id, worker)
+        return leases.heartbeat(services.sessions, run_id, worker)
 
     assert beat("first") == "waiting"
     attempt = claim(services, run_id, "first")

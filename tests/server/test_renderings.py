@@ -2,10 +2,12 @@
 
 import httpx
 import pytest
+from sqlalchemy import select
 
 from microcosmos.archive import creature
+from microcosmos.archive.naming import REPLAY_VERSION
 from server import renderings
-from server.models import REPLAY
+from server.models import REPLAY, Artifact
 
 
 @pytest.fixture
@@ -102,3 +104,17 @@ def test_what_failed_is_told_by_the_first_line_of_what_was_raised(api, services,
     services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
     detail = api.get(f"creatures/{known}/audit").json()["detail"]
     assert "OperationalError: database is locked. It can" in detail
+
+
+def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
+    renderings.save(services, known, REPLAY, b"of now")
+    renderings.save(services, known, "film.gif", b"GIF")
+    with services.sessions.write.begin() as session:
+        row = session.scalars(select(Artifact).where(Artifact.kind == REPLAY)).one()
+        assert row.number == REPLAY_VERSION
+        row.number = None  # As it was before formats were counted.
+    assert renderings.kept(services, known, REPLAY) is None
+    assert api.get(f"creatures/{known}/replay").status_code == 202
+    assert api.get(f"creatures/{known}/film.gif").content == b"GIF"
+    renderings.save(services, known, REPLAY, b"of now again")
+    assert api.get(f"creatures/{known}/replay").content == b"of now again"

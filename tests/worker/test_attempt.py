@@ -155,3 +155,15 @@ def test_told_to_stop_it_does_not_wait_for_the_database(monkeypatch):
 
     with pytest.raises(OperationalError):
         attempt.persist(write)
+
+
+def test_the_first_generation_is_saved_at_once_and_the_next_after_the_interval(
+    services, run_id, row, report
+):
+    settings = services.settings.model_copy(update={"checkpoint_interval": 3600.0})
+    patient = replace(services, settings=settings)
+    with claimed(patient, run_id, "worker") as held:
+        held.record(report(1), 1.0, lambda: b"first")
+        assert row().checkpoint_generation == 1
+        held.record(report(2), 1.0, lambda: pytest.fail("it was saved a moment ago"))
+    assert held.restore() == b"first"

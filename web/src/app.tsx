@@ -1,18 +1,24 @@
 /** The frame around every page: where one can go, how the connection is, notes. */
 
 import { useEffect } from "preact/hooks";
+import { later } from "./later";
 import { useLive } from "./live/live";
 import { type Toast, dismiss, useToasts } from "./live/toasts";
-import { CreaturePage } from "./pages/Creature";
 import { DropTarget, OpenButton } from "./pages/DropTarget";
-import { NewRunPage } from "./pages/NewRun";
-import { RunPage } from "./pages/Run";
 import { RunsPage } from "./pages/Runs";
 import { type Place, usePlace } from "./router";
+
+const ComparePage = later(async () => (await import("./pages/Compare")).ComparePage);
+const CreaturePage = later(async () => (await import("./pages/Creature")).CreaturePage);
+const NewRunPage = later(async () => (await import("./pages/NewRun")).NewRunPage);
+const RunPage = later(async () => (await import("./pages/Run")).RunPage);
+const WorkersPage = later(async () => (await import("./pages/Workers")).WorkersPage);
 
 const TITLES: Record<string, string> = {
   runs: "Runs",
   new: "New run",
+  compare: "Compare",
+  workers: "Workers",
   unknown: "Not found",
 };
 
@@ -38,6 +44,9 @@ export function App() {
           <a href="/new" aria-current={page === "new" ? "page" : undefined}>
             New run
           </a>
+          <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
+            Workers
+          </a>
         </nav>
         <span class="spring" />
         <OpenButton />
@@ -53,9 +62,13 @@ export function App() {
 function Page({ route, query }: Place) {
   switch (route.page) {
     case "runs":
-      return <RunsPage />;
+      return <RunsPage query={query} />;
     case "new":
-      return <NewRunPage />;
+      return <NewRunPage query={query} />;
+    case "compare":
+      return <ComparePage query={query} />;
+    case "workers":
+      return <WorkersPage />;
     case "run":
       return <RunPage key={route.id} id={route.id} query={query} />;
     case "creature":

@@ -9,9 +9,14 @@ import "./styles/runs.css";
 import "./styles/new-run.css";
 import "./styles/run.css";
 import "./styles/creature.css";
+import "./styles/watching.css";
 import "./styles/plot.css";
 import "./styles/results.css";
 import "./styles/audit.css";
+import "./styles/archive.css";
+import "./styles/guide.css";
+import "./styles/run-page.css";
+import "./styles/lists.css";
 
-connect();
+await connect();
 render(<App />, document.getElementById("app")!);

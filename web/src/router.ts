@@ -5,6 +5,8 @@ import { useEffect, useState } from "preact/hooks";
 export type Route =
   | { page: "runs" }
   | { page: "new" }
+  | { page: "compare" }
+  | { page: "workers" }
   | { page: "run"; id: string }
   | { page: "creature"; sha: string }
   | { page: "unknown" };
@@ -14,10 +16,14 @@ export interface Place {
   query: URLSearchParams;
 }
 
+const PAGES = ["new", "compare", "workers"] as const;
+const isPage = (name: string): name is (typeof PAGES)[number] =>
+  (PAGES as readonly string[]).includes(name);
+
 export function routeOf(path: string): Route {
   const [first, second, ...rest] = path.split("/").filter(Boolean);
   if (first === undefined) return { page: "runs" };
-  if (first === "new" && second === undefined) return { page: "new" };
+  if (second === undefined && isPage(first)) return { page: first };
   const name = rest.length === 0 ? decoded(second) : null;
   if (name !== null && first === "runs") return { page: "run", id: name };
   if (name !== null && first === "creatures") return { page: "creature", sha: name };

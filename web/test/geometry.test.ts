@@ -1,14 +1,13 @@
 import { describe, expect, it } from "vitest";
 import type { Axis } from "../src/api/types";
 import {
-  type Direction,
   cellAt,
   cellOf,
-  nextCell,
   placeOf,
   rectangle,
   ticks,
 } from "../src/view/archive/geometry";
+import { type Direction, gridLayout, nextBin } from "../src/view/archive/layout";
 
 const SHAPE = [4, 3] as const;
 
@@ -43,7 +42,7 @@ describe("the arrow keys", () => {
     ["ArrowLeft", null],
     ["ArrowDown", null],
   ])("%s goes to the nearest filled cell that way, or nowhere", (direction, expected) => {
-    expect(nextCell(at(1, 1), direction, filled, [10, 10])).toBe(expected);
+    expect(nextBin(at(1, 1), direction, filled, gridLayout([10, 10]))).toBe(expected);
   });
 });
 

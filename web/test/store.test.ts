@@ -68,7 +68,9 @@ function after(...actions: (Action | ((state: State) => Action))[]): State {
   }, EMPTY);
 }
 
-const opened = after({ type: "run", run: RUN }, snapshot);
+const open: Action = { type: "open", run: "a", more: 1 };
+const close: Action = { ...open, more: -1 };
+const opened = after({ type: "run", run: RUN }, open, snapshot);
 const creatures = (state: State) =>
   [...state.details.get("a")!.elites].map(([cell, { creature }]) => [cell, creature]);
 
@@ -113,18 +115,117 @@ describe("events", () => {
     const { spec: _, ...standing } = { ...RUN, generation: 3 };
     const next = reduce(opened, { type: "run", run: standing });
     expect(next.runs.get("a")).toEqual({ ...RUN, generation: 3 });
-    expect(after({ type: "run", run: standing })).toBe(EMPTY);
+    expect(after({ type: "run", run: standing }).runs.size).toBe(0);
   });
 
   it("of runs that are not open leave no trace", () => {
     expect(after(elites(1, 0, "x")).details.size).toBe(0);
   });
 
-  it("put a new run at the head of the list", () => {
-    const newer = { ...RUN, id: "b", created_at: "2026-01-03T00:00:00Z" };
-    const older = { ...RUN, id: "c", created_at: "2026-01-01T00:00:00Z" };
-    const runs = [RUN, newer, older].map((run): Action => ({ type: "run", run }));
-    expect(after(...runs).listed).toEqual(["b", "a", "c"]);
+  it("put no run into a list, but say that the list may be another", () => {
+    const page = { items: [RUN], next: null };
+    const listed = after({ type: "list", asked: "{}", page, known: 0, sent: 0 });
+    const newer = reduce(listed, { type: "run", run: { ...RUN, id: "b" } });
+    expect([newer.listed, newer.news]).toEqual([["a"], listed.news + 1]);
+  });
+
+  it("make news of a run's state, name, tags and note, not of its figures", () => {
+    const run = { ...RUN, status: "running", name: null, tags: ["one"], note: null } as Run;
+    const before = after({ type: "run", run });
+    const raised = (change: Partial<Run>) =>
+      reduce(before, { type: "run", run: { ...run, ...change } }).news - before.news;
+    expect(raised({ tags: ["one"], generation: 5, evaluations: 99 })).toBe(0);
+    for (const change of [{ status: "finished" as const }, { name: "x" }, { tags: [] }, { note: "y" }]) {
+      expect(raised(change)).toBe(1);
+    }
+  });
+
+  it("leave out the rest of a list that nobody asks for any more", () => {
+    const more = reduce(first, { type: "more", asked: "{}", page: page("b"), cursor: null, sent: 0 });
+    expect(more.listed).toEqual(["a", "b"]);
+    const stale = { type: "more", asked: "other", page: page("b"), cursor: null, sent: 0 } as const;
+    expect(reduce(first, stale).listed).toEqual(["a"]);
+  });
+
+  it("of a list keep what was loaded while the list was asked for again", () => {
+    const more = reduce(first, { type: "more", asked: "{}", page: page("b"), cursor: null, sent: 0 });
+    const again = reduce(more, { type: "list", asked: "{}", page: page("a"), known: 1, sent: 0 });
+    expect([again.listed, again.news]).toEqual([["a", "b"], more.news + 1]);
+  });
+
+  it("ask for a list again that was replaced while more of it was loaded", () => {
+    const next = { ...page("b"), next: "other place" };
+    const moved = reduce(first, { type: "list", asked: "{}", page: next, known: 1, sent: 0 });
+    const more = reduce(moved, { type: "more", asked: "{}", page: page("c"), cursor: null, sent: 0 });
+    expect([more.listed, more.news]).toEqual([["b", "c"], moved.news + 1]);
+  });
+});
+
+const page = (id: string) => ({ items: [{ ...RUN, id }], next: null });
+const first = after({ type: "list", asked: "{}", page: page("a"), known: 0, sent: 0 });
+
+describe("an answer", () => {
+  const { spec: _, ...standing } = { ...RUN, status: "finished", generation: 10 } as Run;
+  const event: Action = { type: "run", run: standing };
+  const late = { ...RUN, status: "running", generation: 5, name: "old" } as Run;
+  const known = after({ type: "answer", run: late, sent: 0 });
+  const answers: [string, (sent: number) => Action][] = [
+    ["to a question for a run", (sent) => ({ type: "answer", run: late, sent })],
+    ["to a question for a list", (sent) => ({ type: "list", asked: "", page: { items: [late], next: null }, known: 0, sent })],
+    ["to a question for more", (sent) => ({ type: "more", asked: "", page: { items: [late], next: null }, cursor: null, sent })],
+  ];
+
+  it.each(answers)("%s does not undo what an event told meanwhile", (_, answer) => {
+    const state = reduce(reduce(known, event), answer(known.heard));
+    expect(state.runs.get("a")).toMatchObject({ status: "finished", generation: 10 });
+  });
+
+  it.each(answers)("%s takes what an event told before anything else was known", (_, answer) => {
+    const state = reduce(reduce(EMPTY, event), answer(0));
+    expect(state.runs.get("a")).toMatchObject({ status: "finished", spec: RUN.spec });
+    expect(state.early.size).toBe(0);
+  });
+
+  it.each(answers)("%s counts where it was asked after the last event", (_, answer) => {
+    const told = reduce(known, event);
+    expect(reduce(told, answer(told.heard)).runs.get("a")!.status).toBe("running");
+  });
+
+  it("is overtaken by generations, rewinds, resets and newer answers too", () => {
+    const run = { ...late, generation: 5 };
+    const rewind = { type: "rewind", event: { run: "a", generation: 1 } } as const;
+    for (const action of [{ type: "generation", event: generation(7) }, rewind, { type: "reset" }] as Action[]) {
+      const state = reduce(known, action);
+      expect(reduce(state, { type: "answer", run, sent: known.heard }).runs).toEqual(state.runs);
+    }
+    const other = reduce(known, { type: "run", run: { ...RUN, id: "b" } });
+    const newer = reduce(other, { type: "answer", run: { ...run, name: "new" }, sent: other.heard });
+    expect(reduce(newer, { type: "answer", run, sent: 0 }).runs.get("a")!.name).toBe("new");
+  });
+
+  it("leaves the spec the object it was", () => {
+    const again = reduce(known, { type: "answer", run: structuredClone(late), sent: known.heard });
+    expect(again.runs.get("a")!.spec).toBe(RUN.spec);
+  });
+});
+
+describe("what is said here of a run", () => {
+  const known = after({ type: "run", run: { ...RUN, name: "old" } });
+  const said = reduce(known, { type: "said", run: "a", change: { name: "new" } });
+
+  it("is shown at once, and makes news only when the server has heard it", () => {
+    expect([said.runs.get("a")!.name, said.news]).toEqual(["new", known.news]);
+    const done = reduce(said, { type: "done", run: { ...RUN, name: "new" }, sent: said.heard });
+    expect([done.runs.get("a")!.name, done.news]).toEqual(["new", known.news + 1]);
+  });
+
+  it("outlives lists that were asked for before it, and before the server had heard it", () => {
+    const list = (sent: number): Action => {
+      return { type: "list", asked: "", page: { items: [{ ...RUN, name: "old" }], next: null }, known: 0, sent };
+    };
+    expect(reduce(said, list(known.heard)).runs.get("a")!.name).toBe("new");
+    const done = reduce(said, { type: "done", run: { ...RUN, name: "new" }, sent: said.heard });
+    expect(reduce(done, list(said.heard)).runs.get("a")!.name).toBe("new");
   });
 });
 
@@ -137,7 +238,6 @@ describe("a snapshot", () => {
 
   it("that comes first keeps what events told since the run was opened", () => {
     const told: Action = { type: "generation", event: generation(3) };
-    const open: Action = { type: "open", run: "a" };
     const waiting = after({ type: "run", run: RUN }, open, elites(3, 5, "cc"), told);
     expect(waiting.details.get("a")).toMatchObject({ archive: null, curves: null });
     const next = reduce(waiting, snapshot(waiting));
@@ -145,13 +245,19 @@ describe("a snapshot", () => {
     expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
   });
 
-  it("leaves a run that was opened again as it was shown", () => {
-    expect(reduce(opened, { type: "open", run: "a" })).toBe(opened);
+  it("stays until the last one has closed the run, and is not taken after that", () => {
+    const twice = reduce(opened, open);
+    expect(creatures(twice)).toEqual(creatures(opened));
+    const once = reduce(twice, close);
+    expect(creatures(once)).toEqual(creatures(opened));
+    const closed = reduce(once, close);
+    expect(closed.details.size).toBe(0);
+    expect([elites(3, 5, "cc"), snapshot(closed)].reduce(reduce, closed).details.size).toBe(0);
   });
 
   it("asked for before a reset is not taken", () => {
     const late = snapshot(EMPTY);
-    expect(after({ type: "reset" }, late).details.size).toBe(0);
+    expect(after(open, { type: "reset" }, late).details.get("a")!.archive).toBeNull();
   });
 });
 
@@ -209,7 +315,8 @@ describe("long runs", () => {
   it("are thinned out instead of growing for ever", () => {
     const full = Array.from({ length: LONGEST }, (_, i) => i);
     const rare = full.map((i) => (i === 7 || i === LONGEST - 1 ? i : null));
-    const columns = { generation: full, qd_score: full, coverage: full, best: full };
+    const costs = { evaluations: full, seconds: full };
+    const columns = { generation: full, ...costs, qd_score: full, coverage: full, best: full };
     const next = appendCurves({ ...columns, summary: { rare } }, generation(LONGEST));
     expect(next.generation.length).toBe(LONGEST / 2 + 1);
     expect(next.generation.at(-1)).toBe(LONGEST);
@@ -230,7 +337,7 @@ describe("a run without an archive", () => {
   const bare = (state: State): Action => ({ ...(snapshot(state) as object), archive: null }) as Action;
 
   it("has curves and no elites", () => {
-    const detail = after({ type: "open", run: "a" }, bare).details.get("a")!;
+    const detail = after(open, bare).details.get("a")!;
     expect([detail.archive, detail.elites.size]).toEqual([null, 0]);
     expect(detail.curves!.generation).toEqual([1, 2]);
   });
@@ -248,5 +355,43 @@ describe("a run without an archive", () => {
     const run: Action = { type: "run", run: RUN };
     const state = after(run, told(2, { best: 2 }), told(3, null), told(1, { best: 1 }));
     expect(state.runs.get("a")!.summary).toEqual({ best: 2 });
+  });
+});
+
+describe("curves of runs that are looked at beside others", () => {
+  const watch = (more: 1 | -1): Action => ({ type: "watch", run: "a", more });
+  const curves = (state: State): Action => ({
+    type: "curves",
+    run: "a",
+    epoch: epochOf(state, "a"),
+    generations: GENERATIONS,
+  });
+  const third: Action = { type: "generation", event: generation(3) };
+  const told = (state: State) => state.watching.get("a")?.curves;
+
+  it("grow with every generation, told before or after the snapshot", () => {
+    expect(told(after(watch(1), third, curves))!.generation).toEqual([1, 2, 3]);
+    const later = told(after(watch(1), curves, third))!;
+    expect([later.evaluations, later.seconds]).toEqual([[16, 32, 48], [1, 2, 6]]);
+  });
+
+  it("are cut by a rewind, and no snapshot from before it counts", () => {
+    const back: Action = { type: "rewind", event: { run: "a", generation: 1 } };
+    const state = after(watch(1), curves, third, back);
+    expect(told(state)!.generation).toEqual([1]);
+    expect(told(reduce(state, curves(EMPTY)))!.generation).toEqual([1]);
+    expect(told(reduce(state, curves(state)))!.generation).toEqual([1, 2]);
+  });
+
+  it("outlive a reset, but not the next snapshot", () => {
+    const state = after(watch(1), curves, third, { type: "reset" });
+    expect(told(state)!.generation).toEqual([1, 2, 3]);
+    expect(told(reduce(state, curves(state)))!.generation).toEqual([1, 2]);
+  });
+
+  it("are forgotten when the last one has looked away", () => {
+    expect(after(watch(1), watch(1), curves, watch(-1)).watching.size).toBe(1);
+    expect(after(watch(1), watch(1), curves, watch(-1), watch(-1)).watching.size).toBe(0);
+    expect(after(curves, third).watching.size).toBe(0);
   });
 });

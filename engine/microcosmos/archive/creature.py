@@ -29,6 +29,7 @@ __all__ = [
 
 Room = Annotated[int, Field(ge=8, le=8192)]
 Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+Figures = Annotated[dict[str, float], Field(max_length=1000)]
 
 
 class CreatureError(ValueError):
@@ -43,8 +44,8 @@ class Measured(Part):
     """What was found when the creature was evaluated, and what repeating it exactly needs."""
 
     fitness: float
-    descriptors: dict[str, float]
-    features: dict[str, float]
+    descriptors: Figures
+    features: Figures
     block: int = Field(ge=1, le=4096)
     room: tuple[Room, Room] | None = None
     """`max_nodes` and `max_connections` of the evaluated arrays; none without a network."""

@@ -50,6 +50,12 @@ def columns(data: bytes) -> Columns:
     return found | repeated(archive) | {"index": archive["cell"]}
 
 
+def centroids(data: bytes) -> np.ndarray:
+    """(cell, axis): where the cells of a CVT are, from 0 to 1 on the axes' own scales."""
+    tree, _ = load(data)
+    return tree["archive"]["centroids"]
+
+
 def repeated(archive: Tree) -> Columns:
     """Of evaluations under disturbed conditions their number, those that diverged, mean and
     standard deviation of fitness, and the share that fell into the elite's own cell."""

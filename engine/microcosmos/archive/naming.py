@@ -7,6 +7,9 @@ from typing import Any
 import rfc8785
 
 FORMAT = "microcosmos-creature/1"
+REPLAY_VERSION = 2
+"""A replay that was kept in an earlier one is recorded anew when it is wanted."""
+REPLAY_FORMAT = f"microcosmos-replay/{REPLAY_VERSION}"
 LICENCE = "CC-BY-4.0"
 
 

@@ -12,6 +12,7 @@ from .inside import refuse_outside
 from .network import from_graph, graph
 from .refine import Refined, subdivided
 from .shape import from_edges
+from .thinning import thinned
 from .unfolding import Unfolded, drawn, unfolded
 from .walk import walk
 
@@ -35,6 +36,7 @@ __all__ = [
     "star",
     "subdivided",
     "svg",
+    "thinned",
     "together",
     "tree",
     "unfolded",

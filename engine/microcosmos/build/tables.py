@@ -5,7 +5,6 @@ from collections.abc import Callable
 from typing import Any
 
 import jax.numpy as jnp
-import numpy as np
 
 from .. import bodies, device, filaments, spec, units, world
 from ..bodies.extent import reach
@@ -38,12 +37,8 @@ def build_scaling(chosen: spec.Scaling) -> scaling.Scaling:
 def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[timing.Scene, world.State]:
     """A box with many straight filaments at random places, and their shape at rest."""
     one = bodies.chain(chosen.filament, SPACING)
-    columns, rows = chosen.places
-    place = np.random.default_rng(chosen.seed).permutation(columns * rows)
-    place = place[: nodes // chosen.filament]
-    centres = np.stack([place % columns + 0.5, place // columns + 0.5], 1)
-    centres = centres * (chosen.filament * SPACING, SPACING)
-    crowd = bodies.together([bodies.placed(one, (float(x), float(y))) for x, y in centres])
+    centres = chosen.centres(nodes).tolist()
+    crowd = bodies.together([bodies.placed(one, centre) for centre in centres])
     wide = spec.World(width=chosen.width, height=chosen.height, steric=chosen.steric)
     box = build_world(wide, spec.Coupling(), crowd)
     start = world.at_rest(box, jnp.asarray(crowd.positions, jnp.float32))

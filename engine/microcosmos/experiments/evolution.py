@@ -19,6 +19,7 @@ from . import again, archive_file, lineage
 from .learning import Lessons, teach
 from .report import Report
 from .state import CURVES, ENDS, KEPT, Diverged, Plan, State, start
+from .telling import told
 
 
 @dataclass(frozen=True)
@@ -113,8 +114,15 @@ class Evolution:
             corrected = again.figures(self.repeats, state)
         row = np.array([*_figures(state), clipped, *corrected])
         state = replace(state, curves=np.concatenate([state.curves, row[None]]))
-        report = _report(self.plan, state, news.elites, state.device_seconds - spent)
-        return state, replace(report, summary={**(report.summary or {}), **taught.told()})
+        report = _report(state, news.elites)
+        summary = told(
+            self.plan,
+            state,
+            dict(zip(CURVES, row.tolist(), strict=True)),
+            state.device_seconds - spent,
+            np.asarray(evaluation.status),
+        )
+        return state, replace(report, summary={**summary, **taught.told()})
 
     def creature(self, state: State, cell: int) -> dict[str, Any]:
         """The creature file of a cell's elite."""
@@ -211,7 +219,7 @@ def _figures(state: State) -> tuple[float, ...]:
     return fitness.sum(), coverage, best, mean, state.evaluations, state.diverged
 
 
-def _report(plan: Plan, state: State, elites: tuple, seconds: float) -> Report:
+def _report(state: State, elites: tuple) -> Report:
     values = dict(zip(CURVES, state.curves[-1].tolist(), strict=True))
     return Report(
         generation=state.generation,
@@ -222,19 +230,4 @@ def _report(plan: Plan, state: State, elites: tuple, seconds: float) -> Report:
         evaluations=state.evaluations,
         diverged=state.diverged,
         elites=elites,
-        summary=_told(plan, state, values, seconds),
     )
-
-
-def _told(plan: Plan, state: State, values: dict, seconds: float) -> dict:
-    """What else there is to tell of the generation."""
-    told: dict[str, Any] = {"device_seconds": seconds, "clipped": int(values["clipped"])}
-    for i, name in enumerate(plan.names):
-        _, inserted, improved = state.fates[-1, i].tolist()
-        told |= {f"{name}: inserted": inserted, f"{name}: improved": improved}
-    for name in ("corrected_qd_score", "corrected_coverage", "hit_rate"):
-        if np.isfinite(values[name]):
-            told[name] = values[name]
-    if state.ended:
-        told["ended"] = f"{ENDS[state.ended]} after generation {state.generation}"
-    return told

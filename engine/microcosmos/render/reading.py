@@ -5,11 +5,15 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from math import prod
 from typing import Any
 
 import numpy as np
 
-FORMAT = "microcosmos-replay/1"
+from ..archive.naming import REPLAY_FORMAT
+
+FORMATS = ("microcosmos-replay/1", REPLAY_FORMAT)
+"""The first one knew neither what drives a body nor energy."""
 
 
 class ReplayError(ValueError):
@@ -18,6 +22,23 @@ class ReplayError(ValueError):
     def __init__(self, field: str, needed: str, got: object):
         super().__init__(f"`{field}` needs {needed}; got {got!r:.120}")
         self.field, self.needed, self.got = field, needed, got
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """What drives a body, and more of the fluid around it."""
+
+    angles: np.ndarray
+    """(frame, joint): rest angles as applied in the step before the frame, in rad."""
+
+    lengths: np.ndarray
+    """(frame, edge): rest lengths likewise, in cells."""
+
+    velocity: np.ndarray
+    """(frame, 2, x, y) of the fluid, in cells a step."""
+
+    energy: np.ndarray
+    """(plane, x, y): one plane a frame, one for all where nothing changes it, or none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +51,9 @@ class Replay:
 
     levels: np.ndarray
     """(frame, x, y) int8: the vorticity in units of `quantum`."""
+
+    drive: "Drive | None" = None
+    """None where the file is of the first format."""
 
     @property
     def frames(self) -> int:
@@ -84,15 +108,50 @@ def read_replay(data: bytes) -> Replay:
     """The replay in these bytes. Raises `ReplayError` where they are not sound."""
     header, start = _header(data)
     frames, nodes, (width, height) = (header[key] for key in ("frames", "nodes", "size"))
-    split = start + 8 * frames * nodes
-    end = split + frames * width * height
+    whole = header["format"] == REPLAY_FORMAT
+    edges, joints, planes = _counts(header) if whole else (0, 0, 0)
+    shapes: list[tuple[tuple[int, ...], Any]] = [((frames, nodes, 2), "<f4")]
+    if whole:
+        shapes += [((frames, count), "<f4") for count in (joints, edges)]
+    shapes += [((frames, width, height), np.int8)]
+    if whole:
+        shapes += [((frames, 2, width, height), np.int8), ((planes, width, height), np.uint8)]
+    end = start + sum(np.dtype(kind).itemsize * prod(shape) for shape, kind in shapes)
     _need(len(data) == end, "bytes", f"{end} of them by its header", len(data))
-    positions = np.frombuffer(data, "<f4", 2 * frames * nodes, start).astype(np.float32)
-    _need(bool(np.isfinite(positions).all()), "positions", "finite numbers", "others")
-    levels = np.frombuffer(data, np.int8, offset=split)
-    return Replay(
-        header, positions.reshape(frames, nodes, 2), levels.reshape(frames, width, height)
-    )
+    arrays = []
+    for shape, kind in shapes:
+        found = np.frombuffer(data, kind, prod(shape), start).reshape(shape)
+        arrays.append(found.astype(np.float32) if kind == "<f4" else found)
+        start += found.nbytes
+    sound = all(np.isfinite(found).all() for found in arrays)
+    _need(sound, "positions", "finite numbers", "others")
+    if not whole:
+        return Replay(header, *arrays)
+    positions, angles, lengths, levels, velocity, energy = arrays
+    speed, most = (header[name]["scale"] for name in ("velocity", "energy"))
+    flow = velocity * np.float32(speed / 127), energy * np.float32(most / 255)
+    return Replay(header, positions, levels, Drive(angles, lengths, *flow))
+
+
+def _counts(header: dict[str, Any]) -> tuple[int, int, int]:
+    """Edges, joints, and planes of energy."""
+    joints, energy = header.get("joints"), header.get("energy")
+    count = len(header["edges"])
+    pairs = f"a list of pairs of edges below {count}"
+    _need(isinstance(joints, list), "joints", pairs, joints)
+    for joint in joints or ():
+        _need(_is_pair(joint, lambda k: _is_node(k, count)), "joints", pairs, joint)
+    _need(isinstance(energy, dict), "energy", "its scale and frames", energy)
+    assert isinstance(energy, dict)
+    assert isinstance(joints, list)
+    planes, scale = energy.get("frames"), energy.get("scale")
+    needed = f"0, 1 or {header['frames']}"
+    _need(planes in (0, 1, header["frames"]), "energy.frames", needed, planes)
+    _need(_is_scale(scale), "energy.scale", "a positive number", scale)
+    speed = header.get("velocity")
+    speed = speed.get("scale") if isinstance(speed, dict) else speed
+    _need(_is_scale(speed), "velocity.scale", "a positive number", speed)
+    return count, len(joints), int(planes or 0)
 
 
 def _header(data: bytes) -> tuple[dict[str, Any], int]:
@@ -105,7 +164,8 @@ def _header(data: bytes) -> tuple[dict[str, Any], int]:
     except ValueError:
         raise ReplayError("header", "JSON", data[4 : 4 + length]) from None
     _need(isinstance(header, dict), "header", "a JSON object", header)
-    _need(header.get("format") == FORMAT, "format", repr(FORMAT), header.get("format"))
+    needed = " or ".join(map(repr, FORMATS))
+    _need(header.get("format") in FORMATS, "format", needed, header.get("format"))
     _check(header)
     return header, 4 + length
 
@@ -117,8 +177,7 @@ def _check(header: dict[str, Any]) -> None:
     size, edges, curl = (header.get(key) for key in ("size", "edges", "vorticity"))
     _need(_is_pair(size, _is_count), "size", "width and height", size)
     scale = curl.get("scale") if isinstance(curl, dict) else curl
-    sound = isinstance(scale, int | float) and 0 < scale < float("inf")
-    _need(sound, "vorticity.scale", "a positive number", scale)
+    _need(_is_scale(scale), "vorticity.scale", "a positive number", scale)
     pairs = f"a list of pairs of nodes below {header['nodes']}"
     _need(isinstance(edges, list), "edges", pairs, edges)
     for edge in edges or ():
@@ -136,6 +195,10 @@ def _check_member(member: Any, nodes: int) -> None:
 
 def _is_count(value: Any) -> bool:
     return type(value) is int and value >= 1
+
+
+def _is_scale(value: Any) -> bool:
+    return isinstance(value, int | float) and 0 < value < float("inf")
 
 
 def _is_node(value: Any, nodes: int) -> bool:

@@ -1,4 +1,4 @@
-"""A replay: the recorded motion of one creature over the fluid's vorticity.
+"""A replay: the recorded motion of one creature, what drives it, and the fluid around it.
 
 The program that records rounds differently from the one that evaluates, and rollouts are
 chaotic, so a replay says how far its fitness is from the recorded one.
@@ -12,6 +12,7 @@ from functools import lru_cache
 from math import ceil
 from typing import Any
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -19,19 +20,23 @@ from jaxtyping import Array
 
 from .. import search, world
 from ..archive import creature
+from ..archive.naming import REPLAY_FORMAT
 from ..build import build_encoding, build_stroke, build_task
 from ..device import device_kind
+from ..filaments import Rest
 from ..fluid import vorticity
 from ..genomes import Drive
 from ..spec import Gait, Scene, shape
 from ..spec.estimate import placements, simulation
 
-FORMAT = "microcosmos-replay/1"
 FRAMES = 250
 """At most so many frames are kept besides the first, whatever the number of steps."""
 
 FRAME_BYTES = 2**28
-"""At most about so many bytes of vorticity are held while a replay is made."""
+"""At most about so many bytes of planes are held while a replay is made."""
+
+LEVELS = {"vorticity": np.int8, "velocity": np.int8, "energy": np.uint8}
+"""Planes of the fluid, in the order and the type in which they are kept."""
 
 ROOM = (8, 8)
 """Where there is no network."""
@@ -41,7 +46,7 @@ CELL_STEPS = 3 * 10**10
 
 
 def record(file: Mapping[str, Any]) -> bytes:
-    """The replay of a creature file: JSON header, float32 positions, int8 vorticity.
+    """The replay of a creature file: a JSON header, then motion, rest shapes and planes.
 
     The layout is described in `docs/formats.md`. Raises `creature.CreatureError` for a
     file that is not sound.
@@ -51,27 +56,52 @@ def record(file: Mapping[str, Any]) -> bytes:
     nodes, _ = creature.room(file) or (0, 0)
     every = interval(scene, nodes)
     program = _program(scene.model_dump_json(), every)
-    positions, curl, features, present = jax.device_get(program(actuator_of(file, scene)))
-    if not (np.isfinite(positions).all() and np.isfinite(curl).all()):
+    film, features = jax.device_get(program(actuator_of(file, scene)))
+    if not all(np.isfinite(x).all() for x in (film.positions, film.vorticity)):
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
-    positions = np.asarray(positions[:, present], "<f4")
+    present = film.present
+    edges, joints = graph_among(scene, present)
+    scales = {
+        name: float(np.max(np.abs(getattr(film, name)), initial=0.0)) or 1.0 for name in LEVELS
+    }
+    header = {
+        "format": REPLAY_FORMAT,
+        "creature": file["sha256"],
+        "frames": len(film.positions),
+        "every": every,
+        "steps": scene.task.steps,
+        "nodes": int(present.sum()),
+        "edges": edges.tolist(),
+        "joints": joints.tolist(),
+        "size": [scene.world.width, scene.world.height],
+        "vorticity": {"scale": scales["vorticity"]},
+        "velocity": {"scale": scales["velocity"]},
+        "energy": {"scale": scales["energy"], "frames": len(film.energy)},
+        **_comparison(file, scene, features),
+        "force_free": scene.coupling.force_free,
+        "device": device_kind(),
+    }
+    there = there_among(scene, present)
+    return _pack(
+        header,
+        np.asarray(film.positions[:, present], "<f4"),
+        np.asarray(film.rest.angle[:, there[1]], "<f4"),
+        np.asarray(film.rest.length[:, there[0]], "<f4"),
+        *(_levels(getattr(film, name), scales[name], kind) for name, kind in LEVELS.items()),
+    )
+
+
+def _comparison(
+    file: Mapping[str, Any], scene: Scene, features: Mapping[str, Any]
+) -> dict[str, Any]:
+    """What was recorded when the creature was measured, and what this replay finds."""
     replayed = {name: float(value) for name, value in features.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
     fitness = creature.fitness_of(scene.task, replayed)
-    scale = float(np.max(np.abs(curl))) or 1.0
     names = list(measured.get("descriptors", ())) or ["bending_effort", "stretching_effort"]
-    header = {
-        "format": FORMAT,
-        "creature": file["sha256"],
-        "frames": len(positions),
-        "every": every,
-        "steps": scene.task.steps,
-        "nodes": positions.shape[1],
-        "edges": edges_among(shape(scene.body).edges, present).tolist(),
-        "size": [scene.world.width, scene.world.height],
-        "vorticity": {"scale": scale},
+    return {
         "fitness": {
             "recorded": recorded,
             "replayed": fitness,
@@ -81,15 +111,25 @@ def record(file: Mapping[str, Any]) -> bytes:
             "recorded": measured.get("descriptors"),
             "replayed": {name: replayed[name] for name in names},
         },
-        "force_free": scene.coupling.force_free,
-        "device": device_kind(),
     }
-    return _pack(header, positions, np.round(curl / scale * 127).astype(np.int8))
 
 
-def edges_among(edges: np.ndarray, present: np.ndarray) -> np.ndarray:
-    """The edges (edge, 2) between nodes that are present, as those are counted."""
-    return (np.cumsum(present) - 1)[edges[present[edges].all(1)]]
+def there_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which edges and which joints have all their nodes among those that are present."""
+    body = shape(scene.body)
+    edges = np.all(present[body.edges], axis=1)
+    return edges, np.all(edges[body.joints], axis=1)
+
+
+def graph_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Edges (edge, 2) between nodes and joints (joint, 2) between edges that are there, as
+    those are counted."""
+    edges, joints = there_among(scene, present)
+    body = shape(scene.body)
+    return (
+        (np.cumsum(present) - 1)[body.edges[edges]],
+        (np.cumsum(edges) - 1)[body.joints[joints]],
+    )
 
 
 def interval(scene: Scene, network_nodes: int) -> int:
@@ -108,8 +148,15 @@ def interval(scene: Scene, network_nodes: int) -> int:
             raise creature.CreatureError(
                 field, f"at most {limit:.1e} {unit} for a replay", found
             )
-    frames = min(FRAMES, max(2, FRAME_BYTES // (4 * cells)))
+    planes = 3 + energy_changes(scene)
+    frames = min(FRAMES, max(2, FRAME_BYTES // (4 * cells * planes)))
     return ceil(scene.task.steps / frames)
+
+
+def energy_changes(scene: Scene) -> bool:
+    """Whether there is energy that does not stay where and as it is."""
+    energy = scene.world.energy
+    return energy is not None and (energy.consume or energy.diffusion > 0)
 
 
 def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
@@ -120,20 +167,36 @@ def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
     return encoding.read(file["identity"]["genome"])
 
 
+class Film(eqx.Module):
+    """What is shown of a simulation, one entry a frame; frames are the start and the state
+    after each `every` steps."""
+
+    positions: Array
+    vorticity: Array
+    velocity: Array
+    """(frame, 2, x, y). It cannot be had of the vorticity: sound is a large part of it."""
+    energy: Array
+    """(frame, x, y); one plane where nothing changes it, none without energy."""
+    rest: Rest
+    """What was asked for in the step before each frame; at the start in the first step."""
+    present: Array
+    """Which nodes have grown."""
+
+
 @lru_cache(maxsize=16)
 def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
-    """From an actuator to positions (frame, node, 2), vorticity (frame, x, y), features and
-    which nodes are present.
+    """From an actuator to the film and the features.
 
-    Frames are the start and the state after each `every` steps. Compiled programs are
-    kept, so that the second creature of a run is shown at once.
+    Compiled programs are kept, so that the second creature of a run is shown at once.
     """
     scene = Scene.model_validate_json(scene_json)
     task = build_task(scene)
     frames = scene.task.steps // every
+    changes = energy_changes(scene)
 
     def frame(state):
-        return state.positions, vorticity(world.flow(task.world, state))
+        u = world.flow(task.world, state)
+        return state.positions, vorticity(u), u, state.energy if changes else None
 
     def run(actuator):
         driven = search.drive(task, actuator)
@@ -154,7 +217,7 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
         seen = jax.tree.map(
             lambda x, y: jnp.concatenate([x.reshape(-1, *x.shape[2:]), y]), seen, last
         )
-        positions, curl = jax.tree.map(
+        positions, curl, velocity, planes = jax.tree.map(
             lambda first, rest: jnp.concatenate([first[None], rest]), frame(driven.start), shown
         )
         values = search.motion_of(task, driven, end, seen)
@@ -164,9 +227,22 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
             values["hidden_nodes"], values["connections"] = task.encoding.size(actuator)
         there = driven.world.present
         everybody = jnp.ones(positions.shape[1], bool)
-        return positions, curl, values, everybody if there is None else there
+        before = np.maximum(np.arange(frames + 1) * every - 1, 0)
+        film = Film(
+            positions,
+            curl,
+            velocity,
+            _unchanging(driven.start.energy, task.world.size) if planes is None else planes,
+            jax.tree.map(lambda x: x[before], seen.rest),
+            everybody if there is None else there,
+        )
+        return film, values
 
     return jax.jit(run)
+
+
+def _unchanging(energy: Array | None, size: tuple[int, int]) -> Array:
+    return jnp.zeros((0, *size)) if energy is None else energy[None]
 
 
 def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
@@ -180,7 +256,12 @@ def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
     return jax.tree.map(lambda x: jnp.mean(x, 0), found)
 
 
-def _pack(header: Mapping[str, Any], positions: np.ndarray, curl: np.ndarray) -> bytes:
+def _levels(values: np.ndarray, scale: float, kind: type[np.integer]) -> np.ndarray:
+    """Values as whole parts of the largest one."""
+    return np.round(values / scale * np.iinfo(kind).max).astype(kind)
+
+
+def _pack(header: Mapping[str, Any], *arrays: np.ndarray) -> bytes:
     text = json.dumps(header).encode()
     text += b" " * (-len(text) % 4)  # Aligned, so that a browser can view floats in place.
-    return struct.pack("<I", len(text)) + text + positions.tobytes() + curl.tobytes()
+    return struct.pack("<I", len(text)) + text + b"".join(x.tobytes() for x in arrays)

@@ -4,6 +4,7 @@ from .base import Part, field_path, identity
 from .body import Body, Chain, Known, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
+from .drawing import Drawing, drawing
 from .emitters import Emitter
 from .encodings import Controller, Direct, Free, Grown, Weights, genes, lengthening
 from .estimate import Estimate, estimate
@@ -33,6 +34,7 @@ __all__ = [
     "Descriptor",
     "Digit",
     "Direct",
+    "Drawing",
     "Emitter",
     "Energy",
     "Estimate",
@@ -63,6 +65,7 @@ __all__ = [
     "Task",
     "Weights",
     "World",
+    "drawing",
     "estimate",
     "field_path",
     "genes",

@@ -58,6 +58,10 @@ def unit(name: str) -> JsonDict:
     return {"unit": name}
 
 
+SELDOM = ConfigDict(json_schema_extra={"seldom": True})
+"""Marks a part that people seldom change: a form shows it closed."""
+
+
 def identity(part: Part) -> dict[str, Any]:
     """The part as it stands in a creature's identity."""
     document = part.model_dump(mode="json")

@@ -42,7 +42,7 @@ class Chain(Elastic):
     """A straight filament."""
 
     builder: Literal["chain"] = "chain"
-    nodes: int = Field(default=32, ge=3, le=MOST)
+    nodes: int = Field(default=32, ge=3, le=MOST, json_schema_extra=unit("nodes"))
     """Nodes of the filament."""
     spacing: float = spacing()
     """Rest length of an edge; wider than 2 cells, fluid leaks between the nodes."""
@@ -52,7 +52,7 @@ class Ring(Elastic):
     """A closed filament, round at rest."""
 
     builder: Literal["ring"]
-    nodes: int = Field(default=32, ge=4, le=MOST)
+    nodes: int = Field(default=32, ge=4, le=MOST, json_schema_extra=unit("nodes"))
     """Nodes of the ring."""
     spacing: float = spacing()
     """Rest length of an edge."""
@@ -62,7 +62,7 @@ class Arc(Elastic):
     """An open circle, like a bell."""
 
     builder: Literal["arc"]
-    nodes: int = Field(default=32, ge=4, le=MOST)
+    nodes: int = Field(default=32, ge=4, le=MOST, json_schema_extra=unit("nodes"))
     """Nodes of the arc."""
     spacing: float = spacing()
     """Rest length of an edge."""
@@ -74,7 +74,7 @@ class Walk(Elastic):
     """A filament along a random walk, which may cross itself."""
 
     builder: Literal["walk"]
-    nodes: int = Field(default=1000, ge=3, le=MOST)
+    nodes: int = Field(default=1000, ge=3, le=MOST, json_schema_extra=unit("nodes"))
     """Nodes of the filament."""
     spacing: float = Field(default=0.4, ge=0.25, le=2.0, json_schema_extra=unit("cells"))
     """Rest length of an edge."""
@@ -90,7 +90,7 @@ class Star(Elastic):
     builder: Literal["star"]
     arms: int = Field(default=5, ge=3, le=64)
     """Arms, evenly around the middle."""
-    arm_nodes: int = Field(default=8, ge=1, le=1024)
+    arm_nodes: int = Field(default=8, ge=1, le=1024, json_schema_extra=unit("nodes"))
     """Nodes of an arm, the middle one not among them."""
     spacing: float = spacing()
     """Rest length of an edge."""
@@ -104,7 +104,7 @@ class Tree(Elastic):
     """How often a branch ends in branches, the stem among them."""
     branches: int = Field(default=2, ge=2, le=4)
     """Branches at the end of each."""
-    segment_nodes: int = Field(default=6, ge=1, le=256)
+    segment_nodes: int = Field(default=6, ge=1, le=256, json_schema_extra=unit("nodes"))
     """Nodes of a branch."""
     spacing: float = spacing()
     """Rest length of an edge."""

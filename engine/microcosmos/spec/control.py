@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import LATER, Part, unit
+from .base import LATER, SELDOM, Part, unit
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
 OUTPUTS = ("rest_angle", "rest_length")
@@ -54,9 +54,13 @@ class Control(Sight):
 class Genome(Part):
     """Room for a CPPN, and how often each kind of mutation happens to a child."""
 
-    max_nodes: int = Field(default=24, ge=8, le=1024)
+    model_config = SELDOM
+
+    max_nodes: int = Field(default=24, ge=8, le=1024, json_schema_extra=unit("nodes"))
     """Room for nodes, inputs and outputs among them."""
-    max_connections: int = Field(default=64, ge=8, le=8192)
+    max_connections: int = Field(
+        default=64, ge=8, le=8192, json_schema_extra=unit("connections")
+    )
     """Room for connections, disabled ones among them."""
     weight_rate: float = Field(default=0.6, ge=0.0, le=1.0)
     """Probability, for each weight and bias, to be perturbed."""

@@ -4,11 +4,13 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import LATER, Part, unit
+from .base import LATER, SELDOM, Part, unit
 
 
 class Coupling(Part):
     """How body and fluid act on each other."""
+
+    model_config = SELDOM
 
     projection: Literal["none", "force", "force+torque"] = "force+torque"
     """What the forcing is freed of, so that a body cannot push itself without fluid."""

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from .base import Part
+from .base import Part, unit
 
 Share = Annotated[int, Field(ge=1, le=1000)]
 Rate = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -60,7 +60,7 @@ class CmaMaeEmitter(Part):
     """Initial standard deviation of each gene; genes run from −1 to 1."""
     learning_rate: Rate = 0.01
     """How fast a cell's threshold follows the fitness found there, from 0 (CMA-ES) to 1."""
-    threshold: float = 0.0
+    threshold: float = Field(default=0.0, json_schema_extra=unit("fitness"))
     """Threshold of cells where nothing was found."""
 
 
@@ -92,9 +92,11 @@ class PopulationEmitter(Part):
     """Ours, or TensorNEAT's own program with its defaults, where that package is installed."""
     threshold: float | None = Field(default=None, gt=0.0, le=1e3)
     """Distance within which networks are of one species."""
-    target_species: int | None = Field(default=None, ge=0, le=1000)
+    target_species: int | None = Field(
+        default=None, ge=0, le=1000, json_schema_extra=unit("species")
+    )
     """Number of species that the threshold moves towards; 0: it stays."""
-    stagnation: int | None = Field(default=None, ge=1)
+    stagnation: int | None = Field(default=None, ge=1, json_schema_extra=unit("generations"))
     """Generations without a better network after which a species has no children."""
     survival: float | None = Field(default=None, gt=0.0, le=1.0)
     """Best share of a species from which parents are drawn."""
@@ -118,7 +120,7 @@ class LamarckianEmitter(Part):
     diversity: float = Field(default=1.0, ge=0.0, le=100.0)
     """Standard deviation of the random weight that each descriptor's slope has beside that of
     fitness, which has 1; 0: fitness alone."""
-    segment: int | None = Field(default=None, ge=1)
+    segment: int | None = Field(default=None, ge=1, json_schema_extra=unit("steps"))
     """Steps that a gradient keeps in memory at a time, the others done twice; empty: all."""
 
 
@@ -132,7 +134,7 @@ class CmaMegaEmitter(Part):
     """Initial standard deviation of the weights on unit slopes; genes run from −1 to 1."""
     rate: float = Field(default=1.0, gt=0.0, le=10.0)
     """How far the solution in the middle follows its best children."""
-    segment: int | None = Field(default=None, ge=1)
+    segment: int | None = Field(default=None, ge=1, json_schema_extra=unit("steps"))
     """Steps that a gradient keeps in memory at a time, the others done twice; empty: all."""
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from .. import bodies
-from .base import LATER, Part
+from .base import LATER, Part, unit
 from .body import Body, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
 
@@ -41,7 +41,7 @@ class Free(Part):
 class Shaping(Part):
     """Which measures of the body are inherited too."""
 
-    rest_angle: Free | None = None
+    rest_angle: Free | None = Field(default=None, json_schema_extra=unit("rad"))
     """Bounds in rad of what is added to each of the body's rest angles; empty: nothing."""
     rest_length: Free | None = None
     """Bounds of a factor on each of the body's rest lengths; empty: 1."""
@@ -120,7 +120,8 @@ class Weights(Sight):
 
     encoding: Annotated[Literal["weights"], LATER] = "weights"
     hidden: Annotated[
-        tuple[Annotated[int, Field(ge=1, le=256)], ...], Field(min_length=1, max_length=8)
+        tuple[Annotated[int, Field(ge=1, le=256, json_schema_extra=unit("nodes"))], ...],
+        Field(min_length=1, max_length=8),
     ] = (8, 8)
     """Nodes of each layer between inputs and outputs."""
     activation: Literal["tanh", "sin", "sigmoid", "relu", "gaussian"] = "sin"
@@ -142,9 +143,11 @@ class Grown(Sight, Shaping):
     """One CPPN sets rest angles and lengths, and before that grows the chain itself."""
 
     encoding: Annotated[Literal["cppn-body"], LATER] = "cppn-body"
-    min_nodes: int = Field(default=4, ge=3, le=4096)
+    min_nodes: int = Field(default=4, ge=3, le=4096, json_schema_extra=unit("nodes"))
     """So many nodes there are at least; at most those of the body."""
-    rest_angle: Free | None = Free(low=-0.15, high=0.15)
+    rest_angle: Free | None = Field(
+        default=Free(low=-0.15, high=0.15), json_schema_extra=unit("rad")
+    )
     """Bounds in rad of what is added to each of the body's rest angles; empty: nothing."""
     rest_length: Free | None = Free(low=0.75, high=1.25)
     """Bounds of a factor on each of the body's rest lengths; empty: 1."""

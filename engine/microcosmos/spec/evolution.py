@@ -27,8 +27,10 @@ class Evolution(Part, Generic[Name, How]):
     """The one source of randomness."""
     world: World = World()
     body: Body = Chain()
+    """The creature at rest, before it is controlled."""
     coupling: Coupling = Coupling()
     control: Controller = Control()
+    """What sets rest angles and rest lengths while a creature swims, and is inherited."""
     genome: Genome = Genome()
     task: Task = Task()
     archive: Archive = Archive()

@@ -10,7 +10,7 @@ from .base import LATER, Part, unit
 class Steric(Part):
     """Nodes repel each other through their smoothed density."""
 
-    strength: float = Field(default=4.0, gt=0.0, le=20.0)
+    strength: float = Field(default=4.0, gt=0.0, le=20.0, json_schema_extra=unit("cells³"))
     """Displacement in a step per unit of the density's gradient."""
     limit: float = Field(default=0.1, gt=0.0, le=0.5, json_schema_extra=unit("cells/step"))
     """Limit of a node's displacement by repulsion."""
@@ -25,7 +25,9 @@ class Energy(Part):
     """How many packets there are."""
     width: float = Field(default=4.0, ge=1.0, le=64.0, json_schema_extra=unit("cells"))
     """Standard deviation of a packet."""
-    amplitude: float = Field(default=1.0, gt=0.0, le=1e3)
+    amplitude: float = Field(
+        default=1.0, gt=0.0, le=1e3, json_schema_extra=unit("energy/cell²")
+    )
     """Energy density in the middle of a packet."""
     seed: int = Field(default=0, ge=0, lt=2**32)
     """Decides where the packets are; the same for every creature."""

@@ -114,7 +114,7 @@ class Folding(Part):
     """Adam's learning rate, for angles in rad and for lengths."""
     updates: int = Field(default=300, ge=1, le=1_000_000)
     """Steps of Adam."""
-    block: int = Field(default=1, ge=1, le=64)
+    block: int = Field(default=1, ge=1, le=64, json_schema_extra=unit("filaments"))
     """Filaments updated by one call of the compiled program; results depend on its bits."""
     memory: float = Field(default=2.0, gt=0.0, le=1000.0, json_schema_extra=unit("GiB"))
     """What a block may occupy, of which every device has one: where keeping all steps for the

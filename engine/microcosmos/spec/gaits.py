@@ -20,7 +20,7 @@ FORMS = {
 """How bodies and fluid are coupled, by name."""
 
 Form = Literal["ours", "strong", "paper"]
-Viscosity = Annotated[float, Field(ge=1e-3, le=2.0)]
+Viscosity = Annotated[float, Field(ge=1e-3, le=2.0, json_schema_extra=unit("cells²/step"))]
 
 
 class Gaits(Part):
@@ -51,11 +51,11 @@ class Gaits(Part):
     """Size of the box along y."""
     period: int = Field(default=1200, ge=20, le=100_000, json_schema_extra=unit("steps"))
     """Steps of one stroke."""
-    cycles: int = Field(default=3, ge=1, le=100)
+    cycles: int = Field(default=3, ge=1, le=100, json_schema_extra=unit("strokes"))
     """Strokes; the displacement is that of the last one."""
     ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
     """Over how many periods the stroke grows to its full size; 0: at once."""
-    block: int = Field(default=4, ge=1, le=256)
+    block: int = Field(default=4, ge=1, le=256, json_schema_extra=unit("points"))
     """Points computed by one call of the compiled program; results depend on its bits."""
     nu_c: float = Field(default=0.1, gt=0.0, le=1e3, json_schema_extra=unit("cells²/step"))
     """Viscosity at which actuators have half of their strength, in the form `ours`."""
@@ -69,7 +69,9 @@ class Gaits(Part):
             if len(set(values)) < len(values):
                 raise ValueError(f"`{name}` must differ, got {list(values)}")
         for swimmer in self.swimmers:
-            refuse_too_large(World(width=self.width, height=self.height), _body(swimmer), 0.1)
+            refuse_too_large(
+                World(width=self.width, height=self.height), swimmer_body(swimmer), 0.1
+            )
         return self
 
     @property
@@ -92,7 +94,7 @@ class Gaits(Part):
                     viscosity=viscosity,
                     steric=self.steric,
                 ),
-                "body": _body(swimmer),
+                "body": swimmer_body(swimmer),
                 "coupling": self.coupling(form),
                 "control": Gait.model_validate(
                     {"swimmer": swimmer, "period": self.period, "ramp": self.ramp}
@@ -108,7 +110,8 @@ class Gaits(Part):
         return Coupling(nu_c=self.nu_c if form == "ours" else None)
 
 
-def _body(swimmer: str) -> Known:
+def swimmer_body(swimmer: str) -> Known:
+    """The body of a known swimmer."""
     return Known.model_validate({"builder": swimmer})
 
 

@@ -5,7 +5,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import Part
+from .base import Part, unit
 from .search import Archive, refuse_flat_axes
 
 
@@ -22,9 +22,9 @@ class Refinement(Part):
     length: float = Field(default=0.2, gt=0.0, le=100.0)
     """Length of the first step, in the space of weights and biases or of genes; it doubles
     where the longest trial is the best, and becomes shorter where none is better."""
-    block: int = Field(default=8, ge=2, le=256)
+    block: int = Field(default=8, ge=2, le=256, json_schema_extra=unit("trials"))
     """Trials of a step, evaluated together; results depend on their bits."""
-    segment: int | None = Field(default=None, ge=1)
+    segment: int | None = Field(default=None, ge=1, json_schema_extra=unit("steps"))
     """Steps of the simulation that the gradient keeps in memory at a time, the others done
     twice; empty: all."""
 

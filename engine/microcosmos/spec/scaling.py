@@ -2,12 +2,13 @@
 
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from .base import Part, unit
 from .fields import Steric
 
-Nodes = Annotated[int, Field(ge=20, le=2_000_000)]
+Nodes = Annotated[int, Field(ge=20, le=2_000_000, json_schema_extra=unit("nodes"))]
 
 SPACING = 0.35
 """Cells between nodes, along a filament and across: 500,000 of them fill a box of 256²."""
@@ -30,7 +31,7 @@ class Scaling(Part):
         500_000,
     )
     """Numbers of nodes, ascending, as filaments side by side at places drawn at random."""
-    filament: int = Field(default=20, ge=3, le=1000)
+    filament: int = Field(default=20, ge=3, le=1000, json_schema_extra=unit("nodes"))
     """Nodes of each filament."""
     width: int = Field(default=256, ge=32, le=2048, json_schema_extra=unit("cells"))
     """Size of the box along x."""
@@ -42,7 +43,7 @@ class Scaling(Part):
     """Steps of each part by itself, repeated three times."""
     steric: Steric = Steric()
     """Repulsion between nodes."""
-    all_pairs: int = Field(default=8_000, ge=0, le=100_000)
+    all_pairs: int = Field(default=8_000, ge=0, le=100_000, json_schema_extra=unit("nodes"))
     """Up to so many nodes an all-pairs repulsion is timed beside; 0: never."""
     seed: int = Field(default=0, ge=0, lt=2**32)
     """Decides where filaments are."""
@@ -67,6 +68,14 @@ class Scaling(Part):
     def places(self) -> tuple[int, int]:
         """How many filaments have room beside each other along x, and along y."""
         return int(self.width / (self.filament * SPACING)), int(self.height / SPACING)
+
+    def centres(self, nodes: int) -> np.ndarray:
+        """(filament, 2) middles of as many filaments as have so many nodes, in cells."""
+        columns, rows = self.places
+        place = np.random.default_rng(self.seed).permutation(columns * rows)
+        place = place[: nodes // self.filament]
+        numbers = np.stack([place % columns + 0.5, place // columns + 0.5], 1)
+        return numbers * (self.filament * SPACING, SPACING)
 
     @property
     def generations(self) -> int:

@@ -18,7 +18,9 @@ class Task(Part):
     fitness: Literal["displacement", "energy", "displacement+energy"] = "displacement"
     """Distance between the mean unwrapped node position at the end and at the start; energy
     that all nodes collect; or both."""
-    energy_weight: Annotated[float, LATER] = Field(default=1e-3, gt=0.0, le=1e3)
+    energy_weight: Annotated[float, LATER] = Field(
+        default=1e-3, gt=0.0, le=1e3, json_schema_extra=unit("cells/energy")
+    )
     """What a unit of collected energy is worth beside a cell of displacement."""
 
 
@@ -27,14 +29,21 @@ def _by_name(schema: dict[str, Any]) -> None:
     schema.pop("default")
 
 
+def _end(schema: dict[str, Any]) -> None:
+    """An end of an axis; the unit too is the measure's."""
+    _by_name(schema)
+    schema["units"] = {name: one.unit for name, one in features.FEATURES.items()}
+    schema["unit_of"] = "name"
+
+
 class Descriptor(Part):
     """One axis of the archive."""
 
     name: features.Name
     """What is measured; ends and scale are the measure's own unless they are given."""
-    low: float = Field(default=0.0, ge=-1e30, le=1e30, json_schema_extra=_by_name)
+    low: float = Field(default=0.0, ge=-1e30, le=1e30, json_schema_extra=_end)
     """Lower end of the axis, in raw units; what is below counts in the first bin."""
-    high: float = Field(default=1.0, ge=-1e30, le=1e30, json_schema_extra=_by_name)
+    high: float = Field(default=1.0, ge=-1e30, le=1e30, json_schema_extra=_end)
     """Upper end of the axis, in raw units; what is above counts in the last bin."""
     bins: int = Field(default=20, ge=1, le=1024)
     """Cells along the axis."""
@@ -71,6 +80,7 @@ class Archive(Part):
         Descriptor(name="bending_effort"),
         Descriptor(name="stretching_effort"),
     )
+    """Axes of the archive: what tells its kinds of creatures apart."""
     centroids: int | None = Field(default=None, ge=2, le=CELLS)
     """Cells of a centroidal Voronoi tessellation, equally large on the descriptors' own scales
     and in place of their bins; none: the bins make a grid."""
@@ -125,12 +135,12 @@ def refuse_flat_axes(archive: Archive, purpose: str) -> None:
 class Stop(Part):
     """When a run ends before its generations are through; each may be left out."""
 
-    evaluations: int | None = Field(default=None, ge=1)
+    evaluations: int | None = Field(default=None, ge=1, json_schema_extra=unit("evaluations"))
     """After the generation in which so many creatures have been evaluated."""
     device_hours: float | None = Field(default=None, gt=0.0, json_schema_extra=unit("hours"))
     """After the generation in which evaluation has taken so long, all devices added up. What
     was decided is recorded, but another run may end at another generation."""
-    fitness: float | None = None
+    fitness: float | None = Field(default=None, json_schema_extra=unit("fitness"))
     """After the generation in which a creature was at least so fit."""
 
 
@@ -139,7 +149,7 @@ class Reevaluation(Part):
 
     every: int = Field(default=25, ge=1, le=1_000_000, json_schema_extra=unit("generations"))
     """After every so many generations, and after the last."""
-    samples: int = Field(default=1, ge=1, le=100)
+    samples: int = Field(default=1, ge=1, le=100, json_schema_extra=unit("evaluations"))
     """Evaluations of each elite each time."""
     phase: bool = True
     """Whether a periodic timer starts anywhere in its period."""
@@ -154,11 +164,13 @@ class Reevaluation(Part):
 class Generations(Part):
     """Generations of equal size, and when they end."""
 
-    generations: int = Field(default=50, ge=1, le=1_000_000)
+    generations: int = Field(
+        default=50, ge=1, le=1_000_000, json_schema_extra=unit("generations")
+    )
     """Generations of the run, the random first one among them."""
-    batch: int = Field(default=64, ge=1, le=65_536)
+    batch: int = Field(default=64, ge=1, le=65_536, json_schema_extra=unit("creatures"))
     """Creatures evaluated in a generation."""
-    block: int = Field(default=16, ge=1, le=4096)
+    block: int = Field(default=16, ge=1, le=4096, json_schema_extra=unit("creatures"))
     """Creatures evaluated by one call of the compiled program; results depend on its bits."""
     stop: Stop = Stop()
     """When to end before the generations are through."""

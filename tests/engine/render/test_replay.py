@@ -5,14 +5,20 @@ import json
 import struct
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import search
+from microcosmos import fields, search
 from microcosmos.archive import creature
-from microcosmos.build import build
+from microcosmos.archive.identity import Identity
+from microcosmos.build import build, build_encoding, build_task
 from microcosmos.render import check, record
+from microcosmos.render.reading import read_replay
+from microcosmos.render.replay import actuator_of
+from microcosmos.spec import identity as identity_of
 from microcosmos.spec import parse
+from microcosmos.world import flow
 
 SPEC = parse(
     {
@@ -42,8 +48,11 @@ def replay(best):
     start = 4 + size
     shape = header["frames"], header["nodes"], 2
     positions = np.frombuffer(data, "<f4", np.prod(shape), start).reshape(shape)
-    curl = np.frombuffer(data, np.int8, offset=start + positions.nbytes)
-    return header, positions, curl.reshape(header["frames"], *header["size"])
+    frames, edges, joints = header["frames"], len(header["edges"]), len(header["joints"])
+    behind = start + positions.nbytes + 4 * frames * (joints + edges)
+    size = header["size"]
+    curl = np.frombuffer(data, np.int8, frames * size[0] * size[1], behind)
+    return header, positions, curl.reshape(frames, *size)
 
 
 def test_the_layout_is_what_the_header_says(replay, best):
@@ -112,3 +121,50 @@ def test_a_creature_that_is_too_much_to_watch_is_refused(best, part, change, fie
 def test_a_check_needs_a_measurement(best):
     with pytest.raises(creature.CreatureError, match="`measured`"):
         check({**best, "measured": None})
+
+
+def test_a_replay_holds_the_rest_shapes_as_they_were_applied(best):
+    film = read_replay(record(best))
+    assert film.drive is not None
+    scene = creature.scene_of(best)
+    encoding = build_encoding(scene, creature.room(best))
+    task = build_task(scene)
+    genotype = jax.tree.map(jnp.asarray, encoding.read(best["identity"]["genome"]))
+    rest = search.drive(task, genotype).inputs
+    steps = np.maximum(np.arange(film.frames) * film.header["every"] - 1, 0)
+    np.testing.assert_allclose(film.drive.angles, rest.angle[steps], atol=1e-6)
+    np.testing.assert_allclose(film.drive.lengths, rest.length[steps], atol=1e-6)
+    assert film.drive.energy.shape == (0, 40, 32)
+
+
+def test_a_replay_holds_the_velocity_of_the_fluid(best):
+    film = read_replay(record(best))
+    assert film.drive is not None
+    scene = creature.scene_of(best)
+    task = build_task(scene)
+    driven = search.drive(task, jax.tree.map(jnp.asarray, actuator_of(best, scene)))
+    _, flows = search.simulate(driven, lambda state, measures: flow(task.world, state))
+    quantum = film.header["velocity"]["scale"] / 127
+    found = film.drive.velocity[30]
+    np.testing.assert_allclose(found, flows[89], atol=0.51 * quantum + 1e-5)
+    curl = film.vorticity[30]
+    across, up = (
+        (np.roll(found[1], -1, 0) - np.roll(found[1], 1, 0)),
+        (np.roll(found[0], -1, 1) - np.roll(found[0], 1, 1)),
+    )
+    np.testing.assert_allclose(0.5 * (across - up), curl, atol=1.1 * quantum + film.quantum)
+
+
+@pytest.mark.parametrize("change", [{}, {"consume": True}])
+def test_energy_is_kept_once_unless_it_changes(best, change):
+    identity = copy.deepcopy(best["identity"])
+    identity["world"]["energy"] = {"packets": 3, "width": 2.0} | change
+    identity["task"]["steps"] = 60
+    file = creature.document(identity_of(Identity.model_validate(identity)), None, None)
+    film = read_replay(record(file))
+    assert film.drive is not None
+    assert len(film.drive.energy) == (film.frames if change else 1)
+    packets = fields.packets((40, 32), fields.Packets(3, 2.0, 1.0, 0))
+    np.testing.assert_allclose(film.drive.energy[0], packets, atol=0.003)
+    if change:
+        assert film.drive.energy[-1].sum() < film.drive.energy[0].sum()

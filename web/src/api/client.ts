@@ -3,7 +3,17 @@
 import createClient from "openapi-fetch";
 import { problemOf } from "./problem";
 import type { paths } from "./schema";
-import type { Audit, Creature, Experiment, Results, Run, RunPage, Spec } from "./types";
+import type {
+  Audit,
+  Creature,
+  Experiment,
+  Results,
+  Run,
+  RunChange,
+  RunPage,
+  RunQuery,
+  Spec,
+} from "./types";
 
 const ROOT = "/api/v1";
 export const EVENTS_URL = `${ROOT}/events`;
@@ -30,10 +40,18 @@ export async function readExperiments(): Promise<Experiment[]> {
   return (await success(client.GET(`${ROOT}/experiments`))) as Experiment[];
 }
 
-export async function readRuns(cursor: string | null, limit: number): Promise<RunPage> {
-  const query = { limit, ...(cursor ? { cursor } : {}) };
+export async function readRuns(query: RunQuery): Promise<RunPage> {
   return (await success(client.GET(`${ROOT}/runs`, { params: { query } }))) as RunPage;
 }
+
+export async function changeRun(id: string, change: RunChange): Promise<Run> {
+  const asked = client.PATCH(`${ROOT}/runs/{run_id}`, { ...run(id), body: change });
+  return (await success(asked)) as Run;
+}
+
+export const readTags = () => success(client.GET(`${ROOT}/tags`));
+export const readWorkers = () => success(client.GET(`${ROOT}/workers`));
+export const readQueue = () => success(client.GET(`${ROOT}/queue`));
 
 export async function readRun(id: string): Promise<Run> {
   return (await success(client.GET(`${ROOT}/runs/{run_id}`, run(id)))) as Run;
@@ -46,6 +64,20 @@ export function readArchive(id: string, features: string[] = []) {
   return success(client.GET(`${ROOT}/runs/{run_id}/archive`, { params }));
 }
 
+/** Every elite that ever entered, with columns of the features that are named. */
+export function readHistory(id: string, features: string[]) {
+  const query = features.length > 0 ? { features: features.join(",") } : {};
+  const params = { path: { run_id: id }, query };
+  return success(client.GET(`${ROOT}/runs/{run_id}/archive/history`, { params }));
+}
+
+/** Where the cells of a CVT archive are; null before its first checkpoint. */
+export async function readCentroids(id: string): Promise<number[][] | null> {
+  const asked = client.GET(`${ROOT}/runs/{run_id}/archive/centroids`, run(id));
+  if ((await asked).response.status === 404) return null;
+  return (await success(asked)).centroids;
+}
+
 export async function readResults(id: string): Promise<Results> {
   return (await success(client.GET(`${ROOT}/runs/{run_id}/results`, run(id)))) as Results;
 }
@@ -53,6 +85,20 @@ export async function readResults(id: string): Promise<Results> {
 export function readGenerations(id: string, points: number) {
   const params = { path: { run_id: id }, query: { points } };
   return success(client.GET(`${ROOT}/runs/{run_id}/generations`, { params }));
+}
+
+/** The newest entries, the oldest of them first; those that follow one, where it is named. */
+export function readLog(id: string, limit: number, after?: number) {
+  const params = { path: { run_id: id }, query: { limit, after } };
+  return success(client.GET(`${ROOT}/runs/{run_id}/log`, { params }));
+}
+
+export function readSpecies(id: string) {
+  return success(client.GET(`${ROOT}/runs/{run_id}/species`, run(id)));
+}
+
+export function readTargets(id: string) {
+  return success(client.GET(`${ROOT}/runs/{run_id}/targets`, run(id)));
 }
 
 export function estimateRun(spec: Spec) {
@@ -73,6 +119,14 @@ export async function readCreature(sha: string): Promise<Creature> {
   return (await success(asked)) as unknown as Creature;
 }
 
+/** Parents and theirs over some generations, and what came of a creature. */
+export function readFamily(sha: string, depth: number) {
+  const path = { path: { sha } };
+  const up = client.GET(`${ROOT}/creatures/{sha}/ancestors`, { params: { ...path, query: { depth } } });
+  const down = client.GET(`${ROOT}/creatures/{sha}/children`, { params: path });
+  return Promise.all([success(up), success(down)]);
+}
+
 /** Sends a creature file as it is, byte for byte; answers its name. */
 export function importCreature(text: string) {
   const body = { body: text as never, bodySerializer: () => text };
@@ -84,6 +138,14 @@ export function importCreature(text: string) {
 export async function readReplay(sha: string): Promise<ArrayBuffer | null> {
   const params = { path: { sha } };
   const asked = client.GET(`${ROOT}/creatures/{sha}/replay`, { params, parseAs: "arrayBuffer" });
+  const bytes = (await success(asked as Promise<Answer<unknown>>)) as ArrayBuffer;
+  return (await asked).response.status === 202 ? null : bytes;
+}
+
+/** The motion's bytes, or null while the renderer is still at work on the replay. */
+export async function readMotion(sha: string): Promise<ArrayBuffer | null> {
+  const params = { path: { sha } };
+  const asked = client.GET(`${ROOT}/creatures/{sha}/motion`, { params, parseAs: "arrayBuffer" });
   const bytes = (await success(asked as Promise<Answer<unknown>>)) as ArrayBuffer;
   return (await asked).response.status === 202 ? null : bytes;
 }
@@ -120,3 +182,4 @@ export const pictureUrl = (sha: string, kind: Picture) => `${ROOT}/creatures/${s
 export type Form = "svg" | "dot" | "py" | "npz";
 export const networkUrl = (sha: string, form: Form) => `${ROOT}/creatures/${sha}/network.${form}`;
 export const creatureFileUrl = (sha: string) => `${ROOT}/creatures/${sha}?download=1`;
+export const creatureH5Url = (sha: string) => `${ROOT}/creatures/${sha}/creature.h5`;

@@ -44,6 +44,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/ancestors": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Ancestors
+         * @description Parents and theirs, nearest first; who never was an elite is known by name alone.
+         */
+        get: operations["read_ancestors_api_v1_creatures__sha__ancestors_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/creatures/{sha}/audit": {
         parameters: {
             query?: never;
@@ -56,6 +76,46 @@ export interface paths {
          * @description The audit, or 202 while it is made.
          */
         get: operations["read_audit_api_v1_creatures__sha__audit_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/creatures/{sha}/children": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Children
+         * @description Elites that came from this creature, best first, and how many there are in all.
+         */
+        get: operations["read_children_api_v1_creatures__sha__children_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/creatures/{sha}/creature.h5": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Creature H5
+         * @description The creature file as HDF5, with its body and genes as arrays.
+         */
+        get: operations["read_creature_h5_api_v1_creatures__sha__creature_h5_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -96,6 +156,26 @@ export interface paths {
          * @description The film, or 202 while it is made.
          */
         get: operations["read_film_mp4_api_v1_creatures__sha__film_mp4_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/creatures/{sha}/motion": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Motion
+         * @description The body's motion alone, of the same recording as the replay; or 202 while it is made.
+         */
+        get: operations["read_motion_api_v1_creatures__sha__motion_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -261,6 +341,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/queue": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Queue
+         * @description How many runs wait, and the first of them, in order, each with the reason.
+         */
+        get: operations["read_queue_api_v1_queue_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/runs": {
         parameters: {
             query?: never;
@@ -270,7 +370,10 @@ export interface paths {
         };
         /**
          * List Runs
-         * @description The newest first.
+         * @description Runs of any of these states and experiments, with this tag and this text.
+         *
+         *     `q` is looked for in names, tags and notes and at the beginning of ids. With `-`, the sort
+         *     is descending; runs without a value come last.
          */
         get: operations["list_runs_api_v1_runs_get"];
         put?: never;
@@ -296,7 +399,7 @@ export interface paths {
         put?: never;
         /**
          * Estimate Run
-         * @description What a run will need, without queueing it.
+         * @description What a run will need, and what it is about, without queueing it.
          */
         post: operations["estimate_run_api_v1_runs_estimate_post"];
         delete?: never;
@@ -319,7 +422,11 @@ export interface paths {
         delete?: never;
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Change Run
+         * @description Say what a run is called, its tags or a note; what it computes stays as it is.
+         */
+        patch: operations["change_run_api_v1_runs__run_id__patch"];
         trace?: never;
     };
     "/api/v1/runs/{run_id}/archive": {
@@ -385,6 +492,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/archive/centroids": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Centroids
+         * @description The cells of a CVT archive, once its first checkpoint is there.
+         */
+        get: operations["read_centroids_api_v1_runs__run_id__archive_centroids_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/archive/history": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read History
+         * @description Every elite that ever entered: the archive of each generation can be told from it.
+         */
+        get: operations["read_history_api_v1_runs__run_id__archive_history_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/runs/{run_id}/cancel": {
         parameters: {
             query?: never;
@@ -416,6 +563,28 @@ export interface paths {
          *     What `summary` tells is thinned to the newest value since the point before.
          */
         get: operations["read_generations_api_v1_runs__run_id__generations_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/log": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Log
+         * @description The newest entries, the oldest of them first; `after` the id of one, those that follow.
+         *
+         *     Of the checkpoints of an attempt only the first and the last are told.
+         */
+        get: operations["read_log_api_v1_runs__run_id__log_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -498,6 +667,68 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/species": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Species
+         * @description How many members each species had, in about so many generations, evenly spaced.
+         *
+         *     There are none where the search keeps no species, or was computed before they were told.
+         */
+        get: operations["read_species_api_v1_runs__run_id__species_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/targets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Targets
+         * @description In the order of the spec; at most 256 pixels along a side.
+         */
+        get: operations["read_targets_api_v1_runs__run_id__targets_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/tags": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Tags
+         * @description All of them, by name.
+         */
+        get: operations["list_tags_api_v1_tags_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/workers": {
         parameters: {
             query?: never;
@@ -505,7 +736,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** List Workers */
+        /**
+         * List Workers
+         * @description By name, each with how busy its device is and the run that it carries out.
+         */
         get: operations["list_workers_api_v1_workers_get"];
         put?: never;
         post?: never;
@@ -553,6 +787,24 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
+        /** AheadRead */
+        AheadRead: {
+            /** Free */
+            free: number;
+            /** Waiting */
+            waiting: number;
+            /** Workers */
+            workers: number;
+        };
+        /** Ancestors */
+        Ancestors: {
+            /** Items */
+            items: components["schemas"]["Relative"][];
+            /** More */
+            more: boolean;
+            /** Parents */
+            parents: string[];
+        };
         /**
          * ArchiveRead
          * @description Columns, one entry per filled cell.
@@ -605,6 +857,67 @@ export interface components {
              */
             scale: "log10" | "linear";
         };
+        /**
+         * BodyRead
+         * @description A body at rest in its world; of one with many nodes some are left out.
+         */
+        BodyRead: {
+            /** Edges */
+            edges: number[][];
+            /** Name */
+            name: string;
+            /** Nodes */
+            nodes: number;
+            /** Positions */
+            positions: number[][];
+            /** Whole */
+            whole: boolean;
+        };
+        /**
+         * Carried
+         * @description A run as it is named beside a worker or in the queue.
+         */
+        Carried: {
+            /** Attempt */
+            attempt: number;
+            /** Demonstration */
+            demonstration: boolean;
+            /** Experiment */
+            experiment: string;
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Name */
+            name: string | null;
+            /** Progress */
+            progress: number;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /**
+         * CentroidsRead
+         * @description Where the cells of a CVT archive are, from 0 to 1 along each axis on its own scale.
+         */
+        CentroidsRead: {
+            /** Centroids */
+            centroids: number[][];
+        };
+        /** Children */
+        Children: {
+            /** Items */
+            items: components["schemas"]["Relative"][];
+            /** Total */
+            total: number;
+        };
         /** CreatureName */
         CreatureName: {
             /** Creature */
@@ -636,16 +949,59 @@ export interface components {
                 [key: string]: (number | null)[];
             };
         };
+        /**
+         * DrawingRead
+         * @description Bodies, each in a world of its own, and the pictures that they are to become.
+         */
+        DrawingRead: {
+            /** Bodies */
+            bodies: components["schemas"]["BodyRead"][];
+            /** Height */
+            height: number;
+            /** Picture Size */
+            picture_size: number;
+            /** Pictures */
+            pictures: components["schemas"]["PictureRead"][];
+            /** Width */
+            width: number;
+        };
+        /**
+         * EntryRead
+         * @description What happened to a run.
+         */
+        EntryRead: {
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /** Attempt */
+            attempt: number;
+            /** Id */
+            id: number;
+            /**
+             * Level
+             * @enum {string}
+             */
+            level: "info" | "warning" | "error";
+            /** Text */
+            text: string;
+        };
         /** EstimateRead */
         EstimateRead: {
             /** Cell Steps */
             cell_steps: number;
+            drawing: components["schemas"]["DrawingRead"];
             /** Evaluations */
             evaluations: number;
             /** Memory Bytes */
             memory_bytes: number;
             /** Memory Limit Bytes */
             memory_limit_bytes: number;
+            pace: components["schemas"]["PaceRead"] | null;
+            queue: components["schemas"]["AheadRead"];
+            /** Seconds */
+            seconds: number | null;
         };
         /** ExperimentRead */
         ExperimentRead: {
@@ -701,6 +1057,60 @@ export interface components {
              */
             status: "ok";
         };
+        /**
+         * HistoryRead
+         * @description Columns, one entry for each elite that ever entered, in the order of generations.
+         */
+        HistoryRead: {
+            /** Cell */
+            cell: number[];
+            /** Creature */
+            creature: string[];
+            /** Descriptors */
+            descriptors: number[][];
+            /** Elite Generation */
+            elite_generation: number[];
+            /** Features */
+            features: {
+                [key: string]: (number | null)[];
+            };
+            /** Fitness */
+            fitness: number[];
+            /** Generation */
+            generation: number;
+        };
+        /** Log */
+        Log: {
+            /** Entries */
+            entries: components["schemas"]["EntryRead"][];
+        };
+        /**
+         * PaceRead
+         * @description How fast earlier runs of the same kind were, on a device that there is.
+         */
+        PaceRead: {
+            /** Cell Steps Per Second */
+            cell_steps_per_second: number;
+            /** Device */
+            device: string;
+            /** High */
+            high: number;
+            /** Low */
+            low: number;
+            /** Runs */
+            runs: number;
+        };
+        /** PictureRead */
+        PictureRead: {
+            /** Height */
+            height: number;
+            /** Name */
+            name: string;
+            /** Pixels */
+            pixels: string;
+            /** Width */
+            width: number;
+        };
         /** PresetRead */
         PresetRead: {
             /** Name */
@@ -731,6 +1141,13 @@ export interface components {
              */
             type: string;
         };
+        /** QueueRead */
+        QueueRead: {
+            /** Items */
+            items: components["schemas"]["Waiting"][];
+            /** Total */
+            total: number;
+        };
         /** Readiness */
         Readiness: {
             /**
@@ -743,6 +1160,26 @@ export interface components {
              * @enum {string}
              */
             redis: "ok" | "unreachable";
+        };
+        /**
+         * Relative
+         * @description Somebody in a creature's lineage.
+         */
+        Relative: {
+            /** Creature */
+            creature: string;
+            /** Distance */
+            distance: number;
+            /** Fitness */
+            fitness: number | null;
+            /** Generation */
+            generation: number | null;
+            /** Kept */
+            kept: boolean;
+            /** Operator */
+            operator: string | null;
+            /** Parents */
+            parents: string[];
         };
         /** Rendering */
         Rendering: {
@@ -816,10 +1253,19 @@ export interface components {
              * Format: uuid
              */
             id: string;
+            /** Name */
+            name: string | null;
+            /** Note */
+            note: string | null;
             /** Progress */
             progress: number;
             /** Qd Score */
             qd_score: number | null;
+            /**
+             * Queued At
+             * Format: date-time
+             */
+            queued_at: string;
             /** Sparkline */
             sparkline: number[];
             /** Spec */
@@ -837,15 +1283,91 @@ export interface components {
             summary: {
                 [key: string]: unknown;
             } | null;
+            /** Tags */
+            tags: string[];
             /** Version */
             version: string;
+            /** Waiting */
+            waiting: string | null;
             /** Warning */
             warning: string | null;
             /** Wish */
             wish: ("pause" | "cancel") | null;
         };
+        /**
+         * Species
+         * @description Columns, one entry for each generation that tells its species, those that live.
+         */
+        Species: {
+            /** Generation */
+            generation: number[];
+            /** Members */
+            members: number[][];
+            /** Number */
+            number: number[][];
+        };
+        /** TagRead */
+        TagRead: {
+            /** Runs */
+            runs: number;
+            /** Tag */
+            tag: string;
+        };
+        /**
+         * Target
+         * @description A picture that a filament folds into, made as large as the filament sees it.
+         */
+        Target: {
+            /** Height */
+            height: number;
+            /** Name */
+            name: string;
+            /** Pixels */
+            pixels: string;
+            /** Size */
+            size: number;
+            /** Width */
+            width: number;
+        };
+        /** Waiting */
+        Waiting: {
+            /** Attempt */
+            attempt: number;
+            /** Demonstration */
+            demonstration: boolean;
+            /** Experiment */
+            experiment: string;
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Memory Bytes */
+            memory_bytes: number | null;
+            /** Name */
+            name: string | null;
+            /** Progress */
+            progress: number;
+            /**
+             * Queued At
+             * Format: date-time
+             */
+            queued_at: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+            /** Waiting */
+            waiting: string;
+        };
         /** WorkerRead */
         WorkerRead: {
+            carries: components["schemas"]["Carried"] | null;
             /** Device */
             device: string;
             /**
@@ -853,14 +1375,31 @@ export interface components {
              * Format: date-time
              */
             heartbeat_at: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "cpu" | "gpu";
+            /** Load */
+            load: number | null;
             /** Memory Bytes */
             memory_bytes: number;
+            /** Memory Used Bytes */
+            memory_used_bytes: number | null;
             /** Name */
             name: string;
             /** Run */
             run: string | null;
-            /** Status */
-            status: string;
+            /**
+             * Since
+             * Format: date-time
+             */
+            since: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "idle" | "busy";
         };
     };
     responses: never;
@@ -948,6 +1487,39 @@ export interface operations {
             };
         };
     };
+    read_ancestors_api_v1_creatures__sha__ancestors_get: {
+        parameters: {
+            query?: {
+                depth?: number;
+            };
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Ancestors"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_audit_api_v1_creatures__sha__audit_get: {
         parameters: {
             query?: never;
@@ -975,6 +1547,70 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Rendering"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_children_api_v1_creatures__sha__children_get: {
+        parameters: {
+            query?: {
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Children"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_creature_h5_api_v1_creatures__sha__creature_h5_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/x-hdf5": unknown;
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -1046,6 +1682,46 @@ export interface operations {
                 };
                 content: {
                     "video/mp4": unknown;
+                };
+            };
+            /** @description Accepted */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Rendering"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_motion_api_v1_creatures__sha__motion_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
                 };
             };
             /** @description Accepted */
@@ -1362,12 +2038,47 @@ export interface operations {
             };
         };
     };
+    read_queue_api_v1_queue_get: {
+        parameters: {
+            query?: {
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["QueueRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_runs_api_v1_runs_get: {
         parameters: {
             query?: {
                 cursor?: string | null;
                 limit?: number;
-                status?: ("queued" | "running" | "paused" | "finished" | "failed" | "cancelled") | null;
+                status?: ("queued" | "running" | "paused" | "finished" | "failed" | "cancelled")[];
+                experiment?: string[];
+                tag?: string | null;
+                q?: string | null;
+                sort?: "created" | "-created" | "started" | "-started" | "finished" | "-finished" | "name" | "-name" | "experiment" | "-experiment" | "status" | "-status" | "progress" | "-progress" | "evaluations" | "-evaluations" | "qd_score" | "-qd_score" | "coverage" | "-coverage" | "best" | "-best";
             };
             header?: never;
             path?: never;
@@ -1494,6 +2205,51 @@ export interface operations {
             };
         };
     };
+    change_run_api_v1_runs__run_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": {
+                    /** Name */
+                    name?: string | null;
+                    /** Note */
+                    note?: string | null;
+                    /**
+                     * Tags
+                     * @default []
+                     */
+                    tags?: string[];
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_archive_api_v1_runs__run_id__archive_get: {
         parameters: {
             query?: {
@@ -1597,6 +2353,70 @@ export interface operations {
             };
         };
     };
+    read_centroids_api_v1_runs__run_id__archive_centroids_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CentroidsRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_history_api_v1_runs__run_id__archive_history_get: {
+        parameters: {
+            query?: {
+                features?: string;
+            };
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HistoryRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     cancel_run_api_v1_runs__run_id__cancel_post: {
         parameters: {
             query?: never;
@@ -1648,6 +2468,40 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Curves"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_log_api_v1_runs__run_id__log_get: {
+        parameters: {
+            query?: {
+                after?: number | null;
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Log"];
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -1772,6 +2626,99 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["RunRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_species_api_v1_runs__run_id__species_get: {
+        parameters: {
+            query?: {
+                points?: number;
+            };
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Species"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_targets_api_v1_runs__run_id__targets_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Target"][];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_tags_api_v1_tags_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TagRead"][];
                 };
             };
             /** @description A problem (RFC 9457) */

@@ -1,6 +1,6 @@
 /** The words of the wire, under the names that the page uses. */
 
-import type { components } from "./schema";
+import type { components, operations } from "./schema";
 
 type Wire = components["schemas"];
 /** A type of the server, with parts that OpenAPI can only call objects. */
@@ -14,16 +14,29 @@ export type Run = With<Wire["RunRead"], { spec: Spec; summary: Values | null }>;
 /** How a run stands; what it is may be left out where that was told before. */
 export type RunEvent = Omit<Run, "spec"> & { spec?: Spec };
 export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
+/** What people may say of a run. */
+export type RunChange = Partial<Pick<Run, "name" | "tags" | "note">>;
+export type RunQuery = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
+export type Worker = Wire["WorkerRead"];
+export type Queue = Wire["QueueRead"];
 export type Preset = With<Wire["PresetRead"], { spec: Spec }>;
 export type Experiment = With<Wire["ExperimentRead"], { schema: Schema; presets: Preset[] }>;
 export type Estimate = Wire["EstimateRead"];
+export type Drawing = Wire["DrawingRead"];
+export type DrawnBody = Wire["BodyRead"];
+export type DrawnPicture = Wire["PictureRead"];
 export type Axis = Wire["Axis"];
 export type Archive = Wire["ArchiveRead"];
+export type History = Wire["HistoryRead"];
 export type ArchiveColumns = Pick<
   Archive,
   "cell" | "fitness" | "descriptors" | "elite_generation" | "creature"
 >;
 export type Generations = Wire["Curves"];
+export type LogEntry = Wire["EntryRead"];
+export type SpeciesHistory = Wire["Species"];
+/** A picture that a filament folds into. */
+export type Target = Wire["Target"];
 
 export type Value = null | boolean | number | string;
 export type Values = { [name: string]: Value };
@@ -60,9 +73,16 @@ export interface Vector {
   encoding: "direct" | "weights" | "fold";
   control: Spec;
   values: string;
+  /** Of a network whose weights these are. */
+  inputs?: string[];
+  outputs?: string[];
 }
 
 export type Genome = Genes | Vector | Stroke;
+
+export type Relative = Wire["Relative"];
+export type Ancestors = Wire["Ancestors"];
+export type Children = Wire["Children"];
 
 export interface AuditRow {
   name: string;

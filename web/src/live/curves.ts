@@ -3,12 +3,17 @@
 import type { GenerationEvent, Generations, Values } from "../api/types";
 
 export const LONGEST = 4000;
-const DRAWN = ["generation", "qd_score", "coverage", "best"] as const;
+const DRAWN = ["generation", "evaluations", "seconds", "qd_score", "coverage", "best"] as const;
+
+/** What names of counts begin with: of these nothing may be thinned out, they are added up. */
+export const DIVERGED = "diverged: ";
 
 export type Column = readonly (number | null)[];
 
 export interface Curves {
   readonly generation: readonly number[];
+  readonly evaluations: Column;
+  readonly seconds: Column;
   readonly qd_score: Column;
   readonly coverage: Column;
   readonly best: Column;
@@ -29,7 +34,7 @@ export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
   const next = columns((name) => [...kept[name], event[name]]);
   const told = mapped(numbersOf(event.summary), (value): Column => [value]);
   const summary = joined(curves.summary, curves.generation.length, told, 1);
-  return { ...next, summary: full ? mapped(summary, halved) : summary };
+  return { ...next, summary: full ? thinned(summary) : summary };
 }
 
 /** A snapshot, and what events told of later generations while it was on its way. */
@@ -58,11 +63,20 @@ function filtered(curves: Curves, keep: (i: number) => boolean): Curves {
 }
 
 /** Every second value and the last one; what was told between two of them is not lost. */
-function halved(column: Column): Column {
-  const last = column.length - 1;
-  const kept = Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k);
-  return [...kept, last].map((i) => column[i] ?? column[i - 1] ?? null);
+function thinned(told: Told): Told {
+  const columns = Object.entries(told).map(([name, column]) => {
+    const last = column.length - 1;
+    const kept = [...Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k), last];
+    const join = name.startsWith(DIVERGED) ? added : newer;
+    return [name, kept.map((i, k) => join(column.slice((kept[k - 1] ?? -1) + 1, i + 1)))];
+  });
+  return Object.fromEntries(columns);
 }
+
+const newer = (values: Column) => values.findLast((value) => value !== null) ?? null;
+
+const added = (values: Column) =>
+  values.reduce((sum, value) => (value === null ? sum : (sum ?? 0) + value), null);
 
 function joined(one: Told, length: number, other: Told, more: number): Told {
   const names = [...new Set([...Object.keys(one), ...Object.keys(other)])];

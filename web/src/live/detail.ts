@@ -11,6 +11,7 @@ export interface Detail {
   curves: Curves | null;
   /** What events told since the run was opened or the page reset: it outlives a snapshot. */
   news: News;
+  watchers: number;
 }
 
 interface News {
@@ -20,7 +21,13 @@ interface News {
 
 const NO_NEWS: News = { elites: new Map(), curves: NO_CURVES };
 
-export const NOTHING: Detail = { archive: null, elites: new Map(), curves: null, news: NO_NEWS };
+export const NOTHING: Detail = {
+  archive: null,
+  elites: new Map(),
+  curves: null,
+  news: NO_NEWS,
+  watchers: 0,
+};
 
 export function withChanges(detail: Detail, event: ElitesEvent): Detail {
   const news = { ...detail.news, elites: withElites(detail.news.elites, event) };
@@ -41,9 +48,10 @@ export function replaced(
   return { ...detail, archive, elites, curves: mergeCurves(generations, detail.news.curves) };
 }
 
-export function cut({ archive, elites, curves, news }: Detail, generation: number): Detail {
+export function cut(detail: Detail, generation: number): Detail {
+  const { elites, curves, news } = detail;
   return {
-    archive,
+    ...detail,
     elites: cutElites(elites, generation),
     curves: curves && cutCurves(curves, generation),
     news: {

@@ -38,7 +38,7 @@ export function cutElites(elites: Elites, generation: number): Elites {
   return new Map([...elites].filter(([, elite]) => elite.told <= generation));
 }
 
-function eliteAt(columns: ArchiveColumns, i: number, told: number): Elite {
+export function eliteAt(columns: ArchiveColumns, i: number, told: number): Elite {
   return {
     fitness: columns.fitness[i]!,
     descriptors: columns.descriptors[i]!,

@@ -1,17 +1,20 @@
 /** What components fetch: once when they appear, and again when the store asks for it. */
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Archive, Experiment, Results, Run } from "../api/types";
+import type { Archive, Experiment, History, Results, Run } from "../api/types";
+import type { Curves } from "./curves";
 import type { Elites } from "./elites";
-import { current, dispatch, useLive } from "./live";
+import { answer, current, dispatch, useLive } from "./live";
+import { look } from "./looking";
+import { usePaced } from "./pacing";
+import { poll } from "./polling";
 import { epochOf } from "./store";
 
 /** Whether a run searches for elites; others measure, and their result is a table. */
 export const hasArchive = ({ spec }: Run) => "search" in spec;
 
-const PAGE = 30;
 /** Points of a curve that a snapshot carries; a screen shows no more. */
 const POINTS = 1000;
 
@@ -46,38 +49,43 @@ export function useExperiments(): Loaded<Experiment[]> {
   }, []);
 }
 
-/** Keeps the first page of runs fetched; what comes later, events tell. */
-export function useRunList(): Loaded<true> {
-  const epoch = useLive((state) => state.epoch);
-  return useFetched(async () => {
-    dispatch({ type: "list", page: await api.readRuns(null, PAGE), more: false });
-    return true as const;
-  }, [epoch]);
-}
-
-export async function moreRuns(): Promise<void> {
-  const page = await api.readRuns(current().next, PAGE);
-  dispatch({ type: "list", page, more: true });
-}
-
 /** Keeps one run, its archive and its curves fetched, after every rewind and reset anew. */
 export function useRunDetail(id: string): Loaded<true> {
   const epoch = useLive((state) => epochOf(state, id));
+  useEffect(() => look("open", [id]), [id]);
   return useFetched(async () => {
-    dispatch({ type: "open", run: id });
-    const run = await api.readRun(id);
+    const run = await answer("answer", api.readRun(id));
     const [archive, generations] = await Promise.all([
       hasArchive(run) ? api.readArchive(id) : null,
       api.readGenerations(id, POINTS),
     ]);
-    if (epoch === epochOf(current(), id)) dispatch({ type: "run", run });
     dispatch({ type: "snapshot", run: id, epoch, archive, generations });
     return true as const;
   }, [id, epoch]);
 }
 
-/** How often features of a changing archive are asked for, at most. */
-const FRESH_MS = 2000;
+/** Curves of several runs by their ids, fetched and alive while somebody looks at them. */
+export function useCurvesOf(ids: string[]): Loaded<ReadonlyMap<string, Curves>> {
+  const asked = ids.join();
+  const epochs = useLive((state) => ids.map((id) => epochOf(state, id)).join());
+  useEffect(() => look("watch", ids), [asked]);
+  const { value, error } = useFetched(() => Promise.all(ids.map(readCurves)), [asked, epochs]);
+  const watching = useLive((state) => state.watching);
+  const known = ids.flatMap((id): [string, Curves][] => {
+    const curves = watching.get(id)?.curves;
+    return curves ? [[id, curves]] : [];
+  });
+  return { value: value || known.length > 0 ? new Map(known) : null, error };
+}
+
+/** The run itself comes along: whoever shows its curves names it. */
+async function readCurves(id: string): Promise<true> {
+  const epoch = epochOf(current(), id);
+  const run = answer("answer", api.readRun(id));
+  const [generations] = await Promise.all([api.readGenerations(id, POINTS), run]);
+  dispatch({ type: "curves", run: id, epoch, generations });
+  return true;
+}
 
 /** What was recorded of the elites under some names: by name, then by creature. */
 export function useFeatures(id: string, names: string[], elites: Elites): Features {
@@ -95,7 +103,7 @@ type Features = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
 const NONE: Features = new Map();
 
-function columnsOf({ creature, features }: Archive): Features {
+function columnsOf({ creature, features }: Pick<Archive, "creature" | "features">): Features {
   const columns = Object.entries(features).map(([name, values]) => {
     const known = values.flatMap((value, i): [string, number][] =>
       value === null ? [] : [[creature[i]!, value]],
@@ -105,20 +113,42 @@ function columnsOf({ creature, features }: Archive): Features {
   return new Map(columns);
 }
 
-/** A value that is let through now and then, the last one always. */
-function usePaced<T>(value: T): T {
-  const [paced, setPaced] = useState(value);
-  const last = useRef(-Infinity);
+interface Past {
+  history: History;
+  features: Features;
+}
+
+/**
+ * Every elite that ever entered, once a generation of the past is wanted; anew when one is
+ * wanted that the run had not come to.
+ */
+export function useHistory(id: string, names: string[], at: number | null): Loaded<Past | null> {
+  const epoch = useLive((state) => epochOf(state, id));
+  const [turn, setTurn] = useState(0);
+  const asked = names.join(",");
+  const wanted = at !== null;
+  const loaded = useFetched(async () => {
+    if (!wanted) return null;
+    const history = await api.readHistory(id, asked ? asked.split(",") : []);
+    return { history, features: columnsOf(history) };
+  }, [id, epoch, asked, wanted, turn]);
+  const outgrown = wanted && loaded.value !== null && at > loaded.value.history.generation;
   useEffect(() => {
-    if (Object.is(value, paced)) return;
-    const wait = Math.max(0, last.current + FRESH_MS - performance.now());
-    const timer = setTimeout(() => {
-      last.current = performance.now();
-      setPaced(() => value);
-    }, wait);
-    return () => clearTimeout(timer);
-  }, [value, paced]);
-  return paced;
+    if (outgrown) setTurn((count) => count + 1);
+  }, [outgrown]);
+  return loaded;
+}
+
+/** Where the cells of a CVT are; asked for until the first checkpoint tells. */
+export function useCentroids(id: string, wanted: boolean): number[][] | null {
+  const [centroids, setCentroids] = useState<number[][] | null>(null);
+  useEffect(() => {
+    setCentroids(null);
+    if (!wanted) return;
+    const silent = () => {}; // Meanwhile the map shows even bins.
+    return poll(() => api.readCentroids(id), { value: setCentroids, note: silent, error: silent });
+  }, [id, wanted]);
+  return centroids;
 }
 
 /** Keeps the table of a run fetched: anew after every row, rewind and reset. */

@@ -1,6 +1,7 @@
 /** The one store of a tab. */
 
 import { useEffect, useState } from "preact/hooks";
+import type { Run } from "../api/types";
 import { type Action, EMPTY, type State, reduce } from "./store";
 
 let state = EMPTY;
@@ -13,6 +14,14 @@ export function current(): State {
 export function dispatch(action: Action): void {
   state = reduce(state, action);
   for (const listener of listeners) listener();
+}
+
+/** Puts in the run that was asked for, or what came of a change to it. */
+export async function answer(type: "answer" | "done", asked: Promise<Run>): Promise<Run> {
+  const sent = state.heard;
+  const run = await asked;
+  dispatch({ type, run, sent });
+  return run;
 }
 
 /** A part of the store; the component is drawn again when that part changes. */

@@ -8,6 +8,7 @@ import type {
   ResultsEvent,
   RewindEvent,
   Run,
+  RunChange,
   RunEvent,
   RunPage,
 } from "../api/types";
@@ -20,7 +21,16 @@ import {
   withChanges,
   withCurvePoint,
 } from "./detail";
+import {
+  type Watching,
+  cutWatched,
+  doubtedWatched,
+  watched,
+  withHistory,
+  withNext,
+} from "./watched";
 import { type Pace, rateOf, withEvent, withPoint } from "./pace";
+import { answered, done, heardOf, said, told } from "./standing";
 
 export type Connection = "connecting" | "live" | "lost";
 
@@ -29,11 +39,21 @@ export interface State {
   runs: ReadonlyMap<string, Run>;
   paces: ReadonlyMap<string, Pace>;
   details: ReadonlyMap<string, Detail>;
+  watching: Watching;
   /** How often the table of a run has grown since the page was opened. */
   tables: ReadonlyMap<string, number>;
-  /** Ids of the listed runs, newest first, and where the list goes on. */
+  /** Which runs were asked for; their ids in their order, and where the list goes on. */
+  asked: string;
   listed: readonly string[];
   next: string | null;
+  /** How often something was heard of runs, when the last time of each, and of all at once. */
+  heard: number;
+  last: ReadonlyMap<string, number>;
+  trusted: number;
+  /** How runs stand of which it is not known yet what they are. */
+  early: ReadonlyMap<string, RunEvent>;
+  /** Raised by news that may change which runs belong to a list, or in which order. */
+  news: number;
   /** Raised when what was fetched before is not to be trusted any more. */
   epoch: number;
   /** The same for one run, after a rewind. */
@@ -43,8 +63,12 @@ export interface State {
 export type Action =
   | { type: "connection"; connection: Connection }
   | { type: "run"; run: RunEvent }
-  | { type: "list"; page: RunPage; more: boolean }
-  | { type: "open"; run: string }
+  | { type: "answer"; run: Run; sent: number }
+  | { type: "done"; run: Run; sent: number }
+  | { type: "said"; run: string; change: RunChange }
+  | ({ type: "list" } & Listing)
+  | ({ type: "more" } & Further)
+  | { type: "open"; run: string; more: 1 | -1 }
   | {
       type: "snapshot";
       run: string;
@@ -52,20 +76,45 @@ export type Action =
       archive: Archive | null;
       generations: Generations;
     }
+  | { type: "watch"; run: string; more: 1 | -1 }
+  | { type: "curves"; run: string; epoch: number; generations: Generations }
   | { type: "generation"; event: GenerationEvent }
   | { type: "elites"; event: ElitesEvent }
   | { type: "results"; event: ResultsEvent }
   | { type: "rewind"; event: RewindEvent }
   | { type: "reset" };
 
+/** A list from its beginning, asked for when so many runs of it were known. */
+interface Listing {
+  asked: string;
+  page: RunPage;
+  known: number;
+  sent: number;
+}
+
+/** What follows in a list after a place in it. */
+interface Further {
+  asked: string;
+  page: RunPage;
+  cursor: string | null;
+  sent: number;
+}
+
 export const EMPTY: State = {
   connection: "connecting",
   runs: new Map(),
   paces: new Map(),
   details: new Map(),
+  watching: new Map(),
   tables: new Map(),
+  asked: "",
   listed: [],
   next: null,
+  heard: 0,
+  last: new Map(),
+  trusted: 0,
+  early: new Map(),
+  news: 0,
   epoch: 0,
   epochs: new Map(),
 };
@@ -75,13 +124,25 @@ export function reduce(state: State, action: Action): State {
     case "connection":
       return { ...state, connection: action.connection };
     case "run":
-      return withRun(state, action.run);
+      return told(state, action.run);
+    case "answer":
+      return answered(state, [action.run], action.sent);
+    case "done":
+      return done(state, action.run, action.sent);
+    case "said":
+      return said(state, action.run, action.change);
     case "list":
-      return withPage(state, action.page, action.more);
+      return listed(state, action);
+    case "more":
+      return withMore(state, action);
     case "open":
-      return opened(state, action.run);
+      return opened(state, action.run, action.more);
     case "snapshot":
       return withSnapshot(state, action);
+    case "watch":
+      return { ...state, watching: watched(state.watching, action.run, action.more) };
+    case "curves":
+      return withCurves(state, action);
     case "generation":
       return withGeneration(state, action.event);
     case "elites":
@@ -100,49 +161,54 @@ export function epochOf(state: State, run: string): number {
   return state.epoch + (state.epochs.get(run) ?? 0);
 }
 
-function withRun(state: State, event: RunEvent): State {
-  const spec = event.spec ?? state.runs.get(event.id)?.spec;
-  if (!spec) return state;
-  const run = { ...event, spec };
-  const known = state.listed.includes(run.id);
-  const listed = known ? state.listed : byAge(state.runs, [run, ...state.listed]);
-  return { ...state, runs: new Map(state.runs).set(run.id, run), listed };
+/** Only the server says which runs a list has: an event alone puts none into it. */
+function listed(state: State, { asked, page, known, sent }: Listing): State {
+  const next = answered(state, page.items, sent);
+  const grown = asked === state.asked && state.listed.length > known;
+  // What was loaded meanwhile is not in the answer.
+  if (grown) return { ...next, news: state.news + 1 };
+  return { ...next, asked, listed: page.items.map((run) => run.id), next: page.next };
 }
 
-/** Runs that only an event has told of stand in the list too, at their place. */
-function byAge(runs: ReadonlyMap<string, Run>, [run, ...ids]: [Run, ...string[]]): string[] {
-  const later = ids.filter((id) => (runs.get(id)?.created_at ?? "") > run.created_at);
-  return [...later, run.id, ...ids.filter((id) => !later.includes(id))];
-}
-
-function withPage(state: State, page: RunPage, more: boolean): State {
-  const runs = new Map(state.runs);
-  for (const run of page.items) runs.set(run.id, run);
+function withMore(state: State, { asked, page, cursor, sent }: Further): State {
+  if (asked !== state.asked) return state;
   const ids = page.items.map((run) => run.id);
-  const kept = more ? state.listed.filter((id) => !ids.includes(id)) : [];
-  return { ...state, runs, listed: [...kept, ...ids], next: page.next };
+  const listed = [...state.listed.filter((id) => !ids.includes(id)), ...ids];
+  // The list may end elsewhere now, so that something between is missing.
+  const news = state.news + Number(cursor !== state.next);
+  return { ...answered(state, page.items, sent), news, listed, next: page.next };
 }
 
-/** From here on events of the run are kept: its snapshot may be older than they are. */
-function opened(state: State, run: string): State {
-  if (state.details.has(run)) return state;
-  return { ...state, details: new Map(state.details).set(run, NOTHING) };
+/**
+ * One more looks at a run, or one less. While somebody does, its events are kept, for its
+ * snapshot may be older than they are.
+ */
+function opened(state: State, run: string, more: 1 | -1): State {
+  const old = state.details.get(run) ?? NOTHING;
+  const details = new Map(state.details).set(run, { ...old, watchers: old.watchers + more });
+  if (details.get(run)!.watchers <= 0) details.delete(run);
+  return { ...state, details };
 }
 
 function withSnapshot(state: State, action: Action & { type: "snapshot" }): State {
+  const { run, epoch, archive, generations } = action;
+  if (epoch !== epochOf(state, run)) return state;
+  return withDetail(state, run, (old) => replaced(old, archive, generations));
+}
+
+function withCurves(state: State, action: Action & { type: "curves" }): State {
   if (action.epoch !== epochOf(state, action.run)) return state;
-  const old = state.details.get(action.run) ?? NOTHING;
-  const detail = replaced(old, action.archive, action.generations);
-  return { ...state, details: new Map(state.details).set(action.run, detail) };
+  return { ...state, watching: withHistory(state.watching, action.run, action.generations) };
 }
 
 function withGeneration(state: State, event: GenerationEvent): State {
-  const next = withDetail(state, event.run, (detail) => withCurvePoint(detail, event));
+  const opened = withDetail(state, event.run, (detail) => withCurvePoint(detail, event));
+  const next = { ...opened, watching: withNext(opened.watching, event) };
   const run = state.runs.get(event.run);
   if (!run || event.generation <= run.generation) return next;
   const pace = withEvent(state.paces.get(run.id) ?? [], event);
   return {
-    ...next,
+    ...heardOf(next, run.id),
     paces: new Map(next.paces).set(run.id, pace),
     runs: new Map(next.runs).set(run.id, advanced(run, event, pace)),
   };
@@ -162,13 +228,17 @@ function grown(state: State, { run: id, generation, summary }: ResultsEvent): St
   const next = { ...state, tables: new Map(state.tables).set(id, count) };
   const run = state.runs.get(id);
   if (!run || !summary || generation < run.generation) return next;
-  return { ...next, runs: new Map(state.runs).set(id, { ...run, summary }) };
+  return { ...heardOf(next, id), runs: new Map(state.runs).set(id, { ...run, summary }) };
 }
 
 function rewound(state: State, event: RewindEvent): State {
   const raised = (state.epochs.get(event.run) ?? 0) + 1;
-  const next = { ...state, epochs: new Map(state.epochs).set(event.run, raised) };
   const run = state.runs.get(event.run);
+  const next = {
+    ...(run ? heardOf(state, run.id) : state),
+    epochs: new Map(state.epochs).set(event.run, raised),
+    watching: cutWatched(state.watching, event.run, event.generation),
+  };
   if (run) next.runs = new Map(state.runs).set(run.id, cutRun(run, event.generation));
   return withDetail(next, event.run, (detail) => cut(detail, event.generation));
 }
@@ -176,7 +246,10 @@ function rewound(state: State, event: RewindEvent): State {
 /** A rewind may have been missed: what is known is shown on, but not believed. */
 function reset(state: State): State {
   const details = new Map([...state.details].map(([run, detail]) => [run, doubted(detail)]));
-  return { ...state, details, epoch: state.epoch + 1 };
+  const watching = doubtedWatched(state.watching);
+  const heard = state.heard + 1;
+  const unheard = { heard, trusted: heard, early: new Map() };
+  return { ...state, ...unheard, details, watching, epoch: state.epoch + 1 };
 }
 
 /** A run that goes on from an earlier generation; its figures follow with the next one. */

@@ -5,6 +5,7 @@ import { dispatch } from "./live";
 import type { Action } from "./store";
 
 const RECONNECT_MS = 2000;
+const PATIENCE_MS = 500;
 /** A browser has six connections to a host for all its tabs: hidden ones give theirs back. */
 const HIDDEN_MS = 10_000;
 
@@ -14,10 +15,18 @@ let source: EventSource | null = null;
 let reconnecting: Timer | undefined;
 let resting: Timer | undefined;
 
-export function connect(): void {
+/**
+ * Settled when the stream is open, has failed or takes long: what is fetched before it is open
+ * has to be fetched again, so that the page had better wait.
+ */
+export function connect(): Promise<unknown> {
   document.addEventListener("visibilitychange", followVisibility);
-  open();
+  const opened = open();
   followVisibility();
+  return new Promise((resolve) => {
+    for (const event of ["open", "error"]) opened.addEventListener(event, resolve);
+    setTimeout(resolve, PATIENCE_MS);
+  });
 }
 
 function followVisibility(): void {
@@ -30,7 +39,7 @@ function followVisibility(): void {
  * EventSource reconnects by itself with Last-Event-ID; where it gave up, was closed, or is
  * the first, nobody knows what was missed, and everything is fetched again.
  */
-function open(): void {
+function open(): EventSource {
   const opened = new EventSource(EVENTS_URL);
   source = opened;
   let fresh = true;
@@ -49,6 +58,7 @@ function open(): void {
   listen(opened, "results", (event) => ({ type: "results", event }) as Action);
   listen(opened, "rewind", (event) => ({ type: "rewind", event }) as Action);
   listen(opened, "reset", () => ({ type: "reset" }));
+  return opened;
 }
 
 function close(): void {

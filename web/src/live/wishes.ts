@@ -2,14 +2,14 @@
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import { dispatch } from "./live";
+import { answer } from "./live";
 import { dismiss, tell } from "./toasts";
 
-export const UNDO_MS = 4000;
+const UNDO_MS = 4000;
 
 export async function ask(id: string, verb: api.Wish): Promise<void> {
   try {
-    dispatch({ type: "run", run: await api.wish(id, verb) });
+    await answer("done", api.wish(id, verb));
   } catch (error) {
     tell({ kind: "wrong", text: messageOf(error) });
   }

@@ -1,18 +1,9 @@
 /** A run that searches: its archive, how good it is, and what the search is doing. */
 
-import { useMemo } from "preact/hooks";
-import type { Archive, Run } from "../api/types";
+import type { Run } from "../api/types";
 import type { Detail } from "../live/detail";
-import type { Elites } from "../live/elites";
-import { useFeatures } from "../live/fetching";
-import { navigate, setQuery } from "../router";
-import { ArchiveMap } from "../view/archive/ArchiveMap";
-import { AxisChoice } from "../view/archive/AxisChoice";
-import { axisOf, missingOf, namesOf } from "../view/archive/axes";
-import type { ColourBy } from "../view/archive/draw";
-import { Curves } from "../view/curves/Curves";
-import { scoresOf, workOf } from "../view/curves/plots";
-import { count } from "../view/format";
+import { ArchiveCard } from "./archive/ArchiveCard";
+import { CurvesCard, SearchCard, useOthers } from "./RunCurves";
 
 interface Props {
   run: Run;
@@ -22,11 +13,11 @@ interface Props {
 
 export function ArchiveRun({ run, detail, query }: Props) {
   const curves = detail?.curves && detail.curves.generation.length > 0 ? detail.curves : null;
-  const work = curves ? workOf(curves) : [];
+  const beside = useOthers(query, run.id);
   return (
     <>
-      <div class="run-columns">
-        <section class="card" aria-labelledby="archive-title">
+      <div class={`run-columns ${query.get("view") === "gallery" ? "wide" : ""}`}>
+        <section class="card archive-card" id="archive" aria-labelledby="archive-title" tabIndex={-1}>
           {detail?.archive ? (
             <ArchiveCard run={run} archive={detail.archive} elites={detail.elites} query={query} />
           ) : (
@@ -36,74 +27,9 @@ export function ArchiveRun({ run, detail, query }: Props) {
             </>
           )}
         </section>
-        <section class="card curves-card" aria-labelledby="curves-title">
-          <h2 id="curves-title">Curves</h2>
-          {curves ? (
-            <Curves plots={scoresOf(curves)} generation={curves.generation} />
-          ) : (
-            <p class="quiet waiting">They begin with the first generation.</p>
-          )}
-        </section>
+        <CurvesCard {...{ run, curves, query, beside }} />
       </div>
-      {curves && work.length > 0 && (
-        <section class="card work-card" aria-labelledby="work-title">
-          <h2 id="work-title">Search, generation by generation</h2>
-          <Curves plots={work} generation={curves.generation} />
-        </section>
-      )}
-    </>
-  );
-}
-
-interface CardProps {
-  run: Run;
-  archive: Archive;
-  elites: Elites;
-  query: URLSearchParams;
-}
-
-function ArchiveCard({ run, archive, elites, query }: CardProps) {
-  const colourBy: ColourBy = query.get("colour") === "generation" ? "generation" : "fitness";
-  const cell = query.get("cell");
-  const [x, y] = namesOf(archive, query.get("x"), query.get("y"));
-  const features = useFeatures(run.id, missingOf(archive, [x, y]), elites);
-  const axes = useMemo(() => {
-    const axis = (name: string) => axisOf(name, archive, elites, features);
-    return [axis(x), axis(y)] as const;
-  }, [x, y, archive, elites, features]);
-  const open = (chosen: number) => {
-    setQuery({ cell: String(chosen) });
-    navigate(`/creatures/${elites.get(chosen)!.creature}?run=${run.id}`);
-  };
-  return (
-    <>
-      <div class="card-head">
-        <h2 id="archive-title">Archive</h2>
-        <span class="quiet">{count(elites.size)} elites</span>
-        <span class="spring" />
-        <label class="compact">
-          Colour
-          <select
-            value={colourBy}
-            onChange={({ currentTarget: { value } }) =>
-              setQuery({ colour: value === "fitness" ? null : value })
-            }
-          >
-            <option value="fitness">fitness</option>
-            <option value="generation">generation</option>
-          </select>
-        </label>
-      </div>
-      <AxisChoice archive={archive} names={[x, y]} onChoose={([x, y]) => setQuery({ x, y })} />
-      <ArchiveMap
-        key={`${x} ${y}`}
-        axes={axes}
-        elites={elites}
-        colourBy={colourBy}
-        marked={cell === null ? null : Number(cell)}
-        onMark={(marked) => setQuery({ cell: String(marked) })}
-        onOpen={open}
-      />
+      {curves && <SearchCard {...{ run, curves, query, beside }} />}
     </>
   );
 }

@@ -2,21 +2,24 @@
 
 import { useEffect, useMemo } from "preact/hooks";
 import * as api from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../frames/replay";
 import { useFetched } from "../live/fetching";
-import { tell } from "../live/toasts";
+import { setQuery } from "../router";
 import { number, short, words } from "../view/format";
 import { isFree } from "../view/coupling";
 import { NotFree } from "../view/NotFree";
 import { ReplayPlayer } from "../view/replay/ReplayPlayer";
+import { lookOf, queryOf } from "../view/replay/look";
+import { newMoment } from "../view/replay/moment";
 import { AuditCard } from "./Audit";
 import { Facts } from "./Facts";
+import { Family } from "./Family";
 import { Genome } from "./Genome";
-import { Pictures } from "./Pictures";
+import { Keep } from "./Keep";
 import { Refine } from "./Refine";
 import { Rendering, useReplays } from "./rendering";
+import { SpaceTimeCard } from "./SpaceTimeCard";
 
 interface Props {
   sha: string;
@@ -45,21 +48,47 @@ export function CreaturePage({ sha, query }: Props) {
         {creature && !isFree(creature.identity.world.coupling) && <NotFree />}
         <span class="spring" />
         {creature && searched(creature) && <Refine creature={creature} run={run} />}
-        {creature && <Sharing sha={sha} />}
       </header>
       {error && <p class="banner wrong">{error}</p>}
       {!creature && !error && <p class="quiet loading">Loading creature …</p>}
-      {creature && (
-        <div class="creature-columns">
-          <Motion key={sha} creature={creature} />
-          <div class="stack">
-            <Genome sha={sha} genome={creature.identity.genome} />
-            {swims(creature) && <AuditCard key={sha} sha={sha} query={query} />}
-            <Facts creature={creature} run={run} />
-          </div>
-        </div>
-      )}
+      {creature && <Whole key={sha} {...{ creature, query }} />}
     </main>
+  );
+}
+
+/** Everything about one creature, around one moment of its replay. */
+function Whole({ creature, query }: { creature: Creature; query: URLSearchParams }) {
+  const { sha256: sha, identity } = creature;
+  const moment = useMemo(newMoment, []);
+  const rendering = useReplays([sha]);
+  const replay = rendering.replays?.[0] ?? null;
+  const films = useMemo(() => (replay ? [{ replay }] : []), [replay]);
+  return (
+    <>
+      <div class="creature-columns">
+        <div class="motion stack">
+          <section class="card" aria-label="Replay">
+            <Rendering {...rendering} what="Simulating this creature again to record its motion …" />
+            {replay && (
+              <ReplayPlayer
+                {...{ films, moment }}
+                look={lookOf(query)}
+                onLook={(change) => setQuery(queryOf(change))}
+              />
+            )}
+            {replay && swims(creature) && <Difference replay={replay} task={identity.task} />}
+            <Keep sha={sha} />
+          </section>
+        </div>
+        <div class="stack">
+          {replay?.drive && <SpaceTimeCard {...{ replay, query, moment }} />}
+          <Genome {...{ creature, moment }} every={replay?.header.every ?? null} />
+          <Family {...{ creature, query }} />
+          {swims(creature) && <AuditCard sha={sha} query={query} />}
+        </div>
+      </div>
+      <Facts creature={creature} />
+    </>
   );
 }
 
@@ -69,38 +98,6 @@ const swims = ({ identity }: Creature) => identity.genome.encoding !== "fold";
 /** Whether it has genes that evolve, and so a fitness to climb. */
 const searched = (creature: Creature) =>
   swims(creature) && creature.identity.genome.encoding !== "gait";
-
-function Sharing({ sha }: { sha: string }) {
-  const copy = async () => {
-    await navigator.clipboard.writeText(`${location.origin}/creatures/${sha}`);
-    tell({ kind: "note", text: "Link copied." });
-  };
-  return (
-    <span class="actions">
-      <button onClick={() => copy().catch((error) => tell({ kind: "wrong", text: messageOf(error) }))}>
-        Copy link
-      </button>
-      <a class="button primary" href={api.creatureFileUrl(sha)} download={`creature-${sha.slice(0, 12)}.json`}>
-        Download file
-      </a>
-    </span>
-  );
-}
-
-function Motion({ creature }: { creature: Creature }) {
-  const { sha256: sha, identity } = creature;
-  const rendering = useReplays([sha]);
-  const replay = rendering.replays?.[0];
-  const films = useMemo(() => (replay ? [{ replay }] : []), [replay]);
-  return (
-    <section class="card motion" aria-label="Replay">
-      <Rendering {...rendering} what="Simulating this creature again to record its motion …" />
-      {replay && <ReplayPlayer films={films} />}
-      {replay && swims(creature) && <Difference replay={replay} task={identity.task} />}
-      {replay && <Pictures sha={sha} />}
-    </section>
-  );
-}
 
 function Difference({ replay, task }: { replay: Replay; task: Spec }) {
   const { recorded, replayed, difference } = replay.header.fitness;

@@ -1,5 +1,6 @@
-/** Opening creature files: dropped anywhere on the page, or chosen. */
+/** Opening creature files: dropped anywhere, or chosen; a page may take what is dropped itself. */
 
+import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { importCreature } from "../api/client";
 import { messageOf } from "../api/problem";
@@ -15,23 +16,61 @@ async function open(file: File): Promise<void> {
   }
 }
 
+interface Taker {
+  prompt: string;
+  take: (file: File) => void;
+}
+
+const OPENING: Taker = {
+  prompt: "Drop a creature file to open it",
+  take: (file) => void open(file),
+};
+
+let taker = OPENING;
+
+/** While a component is shown, it takes what is dropped. */
+export function useDropTaker(prompt: string, take: Taker["take"]): void {
+  useEffect(() => {
+    taker = { prompt, take };
+    return () => {
+      taker = OPENING;
+    };
+  }, []);
+}
+
 export function OpenButton() {
+  return (
+    <FileButton kind="plain" name="Creature file" take={OPENING.take}>
+      Open creature<span class="wide-only"> file</span>
+    </FileButton>
+  );
+}
+
+interface ButtonProps {
+  kind?: string;
+  name: string;
+  take: Taker["take"];
+  children: ComponentChildren;
+}
+
+/** A button that asks for a JSON file. */
+export function FileButton({ kind = "", name, take, children }: ButtonProps) {
   const input = useRef<HTMLInputElement>(null);
   return (
     <>
-      <button class="plain" onClick={() => input.current!.click()}>
-        Open creature<span class="wide-only"> file</span>
+      <button type="button" class={kind} onClick={() => input.current!.click()}>
+        {children}
       </button>
       <input
         ref={input}
         type="file"
         class="unseen"
         tabIndex={-1}
-        aria-label="Creature file"
+        aria-label={name}
         accept="application/json,.json"
         onChange={({ currentTarget }) => {
           const file = currentTarget.files?.[0];
-          if (file) void open(file);
+          if (file) take(file);
           currentTarget.value = "";
         }}
       />
@@ -52,7 +91,7 @@ export function DropTarget() {
       event.preventDefault();
       setOver(false);
       const file = event.dataTransfer?.files[0];
-      if (file) void open(file);
+      if (file) taker.take(file);
     };
     window.addEventListener("dragover", drag);
     window.addEventListener("dragleave", leave);
@@ -65,7 +104,7 @@ export function DropTarget() {
   }, []);
   return over ? (
     <div class="drop-target" aria-hidden="true">
-      <p>Drop a creature file to open it</p>
+      <p>{taker.prompt}</p>
     </div>
   ) : null;
 }

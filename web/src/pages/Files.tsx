@@ -3,14 +3,12 @@
 import { archiveUrl, resultsUrl } from "../api/client";
 import type { Run } from "../api/types";
 import { hasArchive } from "../live/fetching";
-import { moment, short } from "../view/format";
+import { moment } from "../view/format";
 import { FileLink } from "./FileLink";
 
 export function Files({ run }: { run: Run }) {
-  const spec = JSON.stringify(run.spec, null, 2);
-  const href = `data:application/json;charset=utf-8,${encodeURIComponent(spec)}`;
   return (
-    <section class="card files" aria-labelledby="files-title">
+    <section class="card files" id="files" aria-labelledby="files-title" tabIndex={-1}>
       <h2 id="files-title">Files</h2>
       <p class="links">
         {hasArchive(run) ? (
@@ -24,19 +22,12 @@ export function Files({ run }: { run: Run }) {
             <FileLink url={resultsUrl(run.id)} name="results.csv" />
           </>
         )}
-        <a class="button" href={href} download={`${short(run.id)}-spec.json`}>
-          spec.json
-        </a>
       </p>
       <p class="quiet">
         {hasArchive(run) ? "Archive files are" : "results.h5 is"} of the last checkpoint.{" "}
         Created {moment(run.created_at)}, attempt {run.attempt}, version {run.version}
         {run.device && `, on ${run.device}`}.
       </p>
-      <details>
-        <summary>Spec</summary>
-        <pre>{spec}</pre>
-      </details>
     </section>
   );
 }

@@ -1,11 +1,14 @@
 /** A sweep of gaits: how far each swimmer comes at each viscosity, in each form. */
 
+import { useMemo, useState } from "preact/hooks";
 import type { ResultRow } from "../api/types";
 import { setQuery } from "../router";
 import { formOf } from "../view/coupling";
 import { NotFree } from "../view/NotFree";
-import { Plot } from "../view/plot/Plot";
+import { Plot, type Point } from "../view/plot/Plot";
 import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "../view/results/gaits";
+import { Segments } from "../view/Choice";
+import { MarkReplay, useLastMark } from "./MarkReplay";
 import { type Props, TableCard, hrefOf, useTable } from "./results";
 
 const BESIDE = "beside";
@@ -17,6 +20,8 @@ export function GaitsRun({ run, query }: Props) {
   const asked = [...forms, BESIDE].includes(wanted) ? wanted : forms[0]!;
   const shown = asked === BESIDE ? forms : [asked];
   const rows = (results?.rows ?? []).filter((row) => shown.includes(String(row.form)));
+  const [near, setNear] = useState<Point | null>(null);
+  const settled = useLastMark(near);
   return (
     <>
       <section class="card plot-card" aria-labelledby="sweep-title">
@@ -28,10 +33,13 @@ export function GaitsRun({ run, query }: Props) {
         {missing ? (
           <p class="quiet waiting">{missing}</p>
         ) : (
-          <div class={shown.length > 1 ? "beside" : ""}>
-            {shown.map((form) => (
-              <Sweep key={form} {...{ run, query, form }} all={results!.rows} />
-            ))}
+          <div class={shown.length > 1 ? "" : "with-replay"}>
+            <div class={shown.length > 1 ? "beside" : ""}>
+              {shown.map((form) => (
+                <Sweep key={form} {...{ run, query, form }} all={results!.rows} onNear={setNear} />
+              ))}
+            </div>
+            <MarkReplay point={settled} />
           </div>
         )}
         {rows.length > 0 && <Key rows={rows} />}
@@ -42,25 +50,27 @@ export function GaitsRun({ run, query }: Props) {
 }
 
 function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
-  const choices = [...forms.map((form) => [form, formOf(form).title]), [BESIDE, "Side by side"]];
+  const choices = forms.map((form): [string, string] => [form, formOf(form).title]);
   return (
-    <div class="tabs" role="group" aria-label="Form of the coupling">
-      {choices.map(([form, title]) => (
-        <button
-          key={form}
-          type="button"
-          aria-pressed={form === chosen}
-          onClick={() => setQuery({ form: form === forms[0] ? null : form! })}
-        >
-          {title}
-        </button>
-      ))}
-    </div>
+    <Segments
+      label="Form of the coupling"
+      choices={[...choices, [BESIDE, "Side by side"]]}
+      value={chosen}
+      onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
+    />
   );
 }
 
-function Sweep({ run, form, all }: Props & { form: string; all: ResultRow[] }) {
-  const rows = all.filter((row) => row.form === form);
+interface SweepProps extends Props {
+  form: string;
+  all: ResultRow[];
+  onNear: (point: Point | null) => void;
+}
+
+function Sweep({ run, form, all, onNear }: SweepProps) {
+  const rows = useMemo(() => all.filter((row) => row.form === form), [all, form]);
+  // Marks stay the same while one of them is pointed at.
+  const lines = useMemo(() => sweepLines(run.spec, rows, hrefOf(run)), [run.id, run.spec, rows]);
   const { title, about, free } = formOf(form);
   // Bodies that push themselves go many times as far: the others would lie along the axis.
   const peers = all.filter((row) => formOf(String(row.form)).free === free);
@@ -72,9 +82,10 @@ function Sweep({ run, form, all }: Props & { form: string; all: ResultRow[] }) {
       <Plot
         title={`Displacement against viscosity, ${title}`}
         {...sweepAxes(run.spec, peers)}
-        lines={sweepLines(run.spec, rows, hrefOf(run))}
+        lines={lines}
         upper={reynoldsAxis(rows)}
         shaded={!free}
+        onNear={onNear}
       />
     </div>
   );

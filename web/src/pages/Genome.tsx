@@ -1,12 +1,15 @@
 /** What a creature has inherited: a network, or a row of numbers. */
 
-import { useMemo } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import { type Form, networkUrl } from "../api/client";
-import type { Genes, Genome as Inherited, Vector } from "../api/types";
+import type { Creature, Spec, Vector } from "../api/types";
 import { decodeFloats } from "../frames/base64";
-import { networkOf } from "../frames/network";
+import { layeredOf } from "../frames/layers";
+import { type Network as Graph, networkOf } from "../frames/network";
 import { GeneStrip } from "../view/network/GeneStrip";
 import { NetworkGraph } from "../view/network/NetworkGraph";
+import { Outputs } from "../view/network/Outputs";
+import type { Moment } from "../view/replay/moment";
 import { FileLink } from "./FileLink";
 
 const FORMS: [Form, string][] = [
@@ -17,28 +20,47 @@ const FORMS: [Form, string][] = [
 ];
 
 interface Props {
-  sha: string;
-  genome: Inherited;
+  creature: Creature;
+  moment: Moment;
+  /** Steps between the frames that a moment counts; null while there is no replay. */
+  every: number | null;
 }
 
-export function Genome({ sha, genome }: Props) {
+export function Genome({ creature, ...shown }: Props) {
+  const { genome, task } = creature.identity;
+  const network = useMemo(() => {
+    if ("nodes" in genome) return networkOf(genome);
+    return "values" in genome ? layeredOf(genome) : null;
+  }, [genome]);
   if (genome.encoding === "gait" || genome.encoding === "fold") return null;
-  if ("nodes" in genome) return <Network sha={sha} genes={genome} />;
-  return <Numbers genes={genome} />;
+  if (!network) return <Numbers genes={genome as Vector} />;
+  const files = "nodes" in genome ? creature.sha256 : null;
+  return <Network {...shown} {...{ network, files }} control={genome.control} steps={Number(task.steps)} />;
 }
 
-function Network({ sha, genes }: { sha: string; genes: Genes }) {
-  const network = useMemo(() => networkOf(genes), [genes]);
+interface NetworkProps extends Omit<Props, "creature"> {
+  network: Graph;
+  /** The creature whose network can be had as files. */
+  files: string | null;
+  control: Spec;
+  steps: number;
+}
+
+function Network({ network, files, ...rest }: NetworkProps) {
+  const [chosen, choose] = useState<number | null>(null);
   return (
     <section class="card" aria-labelledby="network-title">
       <h2 id="network-title">Network</h2>
-      <NetworkGraph network={network} />
-      <p class="links network-files">
-        <span class="quiet small">Keep it as</span>
-        {FORMS.map(([form, title]) => (
-          <FileLink key={form} url={networkUrl(sha, form)} name={title} />
-        ))}
-      </p>
+      <NetworkGraph network={network} chosen={chosen} onChoose={choose} />
+      <Outputs {...rest} {...{ network, chosen }} />
+      {files && (
+        <p class="links network-files">
+          <span class="quiet small">Keep it as</span>
+          {FORMS.map(([form, title]) => (
+            <FileLink key={form} url={networkUrl(files, form)} name={title} />
+          ))}
+        </p>
+      )}
     </section>
   );
 }

@@ -7,6 +7,7 @@ import { number, short } from "../view/format";
 import { Plot } from "../view/plot/Plot";
 import { ReplayPlayer } from "../view/replay/ReplayPlayer";
 import { courseOf } from "../view/results/learning";
+import { FoldsCard } from "./FoldsCard";
 import { Rendering, useReplays } from "./rendering";
 import { type Props, TableCard, hrefOf, useTable } from "./results";
 
@@ -24,10 +25,8 @@ export function LearningRun({ run, query }: Props) {
         ) : (
           <p class="quiet waiting">The first step is being computed …</p>
         )}
-        {run.experiment === "folding" && rows.length === 0 && (
-          <p class="quiet small">Filaments can be watched once all updates are done.</p>
-        )}
       </section>
+      {run.experiment === "folding" && <FoldsCard {...{ run, query, rows }} />}
       {run.experiment === "refinement" && run.status === "finished" && rows.length > 1 && (
         <Improvement run={run} before={rows[0]!} after={rows[rows.length - 1]!} />
       )}

@@ -4,7 +4,7 @@ import { useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Json } from "../api/types";
-import { dispatch } from "../live/live";
+import { answer } from "../live/live";
 import { tell } from "../live/toasts";
 import { navigate } from "../router";
 import { newKey } from "./key";
@@ -26,8 +26,7 @@ export function Refine({ creature, run }: Props) {
         creature: creature as unknown as Json,
         ...(archive !== undefined && { archive }),
       };
-      const made = await api.createRun(spec, newKey());
-      dispatch({ type: "run", run: made });
+      const made = await answer("done", api.createRun(spec, newKey()));
       navigate(`/runs/${made.id}`);
     } catch (error) {
       tell({ kind: "wrong", text: messageOf(error) });

@@ -2,19 +2,28 @@
 
 import { useEffect } from "preact/hooks";
 import type { Run } from "../api/types";
+import type { Elites } from "../live/elites";
 import { hasArchive, useExperiments, useRunDetail } from "../live/fetching";
+import { useFresh } from "../live/repeating";
 import { useLive } from "../live/live";
+import { useNow } from "../live/runpage";
+import { say } from "../live/saying";
 import { freedomOf } from "../view/coupling";
+import { Doing, doingOf } from "../view/Doing";
 import { endingOf } from "../view/ending";
 import { count, short, titleOf } from "../view/format";
 import { NotFree } from "../view/NotFree";
 import { type Figure, figuresOf, generationsOf } from "../view/results/figures";
 import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
+import { Name } from "../view/runs/Said";
 import { ArchiveRun } from "./ArchiveRun";
 import { Files } from "./Files";
 import { GaitsRun } from "./GaitsRun";
 import { LearningRun } from "./LearningRun";
+import { LogCard } from "./LogCard";
+import { PopulationCards } from "./PopulationCards";
 import { ScalingRun } from "./ScalingRun";
+import { SpecCard } from "./SpecCard";
 import { ON } from "./wishes";
 
 interface Props {
@@ -44,9 +53,11 @@ export function RunPage({ id, query }: Props) {
         <a href="/">Runs</a>
       </nav>
       <header class="page-head">
-        <h1>
-          {title} <code>{short(run.id)}</code>
-        </h1>
+        <Name run={run} title={title} onName={(name) => void say(id, { name })}>
+          <h1>
+            {title} <code>{short(run.id)}</code>
+          </h1>
+        </Name>
         <Badge run={run} />
         {freedom !== "all" && <NotFree some={freedom === "some"} />}
         <span class="spring" />
@@ -55,13 +66,61 @@ export function RunPage({ id, query }: Props) {
       {error && <p class="banner wrong">{error}</p>}
       <Banners run={run} />
       <Standing run={run} />
+      <Now run={run} />
+      <Sections run={run} />
       {run.status === "finished" && hasArchive(run) && <p class="quiet ending">{endingOf(run)}</p>}
       {run.experiment === "gaits" && <GaitsRun run={run} query={query} />}
       {learns(run) && <LearningRun run={run} query={query} />}
       {run.experiment === "scaling" && <ScalingRun run={run} query={query} />}
       {hasArchive(run) && <ArchiveRun run={run} detail={detail} query={query} />}
-      <Files run={run} />
+      {run.experiment === "neuroevolution" && (
+        <PopulationCards run={run} elites={detail?.elites ?? NOBODY} />
+      )}
+      <div class="run-columns record">
+        <div class="stack">
+          <LogCard run={run} query={query} />
+          <Files run={run} />
+        </div>
+        <SpecCard run={run} query={query} />
+      </div>
     </main>
+  );
+}
+
+const NOBODY: Elites = new Map();
+
+/** What it is doing while its figures do not tell yet; how long it has been at it. */
+function Now({ run }: { run: Run }) {
+  const asked = doingOf(run) !== null;
+  const now = useNow(asked);
+  useFresh(run.id, run.status === "queued");
+  return asked ? <Doing run={run} now={now} /> : null;
+}
+
+/** Ways within a long page. */
+function Sections({ run }: { run: Run }) {
+  const kinds: Record<string, [id: string, name: string][]> = {
+    folding: [["folds", "Pictures"]],
+    neuroevolution: [
+      ["species", "Species"],
+      ["network", "Network"],
+    ],
+  };
+  const sections: [id: string, name: string][] = [
+    ...(hasArchive(run) ? ([["archive", "Archive"], ["curves", "Curves"]] as [string, string][]) : []),
+    ...(kinds[run.experiment] ?? []),
+    ["log", "Log"],
+    ["spec", "Spec"],
+    ["files", "Files"],
+  ];
+  return (
+    <nav class="sections" aria-label="Parts of this page">
+      {sections.map(([id, name]) => (
+        <a key={id} href={`#${id}`}>
+          {name}
+        </a>
+      ))}
+    </nav>
   );
 }
 

@@ -1,25 +1,42 @@
-/** All runs, newest first, alive. */
+/** All runs, alive: found, sorted, named, compared. */
 
 import { useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
-import type { Experiment, Run } from "../api/types";
-import { moreRuns, useExperiments, useRunList } from "../live/fetching";
+import type { Experiment, RunQuery } from "../api/types";
+import { useExperiments } from "../live/fetching";
+import { moreRuns, useRunList, useTags } from "../live/listing";
 import { useLive } from "../live/live";
 import { tell } from "../live/toasts";
-import { freedomOf } from "../view/coupling";
-import { DASH, short, titleOf } from "../view/format";
-import { NotFree } from "../view/NotFree";
-import { keyFigureOf } from "../view/results/figures";
-import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
-import { Sparkline } from "../view/Sparkline";
-import { ON } from "./wishes";
+import { setQuery } from "../router";
+import { Filters } from "../view/runs/Filters";
+import { ariaSort, isFiltered, nextSort, queryOf } from "../view/runs/filters";
+import { RunRow } from "./RunRow";
+import { Welcome } from "./Welcome";
 
-export function RunsPage() {
-  const { value: fetched, error } = useRunList();
-  const runs = useLive((state) => state.runs);
+/** As many curves as can be told apart. */
+export const COMPARED = 8;
+const TAGS_ID = "known-tags";
+
+const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
+  { title: "Run", key: "name" },
+  { title: "State", key: "status" },
+  { title: "Progress", key: "progress", falling: true },
+  { title: "Time" },
+  { title: "Evaluations/s" },
+  { title: "Result", key: "qd_score", falling: true },
+];
+
+export function RunsPage({ query: address }: { query: URLSearchParams }) {
+  const query = queryOf(address);
+  const { value: fetched, error } = useRunList(query);
   const listed = useLive((state) => state.listed);
   const next = useLive((state) => state.next);
   const experiments = useExperiments().value ?? [];
+  const tags = useTags();
+  const [chosen, setChosen] = useState<string[]>([]);
+  const choose = (id: string) =>
+    setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
+  const empty = fetched && listed.length === 0;
   return (
     <main>
       <header class="page-head">
@@ -28,82 +45,107 @@ export function RunsPage() {
           New run
         </a>
       </header>
+      <Welcome />
       {error && <p class="banner wrong">{error}</p>}
       {!fetched && !error && listed.length === 0 && <p class="quiet loading">Loading runs …</p>}
-      {fetched && listed.length === 0 && <Empty />}
-      {listed.length > 0 && (
-        <table class="runs">
-          <thead>
-            <tr>
-              <th scope="col">Run</th>
-              <th scope="col">State</th>
-              <th scope="col">Progress</th>
-              <th scope="col">Time</th>
-              <th scope="col">Evaluations/s</th>
-              <th scope="col">Result</th>
-              <th scope="col">
-                <span class="unseen">Actions</span>
-              </th>
-            </tr>
-          </thead>
-          <tbody>
-            {listed.map((id) => (
-              <Row key={id} run={runs.get(id)!} experiments={experiments} />
-            ))}
-          </tbody>
-        </table>
+      {(listed.length > 0 || isFiltered(query)) && (
+        <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
       )}
-      {next && <More />}
+      {chosen.length > 0 && <Chosen ids={chosen} onClear={() => setChosen([])} />}
+      {empty && (isFiltered(query) ? <NoneFound /> : <Empty />)}
+      {listed.length > 0 && (
+        <Table {...{ query, listed, experiments, chosen }} onChoose={choose} />
+      )}
+      <datalist id={TAGS_ID}>
+        {tags.map((tag) => (
+          <option key={tag} value={tag} />
+        ))}
+      </datalist>
+      {next && <More query={query} />}
     </main>
   );
 }
 
-function Row({ run, experiments }: { run: Run; experiments: Experiment[] }) {
-  const title = titleOf(run, experiments);
-  const name = `${title} ${short(run.id)}`;
-  const time = timeOf(run);
-  const [figureName, figure] = keyFigureOf(run);
+interface TableProps {
+  query: RunQuery;
+  listed: readonly string[];
+  experiments: Experiment[];
+  chosen: string[];
+  onChoose: (id: string) => void;
+}
+
+function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
   return (
-    <tr>
-      <th scope="row">
-        <a class="run-name" href={`/runs/${run.id}`}>
-          {title} <code>{short(run.id)}</code>
-        </a>
-        {freedomOf(run.spec) === "none" && <NotFree />}
-        {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
-        {run.warning && <span class="row-note warning-text">{run.warning}</span>}
-      </th>
-      <td data-label="State">
-        <Badge run={run} />
-      </td>
-      <td data-label="Progress" class="with-bar">
-        <Progress run={run} />
-        <span class="quiet">
-          {run.generation} / {run.generations}
-        </span>
-      </td>
-      <td data-label={time.label}>
-        {time.text}
-        {run.status === "running" && time.text !== DASH && <span class="quiet"> left</span>}
-      </td>
-      <td data-label="Evaluations/s">{rateOf(run)}</td>
-      <td data-label="Result" class="with-spark">
-        <span>
-          {figure} <span class="quiet small">{figureName}</span>
-        </span>
-        {run.sparkline.length > 1 && (
-          <Sparkline values={run.sparkline} label={`QD score of ${name} over time`} />
-        )}
-      </td>
-      <td class="row-actions">
-        <Actions run={run} on={ON(title)} name={name} />
-      </td>
-    </tr>
+    <table class="runs">
+      <thead>
+        <tr>
+          <th scope="col">
+            <span class="unseen">Compare</span>
+          </th>
+          {COLUMNS.map(({ title, key, falling = false }) => (
+            <th key={title} scope="col" aria-sort={key ? ariaSort(query.sort, key) : undefined}>
+              {key ? (
+                <button
+                  class="sort"
+                  onClick={() => setQuery({ sort: nextSort(query.sort, key, falling) })}
+                >
+                  {title}
+                </button>
+              ) : (
+                title
+              )}
+            </th>
+          ))}
+          <th scope="col">
+            <span class="unseen">Actions</span>
+          </th>
+        </tr>
+      </thead>
+      <tbody>
+        {listed.map((id) => (
+          <RunRow
+            key={id}
+            id={id}
+            experiments={experiments}
+            chosen={chosen.includes(id)}
+            knownTags={TAGS_ID}
+            onChoose={() => onChoose(id)}
+          />
+        ))}
+      </tbody>
+    </table>
   );
 }
 
-function lastLine(text: string): string {
-  return text.trim().split("\n").at(-1) ?? "";
+function Chosen({ ids, onClear }: { ids: string[]; onClear: () => void }) {
+  return (
+    <p class="chosen" role="status">
+      <span>
+        {ids.length} chosen
+        {ids.length === 1 && ": choose another one to compare them"}
+        {ids.length > COMPARED && `: at most ${COMPARED} can be compared`}
+      </span>
+      <span class="spring" />
+      {ids.length > 1 && ids.length <= COMPARED && (
+        <a class="button primary" href={`/compare?runs=${ids.join()}`}>
+          Compare
+        </a>
+      )}
+      <button onClick={onClear}>Choose none</button>
+    </p>
+  );
+}
+
+function NoneFound() {
+  return (
+    <section class="empty card">
+      <h2>No run is like that</h2>
+      <p>Change what is asked for above, or look at all of them.</p>
+      <button onClick={() => setQuery({ q: null, status: null, experiment: null, tag: null })}>
+        Show all runs
+      </button>
+    </section>
+  );
 }
 
 function Empty() {
@@ -121,11 +163,11 @@ function Empty() {
   );
 }
 
-function More() {
+function More({ query }: { query: RunQuery }) {
   const [busy, setBusy] = useState(false);
   const load = async () => {
     setBusy(true);
-    await moreRuns().catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
+    await moreRuns(query).catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
     setBusy(false);
   };
   return (

@@ -1,13 +1,15 @@
-/** What a run will need: memory, evaluations, work. */
+/** What a run will need: time, memory, evaluations, work. */
 
 import type { Estimate } from "../api/types";
-import { bytes, count, number } from "./format";
+import { about, basis, wait } from "./costs";
+import { bytes, count, number, words } from "./format";
 
 interface Props {
   estimate: Estimate | null;
   problem: string | null;
 }
 
+/** In short, beside the button that starts the run. */
 export function Costs({ estimate, problem }: Props) {
   if (problem) {
     return (
@@ -23,11 +25,14 @@ export function Costs({ estimate, problem }: Props) {
       </p>
     );
   }
-  const { memory_bytes, memory_limit_bytes, evaluations, cell_steps } = estimate;
-  const share = memory_bytes / memory_limit_bytes;
+  const { memory_bytes, memory_limit_bytes, evaluations } = estimate;
   return (
     <dl class="costs" aria-label="Estimate">
-      <div class={share > 1 ? "wrong-text" : ""}>
+      <div>
+        <dt>Time</dt>
+        <dd>{about(estimate) ?? "unknown yet"}</dd>
+      </div>
+      <div class={memory_bytes > memory_limit_bytes ? "wrong-text" : ""}>
         <dt>Memory</dt>
         <dd>
           {bytes(memory_bytes)} <span class="quiet">of {bytes(memory_limit_bytes)}</span>
@@ -37,10 +42,39 @@ export function Costs({ estimate, problem }: Props) {
         <dt>Evaluations</dt>
         <dd>{count(evaluations)}</dd>
       </div>
-      <div>
-        <dt>Cell steps</dt>
-        <dd>{number(cell_steps)}</dd>
-      </div>
     </dl>
+  );
+}
+
+/** In full: on what it rests, and what the words mean. */
+export function CostDetails({ estimate }: { estimate: Estimate }) {
+  const { memory_bytes, memory_limit_bytes, evaluations, cell_steps, pace } = estimate;
+  const fits = memory_bytes <= memory_limit_bytes;
+  return (
+    <section class="card cost-details" aria-labelledby="cost-title">
+      <h2 id="cost-title">What it will cost</h2>
+      <p>
+        <b>{words(about(estimate) ?? "Time")}</b>{" "}
+        <span class="quiet">{basis(estimate)}.</span>
+      </p>
+      <p>
+        <b>{bytes(memory_bytes)}</b>{" "}
+        <span class={fits ? "quiet" : "wrong-text"}>
+          of memory at most; {fits ? "" : "only "}
+          {bytes(memory_limit_bytes)} {fits ? "are there" : "are there, so it would be refused"}.
+        </span>
+      </p>
+      <p>
+        <b>{count(evaluations)}</b> <span class="quiet">evaluations: simulated lives.</span>
+      </p>
+      <p>
+        <b>{number(cell_steps)}</b>{" "}
+        <span class="quiet">
+          cell steps, the unit of work: one cell of fluid brought forward by one step.
+          {pace && ` Here ${number(pace.cell_steps_per_second)} of them take a second.`}
+        </span>
+      </p>
+      <p class="quiet">{wait(estimate)}</p>
+    </section>
   );
 }

@@ -3,18 +3,31 @@
 export type Rgb = [number, number, number];
 
 /**
- * Viridis (S. van der Walt and N. Smith) as a polynomial of sixth degree for each channel,
- * fitted by M. Zucker; map and fit are both in the public domain (CC0).
+ * Seventeen even samples of matplotlib's maps (CC0), which grow evenly lighter to the eye, those
+ * of most colour-blind people too: viridis and magma (S. van der Walt and N. Smith, 2015), the
+ * latter without its black, which is a cell's ground on a dark page; cividis (Nuñez, Anderton
+ * and Renslow, PLoS ONE 13, e0199239, 2018).
  */
-const VIRIDIS: Rgb[] = [
-  [0.2777273272, 0.0054073445, 0.3340998053],
-  [0.1050930431, 1.4046135299, 1.3845901627],
-  [-0.3308618287, 0.2148475595, 0.095095163],
-  [-4.634230499, -5.7991009734, -19.3324409563],
-  [6.2282699363, 14.1799333668, 56.6905526007],
-  [4.776384997, -13.7451453777, -65.3530326334],
-  [-5.4354558559, 4.6458526122, 26.3124352496],
-];
+const SAMPLES = {
+  viridis:
+    "44015448186a472d7b4240863b528b33638d2c728e26828e21918c1fa08828ae803fbc735ec96284d44baddc30d8e219fde725",
+  cividis:
+    "00224e002e6a1a386f32436d434e6c535a6d61656f6f70737d7c788c88789b9476aba072bcae6ccdbb63dec958f0d846fee838",
+  magma:
+    "1a10422f11634710785d177f7521818b2981a1307eb83779cf4070e34e65f2625df97b5dfd9668feb078feca8dfde3a5fcfdbf",
+};
+
+export type Palette = keyof typeof SAMPLES;
+export const PALETTES = Object.keys(SAMPLES) as Palette[];
+
+const ANCHORS = Object.fromEntries(
+  Object.entries(SAMPLES).map(([name, hex]) => [name, anchorsOf(hex)]),
+) as Record<Palette, Rgb[]>;
+
+function anchorsOf(hex: string): Rgb[] {
+  const numbers = hex.match(/../g)!.map((pair) => parseInt(pair, 16));
+  return Array.from({ length: numbers.length / 3 }, (_, i) => numbers.slice(3 * i, 3 * i + 3) as Rgb);
+}
 
 /** From the most negative to the most positive, evenly spaced; blue against red-orange. */
 const DIVERGING: Record<"light" | "dark", Rgb[]> = {
@@ -34,17 +47,21 @@ const DIVERGING: Record<"light" | "dark", Rgb[]> = {
   ],
 };
 
-export function viridis(t: number): Rgb {
-  const x = Math.min(1, Math.max(0, t));
-  return [0, 1, 2].map((channel) => {
-    const value = VIRIDIS.reduceRight((sum, row) => sum * x + row[channel]!, 0);
-    return Math.round(255 * Math.min(1, Math.max(0, value)));
-  }) as Rgb;
+/** From 0, dark, to 1, light. */
+export function sequential(t: number, palette: Palette): Rgb {
+  return between(ANCHORS[palette], t);
 }
 
+export const viridis = (t: number): Rgb => sequential(t, "viridis");
+
+/** From −1 over 0, the ground, to 1. */
 export function diverging(t: number, theme: "light" | "dark"): Rgb {
-  const anchors = DIVERGING[theme];
-  const place = ((Math.min(1, Math.max(-1, t)) + 1) / 2) * (anchors.length - 1);
+  return between(DIVERGING[theme], (t + 1) / 2);
+}
+
+/** The colour at a place from 0 to 1 along evenly spaced ones. */
+function between(anchors: Rgb[], t: number): Rgb {
+  const place = Math.min(1, Math.max(0, t)) * (anchors.length - 1);
   const i = Math.min(anchors.length - 2, Math.floor(place));
   const [a, b] = [anchors[i]!, anchors[i + 1]!];
   return a.map((value, channel) => {
@@ -62,8 +79,12 @@ export function table(
   count: number,
   [low, high]: [number, number],
 ): Uint32Array {
-  return Uint32Array.from({ length: count }, (_, i) => {
-    const [red, green, blue] = colour(low + ((high - low) * i) / (count - 1));
-    return 0xff000000 | (blue << 16) | (green << 8) | red;
-  });
+  return Uint32Array.from({ length: count }, (_, i) =>
+    pixel(colour(low + ((high - low) * i) / (count - 1))),
+  );
+}
+
+/** A colour as a canvas' image has it. */
+export function pixel([red, green, blue]: Rgb, alpha = 1): number {
+  return ((Math.round(255 * alpha) << 24) | (blue << 16) | (green << 8) | red) >>> 0;
 }

@@ -4,7 +4,7 @@ import type { Creature, Genome, Spec } from "../api/types";
 import { couplingFacts } from "./coupling";
 import { number, percent, words } from "./format";
 
-export const UNKNOWN = "unknown";
+const UNKNOWN = "unknown";
 const NOT_MEASURED = "not measured";
 
 type Row = [name: string, value: string];
@@ -43,6 +43,42 @@ export function measurementsOf({ identity, measured }: Creature): Row[] {
   ];
 }
 
+interface Group {
+  title: string;
+  rows: Row[];
+}
+
+/** Under which heading a feature stands; others are about the swimming as a whole. */
+const GROUPS: [title: string, names: string[]][] = [
+  ["Control", ["bending_effort", "stretching_effort", "power", "efficiency"]],
+  [
+    "Shape",
+    ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes"],
+  ],
+  ["Network", ["hidden_nodes", "connections"]],
+  ["Flow", ["reynolds", "sperm", "mach", "limited", "impulse"]],
+];
+
+/** Measurements in groups of what they are about. */
+export function groupsOf(creature: Creature): Group[] {
+  const { measured, identity } = creature;
+  if (!measured) return [{ title: "Result", rows: measurementsOf(creature) }];
+  const figures = { ...measured.descriptors, ...measured.features };
+  const among = (names: string[], inside: boolean) => {
+    const some = Object.entries(figures).filter(([name]) => names.includes(name) === inside);
+    return { ...measured, descriptors: {}, features: Object.fromEntries(some) };
+  };
+  const named = GROUPS.flatMap(([, names]) => names);
+  const first = { title: "Result", rows: measurementsOf({ ...creature, measured: among(named, false) }) };
+  const gait = { ...creature, identity: { ...identity, genome: { encoding: "gait" } as Genome } };
+  // Like a gait's, the figures of a group have no fitness before them.
+  const others = GROUPS.map(([title, names]) => ({
+    title,
+    rows: measurementsOf({ ...gait, measured: among(names, true) }),
+  }));
+  return [first, ...others.filter(({ rows }) => rows.length > 0)];
+}
+
 export function originOf({ identity, measured, provenance, licence }: Creature): Row[] {
   return [
     ...gaitOf(identity.genome),
@@ -59,7 +95,9 @@ export function originOf({ identity, measured, provenance, licence }: Creature):
   ];
 }
 
-export const formOf = ({ identity }: Creature): Row[] => couplingFacts(identity.world.coupling);
+/** How body and fluid act on each other; nothing where there is no fluid. */
+export const formOf = ({ identity }: Creature): Row[] =>
+  identity.world.fluid === false ? [] : couplingFacts(identity.world.coupling);
 
 function gaitOf(genome: Genome): Row[] {
   if (genome.encoding !== "gait") return [];
@@ -89,8 +127,9 @@ function bodyOf({ builder, nodes }: Spec): string {
   return typeof count === "number" ? `${name}, ${count} nodes` : name;
 }
 
-function worldOf({ width, height, viscosity, steric, energy }: Spec): string {
+function worldOf({ width, height, viscosity, steric, energy, fluid }: Spec): string {
   const fields = [steric && "steric repulsion", energy && "energy"].filter(Boolean);
-  const size = `${width} × ${height} cells, ν = ${number(viscosity as number)}`;
+  const water = fluid === false ? "no fluid" : `ν = ${number(viscosity as number)}`;
+  const size = `${width} × ${height} cells, ${water}`;
   return [size, ...fields].join(", ");
 }

@@ -66,8 +66,9 @@ export function words(name: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
-/** The preset that a run was started from, its seed aside, else its experiment. */
+/** A run's name, else the preset that it was started from, its seed aside, else its experiment. */
 export function titleOf(run: Run, experiments: Experiment[]): string {
+  if (run.name) return run.name;
   const presets = experiments.find(({ experiment }) => experiment === run.experiment)?.presets;
   const preset = presets?.find(({ spec }) => seedless(spec) === seedless(run.spec));
   if (run.demonstration) return "Demonstration";
@@ -77,8 +78,21 @@ export function titleOf(run: Run, experiments: Experiment[]): string {
   return run.experiment === "quality-diversity" ? words(preset.name) : `${kind}, ${preset.name}`;
 }
 
+/** What a run is called where its spec is not known. */
+export function labelOf(run: Pick<Run, "name" | "experiment" | "demonstration">): string {
+  if (run.name) return run.name;
+  return run.demonstration ? "Demonstration" : words(run.experiment.replaceAll("-", " "));
+}
+
+const SEEDLESS = new WeakMap<Spec, string>();
+
+/** Lists ask this of every run again and again: it is written once. */
 function seedless(spec: Spec): string {
-  return JSON.stringify(sorted({ ...spec, seed: 0 }));
+  const known = SEEDLESS.get(spec);
+  if (known !== undefined) return known;
+  const text = JSON.stringify(sorted({ ...spec, seed: 0 }));
+  SEEDLESS.set(spec, text);
+  return text;
 }
 
 function sorted(value: Json): Json {

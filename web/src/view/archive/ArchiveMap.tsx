@@ -1,55 +1,65 @@
 /** The archive as a map: one cell an elite, to be looked at, pointed at and opened. */
 
-import type { RefObject } from "preact";
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import type { Elites } from "../../live/elites";
+import type { ComponentChildren, RefObject } from "preact";
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Elite, Elites } from "../../live/elites";
 import { useSize } from "../canvas";
-import { count, number, short, words } from "../format";
 import { prefersStillness, useTheme } from "../theme";
 import { Horizontal, Vertical } from "./Axes";
-import { FITNESS, type MapAxis } from "./axes";
-import { type ColourBy, FLASH_MS, type Picture, drawCells, rangeOf } from "./draw";
-import { type Direction, type Shape, cellAt, nextCell } from "./geometry";
+import type { MapAxis } from "./axes";
+import type { Colouring } from "./colouring";
+import { FLASH_MS, MapPainter, type Picture } from "./draw";
 import { Legend } from "./Legend";
-import { type Tile, type Tiles, project } from "./projection";
+import { type Direction, type Layout, isDirection, nextBin } from "./layout";
+import type { Projection, Tiles } from "./projection";
+import { Reading } from "./Reading";
+
+export interface Looking {
+  cell: number;
+  elite: Elite;
+}
 
 interface Props {
   axes: readonly [MapAxis, MapAxis];
+  projection: Projection;
   elites: Elites;
-  colourBy: ColourBy;
+  colouring: Colouring;
   marked: number | null;
   onMark: (cell: number) => void;
   onOpen: (cell: number) => void;
+  /** The elite that is pointed at, else the marked one. */
+  onLook: (looking: Looking | null) => void;
+  /** What stands beside the cell that is looked at. */
+  inset: ComponentChildren;
 }
 
-const INKS = {
-  light: { ink: "#0b1216", ground: "#ffffff", empty: "rgb(20 50 70 / 0.055)" },
-  dark: { ink: "#f4f8fa", ground: "#0b1216", empty: "rgb(180 215 235 / 0.055)" },
-};
-
 /** Cells are the archive's; bins are the map's, and each shows the best elite in it. */
-export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: Props) {
+export function ArchiveMap(props: Props) {
+  const { axes, projection, elites, colouring, marked, onMark, onOpen, onLook, inset } = props;
+  const { layout, tiles, bins } = projection;
   const plot = useRef<HTMLDivElement>(null);
   const [hovered, setHovered] = useState<number | null>(null);
-  const { shape, tiles, bins } = useMemo(() => project(elites, axes), [elites, ...axes]);
-  const range = useMemo(() => rangeOf(tiles, colourBy), [tiles, colourBy]);
   const from = marked === null ? null : (bins.get(marked) ?? null);
-  const looked = hovered ?? from;
+  const looked = hovered !== null && tiles.has(hovered) ? hovered : from;
   const tile = looked === null ? undefined : tiles.get(looked);
-  const picture = { shape, tiles, colourBy, range, marked: looked };
-  const canvas = useDrawing(plot, picture, elites);
+  const canvas = useDrawing(plot, { layout, tiles, colouring }, elites);
+  useLayoutEffect(() => onLook(tile ? { cell: tile.cell, elite: tile.elite } : null), [tile?.elite]);
 
   const press = (event: KeyboardEvent) => {
     if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
-    if (!event.key.startsWith("Arrow")) return;
+    if (!isDirection(event.key)) return;
     event.preventDefault();
     setHovered(null);
-    const next = binByKey(event.key as Direction, from, tiles, shape);
+    const next = binByKey(event.key, from, tiles, layout);
     if (next !== null) onMark(tiles.get(next)!.cell);
   };
-  const open = (event: MouseEvent) => {
-    const bin = tileUnder(event, shape, tiles);
-    if (bin !== null) onOpen(tiles.get(bin)!.cell);
+  const click = (event: MouseEvent) => {
+    const bin = tileUnder(event, layout, tiles);
+    if (bin === null) return;
+    const { cell } = tiles.get(bin)!;
+    // A finger cannot hover: its first tap looks, the second opens.
+    if ((event as PointerEvent).pointerType === "touch" && bin !== from) onMark(cell);
+    else onOpen(cell);
   };
 
   return (
@@ -62,87 +72,86 @@ export function ArchiveMap({ axes, elites, colourBy, marked, onMark, onOpen }: P
         role="application"
         aria-label="Archive map. Arrow keys move between elites, Enter opens one."
         aria-describedby="map-reading"
-        onPointerMove={(event) => setHovered(tileUnder(event, shape, tiles))}
+        onPointerMove={(event) => {
+          if (event.pointerType !== "touch") setHovered(tileUnder(event, layout, tiles));
+        }}
         onPointerLeave={() => setHovered(null)}
-        onClick={open}
+        onClick={click}
         onKeyDown={press}
       >
         <canvas ref={canvas} />
+        {looked !== null && tile && <Mark layout={layout} bin={looked} />}
+        {looked !== null && tile && <Beside layout={layout} bin={looked} children={inset} />}
       </div>
       <Horizontal axis={axes[0]} />
-      <Legend label={words(colourBy)} range={range} whole={colourBy === "generation"} />
-      <Reading tile={tile} axes={axes} />
+      <Legend colouring={colouring} />
+      <Reading tile={tile} axes={axes} colour={colouring.measure} onOpen={onOpen} />
     </div>
   );
 }
 
 /** The bin under the pointer, where it holds an elite. */
-function tileUnder(event: MouseEvent, shape: Shape, tiles: Tiles): number | null {
+export function tileUnder(event: MouseEvent, layout: Layout, tiles: Tiles): number | null {
   const box = (event.currentTarget as Element).getBoundingClientRect();
   const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-  const bin = cellAt(x / box.width, y / box.height, shape);
+  const bin = layout.at(x / box.width, y / box.height);
   return bin !== null && tiles.has(bin) ? bin : null;
 }
 
 /** Where an arrow key leads; from nowhere, to the best elite. */
-function binByKey(key: Direction, from: number | null, tiles: Tiles, shape: Shape) {
-  if (from !== null) return nextCell(from, key, tiles.keys(), shape);
-  const ranked = [...tiles].sort(([, a], [, b]) => b.elite.fitness - a.elite.fitness);
-  return ranked[0]?.[0] ?? null;
+export function binByKey(key: Direction, from: number | null, tiles: Tiles, layout: Layout) {
+  if (from !== null) return nextBin(from, key, tiles.keys(), layout);
+  let best: number | null = null;
+  for (const [bin, { elite }] of tiles) {
+    if (best === null || elite.fitness > tiles.get(best)!.elite.fitness) best = bin;
+  }
+  return best;
 }
 
-type Drawn = Pick<Picture, "shape" | "tiles" | "colourBy" | "range" | "marked">;
+/** The outline of the bin that is looked at, above the picture. */
+function Mark({ layout, bin }: { layout: Layout; bin: number }) {
+  const points = layout.outline(bin).map((spot) => spot.join()).join(" ");
+  return (
+    <svg class="map-mark" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
+      <polygon class="around" points={points} />
+      <polygon points={points} />
+    </svg>
+  );
+}
+
+/** Stands where it hides neither the bin nor more of the map than it must. */
+function Beside({ layout, bin, children }: { layout: Layout; bin: number; children: ComponentChildren }) {
+  const [x, y] = layout.centre(bin);
+  const side = x < 0.5 ? "right" : "left";
+  return (
+    <div class={`map-beside ${side}`} style={{ "--x": `${100 * x}%`, "--y": `${100 * y}%` }}>
+      {children}
+    </div>
+  );
+}
+
+type Drawn = Pick<Picture, "layout" | "tiles" | "colouring">;
 
 /** A canvas that always shows the picture, and flashes where it changed. */
 function useDrawing(plot: RefObject<HTMLElement | null>, drawn: Drawn, elites: Elites) {
   const canvas = useRef<HTMLCanvasElement>(null);
+  const painter = useMemo(() => new MapPainter(), []);
   const size = useSize(plot);
   const theme = useTheme();
   const changed = useChanges(elites);
   useEffect(() => {
     const element = canvas.current;
     if (!element || size.width === 0) return;
-    const picture = { ...drawn, ...INKS[theme], changed };
-    return animate((now) => {
-      drawCells(element, size, picture, now);
+    const picture = { ...drawn, theme, changed };
+    const stop = animate((now) => {
+      painter.draw(element, size, picture, now);
       return [...changed.values()].some((time) => now - time < FLASH_MS);
     });
+    performance.clearMarks("map");
+    performance.mark("map");
+    return stop;
   }, [size, theme, changed, ...Object.values(drawn)]);
   return canvas;
-}
-
-function Reading({ tile, axes }: { tile: Tile | undefined; axes: readonly MapAxis[] }) {
-  if (!tile) {
-    return (
-      <p id="map-reading" class="map-reading" aria-live="polite">
-        <span class="quiet">Point at a cell to read it, click it to see its creature swim.</span>
-      </p>
-    );
-  }
-  const { elite, behind } = tile;
-  return (
-    <p id="map-reading" class="map-reading" aria-live="polite">
-      <span>
-        Fitness <b>{number(elite.fitness)}</b>
-      </span>
-      {axes
-        .filter(({ name }) => name !== FITNESS)
-        .map((axis) => (
-          <span key={axis.name}>
-            {axis.title} <b>{number(axis.valueOf(elite))}</b>
-          </span>
-        ))}
-      <span>
-        Generation <b>{elite.generation}</b>
-      </span>
-      {behind > 0 && (
-        <span>
-          best of <b>{count(behind + 1)}</b> here
-        </span>
-      )}
-      <code>{short(elite.creature)}</code>
-    </p>
-  );
 }
 
 /** When each cell last got another elite; what is there at first has not changed. */

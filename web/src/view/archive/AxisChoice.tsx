@@ -1,6 +1,7 @@
 /** Which two of all that was recorded the map is drawn over. */
 
 import type { Archive } from "../../api/types";
+import { Choice } from "../Choice";
 import { count } from "../format";
 import { choicesOf } from "./axes";
 
@@ -28,28 +29,6 @@ export function AxisChoice({ archive, names: [x, y], onChoose }: Props) {
       />
       <span class="quiet small">{kindOf(archive)}</span>
     </p>
-  );
-}
-
-interface ChoiceProps {
-  title: string;
-  choices: [name: string, title: string][];
-  value: string;
-  onChange: (name: string) => void;
-}
-
-function Choice({ title, choices, value, onChange }: ChoiceProps) {
-  return (
-    <label class="compact">
-      {title}
-      <select value={value} onChange={(event) => onChange(event.currentTarget.value)}>
-        {choices.map(([name, words]) => (
-          <option key={name} value={name}>
-            {words}
-          </option>
-        ))}
-      </select>
-    </label>
   );
 }
 

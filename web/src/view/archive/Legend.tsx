@@ -1,27 +1,21 @@
 /** What the colours of the map mean, in numbers. */
 
-import { css, viridis } from "../colours";
+import { ColourBar } from "../ColourBar";
+import { css, sequential } from "../colours";
 import { count, number } from "../format";
+import { type Colouring, AGE, valueAlong } from "./colouring";
 
-const STOPS = Array.from({ length: 17 }, (_, i) => css(viridis(i / 16))).join(", ");
-
-interface Props {
-  label: string;
-  range: [number, number];
-  whole: boolean;
-}
-
-export function Legend({ label, range: [low, high], whole }: Props) {
-  const write = whole ? count : number;
+export function Legend({ colouring }: { colouring: Colouring }) {
+  const { measure, palette } = colouring;
+  const write = measure.name === AGE ? count : number;
+  const numbers = [0, 0.5, 1].map((t) => write(valueAlong(colouring, t)));
+  const label = measure.unit ? `${measure.title} (${measure.unit})` : measure.title;
   return (
-    <div class="legend" role="img" aria-label={`${label} from ${write(low)} to ${write(high)}`}>
-      <span class="legend-name">{label}</span>
-      <span class="legend-bar" style={{ background: `linear-gradient(90deg, ${STOPS})` }} />
-      <span class="legend-numbers">
-        {[low, (low + high) / 2, high].map((value, i) => (
-          <span key={i}>{write(value)}</span>
-        ))}
-      </span>
-    </div>
+    <ColourBar
+      name={label}
+      label={`${label} from ${numbers[0]} to ${numbers[2]}`}
+      colourAt={(share) => css(sequential(share, palette))}
+      numbers={numbers}
+    />
   );
 }

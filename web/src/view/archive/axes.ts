@@ -5,15 +5,6 @@ import type { Elite, Elites } from "../../live/elites";
 import { words } from "../format";
 import { roundStep } from "./geometry";
 
-/** An axis of the map, and how an elite finds its place along it. */
-export interface MapAxis extends Axis {
-  title: string;
-  unit: string;
-  /** The bin of an elite's own cell, where the axis is one of the grid's. */
-  binOf: ((cell: number) => number) | null;
-  valueOf: (elite: Elite) => number | null;
-}
-
 /** Columns of features by name: what was recorded of each creature. */
 export type Features = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
@@ -41,30 +32,51 @@ export function missingOf(archive: Archive, names: string[]): string[] {
   return names.filter((name) => !there.includes(name));
 }
 
+/** An axis of the map, and how an elite finds its place along it. */
+export interface MapAxis extends Axis, Measure {
+  /** The bin of an elite's own cell, where the axis is one of the grid's. */
+  binOf: ((cell: number) => number) | null;
+}
+
+/** A number that each elite has, under a name that people read. */
+export interface Measure {
+  name: string;
+  title: string;
+  unit: string;
+  scale: Axis["scale"];
+  valueOf: (elite: Elite) => number | null;
+}
+
+export function measureOf(name: string, archive: Archive, features: Features): Measure {
+  const own = archive.axes.findIndex((axis) => axis.name === name);
+  const recorded = archive.recorded.find((feature) => feature.name === name);
+  const scale = archive.axes[own]?.scale ?? recorded?.scale ?? "linear";
+  const told = { name, title: recorded?.title ?? words(name), unit: recorded?.unit ?? "", scale };
+  if (own >= 0) return { ...told, valueOf: ({ descriptors }) => descriptors[own] ?? null };
+  if (name === FITNESS) return { ...told, valueOf: ({ fitness }) => fitness };
+  const column = features.get(name);
+  return { ...told, valueOf: ({ creature }) => column?.get(creature) ?? null };
+}
+
 export function axisOf(
   name: string,
   archive: Archive,
   elites: Elites,
   features: Features,
 ): MapAxis {
+  const measure = measureOf(name, archive, features);
   const own = archive.axes.findIndex((axis) => axis.name === name);
-  const recorded = archive.recorded.find((feature) => feature.name === name);
-  const known = { name, title: recorded?.title ?? words(name), unit: recorded?.unit ?? "" };
   if (own >= 0) {
-    const axis = archive.axes[own]!;
-    const valueOf = (elite: Elite) => elite.descriptors[own] ?? null;
-    if (archive.kind === "grid") {
-      return { ...axis, ...known, valueOf, binOf: placeAlong(archive.axes, own) };
-    }
-    return { ...axis, ...known, bins: BINS, valueOf, binOf: null };
+    const grid = archive.kind === "grid";
+    const bins = grid ? archive.axes[own]!.bins : BINS;
+    const binOf = grid ? placeAlong(archive.axes, own) : null;
+    return { ...archive.axes[own]!, ...measure, bins, binOf };
   }
-  const column = features.get(name);
-  const valueOf = ({ fitness, creature }: Elite) =>
-    name === FITNESS ? fitness : (column?.get(creature) ?? null);
-  const values = [...elites.values()].map(valueOf).filter((value) => value !== null);
-  const scale = recorded?.scale ?? "linear";
-  const [low, high, bins] = endsOf(values, scale, recorded?.low ?? 0, recorded?.high ?? 1);
-  return { ...known, low, high, bins, scale, valueOf, binOf: null };
+  const recorded = archive.recorded.find((feature) => feature.name === name);
+  const values = [...elites.values()].map(measure.valueOf).filter((value) => value !== null);
+  const [least, most] = [recorded?.low ?? 0, recorded?.high ?? 1];
+  const [low, high, bins] = endsOf(values, measure.scale, least, most);
+  return { ...measure, low, high, bins, binOf: null };
 }
 
 /** Cells count in C order: the bin along one of the axes. */

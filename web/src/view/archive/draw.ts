@@ -1,64 +1,71 @@
-/** The cells of an archive on a canvas. */
+/** The cells of an archive on a canvas: pixels that know their bins, and flashes above them. */
 
 import { type Size, prepare } from "../canvas";
-import { css, viridis } from "../colours";
-import { type Shape, rectangle } from "./geometry";
+import { type Colouring, binColours, shade } from "./colouring";
+import { type Layout, rasterOf } from "./layout";
 import type { Tiles } from "./projection";
 
 export const FLASH_MS = 1200;
-/** Cells narrower than this stand without a gap. */
-const ROOMY = 5;
-
-export type ColourBy = "fitness" | "generation";
 
 export interface Picture {
-  shape: Shape;
+  layout: Layout;
   tiles: Tiles;
-  colourBy: ColourBy;
-  range: [number, number];
+  colouring: Colouring;
   /** When elites last changed, by their cells in the archive, in milliseconds. */
   changed: ReadonlyMap<number, number>;
-  /** A bin. */
-  marked: number | null;
-  ink: string;
-  ground: string;
-  empty: string;
+  theme: "light" | "dark";
 }
 
-export function rangeOf(tiles: Tiles, colourBy: ColourBy): [number, number] {
-  let [low, high] = [Infinity, -Infinity];
-  for (const { elite } of tiles.values()) {
-    low = Math.min(low, elite[colourBy]);
-    high = Math.max(high, elite[colourBy]);
+const INKS = {
+  light: { flash: "#0b1216", empty: shade(20, 50, 70, 0.055), unknown: shade(20, 50, 70, 0.25) },
+  dark: {
+    flash: "#f4f8fa",
+    empty: shade(180, 215, 235, 0.055),
+    unknown: shade(180, 215, 235, 0.25),
+  },
+};
+
+/** Draws maps of one canvas; what depends on its size and layout alone is kept. */
+export class MapPainter {
+  private layout: Layout | null = null;
+  private raster = new Int32Array(0);
+  private image: ImageData | null = null;
+
+  draw(canvas: HTMLCanvasElement, size: Size, picture: Picture, now: number): void {
+    performance.clearMeasures("map-draw");
+    const begun = performance.now();
+    const context = prepare(canvas, size);
+    const image = this.fit(canvas, size, picture.layout);
+    const { layout, tiles, colouring } = picture;
+    const { empty, unknown, flash } = INKS[picture.theme];
+    paint(image, this.raster, binColours(tiles, layout.count, colouring, empty, unknown));
+    context.putImageData(image, 0, 0);
+    drawFlashes(context, size, picture, flash, now);
+    performance.measure("map-draw", { start: begun });
   }
-  return low <= high ? [low, high] : [0, 1];
+
+  private fit({ width, height }: HTMLCanvasElement, size: Size, layout: Layout): ImageData {
+    const fits = this.image?.width === width && this.image.height === height;
+    if (this.image && fits && this.layout === layout) return this.image;
+    this.layout = layout;
+    this.raster = rasterOf(layout, width, height, width / size.width);
+    return (this.image = new ImageData(width, height));
+  }
 }
 
-export function drawCells(canvas: HTMLCanvasElement, size: Size, picture: Picture, now: number) {
-  const context = prepare(canvas, size);
-  const { shape, tiles, colourBy, range } = picture;
-  const gap = Math.min(size.width / shape[0], size.height / shape[1]) >= ROOMY ? 0.5 : 0;
-  const box = (cell: number, inset: number) => {
-    const { x, y, w, h } = rectangle(cell, shape, size.width, size.height);
-    return [x + inset, y + inset, w - 2 * inset, h - 2 * inset] as const;
-  };
-  if (gap > 0) {
-    context.fillStyle = picture.empty;
-    for (let cell = 0; cell < shape[0] * shape[1]; cell++) context.fillRect(...box(cell, gap));
+function paint(image: ImageData, raster: Int32Array, colours: Uint32Array): void {
+  const pixels = new Uint32Array(image.data.buffer);
+  for (let k = 0; k < raster.length; k++) {
+    const bin = raster[k]!;
+    pixels[k] = bin < 0 ? 0 : colours[bin]!;
   }
-  const span = range[1] - range[0] || 1;
-  for (const [bin, { elite }] of tiles) {
-    context.fillStyle = css(viridis((elite[colourBy] - range[0]) / span));
-    context.fillRect(...box(bin, gap));
-  }
-  drawFlashes(context, picture, box, now);
-  if (picture.marked !== null) drawMark(context, box(picture.marked, 0), picture);
 }
 
 function drawFlashes(
   context: CanvasRenderingContext2D,
-  { changed, tiles, ink }: Picture,
-  box: (cell: number, inset: number) => readonly [number, number, number, number],
+  { width, height }: Size,
+  { changed, tiles, layout }: Picture,
+  ink: string,
   now: number,
 ) {
   context.strokeStyle = ink;
@@ -67,19 +74,10 @@ function drawFlashes(
     const age = (now - (changed.get(cell) ?? -Infinity)) / FLASH_MS;
     if (age < 0 || age >= 1) continue;
     context.globalAlpha = (1 - age) ** 2;
-    context.strokeRect(...box(bin, 1));
+    context.beginPath();
+    for (const [x, y] of layout.outline(bin)) context.lineTo(x * width, y * height);
+    context.closePath();
+    context.stroke();
   }
   context.globalAlpha = 1;
-}
-
-function drawMark(
-  context: CanvasRenderingContext2D,
-  [x, y, w, h]: readonly [number, number, number, number],
-  { ink, ground }: Picture,
-) {
-  for (const [colour, width] of [[ground, 5], [ink, 2]] as const) {
-    context.strokeStyle = colour;
-    context.lineWidth = width;
-    context.strokeRect(x - 1, y - 1, w + 2, h + 2);
-  }
 }

@@ -32,36 +32,6 @@ export function rectangle(cell: number, shape: Shape, width: number, height: num
   return { x: i * w, y: (shape[1] - 1 - j) * h, w, h };
 }
 
-export type Direction = "ArrowLeft" | "ArrowRight" | "ArrowUp" | "ArrowDown";
-
-const STEPS: Record<Direction, [number, number]> = {
-  ArrowLeft: [-1, 0],
-  ArrowRight: [1, 0],
-  ArrowUp: [0, 1],
-  ArrowDown: [0, -1],
-};
-
-/** The nearest filled cell in a direction; being off its line counts twice. */
-export function nextCell(
-  from: number,
-  direction: Direction,
-  filled: Iterable<number>,
-  shape: Shape,
-): number | null {
-  const [di, dj] = STEPS[direction];
-  const start = placeOf(from, shape);
-  let best: number | null = null;
-  let least = Infinity;
-  for (const cell of filled) {
-    const { i, j } = placeOf(cell, shape);
-    const ahead = (i - start.i) * di + (j - start.j) * dj;
-    const aside = Math.abs((i - start.i) * dj) + Math.abs((j - start.j) * di);
-    const cost = ahead + 2 * aside;
-    if (ahead > 0 && cost < least) [best, least] = [cell, cost];
-  }
-  return best;
-}
-
 export interface Tick {
   /** From 0 at the low end to 1 at the high end. */
   at: number;

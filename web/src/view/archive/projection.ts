@@ -4,6 +4,7 @@ import type { Axis } from "../../api/types";
 import type { Elite, Elites } from "../../live/elites";
 import type { MapAxis } from "./axes";
 import { type Shape, cellOf } from "./geometry";
+import { type Layout, gridLayout } from "./layout";
 
 /** What one bin of the map shows. */
 export interface Tile {
@@ -16,20 +17,33 @@ export interface Tile {
 export type Tiles = ReadonlyMap<number, Tile>;
 
 export interface Projection {
-  shape: Shape;
+  layout: Layout;
   tiles: Tiles;
   /** The bin of each cell that has a place on the map. */
   bins: ReadonlyMap<number, number>;
 }
 
-export function project(elites: Elites, [x, y]: readonly [MapAxis, MapAxis]): Projection {
+/** What of an axis that the map does not show is let through: its bins from one to another. */
+export interface Slice {
+  axis: MapAxis;
+  from: number;
+  to: number;
+}
+
+/** Where `cells` is given, the map shows the archive's own cells, as that lays them out. */
+export function project(
+  elites: Elites,
+  [x, y]: readonly [MapAxis, MapAxis],
+  slices: readonly Slice[] = [],
+  cells: Layout | null = null,
+): Projection {
   const shape: Shape = [x.bins, y.bins];
   const tiles = new Map<number, Tile>();
   const bins = new Map<number, number>();
   for (const [cell, elite] of elites) {
-    const [i, j] = [binOn(x, cell, elite), binOn(y, cell, elite)];
-    if (i === null || j === null) continue;
-    const bin = cellOf({ i, j }, shape);
+    if (!slices.every((slice) => passes(slice, cell, elite))) continue;
+    const bin = cells ? cell : binOfBoth(x, y, cell, elite, shape);
+    if (bin === null) continue;
     bins.set(cell, bin);
     const there = tiles.get(bin);
     if (!there) tiles.set(bin, { cell, elite, behind: 0 });
@@ -37,7 +51,17 @@ export function project(elites: Elites, [x, y]: readonly [MapAxis, MapAxis]): Pr
       tiles.set(bin, { cell, elite, behind: there.behind + 1 });
     } else there.behind += 1;
   }
-  return { shape, tiles, bins };
+  return { layout: cells ?? gridLayout(shape), tiles, bins };
+}
+
+function passes({ axis, from, to }: Slice, cell: number, elite: Elite): boolean {
+  const bin = binOn(axis, cell, elite);
+  return bin !== null && bin >= from && bin <= to;
+}
+
+function binOfBoth(x: MapAxis, y: MapAxis, cell: number, elite: Elite, shape: Shape) {
+  const [i, j] = [binOn(x, cell, elite), binOn(y, cell, elite)];
+  return i === null || j === null ? null : cellOf({ i, j }, shape);
 }
 
 function binOn(axis: MapAxis, cell: number, elite: Elite): number | null {

@@ -1,6 +1,6 @@
 /** What is plotted of a run over its generations. */
 
-import type { Column, Curves } from "../../live/curves";
+import { type Column, type Curves, DIVERGED } from "../../live/curves";
 import { number, percent } from "../format";
 
 export interface Series {
@@ -10,6 +10,13 @@ export interface Series {
   y: Column;
   /** Measured now and then: dots rather than a line. */
   dots?: boolean;
+  /** Its own places along the axis, where it has such. */
+  x?: Column;
+  dash?: number[];
+  /** What was measured, behind its smooth line. */
+  faint?: boolean;
+  /** Of another run. */
+  other?: boolean;
 }
 
 export interface Plot {
@@ -54,8 +61,34 @@ export function workOf(curves: Curves): Plot[] {
       write: number,
       series: one(withoutFirst(curves), "device_seconds", "--curve-2", false),
     },
+    { title: "Diverged so far", write: number, series: divergedSoFar(curves) },
   ];
   return plots.filter(({ series }) => series.length > 0);
+}
+
+/** Why an evaluation does not count, in words; the engine's own names are the keys. */
+export const REASONS: Record<string, string> = {
+  "non-finite": "Numbers grew beyond all bounds.",
+  supersonic: "The fluid became faster than sound, where the method does not hold.",
+};
+
+/** How many evaluations diverged for each reason that was told, most first. */
+export function divergedBy({ summary }: Curves): [reason: string, count: number][] {
+  return Object.entries(summary)
+    .filter(([name]) => name.startsWith(DIVERGED))
+    .map(([name, column]): [string, number] => [
+      name.slice(DIVERGED.length),
+      column.reduce<number>((sum, value) => sum + (value ?? 0), 0),
+    ])
+    .sort((a, b) => b[1] - a[1]);
+}
+
+function divergedSoFar(curves: Curves): Series[] {
+  return divergedBy(curves).map(([reason], i) => {
+    let sum = 0;
+    const y = curves.summary[DIVERGED + reason]!.map((value) => (sum += value ?? 0));
+    return { name: reason, colour: `--series-${3 + (i % 3)}`, y };
+  });
 }
 
 function ofEmitters({ summary }: Curves, ending: string): Series[] {
@@ -78,6 +111,13 @@ function withoutFirst(curves: Curves): Curves {
     column.map((value, i) => (curves.generation[i]! > 1 ? value : null));
   const columns = Object.entries(curves.summary).map(([name, column]) => [name, later(column)]);
   return { ...curves, summary: Object.fromEntries(columns) };
+}
+
+/** What a run had come to at a place: its newest value until then; null after its end. */
+export function valueAt(x: readonly number[], y: Column, i: number): number | null {
+  const last = y.findLastIndex((value) => value !== null);
+  if (i > last || x.length === 0) return null;
+  return y.slice(0, i + 1).findLast((value) => value !== null) ?? null;
 }
 
 /** The newest value that there is. */

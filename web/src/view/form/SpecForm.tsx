@@ -3,25 +3,51 @@
 import type { ComponentChildren } from "preact";
 import type { Json } from "../../api/types";
 import { words } from "../format";
+import { countWithin } from "./differences";
 import { isOff, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
-import { Entry, type FormState, Messages } from "./Entry";
+import { Entry, type FormState, Messages, Reset } from "./Entry";
 
 interface Props {
   form: Section;
   state: FormState;
 }
 
-export function SpecForm({ form, state }: Props) {
+/** Sections of a form; values that lie in none come first, together. */
+export function partsOf(form: Section): (Section | Union)[] {
   const whole = (field: Field) => field.kind === "section" || field.kind === "union";
   const loose = form.fields.filter((field) => !whole(field));
-  const general: Section = { ...form, title: "General", fields: loose };
-  const parts = [general, ...form.fields.filter(whole)];
+  const general: Section = { ...form, title: "General", help: "", fields: loose };
+  return [general, ...(form.fields.filter(whole) as (Section | Union)[])];
+}
+
+export function SpecForm({ form, state }: Props) {
+  const parts = partsOf(form);
   return (
     <div class={`spec-form ${parts.length < 3 ? "few" : ""}`}>
       {parts.map((part) => (
-        <Part key={part.path} part={part as Section | Union} state={state} kind="card form-section" />
+        <Card key={part.path} part={part} state={state} />
       ))}
+    </div>
+  );
+}
+
+/** A section that can be closed; what is wrong in it opens it. */
+function Card({ part, state }: { part: Section | Union; state: FormState }) {
+  const wrong = part.path !== "" && countWithin(state.messages.keys(), part.path) > 0;
+  const open = wrong || !state.closed.has(part.path);
+  const name = part.path || "general";
+  return (
+    <div class={`card form-section ${open ? "" : "shut"}`} id={`section-${name}`}>
+      <button
+        type="button"
+        class="fold"
+        aria-expanded={open}
+        aria-controls={`inside-${name}`}
+        aria-label={`${open ? "Close" : "Open"} the section ${part.title}`}
+        onClick={() => state.close(part.path, open)}
+      />
+      <Part part={part} state={state} kind="inside" open={open} />
     </div>
   );
 }
@@ -29,12 +55,13 @@ export function SpecForm({ form, state }: Props) {
 interface PartProps {
   part: Section | Union;
   state: FormState;
-  kind: "card form-section" | "form-row";
+  kind: "inside" | "form-row";
+  open?: boolean;
   children?: ComponentChildren;
 }
 
 /** A section, one that can be switched off, or one of several. */
-function Part({ part, state, kind, children }: PartProps) {
+function Part({ part, state, kind, open = true, children }: PartProps) {
   const off = part.kind === "section" && isOff(part, state.document);
   const section = part.kind === "union" ? partOf(part, state.document) : part;
   const switchable = part.kind === "section" && part.fresh !== undefined;
@@ -43,10 +70,12 @@ function Part({ part, state, kind, children }: PartProps) {
       {!switchable && <legend>{part.title}</legend>}
       {switchable && <Switch {...{ part, off, state }} />}
       {part.help && <p class="help">{part.help}</p>}
-      {part.kind === "union" && <Kinds union={part} state={state} />}
-      <Messages path={part.path} messages={state.messages} />
-      {section && !off && <Fields section={section} state={state} />}
-      {children}
+      <div hidden={!open} id={kind === "inside" ? `inside-${part.path || "general"}` : undefined}>
+        {part.kind === "union" && <Kinds union={part} state={state} />}
+        <Messages path={part.path} messages={state.messages} />
+        {section && !off && <Fields section={section} state={state} />}
+        {children}
+      </div>
     </fieldset>
   );
 }
@@ -56,7 +85,12 @@ function Switch({ part, off, state }: { part: Section; off: boolean; state: Form
   const fresh = valueAt(state.original, part.path) ?? part.fresh!;
   return (
     <div class="entry heading">
-      <label for={`field-${part.path}`}>{part.title}</label>
+      <span class="entry-name">
+        <label id={`field-${part.path}-label`} for={`field-${part.path}`}>
+          {part.title}
+        </label>
+        <Reset path={part.path} state={state} />
+      </span>
       <input
         id={`field-${part.path}`}
         type="checkbox"
@@ -73,13 +107,20 @@ function Kinds({ union, state }: { union: Union; state: FormState }) {
   const path = `${union.path}.${union.tag}`;
   const value = valueAt(state.document, path);
   const original = valueAt(state.original, union.path);
+  // Parts of other fields differ as a whole; of the same, by their word.
+  const at = state.changed.has(path) ? path : union.path;
   const choose = (name: string) => {
     const before = valueAt(state.original, path) === name;
     state.change(union.path, before ? original : union.parts.get(name)!.fresh!);
   };
   return (
     <div class="entry">
-      <label for={`field-${path}`}>{words(union.tag)}</label>
+      <span class="entry-name">
+        <label id={`field-${at}-label`} for={`field-${path}`}>
+          {words(union.tag)}
+        </label>
+        <Reset path={at} state={state} />
+      </span>
       <select
         id={`field-${path}`}
         value={String(value)}
@@ -118,7 +159,10 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
   const remove = (i: number) => state.change(rows.path, items.toSpliced(i, 1));
   return (
     <div class="form-rows" role="group" aria-label={rows.title}>
-      <p class="rows-title">{rows.title}</p>
+      <p class="rows-title entry-name">
+        <span id={`field-${rows.path}-label`}>{rows.title}</span>
+        <Reset path={rows.path} state={state} />
+      </p>
       <Messages path={rows.path} messages={state.messages} />
       {rows.help && <p class="help">{rows.help}</p>}
       {items.map((_, i) => (

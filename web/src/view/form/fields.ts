@@ -20,6 +20,8 @@ export interface Section extends Common {
   following: string[];
   /** What it begins with when it is switched on; not there where it cannot be switched off. */
   fresh?: Json;
+  /** Whether people seldom change what is in it. */
+  seldom?: boolean;
 }
 
 /** One of several parts, told apart by the word at `tag`. */
@@ -42,6 +44,8 @@ export interface NumberField extends Common {
   whole: boolean;
   nullable: boolean;
   unit: string;
+  /** Where the unit depends on another value: that value's path, and the units. */
+  unitBy?: { path: string; units: Record<string, string> };
   range: Range;
 }
 
@@ -67,19 +71,19 @@ export interface Several extends Common {
 }
 
 /** Lists within a list, which are written as JSON. */
-export interface Nested extends Common {
+interface Nested extends Common {
   kind: "nested";
 }
 
-export interface Flag extends Common {
+interface Flag extends Common {
   kind: "flag";
 }
 
-export interface TextField extends Common {
+interface TextField extends Common {
   kind: "text";
 }
 
-export interface Constant extends Common {
+interface Constant extends Common {
   kind: "constant";
 }
 
@@ -94,10 +98,14 @@ function sectionOf(schema: Schema, root: Schema, common: Common): Section {
   const properties = (schema.properties ?? {}) as Record<string, Schema>;
   const following = followingOf(schema, root);
   const fields = Object.entries(properties).map(([key, property]) =>
-    fieldOf(property, root, key, join(common.path, key), following.includes(key)),
+    // A part that has a unit has it for all that is in it.
+    fieldOf({ ...unitIn(schema), ...property }, root, key, join(common.path, key), following.includes(key)),
   );
-  return { ...common, kind: "section", fields, following };
+  const seldom = schema.seldom === true && { seldom: true };
+  return { ...common, kind: "section", fields, following, ...seldom };
 }
+
+const unitIn = ({ unit }: Schema): Schema => (unit === undefined ? {} : { unit });
 
 /** What may be left out and has no default of its own takes it from the other fields. */
 function followingOf(schema: Schema, root: Schema): string[] {
@@ -124,7 +132,7 @@ function fieldOf(
   if (Array.isArray(inner.enum)) return { ...common, kind: "choice", nullable, options: inner.enum };
   switch (inner.type) {
     case "object": {
-      const section = sectionOf(inner, root, common);
+      const section = sectionOf({ ...inner, ...unitIn(schema) }, root, common);
       if (inner === schema) return section;
       return { ...section, fresh: schema.default ?? defaultOf(inner, root) };
     }
@@ -134,14 +142,29 @@ function fieldOf(
       return { ...common, kind: "flag" };
     case "integer":
     case "number":
-      return numberOf(inner, { ...common, nullable, unit: text(schema.unit ?? inner.unit) });
+      return numberOf({ ...inner, ...unitsBy(schema) }, {
+        ...common,
+        nullable,
+        unit: text(schema.unit ?? inner.unit),
+      });
     default:
       return { ...common, kind: "text" };
   }
 }
 
+const unitsBy = ({ unit_of = null, units = null }: Schema): Schema =>
+  unit_of === null ? {} : { unit_of, units };
+
 function numberOf(schema: Schema, known: Common & { nullable: boolean; unit: string }): NumberField {
-  return { ...known, kind: "number", whole: schema.type === "integer", range: rangeOf(schema) };
+  const whole = schema.type === "integer";
+  return { ...known, kind: "number", whole, range: rangeOf(schema), ...unitByOf(schema, known.path) };
+}
+
+/** The unit follows from a value beside it. */
+function unitByOf({ unit_of, units }: Schema, path: string): Pick<NumberField, "unitBy"> {
+  if (typeof unit_of !== "string") return {};
+  const beside = path.split(".").slice(0, -1).join(".");
+  return { unitBy: { path: join(beside, unit_of), units: units as Record<string, string> } };
 }
 
 function arrayOf(schema: Schema, root: Schema, common: Common): Field {
@@ -170,7 +193,7 @@ function unionOf(schema: Schema, root: Schema, common: Common): Union {
   return { ...common, kind: "union", tag, parts: new Map(named) };
 }
 
-function tagOf(parts: Schema[]): string {
+export function tagOf(parts: Schema[]): string {
   const [first, ...rest] = parts.map((part) => (part.properties ?? {}) as Record<string, Schema>);
   const fixed = (part: Record<string, Schema>, key: string) =>
     part[key] !== undefined && ("const" in part[key] || Array.isArray(part[key].enum));

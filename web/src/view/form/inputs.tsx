@@ -2,8 +2,9 @@
 
 import { useEffect, useState } from "preact/hooks";
 import type { Json } from "../../api/types";
+import { count, number } from "../format";
 import { typed, typedJson, typedList } from "./document";
-import type { Choice, List, NumberField, Range, Several } from "./fields";
+import type { Choice, NumberField, Range, Several } from "./fields";
 
 interface Common {
   id: string;
@@ -12,7 +13,12 @@ interface Common {
   onChange: (value: Json) => void;
 }
 
-export function NumberInput({ id, value, invalid, onChange, field }: Common & { field: NumberField }) {
+interface NumberProps extends Common {
+  field: NumberField;
+  unit: string;
+}
+
+export function NumberInput({ id, value, invalid, onChange, field, unit }: NumberProps) {
   const [text, setText] = useState(() => written(value));
   // Typing "1e" or "0." must not be rewritten; a preset's value must.
   useEffect(() => {
@@ -27,7 +33,6 @@ export function NumberInput({ id, value, invalid, onChange, field }: Common & { 
         spellcheck={false}
         value={text}
         placeholder={field.nullable ? "auto" : ""}
-        title={rangeText(field.range)}
         aria-invalid={invalid}
         aria-describedby={`${id}-about`}
         onInput={(event) => {
@@ -35,7 +40,7 @@ export function NumberInput({ id, value, invalid, onChange, field }: Common & { 
           onChange(typed(event.currentTarget.value));
         }}
       />
-      {field.unit && <span class="unit">{field.unit}</span>}
+      {unit && <span class="unit">{unit}</span>}
     </span>
   );
 }
@@ -60,32 +65,24 @@ export function ChoiceInput({ id, value, invalid, onChange, field }: Common & { 
 }
 
 /** Several numbers, written in a row. */
-export function ListInput({ id, value, invalid, onChange, field }: Common & { field: List }) {
+export function ListInput({ id, value, invalid, onChange }: Common) {
   const write = (items: Json) => (Array.isArray(items) ? items.join(", ") : "");
-  return (
-    <Written
-      {...{ id, value, invalid, onChange }}
-      title={`each ${rangeText(field.item.range)}`}
-      write={write}
-      read={typedList}
-    />
-  );
+  return <Written {...{ id, value, invalid, onChange }} write={write} read={typedList} />;
 }
 
 /** Lists within a list, written as JSON. */
 export function NestedInput({ id, value, invalid, onChange }: Common) {
   const write = (items: Json) => (typeof items === "string" ? items : JSON.stringify(items));
-  return <Written {...{ id, value, invalid, onChange }} title="" write={write} read={typedJson} />;
+  return <Written {...{ id, value, invalid, onChange }} write={write} read={typedJson} />;
 }
 
 interface WrittenProps extends Common {
-  title: string;
   write: (value: Json) => string;
   read: (text: string) => Json;
 }
 
 /** A text that stands for a value; what is being typed is not rewritten, a preset's is. */
-function Written({ id, value, invalid, onChange, title, write, read }: WrittenProps) {
+function Written({ id, value, invalid, onChange, write, read }: WrittenProps) {
   const [text, setText] = useState(() => write(value));
   const same = (a: Json, b: Json) => JSON.stringify(a) === JSON.stringify(b);
   useEffect(() => {
@@ -97,7 +94,6 @@ function Written({ id, value, invalid, onChange, title, write, read }: WrittenPr
       rows={2}
       spellcheck={false}
       value={text}
-      title={title}
       aria-invalid={invalid}
       aria-describedby={`${id}-about`}
       onInput={(event) => {
@@ -160,10 +156,16 @@ function written(value: Json): string {
   return value === null ? "" : String(value);
 }
 
-function rangeText({ low, lowOpen, high, highOpen }: Range): string {
+/** `16 to 2,048`, `more than 0`, or nothing. */
+export function rangeText({ low, lowOpen, high, highOpen }: Range): string {
   const parts = [
-    low === undefined ? "" : `${lowOpen ? "more than" : "at least"} ${low}`,
-    high === undefined ? "" : `${highOpen ? "less than" : "at most"} ${high}`,
+    low === undefined ? "" : `${lowOpen ? "more than" : "at least"} ${limit(low)}`,
+    high === undefined ? "" : `${highOpen ? "less than" : "at most"} ${limit(high)}`,
   ];
+  if (low !== undefined && high !== undefined && !lowOpen && !highOpen) {
+    return `${limit(low)} to ${limit(high)}`;
+  }
   return parts.filter(Boolean).join(", ");
 }
+
+const limit = (value: number) => (Number.isInteger(value) ? count(value) : number(value, 6));

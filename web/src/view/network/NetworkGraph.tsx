@@ -7,9 +7,16 @@ import { type Spot, layoutOf } from "./layout";
 
 const RADIUS = 13;
 /** A small network is not blown up beyond this, a large one scrolls rather than shrink. */
-const [LARGEST, SMALLEST] = [1.2, 0.72];
+const [LARGEST, SMALLEST] = [1.2, 0.5];
 
-export function NetworkGraph({ network }: { network: Network }) {
+interface Props {
+  network: Network;
+  /** The node whose links stand out. */
+  chosen?: number | null;
+  onChoose?: (id: number) => void;
+}
+
+export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
   const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
   const strongest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
   const enabled = network.links.filter((link) => link.enabled).length;
@@ -19,15 +26,16 @@ export function NetworkGraph({ network }: { network: Network }) {
       <div class="scroll">
         <svg
           viewBox={`0 0 ${width} ${height}`}
-          style={{ maxWidth: LARGEST * width, minWidth: SMALLEST * width }}
-          role="img"
+          style={{ maxWidth: `${LARGEST * width}px`, minWidth: `${SMALLEST * width}px` }}
+          role={onChoose ? "group" : "img"}
+          class={chosen === null ? "" : "choosing"}
           aria-label={`Network: ${summary}`}
         >
           {network.links.map((link, i) => (
-            <Wire key={i} link={link} spots={spots} strongest={strongest} />
+            <Wire key={i} link={link} spots={spots} strongest={strongest} into={link.target === chosen} />
           ))}
           {[...spots.values()].map((spot) => (
-            <Node key={spot.neuron.id} spot={spot} />
+            <Node key={spot.neuron.id} spot={spot} chosen={spot.neuron.id === chosen} onChoose={onChoose} />
           ))}
         </svg>
       </div>
@@ -47,15 +55,16 @@ interface WireProps {
   link: Link;
   spots: Map<number, Spot>;
   strongest: number;
+  into: boolean;
 }
 
-function Wire({ link, spots, strongest }: WireProps) {
+function Wire({ link, spots, strongest, into }: WireProps) {
   const [from, to] = [spots.get(link.source), spots.get(link.target)];
   if (!from || !to) return null;
   const sign = link.weight < 0 ? "negative" : "positive";
   return (
     <path
-      class={`wire ${sign} ${link.enabled ? "" : "off"}`}
+      class={`wire ${sign} ${link.enabled ? "" : "off"} ${into ? "into" : ""}`}
       d={pathOf(from, to)}
       stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / strongest}
     >
@@ -78,11 +87,32 @@ function pathOf(from: Spot, to: Spot): string {
   return `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
 }
 
-function Node({ spot }: { spot: Spot }) {
+interface NodeProps {
+  spot: Spot;
+  chosen: boolean;
+  onChoose?: (id: number) => void;
+}
+
+function Node({ spot, chosen, onChoose }: NodeProps) {
   const { neuron, x, y } = spot;
+  const choose = () => onChoose?.(neuron.id);
+  const named = `${neuron.label || `node ${neuron.id}`} ${neuron.activation}`;
+  const widget = onChoose && {
+    tabIndex: 0,
+    role: "button" as const,
+    "aria-pressed": chosen,
+    "aria-label": `${named}: what it computes`,
+    onFocus: choose,
+    onClick: choose,
+    onPointerEnter: choose,
+  };
   const beside = neuron.role === "input" ? -1 : 1;
   return (
-    <g class={`neuron ${neuron.role}`} transform={`translate(${x},${y})`}>
+    <g
+      class={`neuron ${neuron.role} ${chosen ? "chosen" : ""}`}
+      transform={`translate(${x},${y})`}
+      {...widget}
+    >
       <title>
         {neuron.label || `node ${neuron.id}`}: {neuron.activation}, bias {number(neuron.bias)}
       </title>
@@ -92,7 +122,7 @@ function Node({ spot }: { spot: Spot }) {
         <text class="name" x={beside * (RADIUS + 6)} dy="0.32em" data-side={neuron.role}>
           {neuron.label}
         </text>
-      )}
+      )}{" "}
       {neuron.role !== "input" && (
         <text class="activation" y={RADIUS + 12}>
           {neuron.activation}

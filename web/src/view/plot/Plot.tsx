@@ -1,6 +1,6 @@
 /** Lines of marked points over two axes; a mark with something to see is a link to it. */
 
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { useSize } from "../canvas";
 import { Frame, type Room, type Upper } from "./Frame";
 import { Mark } from "./Mark";
@@ -39,13 +39,16 @@ interface Props {
   lines: Line[];
   upper?: Upper | null;
   shaded?: boolean;
+  /** Told of the mark that is pointed at or has the focus. */
+  onNear?: (point: Point | null) => void;
 }
 
-export function Plot({ title, x, y, lines, upper = null, shaded = false }: Props) {
+export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear }: Props) {
   const host = useRef<HTMLDivElement>(null);
   const { width, height } = useSize(host);
   const [lit, setLit] = useState<string | null>(null);
   const [near, setNear] = useState<Point | null>(null);
+  useEffect(() => onNear?.(near), [near]);
   const room: Room = {
     left: 78,
     right: width - 14,

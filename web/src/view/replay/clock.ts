@@ -1,5 +1,6 @@
-/** What moves a replay: the screen's own pace, and the space bar. */
+/** What moves a replay: the screen's own pace, and keys. */
 
+import type { RefObject } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 
 /** Calls back with the seconds since the last frame of the screen, while it runs. */
@@ -20,14 +21,28 @@ export function useClock(running: boolean, tick: (seconds: number) => void): voi
   }, [running]);
 }
 
-export function useSpaceBar(toggle: () => void): void {
+/** What has a use of its own for these keys, or for text. */
+const OWN = "select, textarea, [contenteditable], input:not([type=range], [type=checkbox])";
+const PRESSED = "button, a, summary, input:not([type=range])";
+
+/** Whether a key pressed on a target is a player's: its space bar plays from anywhere on the
+ * page, and its other keys work within it alone, so that they cannot be pressed by mistake. */
+export function meant(key: string, target: Element, player: Element | null): boolean {
+  if (target.closest(OWN)) return false;
+  return key === " " ? !target.closest(PRESSED) : player?.contains(target) === true;
+}
+
+/** Keys of a player, each with what it does. */
+export function useKeys(player: RefObject<Element | null>, keys: Record<string, () => void>): void {
+  const latest = useRef(keys);
+  latest.current = keys;
   useEffect(() => {
     const press = (event: KeyboardEvent) => {
-      const target = event.target as HTMLElement;
-      const busy = target.closest("button, select, a, textarea, summary, input:not([type=range])");
-      if (event.key !== " " || busy) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+      const action = latest.current[event.key];
+      if (!action || !meant(event.key, event.target as Element, player.current)) return;
       event.preventDefault();
-      toggle();
+      action();
     };
     window.addEventListener("keydown", press);
     return () => window.removeEventListener("keydown", press);

@@ -1,25 +1,11 @@
-/** The vorticity around a camera as an image; the world repeats in both directions. */
+/** A field of the fluid around a camera as an image; the world repeats in both directions. */
 
 import type { Replay } from "../../frames/replay";
-import { diverging, table } from "../colours";
+import { type Field, coloursOf } from "./fields";
 import type { Point } from "./motion";
 
 /** Cells drawn beyond the view, so that smoothing never sees the image's edge. */
 const MARGIN = 2;
-
-/** The vorticity that only one value in a hundred exceeds, of those that are not zero; 0: none. */
-export function strongest({ vorticity, header }: Replay): number {
-  const counts = new Array<number>(129).fill(0);
-  for (const value of vorticity) counts[Math.abs(value)]!++;
-  const moving = vorticity.length - counts[0]!;
-  if (moving === 0) return 0;
-  let above = 0;
-  for (let level = 128; level > 1; level--) {
-    above += counts[level]!;
-    if (above > moving / 100) return (level / 127) * header.vorticity.scale;
-  }
-  return header.vorticity.scale / 127;
-}
 
 export class FluidPainter {
   private readonly image: ImageData;
@@ -28,14 +14,12 @@ export class FluidPainter {
 
   constructor(
     private readonly replay: Replay,
-    theme: "light" | "dark",
-    strength: number,
+    private readonly field: Field,
   ) {
     const [width, height] = replay.header.size;
     this.canvas = new OffscreenCanvas(width + 2 * MARGIN, height + 2 * MARGIN);
     this.image = new ImageData(this.canvas.width, this.canvas.height);
-    const most = strength > 0 ? replay.header.vorticity.scale / strength : 1;
-    this.colours = table((value) => diverging(value, theme), 255, [-most, most]);
+    this.colours = coloursOf(field, replay);
   }
 
   /** Fills a context of `scale` pixels a cell with the flow at `time` around `camera`. */
@@ -61,19 +45,20 @@ export class FluidPainter {
   private fill(time: number, x0: number, y0: number): void {
     const { size, frames } = this.replay.header;
     const [width, height] = size;
-    const { vorticity } = this.replay;
     const before = Math.min(frames - 1, Math.floor(time));
     const after = Math.min(frames - 1, before + 1);
     const t = time - before;
+    const { zero } = this.field;
+    const [old, next] = [before, after].map((frame) => this.field.plane(this.replay, frame));
     const pixels = new Uint32Array(this.image.data.buffer);
     const { width: columns, height: rows } = this.canvas;
     for (let column = 0; column < columns; column++) {
       const x = wrap(x0 + column, width);
-      const [a, b] = [(before * width + x) * height, (after * width + x) * height];
+      const first = x * height;
       for (let row = 0; row < rows; row++) {
         const y = wrap(y0 + rows - 1 - row, height);
-        const value = (1 - t) * vorticity[a + y]! + t * vorticity[b + y]!;
-        pixels[row * columns + column] = this.colours[Math.round(value) + 127]!;
+        const value = (1 - t) * old![first + y]! + t * next![first + y]!;
+        pixels[row * columns + column] = this.colours[Math.round(value) + zero]!;
       }
     }
   }

@@ -4,18 +4,22 @@ import type { Replay } from "../../frames/replay";
 import { type Size, prepare } from "../canvas";
 import type { FluidPainter } from "./fluid";
 import { type Point, meanOf, positionsAt, splineOf } from "./motion";
+import { type Tracers, drawTracers } from "./tracers";
 
 /** Cells between the points of the grid that stands still while the camera moves. */
 const GRID = 8;
 
 export interface Scene {
   replay: Replay;
-  painter: FluidPainter;
+  /** Null: bodies alone. */
+  painter: FluidPainter | null;
   chains: number[][];
   /** The body's mean position in each frame. */
   way: Point[];
   follow: boolean;
+  /** Of the ink: for a light or a dark ground. */
   theme: "light" | "dark";
+  tracers?: Tracers | null;
 }
 
 const INK = {
@@ -39,8 +43,11 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
     (x - camera[0] + width / 2) * scale,
     (camera[1] - y + height / 2) * scale,
   ];
-  scene.painter.paint(context, time, camera, scale);
+  scene.painter?.paint(context, time, camera, scale);
   drawGrid(context, camera, [width, height], screen, INK[scene.theme].faint);
+  if (scene.tracers) {
+    drawTracers(context, scene.tracers, { time, camera, scale, colour: INK[scene.theme].body });
+  }
   for (const shift of tiles(mean, camera, [width, height])) {
     const moved = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
     drawWay(context, [...scene.way.slice(0, Math.floor(time) + 1), mean].map(moved), scene.theme);

@@ -1,0 +1,80 @@
+"""A creature file as HDF5: the same document, with its body and genes as arrays."""
+
+import json
+import re
+from collections.abc import Mapping
+from io import BytesIO
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ..spec import shape
+from . import file as hdf5
+from .creature import parse, scene_of
+from .encoding import decode
+from .file import Tree
+from .naming import canonical
+
+FORMAT = "microcosmos-creature-hdf5/1"
+
+BODY = ("positions", "edges", "joints", "rest_length", "rest_angle", "stretch", "shear", "bend")
+PARTS = ("measured", "provenance", "licence")
+
+
+def dump(file: Mapping[str, Any]) -> bytes:
+    """The bytes of a parsed creature file; the same file gives the same bytes."""
+    body = shape(scene_of(file).body)
+    measured = file["measured"]
+    tree: Tree = {
+        "identity": np.bytes_(canonical(file["identity"])),
+        "body": {name: getattr(body, name) for name in BODY},
+        "genome": _arrays(file["identity"]["genome"]),
+    }
+    if measured:
+        tree["measured"] = {
+            "fitness": measured["fitness"],
+            **{group: _by_link(measured[group]) for group in ("descriptors", "features")},
+        }
+    texts = {part: json.dumps(file[part], sort_keys=True) for part in PARTS}
+    return hdf5.dump(tree, {"format": FORMAT, "sha256": file["sha256"], **texts})
+
+
+def load(data: bytes) -> dict[str, Any]:
+    """The creature file in these bytes, checked as any other; `ValueError` where it is none."""
+    try:
+        with h5py.File(BytesIO(data), "r") as file:
+            told = {name: bytes(value).decode() for name, value in file.attrs.items()}
+            if told.get("format") != FORMAT:
+                raise ValueError(f"`format` must be {FORMAT}, got {told.get('format')}")
+            identity = json.loads(bytes(file["identity"][()]))  # pyright: ignore[reportIndexIssue, reportArgumentType]
+    except OSError as error:
+        raise ValueError(f"a creature's HDF5 file must be HDF5: {error}") from error
+    parts = {part: json.loads(told[part]) for part in PARTS}
+    return parse({"identity": identity, "sha256": told["sha256"], **parts})
+
+
+def link(name: str) -> str:
+    """Anybody's name as one of HDF5, which has paths: what would be one is percent-encoded.
+
+    `%` alone stands for a name without letters.
+    """
+    return re.sub("[%/.\0]", lambda found: f"%{ord(found[0]):02X}", name) or "%"
+
+
+def _by_link(values: Mapping[str, float]) -> Tree:
+    return {link(name): value for name, value in values.items()}
+
+
+def _arrays(genome: Mapping[str, Any]) -> Tree:
+    """What of a genome is a list or a row of numbers, with the numbers decoded."""
+    found: Tree = {}
+    for name, value in genome.items():
+        if name in ("bias", "weight", "values"):
+            found[name] = decode(value)
+        elif isinstance(value, list | tuple):
+            text = any(isinstance(item, str) for item in value)
+            found[name] = np.array([v.encode() for v in value]) if text else np.array(value)
+        elif name in ("nodes", "connections"):
+            found[name] = _arrays(value)
+    return found

@@ -1,0 +1,116 @@
+"""What a spec is about, to be drawn before anything runs: bodies in their worlds, pictures."""
+
+from dataclasses import dataclass
+from functools import singledispatch
+
+import numpy as np
+
+from .. import bodies, pictures
+from .body import Body, shape
+from .evolution import Evolution
+from .experiments import Spec
+from .folding import Folding
+from .gaits import Gaits, swimmer_body
+from .refinement import Refinement, parsed
+from .scaling import SPACING, Scaling
+from .world import World
+
+MOST_NODES = 1024
+"""Nodes of a body that are drawn, about."""
+MOST_FILAMENTS = 600
+"""Filaments of a crowd that are drawn."""
+MOST_PICTURES = 16
+"""Pictures that are drawn."""
+PIXELS = 32
+"""Of a drawn picture's longer side."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A body at rest in its world; of many nodes fewer are drawn."""
+
+    name: str
+    nodes: int
+    """How many there are."""
+    positions: np.ndarray
+    """(node, 2) in cells."""
+    edges: np.ndarray
+    """(edge, 2) numbers of nodes that are drawn."""
+    whole: bool = True
+    """Whether every filament is drawn, with however few nodes."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Bodies, each in a periodic world of its own that is as large as the others'."""
+
+    width: int
+    height: int
+    bodies: tuple[Drawn, ...]
+    pictures: tuple[tuple[str, np.ndarray], ...] = ()
+    """Names and ink (row, column) from the top."""
+    picture_size: int = 0
+    """The longer side of a picture, in cells."""
+
+
+@singledispatch
+def drawing(spec: Spec) -> Drawing:
+    """What is drawn of a spec."""
+    raise TypeError(f"`spec` must be an experiment's, got {type(spec).__name__}")
+
+
+@drawing.register
+def _(spec: Evolution) -> Drawing:
+    return _alone(spec.world, spec.body)
+
+
+@drawing.register
+def _(spec: Refinement) -> Drawing:
+    from ..archive.creature import scene_of  # Which reads specs itself.
+
+    scene = scene_of(parsed(spec.creature))
+    return _alone(scene.world, scene.body)
+
+
+@drawing.register
+def _(spec: Folding) -> Drawing:
+    body = _drawn(spec.body.builder, spec.world.width, spec.world.height, spec.body)
+    shown = spec.targets[:MOST_PICTURES]
+    found = tuple((target.name, pictures.fitted(target.ink, PIXELS)) for target in shown)
+    return Drawing(spec.world.width, spec.world.height, (body,), found, spec.size)
+
+
+@drawing.register
+def _(spec: Gaits) -> Drawing:
+    size = spec.width, spec.height
+    drawn = tuple(_drawn(name, *size, swimmer_body(name)) for name in spec.swimmers)
+    return Drawing(*size, drawn)
+
+
+@drawing.register
+def _(spec: Scaling) -> Drawing:
+    crowds = tuple(_crowd(spec, nodes) for nodes in (spec.nodes[0], spec.nodes[-1]))
+    return Drawing(spec.width, spec.height, crowds)
+
+
+def _alone(world: World, body: Body) -> Drawing:
+    drawn = _drawn(body.builder, world.width, world.height, body)
+    return Drawing(world.width, world.height, (drawn,))
+
+
+def _drawn(name: str, width: int, height: int, body: Body) -> Drawn:
+    """The body in the middle of its world, where its life begins."""
+    whole = bodies.placed(shape(body), (width / 2, height / 2))
+    positions, edges = bodies.thinned(whole, MOST_NODES)
+    return Drawn(name, len(whole.positions), positions, edges)
+
+
+def _crowd(spec: Scaling, nodes: int) -> Drawn:
+    """Straight filaments by their ends; the first of them lie anywhere in the box."""
+    every = spec.centres(nodes)
+    centres = every[:MOST_FILAMENTS]
+    half = (spec.filament - 1) * SPACING / 2
+    ends = centres[:, None] + np.array([[-half, 0.0], [half, 0.0]])
+    edges = np.arange(2 * len(centres)).reshape(-1, 2)
+    whole = len(centres) == len(every)
+    return Drawn(f"{len(every):,} filaments", nodes, ends.reshape(-1, 2), edges, whole)

@@ -1,0 +1,34 @@
+"""What is drawn of a spec before it runs, as it goes over the wire."""
+
+from microcosmos import pictures
+from microcosmos.spec import Drawing
+
+from .schemas import BodyRead, DrawingRead, PictureRead
+
+DECIMALS = 3
+
+
+def drawing_read(drawing: Drawing) -> DrawingRead:
+    bodies = [
+        BodyRead(
+            name=body.name,
+            nodes=body.nodes,
+            positions=body.positions.round(DECIMALS).tolist(),
+            edges=body.edges.tolist(),
+            whole=body.whole,
+        )
+        for body in drawing.bodies
+    ]
+    shown = [
+        PictureRead(
+            name=name, width=ink.shape[1], height=ink.shape[0], pixels=pictures.encoded(ink)
+        )
+        for name, ink in drawing.pictures
+    ]
+    return DrawingRead(
+        width=drawing.width,
+        height=drawing.height,
+        bodies=bodies,
+        pictures=shown,
+        picture_size=drawing.picture_size,
+    )

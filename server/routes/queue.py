@@ -1,0 +1,38 @@
+"""The queue: runs that wait for a worker."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from sqlalchemy import select
+
+from .. import progress, waiting
+from ..deps import ServicesDep, SessionDep
+from ..models import QUEUED, Run
+from ..schemas import QueueRead, Waiting
+
+router = APIRouter(prefix="/queue", tags=["workers"])
+
+
+@router.get("")
+def read_queue(
+    services: ServicesDep,
+    session: SessionDep,
+    limit: Annotated[int, Query(ge=1, le=200)] = 50,
+) -> QueueRead:
+    """How many runs wait, and the first of them, in order, each with the reason."""
+    line = waiting.line(services, session)
+    first = line.runs[:limit]
+    waits = select(Run).where(Run.id.in_(first), Run.status == QUEUED)
+    found = {run.id: run for run in session.scalars(waits)}
+    runs = [found[run_id] for run_id in first if run_id in found]
+    reasons = waiting.reasons_in(line, runs)
+    items = [
+        Waiting(
+            **progress.carried(run).model_dump(),
+            waiting=reasons[run.id],
+            queued_at=run.queued_at,
+            memory_bytes=waiting.needed_bytes(run),
+        )
+        for run in runs
+    ]
+    return QueueRead(total=len(line.runs), items=items)

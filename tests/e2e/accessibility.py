@@ -1,0 +1,31 @@
+"""Everybody can use a page, as far as a program can tell: axe looks for violations."""
+
+from typing import Any
+
+from drive import ROOT
+from playwright.sync_api import Page
+
+AXE = ROOT / "web" / "node_modules" / "axe-core" / "axe.min.js"
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+RUN = """
+async (tags) => {
+  const { violations } = await axe.run({ runOnly: { type: "tag", values: tags } });
+  const told = ({ target, failureSummary }) => [target.join(" "), failureSummary];
+  return violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(told) }));
+}
+"""
+POINTS = ".mark"
+"""Points of a plot: they lie where the data has them, and the table beside leads there too,
+which is what target size (WCAG 2.5.8) makes exceptions for."""
+
+
+def violations(page: Page) -> list[str]:
+    """What axe finds on a page, where, and what it needs."""
+    page.add_script_tag(path=AXE)
+    found: list[dict[str, Any]] = page.evaluate(RUN, RULES)
+    return [
+        f"{one['id']}: {one['help']}; {target}: {summary}"
+        for one in found
+        for target, summary in one["nodes"]
+        if not (one["id"] == "target-size" and POINTS in target)
+    ]

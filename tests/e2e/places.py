@@ -1,0 +1,109 @@
+"""Every page there is to see of a product, and when it has come to rest."""
+
+import time
+from collections.abc import Collection, Iterator
+from typing import Any, NamedTuple
+
+import httpx
+from playwright.sync_api import Page
+
+NOWHERE = "Nothing lives here"
+UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
+"""What stands for something that is still on its way."""
+CALM_S = 0.3
+SCRUBBER = "input[aria-label='Moment of the replay']"
+
+
+GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
+"""For who has been here before, and needs no guide."""
+
+
+class Place(NamedTuple):
+    """A page with something on it."""
+
+    name: str
+    path: str
+    press: str | None = None
+    """A button to press first."""
+
+
+def places(address: str, among: Collection[str] | None = None) -> list[Place]:
+    """The pages of a product, with the newest finished of these runs in each experiment."""
+    with httpx.Client(base_url=f"{address}/api/v1", timeout=30) as http:
+        known = [run for run in finished(http) if among is None or run["id"] in among]
+        runs = {run["experiment"]: run for run in reversed(known)}
+        return [
+            Place("runs", "/"),
+            Place("workers", "/workers"),
+            *compared(known),
+            *(Place(f"run-{name}", f"/runs/{run['id']}") for name, run in runs.items()),
+            *searched(http, runs.get("quality-diversity")),
+            *measured(http, runs.get("gaits")),
+            Place("new-run", "/new"),
+            Place("new-run-json", "/new", "JSON"),
+            Place("not-found", "/nowhere"),
+        ]
+
+
+def finished(http: httpx.Client) -> list[dict[str, Any]]:
+    """Finished runs, newest first."""
+    page = http.get("/runs", params={"limit": 100}).raise_for_status().json()
+    return [run for run in page["items"] if run["status"] == "finished"]
+
+
+def compared(known: list[dict[str, Any]]) -> Iterator[Place]:
+    """Two runs beside each other, where two have searched."""
+    runs = [run["id"] for run in known if "search" in run["spec"]]
+    if len(runs) > 1:
+        yield Place("compare", f"/compare?runs={','.join(runs[:2])}")
+
+
+def searched(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
+    """What there is to see of an archive beside its map."""
+    if run:
+        archive = http.get(f"/runs/{run['id']}/archive").raise_for_status().json()
+        best = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
+        yield Place("guide", f"/runs/{run['id']}", "What is this?")
+        yield Place("gallery", f"/runs/{run['id']}?view=gallery")
+        yield Place("creature", f"/creatures/{archive['creature'][best]}?run={run['id']}")
+
+
+def measured(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
+    """A swimmer whose gait was given to it."""
+    if run:
+        rows = http.get(f"/runs/{run['id']}/results").raise_for_status().json()["rows"]
+        swimmer = next(row["creature"] for row in rows if row["creature"])
+        yield Place("swimmer", f"/creatures/{swimmer}?run={run['id']}")
+
+
+def visit(page: Page, address: str, place: Place, seconds: float = 120) -> bool:
+    """Open a page and wait until nothing is on its way; false where there is none."""
+    page.goto(address + place.path)
+    page.get_by_role("main").wait_for()
+    if place.name != "not-found" and page.get_by_role("heading", name=NOWHERE).count():
+        return False
+    settle(page, seconds)
+    if place.press:
+        page.get_by_role("button", name=place.press, exact=True).click()
+    return True
+
+
+def settle(page: Page, seconds: float) -> None:
+    """Wait until a page has shown nothing that is on its way for a moment."""
+    deadline, calm_since = time.monotonic() + seconds, time.monotonic()
+    while time.monotonic() - calm_since < CALM_S:
+        if time.monotonic() > deadline:
+            waiting = page.locator(UNREST).all_inner_texts()
+            raise TimeoutError(f"waited {seconds:g} s in vain for {waiting}")
+        page.wait_for_timeout(50)
+        if page.locator(UNREST).count():
+            calm_since = time.monotonic()
+    page.evaluate("document.fonts.ready")
+
+
+def hold_still(page: Page) -> None:
+    """Stop a replay in mid-stroke, where there is one: pictures of it are then the same."""
+    for scrubber in page.locator(SCRUBBER).all():
+        last = float(scrubber.get_attribute("max") or 0)
+        scrubber.fill(str(round(0.62 * last)))
+        scrubber.blur()

@@ -1,0 +1,162 @@
+"""The archive of a run as people look at it: map, time, gallery, guide."""
+
+import re
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+from small import CENTROIDS
+
+FAST, SLOW = 10_000, 120_000
+GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
+
+CHANGED = "before => before !== document.querySelector('[data-gallery] canvas').toDataURL()"
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture
+def searched(shared, shared_page: Page) -> str:
+    """The address of a finished search, for somebody who has been here before."""
+    shared_page.add_init_script(GUIDED)
+    return f"{shared.product.url}/runs/{shared.finished('search')}"
+
+
+def archive_of(page: Page, address: str, **asked: Any) -> dict[str, Any]:
+    api = address.replace("/runs/", "/api/v1/runs/")
+    return page.request.get(f"{api}/archive", params=asked).json()
+
+
+def the_map(page: Page):
+    return page.get_by_role("application", name=re.compile("Archive map"))
+
+
+def test_arrow_keys_walk_the_map_and_enter_opens_a_creature(shared_page: Page, searched: str):
+    page = shared_page
+    page.goto(searched)
+    the_map(page).focus()
+    page.keyboard.press("ArrowRight")
+    archive = archive_of(page, searched)
+    best = archive["creature"][archive["fitness"].index(max(archive["fitness"]))]
+    reading = page.locator("#map-reading")
+    expect(reading).to_contain_text(best[:8], timeout=FAST)
+    page.keyboard.press("ArrowLeft")
+    expect(reading).not_to_contain_text(best[:8], timeout=FAST)
+    other = reading.locator("code").inner_text()
+    page.keyboard.press("Enter")
+    page.wait_for_url(re.compile(f"/creatures/{other}"), timeout=FAST)
+
+
+def test_a_creature_swims_beside_the_pointer(shared_page: Page, searched: str):
+    page = shared_page
+    page.goto(searched)
+    the_map(page).focus()
+    page.keyboard.press("ArrowUp")
+    canvas = page.locator("[data-inset] canvas")
+    expect(canvas).to_be_visible(timeout=SLOW)
+    page.wait_for_timeout(200)
+    before = canvas.evaluate("canvas => canvas.toDataURL()")
+    page.wait_for_timeout(500)
+    assert canvas.evaluate("canvas => canvas.toDataURL()") != before
+
+
+def test_the_slider_shows_the_archive_of_every_generation(shared_page: Page, searched: str):
+    page = shared_page
+    page.goto(searched)
+    slider = page.get_by_role("slider", name=re.compile("Generation that the map shows"))
+    elites = page.get_by_text(re.compile(r"^\d+ elites$"))
+    for generation in (1, 7, 20):
+        slider.fill(str(generation))
+        there = len(archive_of(page, searched, generation=generation)["cell"])
+        expect(elites).to_have_text(f"{there} elites", timeout=FAST)
+    page.wait_for_url(re.compile("at=20"), timeout=FAST)
+    page.reload()
+    expect(elites).to_have_text(f"{there} elites", timeout=FAST)
+    page.get_by_role("button", name="Newest").click()
+    now = len(archive_of(page, searched)["cell"])
+    expect(elites).to_have_text(f"{now} elites", timeout=FAST)
+
+
+def test_the_history_plays_to_its_end(shared_page: Page, searched: str):
+    page = shared_page
+    page.goto(searched)
+    now = len(archive_of(page, searched)["cell"])
+    elites = page.get_by_text(re.compile(r"^\d+ elites$"))
+    expect(elites).to_have_text(f"{now} elites", timeout=FAST)
+    page.get_by_role("button", name="Play the history").click()
+    expect(elites).not_to_have_text(f"{now} elites", timeout=FAST)
+    slider = page.get_by_role("slider", name=re.compile("Generation that the map shows"))
+    slider.fill("26")  # So near to its end that nobody waits for long.
+    page.get_by_role("button", name="Play the history").click()
+    expect(page.get_by_role("button", name="Pause the history")).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("button", name="Play the history")).to_be_visible(timeout=30_000)
+    expect(elites).to_have_text(f"{now} elites", timeout=FAST)
+
+
+def test_colours_and_axes_are_whatever_was_recorded(shared_page: Page, searched: str):
+    page = shared_page
+    page.goto(searched)
+    page.get_by_label("Colour").select_option("age")
+    legend = page.get_by_role("img", name=re.compile("^Age"))
+    expect(legend).to_be_visible(timeout=FAST)
+    page.get_by_label("Palette").select_option("cividis")
+    page.get_by_label("Across").select_option("path_length")
+    page.wait_for_url(re.compile("x=path_length"), timeout=FAST)
+    fewer = page.get_by_label("Bending effort, from")
+    fewer.fill("8")
+    page.wait_for_url(re.compile(r"only\.bending_effort=8-"), timeout=FAST)
+    assert re.search("colour=age.*palette=cividis", page.url)
+
+
+def test_the_gallery_moves_and_is_walked_by_keys(shared_page: Page, searched: str):
+    page = shared_page
+    page.goto(searched)
+    page.get_by_role("button", name="Gallery").click()
+    page.wait_for_url(re.compile("view=gallery"), timeout=FAST)
+    canvas = page.locator("[data-gallery] canvas")
+    expect(canvas).to_be_visible(timeout=FAST)
+    for _ in range(5):  # Not once, as when it is first drawn, but again and again.
+        drawn = canvas.evaluate("canvas => canvas.toDataURL()")
+        page.wait_for_function(CHANGED, arg=drawn, timeout=SLOW)
+    wall = page.get_by_role("application", name=re.compile("Gallery"))
+    wall.focus()
+    page.keyboard.press("ArrowDown")
+    sha = page.locator("#map-reading code").inner_text()
+    page.keyboard.press("Enter")
+    page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
+
+
+def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, shared_page: Page):
+    page = shared_page
+    page.add_init_script(GUIDED)
+    run = shared.finished("voronoi")
+    with page.expect_response(re.compile("/archive/centroids$"), timeout=SLOW) as answer:
+        page.goto(f"{shared.product.url}/runs/{run}")
+    assert len(answer.value.json()["centroids"]) == CENTROIDS
+    the_map(page).focus()
+    corners = set()
+    for key in ("ArrowRight", "ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight"):
+        page.keyboard.press(key)
+        points = page.locator(".map-mark polygon").first.get_attribute("points", timeout=FAST)
+        corners.add(len((points or "").split()))
+    assert corners - {4}, "a cell of a grid has four corners, one of a tessellation seldom"
+
+
+def test_a_first_visit_is_guided_once(shared, shared_page: Page):
+    page = shared_page
+    page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
+    guide = page.get_by_role("complementary", name="A short guide")
+    expect(guide).to_contain_text("of 256 kinds have one", timeout=FAST)
+    for title in ("What a kind is", "How good they are", "How it came to be", "Look closer"):
+        guide.get_by_role("button", name="Next").press("Enter")
+        expect(guide.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
+    expect(page.locator("#map-reading")).to_contain_text("Fitness")
+    guide.get_by_role("button", name="Look around").press("Enter")
+    expect(guide).not_to_be_visible()
+    page.reload()
+    expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
+    expect(guide).not_to_be_visible()
+    page.get_by_role("button", name="What is this?").click()
+    expect(guide).to_be_visible(timeout=FAST)
+    page.keyboard.press("Escape")
+    expect(guide).not_to_be_visible()

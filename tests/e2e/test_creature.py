@@ -1,0 +1,141 @@
+"""A creature's page, by mouse and by keyboard alone, over a tiny run in a world with energy."""
+
+import re
+from io import BytesIO
+
+import h5py
+import pytest
+from playwright.sync_api import Page, expect
+
+FAST, SLOW = 10_000, 300_000
+
+
+@pytest.mark.e2e
+def test_a_creature_is_watched_read_and_kept(shared, shared_page: Page):
+    page, address = shared_page, shared.product.url
+    sha, parent = child_and_parent(page, address, shared.finished("voronoi"))
+    page.goto(f"{address}/creatures/{sha}")
+    expect(stage(page)).to_be_visible(timeout=SLOW)
+    step_by_keyboard_alone(page)
+    choose_what_is_shown(page)
+    read_the_shape_over_time(page)
+    see_what_the_network_computes(page)
+    keep_it_as_hdf5(page, sha)
+    walk_to_a_parent_and_back(page, sha, parent)
+
+
+def child_and_parent(page: Page, address: str, run: str) -> tuple[str, str]:
+    """An elite and a parent of it that is kept."""
+    api = f"{address}/api/v1"
+    for sha in page.request.get(f"{api}/runs/{run}/archive").json()["creature"]:
+        found = page.request.get(f"{api}/creatures/{sha}/ancestors").json()["items"]
+        if found and found[0]["kept"]:
+            return sha, found[0]["creature"]
+    raise AssertionError("no elite has a parent that is kept")
+
+
+def stage(page: Page):
+    return page.get_by_role("img", name=re.compile("The creature swimming"))
+
+
+def pixels(page: Page) -> str:
+    page.wait_for_timeout(150)  # What was asked for is drawn.
+    return page.evaluate("document.querySelector('.stage canvas').toDataURL()")
+
+
+def step_by_keyboard_alone(page: Page) -> None:
+    moment = page.get_by_role("slider", name="Moment of the replay")
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Play")).to_be_visible(timeout=FAST)
+    paused = moment.input_value()
+    for key in ("Home", "End", ",", "."):  # These are the page's, not the player's.
+        page.keyboard.press(key)
+    assert moment.input_value() == paused
+    page.get_by_role("button", name="Play").focus()
+    page.keyboard.press("Home")
+    expect(moment).to_have_attribute("aria-valuetext", "step 0 of 40")
+    first = pixels(page)
+    for key in (".", ".", "ArrowRight", ",", "ArrowRight"):
+        page.keyboard.press(key)
+    expect(moment).to_have_attribute("aria-valuetext", "step 3 of 40")
+    assert pixels(page) != first
+    page.keyboard.press("End")
+    expect(moment).to_have_attribute("aria-valuetext", "step 40 of 40")
+    page.get_by_role("button", name="One frame back").press("Enter")
+    expect(moment).to_have_attribute("aria-valuetext", "step 39 of 40")
+
+
+def choose_what_is_shown(page: Page) -> None:
+    shown = {pixels(page)}
+    for name, legend in (("Speed", "cells"), ("Energy", "density")):
+        page.get_by_role("button", name=name, exact=True).press("Enter")
+        expect(
+            page.get_by_role("img", name=re.compile(f"^{name} from .*{legend}"))
+        ).to_be_visible()
+        assert f"field={name.lower()}" in page.url
+        shown.add(pixels(page))
+    page.get_by_role("checkbox", name="Tracers").press("Space")
+    expect(page.get_by_role("img", name=re.compile("tracers its paths"))).to_be_visible()
+    shown.add(pixels(page))
+    page.get_by_role("checkbox", name="Follow").uncheck()
+    shown.add(pixels(page))
+    assert len(shown) == 5, "every choice changes the picture"
+    page.reload()
+    expect(page.get_by_role("checkbox", name="Tracers")).to_be_checked(timeout=SLOW)
+    expect(page.get_by_role("checkbox", name="Follow")).not_to_be_checked()
+    energy = page.get_by_role("button", name="Energy", exact=True)
+    expect(energy).to_have_attribute("aria-pressed", "true")
+
+
+def read_the_shape_over_time(page: Page) -> None:
+    picture = page.get_by_role(
+        "application", name=re.compile("^Rest angles, as applied over 40 steps")
+    )
+    box = picture.bounding_box()
+    assert box
+    # The last of 41 frames and of 6 joints is in the upper right corner.
+    page.mouse.move(box["x"] + box["width"] - 2, box["y"] + 2)
+    expect(
+        page.get_by_text(re.compile(r"^Step 40, joint 6: asked .* rad, did"))
+    ).to_be_visible()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 20)
+    moment = page.get_by_role("slider", name="Moment of the replay")
+    expect(moment).to_have_attribute("aria-valuetext", "step 20 of 40")
+    page.get_by_role("button", name="Lengths").click()
+    lengths = page.get_by_role("application", name=re.compile("^Rest lengths, as applied"))
+    lengths.focus()
+    page.keyboard.press("ArrowUp")
+    expect(page.get_by_text(re.compile("^Step 20, edge 1: asked .* %, did"))).to_be_visible()
+    page.keyboard.press("ArrowRight")
+    expect(page.get_by_text(re.compile("^Step 21, edge 1: asked .* %, did"))).to_be_visible()
+    expect(moment).to_have_attribute("aria-valuetext", "step 21 of 40")
+
+
+def see_what_the_network_computes(page: Page) -> None:
+    for name in ("rest angle", "rest length"):
+        expect(page.get_by_role("application", name=f"What {name} says")).to_be_visible()
+    hidden = page.get_by_role("button", name=re.compile("^position.*: what it computes"))
+    hidden.focus()
+    expect(hidden).to_have_attribute("aria-pressed", "true")
+    expect(page.get_by_role("application", name="What position says")).to_be_visible()
+
+
+def keep_it_as_hdf5(page: Page, sha: str) -> None:
+    with page.expect_download(timeout=SLOW) as download:
+        page.get_by_role("link", name="HDF5").click()
+    assert download.value.suggested_filename == f"creature-{sha[:12]}.h5"
+    with h5py.File(BytesIO(download.value.path().read_bytes()), "r") as file:
+        assert bytes(file.attrs["sha256"]).decode() == sha
+        assert file["body/positions"].shape == (8, 2)
+
+
+def walk_to_a_parent_and_back(page: Page, sha: str, parent: str) -> None:
+    family = page.get_by_role("region", name="Parents and children")
+    expect(family.get_by_text("Parents", exact=True)).to_be_visible(timeout=FAST)
+    family.get_by_role("link", name=re.compile(f"^{parent[:8]}, fitness")).press("Enter")
+    page.wait_for_url(re.compile(f"/creatures/{parent}"), timeout=FAST)
+    back = page.get_by_role("link", name=re.compile(f"^{sha[:8]}, fitness"))
+    expect(back).to_be_visible(timeout=SLOW)
+    back.press("Enter")
+    page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
+    expect(stage(page)).to_be_visible(timeout=SLOW)

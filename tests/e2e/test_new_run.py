@@ -1,0 +1,254 @@
+"""The page for a new run: what a spec can begin from, what is shown of it, what it refuses."""
+
+import json
+import re
+import struct
+from base64 import b64encode
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from microcosmos.archive import creature
+from microcosmos.spec import identity, parse
+
+FAST = 10_000
+KINDS = {
+    "Quality-diversity": "16 nodes",
+    "Neuroevolution": "16 nodes",
+    "Folding": "160 nodes",
+    "Gaits": "32 nodes",
+    "Scaling": "1,000 nodes",
+}
+SPEC = {"experiment": "gaits", "swimmers": ["ray", "cilia"], "period": 240}
+
+SMALL = {
+    "experiment": "quality-diversity",
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 16},
+    "task": {"steps": 60},
+}
+
+
+@pytest.fixture
+def new(idle_page: Page, idle, complaints: list[str]) -> Iterator[Page]:
+    idle_page.goto(f"{idle.product.url}/new")
+    expect(idle_page.get_by_label("Estimate")).to_be_visible(timeout=FAST)
+    yield idle_page
+    # What the browser notes of a wrong value, which a person is told about.
+    complaints[:] = [said for said in complaints if "status of 422" not in said]
+
+
+def beginning(page: Page) -> Locator:
+    return page.locator(".beginning")
+
+
+def paste(page: Page, document: Any) -> None:
+    """As the clipboard does it, outside of any field."""
+    script = """(text) => {
+        const data = new DataTransfer();
+        data.setData("text", text);
+        const options = { clipboardData: data, bubbles: true, cancelable: true };
+        document.body.dispatchEvent(new ClipboardEvent("paste", options));
+    }"""
+    page.evaluate(script, document if isinstance(document, str) else json.dumps(document))
+
+
+def drop(page: Page, name: str, text: str) -> None:
+    script = """([name, text]) => {
+        const data = new DataTransfer();
+        data.items.add(new File([text], name));
+        for (const type of ["dragover", "drop"]) {
+            const options = { dataTransfer: data, bubbles: true, cancelable: true };
+            document.body.dispatchEvent(new DragEvent(type, options));
+        }
+    }"""
+    page.evaluate(script, [name, text])
+
+
+def choose(page: Page, kind: str) -> None:
+    page.get_by_role("radio", name=re.compile(f"^{kind}")).check()
+
+
+def field(page: Page, group: str, name: str) -> Locator:
+    return page.get_by_role("group", name=group, exact=True).get_by_label(name, exact=True)
+
+
+@pytest.mark.e2e
+def test_a_spec_is_begun_changed_refused_kept_and_a_run_started(new: Page, idle):
+    """Where runs are queued, and nobody computes them."""
+    address = idle.product.url
+    every_experiment_shows_its_body_and_cost(new)
+    a_wrong_value_is_named(new)
+    changes_are_counted_kept_and_undone(new)
+    json_and_form_stay_in_step(new)
+    a_spec_is_pasted_and_what_is_none_is_refused(new, address)
+    a_run_is_cloned(new, address)
+    a_creature_gives_its_world(new, address)
+    a_run_is_started_by_keyboard_alone(new, address)
+
+
+def every_experiment_shows_its_body_and_cost(page: Page) -> None:
+    for kind, nodes in KINDS.items():
+        choose(page, kind)
+        expect(beginning(page)).to_contain_text("As in preset “demo”", timeout=FAST)
+        drawing = page.locator(".body-drawing")
+        expect(drawing).to_contain_text(nodes, timeout=FAST)
+        assert page.locator(".filament").first.get_attribute("d")
+        expect(page.get_by_label("What it will cost")).to_contain_text("No worker is running")
+    choose(page, "Folding")
+    expect(page.get_by_role("img", name=re.compile("^Picture"))).to_have_count(2, timeout=FAST)
+    choose(page, "Refinement")
+    expect(page.get_by_text("It begins at a creature")).to_be_visible()
+    page.get_by_role("radio", name=re.compile("^Quality")).check()
+
+
+def a_wrong_value_is_named(page: Page) -> None:
+    nodes = field(page, "Body", "Nodes")
+    nodes.fill("2")
+    expect(page.get_by_text("Needs at least 3.")).to_be_visible(timeout=FAST)
+    nodes.fill("60")
+    expect(page.get_by_text(re.compile("World.width must be at least 75"))).to_be_visible(
+        timeout=FAST
+    )
+    page.get_by_role("button", name="Start the run").click()
+    expect(page.get_by_text("Some values cannot be used")).to_be_visible(timeout=FAST)
+    assert page.url.endswith("/new?preset=quality-diversity%2Fdemo")
+    page.get_by_role("group", name="Body", exact=True).get_by_label("Builder").select_option(
+        "ring"
+    )
+    expect(page.locator(".body-drawing")).to_contain_text("Ring 32 nodes", timeout=FAST)
+
+
+def changes_are_counted_kept_and_undone(page: Page) -> None:
+    field(page, "Task", "Steps").fill("120")
+    expect(beginning(page)).to_contain_text(re.compile(r"\d changes from preset “demo”"))
+    text = beginning(page).inner_text().partition(".")[0]
+    page.reload()
+    expect(beginning(page)).to_contain_text("Your draft is back", timeout=FAST)
+    expect(beginning(page)).to_contain_text(text)
+    expect(field(page, "Task", "Steps")).to_have_value("120")
+    page.get_by_role("button", name="back to 100", exact=True).click()
+    expect(field(page, "Task", "Steps")).to_have_value("100")
+    page.get_by_role("button", name="Discard draft").click()
+    expect(beginning(page)).to_contain_text("As in preset “demo”")
+    page.get_by_role("button", name="Undo", exact=True).click()
+    expect(page.locator(".body-drawing")).to_contain_text("Ring", timeout=FAST)
+
+
+def json_and_form_stay_in_step(page: Page) -> None:
+    page.get_by_role("button", name="JSON", exact=True).click()
+    area = page.get_by_label("The spec as JSON")
+    spec = json.loads(area.input_value())
+    spec["seed"] = 7
+    area.fill(json.dumps(spec))
+    area.press("End")
+    area.type(" nonsense")
+    expect(page.get_by_text("What is written as JSON cannot be used.")).to_be_visible()
+    area.fill(json.dumps(spec))
+    page.get_by_role("button", name="Form", exact=True).click()
+    expect(field(page, "General", "Seed")).to_have_value("7")
+    field(page, "General", "Seed").fill("8")
+    page.get_by_role("button", name="JSON", exact=True).click()
+    assert json.loads(area.input_value())["seed"] == 8
+
+
+def a_spec_is_pasted_and_what_is_none_is_refused(page: Page, address: str) -> None:
+    page.goto(f"{address}/new?preset=scaling/demo")
+    expect(beginning(page)).to_contain_text("As in preset “demo”", timeout=FAST)
+    paste(page, SPEC)
+    expect(beginning(page)).to_contain_text("As in what was pasted", timeout=FAST)
+    expect(page.locator(".body-drawing")).to_contain_text("Cilia 88 nodes", timeout=FAST)
+    expect(field(page, "General", "Cycles")).to_have_value("3")
+    paste(page, '{"experiment": "astrology"}')
+    expect(page.get_by_text("“experiment” must be one of quality-diversity")).to_be_visible()
+    drop(page, "elites.h5", "\u0089HDF")
+    expect(page.get_by_text("elites.h5: An archive or checkpoint (HDF5)")).to_be_visible()
+
+
+def a_run_is_cloned(page: Page, address: str) -> None:
+    run = page.request.post(f"{address}/api/v1/runs", data={**SPEC, "cycles": 5}).json()
+    page.goto(f"{address}/new?from={run['id']}")
+    expect(beginning(page)).to_contain_text(f"As in run {run['id'][:8]}", timeout=FAST)
+    expect(field(page, "General", "Cycles")).to_have_value("5")
+    drop(page, "run.json", json.dumps(run))
+    expect(beginning(page)).to_contain_text(f"As in run {run['id'][:8]}")
+    page.goto(f"{address}/new?preset=gaits/nothing")
+    expect(page.get_by_role("alert")).to_contain_text("“preset” in the address must be one of")
+
+
+def a_creature_gives_its_world(page: Page, address: str) -> None:
+    file = creature_file()
+    name = file["sha256"]
+    drop(page, "creature.json", json.dumps(file))
+    expect(beginning(page)).to_contain_text(f"As in creature {name[:8]}", timeout=FAST)
+    expect(field(page, "Task", "Steps")).to_have_value("60")
+    page.get_by_role("button", name="Open this creature instead").click()
+    page.wait_for_url(f"{address}/creatures/{name}", timeout=FAST)
+    page.goto(f"{address}/new?creature={name}")
+    expect(field(page, "World", "Width")).to_have_value("32", timeout=FAST)
+
+
+def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
+    new.goto(f"{address}/new?preset=quality-diversity/demo")
+    expect(beginning(new)).to_contain_text("As in preset “demo”", timeout=FAST)
+    reach(new, "radio", "Quality-diversity")
+    new.keyboard.press("ArrowRight")
+    expect(beginning(new)).to_contain_text("As in preset “demo”")
+    expect(new.get_by_role("radio", name=re.compile("^Neuro"))).to_be_checked()
+    reach(new, "button", "Standard")
+    new.keyboard.press("Enter")
+    expect(beginning(new)).to_contain_text("As in preset “standard”")
+    reach(new, "button", "Close the section General")
+    new.keyboard.press("Enter")
+    expect(field(new, "General", "Seed")).to_be_hidden()
+    new.keyboard.press("Enter")
+    new.keyboard.press("Tab")
+    new.keyboard.press("ControlOrMeta+a")
+    new.keyboard.type("5")
+    expect(beginning(new)).to_contain_text("1 change from")
+    new.keyboard.press("ControlOrMeta+Enter")
+    new.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    assert new.evaluate("sessionStorage.length") == 0
+
+
+def creature_file() -> dict[str, Any]:
+    """A swimmer with one weight, as anybody might share it."""
+    small: Any = parse(SMALL)
+    genome = {
+        "encoding": "cppn",
+        "inputs": ["position", "sine", "cosine"],
+        "outputs": ["rest_angle", "rest_length"],
+        "control": identity(small.control),
+        "nodes": {
+            "id": [0, 1, 2, 3, 4],
+            "activation": ["identity"] * 5,
+            "bias": floats(0, 0, 0, 0, 0),
+        },
+        "connections": {
+            "innovation": [0],
+            "source": [1],
+            "target": [3],
+            "enabled": [True],
+            "weight": floats(1),
+        },
+    }
+    world = {**identity(small.world), "coupling": identity(small.coupling)}
+    parts = {"genome": genome, "world": world, "body": identity(small.body)}
+    whole = {"format": creature.FORMAT, **parts, "task": identity(small.task)}
+    return creature.document(whole, None, None)
+
+
+def floats(*values: float) -> str:
+    return b64encode(struct.pack(f"<{len(values)}f", *values)).decode()
+
+
+def reach(page: Page, role: str, name: str) -> None:
+    """Goes on with the tabulator until something of that role and name has the focus."""
+    wanted = page.get_by_role(role, name=re.compile(f"^{name}"))  # pyright: ignore[reportArgumentType]
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        if wanted.evaluate("(element) => element === document.activeElement"):
+            return
+    pytest.fail(f"no {role} {name} within reach of the keyboard")

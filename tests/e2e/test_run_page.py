@@ -1,0 +1,290 @@
+"""The page of a run around its archive; what a worker would write is written here."""
+
+import base64
+import json
+import re
+import struct
+import urllib.request
+from types import SimpleNamespace
+from typing import Any
+from uuid import UUID
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from microcosmos.archive import creature
+from microcosmos.spec import EXPERIMENTS, identity, parse
+from server.claims import Claim, claim
+from server.services import Services
+from server.submission import submit
+
+FAST = 10_000
+GENERATIONS = 12
+CHANGED = "before => before !== document.querySelector('#curves canvas').toDataURL()"
+
+
+def floats(*values: float) -> str:
+    return base64.b64encode(struct.pack(f"<{len(values)}f", *values)).decode()
+
+
+def swimmer(spec: Any, weight: float) -> dict[str, Any]:
+    nodes = {"id": [0, 1, 2, 3, 4], "activation": ["identity"] * 5, "bias": floats(*[0.0] * 5)}
+    ends = {"innovation": [0], "source": [1], "target": [3], "enabled": [True]}
+    return {
+        "format": "microcosmos-creature/1",
+        "genome": {
+            "encoding": "cppn",
+            "inputs": ["position", "sine", "cosine"],
+            "outputs": ["rest_angle", "rest_length"],
+            "control": identity(spec.control),
+            "nodes": nodes,
+            "connections": {**ends, "weight": floats(weight)},
+        },
+        "world": {**identity(spec.world), "coupling": identity(spec.coupling)},
+        "body": identity(spec.body),
+        "task": identity(spec.task),
+    }
+
+
+def report(spec: Any, generation: int, seed: int) -> Any:
+    """Two species, one of which dies out; three creatures of each generation diverge."""
+    whole = swimmer(spec, seed + generation)
+    elite = SimpleNamespace(
+        cell=generation,
+        fitness=float(generation),
+        descriptors=[0.01, 0.01],
+        creature=creature.name(whole),
+        identity=creature.canonical(whole),
+        generation=generation,
+        measured=None,
+        provenance=None,
+    )
+    species = "0:10 1:6" if generation < GENERATIONS // 2 else "1:16"
+    return SimpleNamespace(
+        generation=generation,
+        qd_score=float(generation**2),
+        coverage=generation / 400,
+        best=float(generation),
+        mean=1.0,
+        evaluations=16 * generation,
+        diverged=3 * generation,
+        elites=(elite,),
+        rows=(),
+        summary={
+            "diverged: non-finite": 2,
+            "diverged: supersonic": 1,
+            "population: inserted": generation % 3,
+            "population: improved": 1,
+            "species": species,
+        },
+    )
+
+
+class Written:
+    """A run of neuroevolution, written generation by generation."""
+
+    def __init__(self, services: Services, seed: int):
+        presets = EXPERIMENTS["neuroevolution"].presets
+        document = presets[0].spec.model_dump(mode="json") | {"seed": seed}
+        document["search"]["generations"] = GENERATIONS
+        self.spec, self.seed, self.services = parse(document), seed, services
+        self.id: UUID = submit(services, self.spec)[0].id
+        self.attempt: Claim
+
+    def begin(self, worker: str) -> None:
+        held = claim(self.services, self.id, worker)
+        assert held is not None
+        self.attempt = held
+        held.use("cpu, a processor")
+
+    def go_on(self, first: int, last: int) -> None:
+        for generation in range(first, last + 1):
+            self.attempt.record(report(self.spec, generation, self.seed), 0.5)
+        self.attempt.save(last, b"the archive of %d" % last)
+
+
+@pytest.mark.e2e
+def test_a_run_is_told_from_the_queue_to_its_end_and_compared_with_another(
+    idle_page: Page, idle
+):
+    page, services, address = idle_page, idle.services, idle.product.url
+    other = Written(services, 7)
+    other.begin("worker 1")
+    other.go_on(1, GENERATIONS)
+    other.attempt.finish()
+    run = Written(services, 8)
+    page.goto(f"{address}/runs/{run.id}")
+    page.evaluate("window.neverReloaded = true")
+    watch_it_begin(page, run)
+    follow_the_log(page, run)
+    see_species_and_the_best_network(page, run)
+    see_why_evaluations_diverged(page)
+    choose_how_curves_are_drawn(page)
+    lay_another_run_beside(page, other)
+    see_what_differs_in_the_spec(page, other)
+    assert page.evaluate("window.neverReloaded")
+    come_back_by_the_address(page, other)
+    walk_by_keyboard(page)
+
+
+def watch_it_begin(page: Page, run: Written) -> None:
+    # Why it waits is said once.
+    expect(page.get_by_role("status").get_by_text("No worker is alive")).to_have_count(
+        1, timeout=FAST
+    )
+    run.begin("worker 1")
+    expect(page.get_by_text("most of a minute on a CPU")).to_be_visible(timeout=FAST)
+    elapsed = page.locator(".doing .quiet")
+    before = elapsed.inner_text()
+    expect(elapsed).not_to_have_text(before, timeout=FAST)
+    run.go_on(1, 4)
+    expect(page.get_by_text("most of a minute on a CPU")).to_have_count(0, timeout=FAST)
+
+
+def follow_the_log(page: Page, run: Written) -> None:
+    log = page.get_by_role("region", name="Log")
+    run.attempt.fail("Traceback:\n  File x\nZeroDivisionError: twice nothing")
+    run.begin("worker 2")
+    run.go_on(5, GENERATIONS)
+    run.attempt.finish()
+    expect(log.get_by_text("Finished.")).to_be_visible(timeout=FAST)
+    entries = log.get_by_role("listitem")
+    expect(entries.first).to_contain_text("Finished.")
+    expect(entries.last).to_contain_text("Submitted: neuroevolution")
+    expect(log.get_by_text("from the checkpoint of generation 4")).to_be_visible()
+    log.get_by_label("Show").select_option("error")
+    assert "level=error" in page.url
+    expect(entries).to_have_count(1)
+    entries.get_by_text("ZeroDivisionError: twice nothing").first.click()
+    expect(log.get_by_text("File x")).to_be_visible()
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    log.get_by_role("button", name="Copy").click()
+    expect(page.get_by_text("Log copied.")).to_be_visible(timeout=FAST)
+    assert "File x\nZeroDivisionError" in page.evaluate("navigator.clipboard.readText()")
+    log.get_by_label("Show").select_option("info")
+
+
+def see_species_and_the_best_network(page: Page, run: Written) -> None:
+    plot = page.get_by_role("application", name=re.compile("^Species over generations"))
+    expect(plot).to_have_attribute("aria-label", re.compile("2 in all"), timeout=FAST)
+    reading = page.locator("#species-reading")
+    plot.focus()
+    page.keyboard.press("Home")
+    expect(reading).to_have_text("Generation 1: 2 species; largest: species 0 10, species 1 6")
+    page.keyboard.press("End")
+    expect(reading).to_contain_text(f"Generation {GENERATIONS}: 1 species")
+    box = plot.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 60, box["y"] + 0.75 * box["height"])
+    expect(reading).to_contain_text("species 0, 10 members, of 2 species")
+    best = page.get_by_role("region", name="Best network so far")
+    expect(best).to_contain_text(f"fitness {GENERATIONS}", timeout=FAST)
+    expect(best.get_by_role("img", name=re.compile("^Network: 5 nodes"))).to_be_visible()
+
+
+def see_why_evaluations_diverged(page: Page) -> None:
+    table = page.get_by_role("table", name=re.compile("^Evaluations that diverged"))
+    expect(table.get_by_role("row", name=re.compile("Non-finite"))).to_contain_text("24")
+    row = table.get_by_role("row", name=re.compile("Supersonic"))
+    expect(row).to_contain_text("12")
+    expect(row).to_contain_text("faster than sound")
+    expect(page.get_by_role("img", name=re.compile("^Diverged so far"))).to_be_visible()
+
+
+def choose_how_curves_are_drawn(page: Page) -> None:
+    curves = page.get_by_role("region", name="Curves")
+    score = curves.get_by_role("img", name=re.compile("^QD score"))
+    expect(score).to_have_attribute("aria-label", "QD score over generations: now 144")
+    raw = pixels(page)
+    curves.get_by_label("Log scale").check()
+    page.wait_for_function(CHANGED, arg=raw)
+    curves.get_by_label("Smooth").select_option("5")
+    expect(score).to_have_attribute("aria-label", re.compile("now 102"))
+    curves.get_by_role("combobox", name=re.compile("^Over")).select_option("evaluations")
+    expect(score).to_have_attribute("aria-label", re.compile("^QD score over evaluations"))
+    for word in ("log=1", "smooth=5", "over=evaluations"):
+        assert word in page.url
+
+
+def pixels(page: Page) -> str:
+    """What the first curve looks like."""
+    return page.evaluate("document.querySelector('#curves canvas').toDataURL()")
+
+
+def lay_another_run_beside(page: Page, other: Written) -> None:
+    curves = page.get_by_role("region", name="Curves")
+    alone = pixels(page)
+    curves.get_by_role("button", name="Compare with a run").click()
+    curves.get_by_label("Compare with a run").select_option(str(other.id))
+    curves.get_by_role("button", name="Choose").click()
+    expect(curves.get_by_role("link", name=re.compile(str(other.id)[:8]))).to_be_visible()
+    page.wait_for_function(CHANGED, arg=alone)
+    score = curves.get_by_role("img", name=re.compile(f"^QD score .*{str(other.id)[:8]}"))
+    expect(score).to_be_visible(timeout=FAST)
+    assert f"with={other.id}" in page.url
+
+
+def see_what_differs_in_the_spec(page: Page, other: Written) -> None:
+    card = page.get_by_role("region", name="Spec", exact=True)
+    expect(card).to_contain_text("One field differs from the preset Demo")
+    card.get_by_role("button", name="Difference to a run").click()
+    card.get_by_label("Difference to a run").select_option(str(other.id))
+    card.get_by_role("button", name="Choose").click()
+    found = card.get_by_role("table", name=re.compile("1 field"))
+    expect(found.get_by_role("row", name=re.compile("Seed"))).to_have_text("Seed87")
+    assert f"against={other.id}" in page.url
+
+
+def come_back_by_the_address(page: Page, other: Written) -> None:
+    page.reload()
+    curves = page.get_by_role("region", name="Curves")
+    expect(curves.get_by_label("Log scale")).to_be_checked(timeout=FAST)
+    expect(curves.get_by_label("Smooth")).to_have_value("5")
+    expect(curves.get_by_role("link", name=re.compile(str(other.id)[:8]))).to_be_visible()
+    curves.get_by_role("button", name=re.compile("^Remove")).click()
+    assert "with=" not in page.url
+    page.get_by_role("button", name="Close the difference").click()
+    assert "against=" not in page.url
+
+
+def walk_by_keyboard(page: Page) -> None:
+    parts = page.get_by_role("navigation", name="Parts of this page")
+    parts.get_by_role("link", name="Log").focus()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("region", name="Log").get_by_label("Show")).to_be_focused()
+    parts.get_by_role("link", name="Spec", exact=True).focus()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Tab")
+    difference = page.get_by_role("button", name="Difference to a run")
+    expect(difference).to_be_focused()
+    page.keyboard.press("Enter")
+    choice = page.get_by_role("combobox", name="Difference to a run")
+    expect(choice).to_be_focused(timeout=FAST)
+    expect(choice.get_by_role("option")).not_to_have_count(1, timeout=FAST)
+    page.keyboard.press("ArrowDown")  # Of a closed list this takes one, which is no decision.
+    expect(choice).to_be_focused()
+    assert "against=" not in page.url
+    page.keyboard.press("Escape")
+    expect(difference).to_be_focused()
+
+
+@pytest.mark.e2e
+def test_a_folding_shows_its_pictures_while_it_learns(idle_page: Page, idle):
+    page, address = idle_page, idle.product.url
+    spec = next(p.spec for p in EXPERIMENTS["folding"].presets if p.name == "demo")
+    body = json.dumps(spec.model_dump(mode="json")).encode()
+    request = urllib.request.Request(
+        f"{address}/api/v1/runs", body, {"Content-Type": "application/json"}
+    )
+    with urllib.request.urlopen(request) as answer:
+        run = json.load(answer)["id"]
+    page.goto(f"{address}/runs/{run}")
+    card = page.get_by_role("region", name="Pictures")
+    expect(card).to_contain_text("once all updates are done", timeout=FAST)
+    inked = page.evaluate(
+        """() => [...document.querySelectorAll(".fold-choice canvas")].map((canvas) =>
+            canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)
+                .data.some((value) => value > 100))"""
+    )
+    assert inked == [True, True]

@@ -1,0 +1,177 @@
+"""Runs are named, found, sorted and compared, and workers say what they are at."""
+
+import json
+import re
+import urllib.request
+
+import pytest
+from playwright.sync_api import Page, expect
+from small import TINY
+
+FAST, SLOW = 10_000, 300_000
+
+
+@pytest.mark.e2e
+def test_runs_are_named_found_sorted_compared_and_their_worker_seen(page: Page, address: str):
+    page.goto(address)
+    expect(page.get_by_role("link", name="Start the first run")).to_be_visible(timeout=FAST)
+    short, long = (submit(address, seed, generations) for seed, generations in ((1, 3), (2, 9)))
+    page.goto(address)
+    page.evaluate("window.neverReloaded = true")
+    rename_by_mouse(page, short)
+    tag_and_filter_by_mouse(page, short, long)
+    see_only_what_matches(page, address, short)
+    sort_by_keyboard(page)
+    finished(page, 2)
+    compare_by_keyboard(page)
+    read_the_comparison(page)
+    see_the_worker(page)
+    assert page.evaluate("window.neverReloaded")
+
+
+def submit(address: str, seed: int, generations: int) -> str:
+    search = {**TINY["search"], "generations": generations}
+    body = json.dumps({**TINY, "search": search, "seed": seed}).encode()
+    headers = {"Content-Type": "application/json"}
+    request = urllib.request.Request(f"{address}/api/v1/runs", body, headers)
+    with urllib.request.urlopen(request) as answer:
+        return json.load(answer)["id"][:8]
+
+
+def row(page: Page, run: str):
+    return page.locator("table.runs tbody tr").filter(has_text=run)
+
+
+def rename_by_mouse(page: Page, run: str) -> None:
+    row(page, run).get_by_role("button", name=re.compile("^Rename")).click()
+    field = page.get_by_role("textbox", name=re.compile("^Name of"))
+    field.fill("Short one")
+    page.get_by_role("heading", name="Runs").click()
+    expect(row(page, run).get_by_role("link", name=re.compile("^Short one"))).to_be_visible(
+        timeout=FAST
+    )
+
+
+def tag_and_filter_by_mouse(page: Page, tagged: str, other: str) -> None:
+    row(page, tagged).get_by_role("button", name=re.compile("^Add a tag")).click()
+    page.get_by_role("combobox", name=re.compile("^New tag")).fill("keep me")
+    page.keyboard.press("Enter")
+    row(page, tagged).get_by_role("button", name="keep me", exact=True).click()
+    expect(row(page, other)).to_have_count(0, timeout=FAST)
+    expect(row(page, tagged)).to_be_visible()
+    assert "tag=keep+me" in page.url
+    row(page, tagged).get_by_role("button", name=re.compile("^Remove the tag")).click()
+    expect(page.get_by_role("heading", name="No run is like that")).to_be_visible(timeout=FAST)
+    page.get_by_role("button", name="Undo").click()
+    expect(row(page, tagged)).to_be_visible(timeout=FAST)
+    page.get_by_role("button", name="Show all").click()
+    expect(row(page, other)).to_be_visible(timeout=FAST)
+
+
+def see_only_what_matches(page: Page, address: str, named: str) -> None:
+    """What comes to be meanwhile appears only where it is asked for."""
+    page.get_by_role("searchbox").fill("short")
+    expect(page.locator("table.runs tbody tr")).to_have_count(1, timeout=FAST)
+    third = submit(address, 3, 100_000)
+    rename(address, third, "Another short one")
+    expect(row(page, third)).to_be_visible(timeout=FAST)
+    rename(address, third, "Away")
+    expect(row(page, third)).to_have_count(0, timeout=FAST)
+    expect(row(page, named)).to_be_visible()
+    page.get_by_role("searchbox").fill("")
+    expect(page.locator("table.runs tbody tr")).to_have_count(3, timeout=FAST)
+    row(page, third).get_by_role("button", name=re.compile("^Cancel")).click()
+    expect(row(page, third).get_by_text("cancelled")).to_be_visible(timeout=FAST)
+
+
+def rename(address: str, run: str, name: str) -> None:
+    with urllib.request.urlopen(f"{address}/api/v1/runs?q={run}") as answer:
+        (found,) = json.load(answer)["items"]
+    request = urllib.request.Request(
+        f"{address}/api/v1/runs/{found['id']}",
+        json.dumps({"name": name}).encode(),
+        {"Content-Type": "application/json"},
+        method="PATCH",
+    )
+    urllib.request.urlopen(request).close()
+
+
+def sort_by_keyboard(page: Page) -> None:
+    heading = page.get_by_role("columnheader", name="Run")
+    heading.get_by_role("button").focus()
+    page.keyboard.press("Enter")
+    expect(heading).to_have_attribute("aria-sort", "ascending")
+    first = page.locator("table.runs tbody tr").first
+    expect(first).to_contain_text("Away", timeout=FAST)
+    page.keyboard.press("Enter")
+    expect(heading).to_have_attribute("aria-sort", "descending")
+    expect(first).to_contain_text("Short one", timeout=FAST)
+    page.keyboard.press("Enter")
+    expect(heading).to_have_attribute("aria-sort", "none")
+    assert "sort" not in page.url
+
+
+def finished(page: Page, count: int) -> None:
+    expect(page.locator(".badge.finished")).to_have_count(count, timeout=SLOW)
+
+
+def compare_by_keyboard(page: Page) -> None:
+    """From the field that finds runs on, with nothing but keys."""
+    page.get_by_role("searchbox").focus()
+    page.keyboard.type("short one")
+    expect(page.locator("table.runs tbody tr")).to_have_count(1, timeout=FAST)
+    press_until(page, "Compare Short one", "Space")
+    page.get_by_role("searchbox").focus()
+    page.keyboard.press("ControlOrMeta+a")
+    page.keyboard.press("Delete")
+    expect(page.locator("table.runs tbody tr")).to_have_count(3, timeout=FAST)
+    press_until(page, "Rename Quality diversity", "Enter")
+    expect(page.get_by_role("textbox", name=re.compile("^Name of"))).to_be_focused(timeout=FAST)
+    page.keyboard.type("Long one")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("link", name=re.compile("^Long one"))).to_be_visible(timeout=FAST)
+    page.get_by_role("searchbox").focus()
+    press_until(page, "Compare Long one", "Space")
+    page.get_by_role("searchbox").focus()
+    press_until(page, "Compare", "Enter")
+    page.wait_for_url(re.compile(r"/compare\?runs="), timeout=FAST)
+
+
+def press_until(page: Page, label: str, key: str) -> None:
+    """Tab on to what is called so, and press a key there."""
+    named = "document.activeElement.ariaLabel || document.activeElement.textContent"
+    for _ in range(80):
+        page.keyboard.press("Tab")
+        name = page.evaluate(named).strip()
+        if name == label or (label != "Compare" and name.startswith(label)):
+            page.keyboard.press(key)
+            return
+    pytest.fail(f"Tab never comes to {label}")
+
+
+def read_the_comparison(page: Page) -> None:
+    legend = page.get_by_role("list", name="Runs")
+    expect(legend.get_by_role("link")).to_have_text(["Short one", "Long one"], timeout=FAST)
+    plot = page.get_by_role("img", name=re.compile("^QD score over generations"))
+    expect(plot).to_be_visible(timeout=FAST)
+    page.get_by_role("combobox", name="Over").select_option("evaluations")
+    page.get_by_role("checkbox", name="Log scale").check()
+    plot = page.get_by_role("img", name=re.compile("^QD score over evaluations"))
+    expect(plot).to_be_visible(timeout=FAST)
+    assert page.url.endswith("&over=evaluations&log=1")
+    differing = page.get_by_role("region", name="Fields of the runs")
+    fields = differing.get_by_role("row")
+    expect(fields).to_have_text(
+        [re.compile("^Field"), "seed12", "search.generations39"], timeout=FAST
+    )
+    page.get_by_role("button", name="Leave Long one out").click()
+    expect(page.get_by_text("Nowhere: all of them are the same.")).to_be_visible(timeout=FAST)
+
+
+def see_the_worker(page: Page) -> None:
+    page.get_by_role("link", name="Workers", exact=True).click()
+    worker = page.get_by_role("list", name="Workers").get_by_role("listitem")
+    expect(worker).to_have_count(1, timeout=FAST)
+    expect(worker.get_by_role("meter", name="Memory")).to_be_visible(timeout=FAST)
+    expect(worker).to_contain_text("Waits for a run.", timeout=FAST)
+    expect(page.get_by_text("No run waits.")).to_be_visible()

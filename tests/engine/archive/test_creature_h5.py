@@ -1,0 +1,114 @@
+"""A creature as HDF5 holds the whole creature file, and its arrays as plain h5py reads them."""
+
+import json
+from io import BytesIO
+
+import h5py
+import jax
+import numpy as np
+import pytest
+
+from microcosmos.archive import creature, creature_h5
+from microcosmos.archive.encoding import decode
+from microcosmos.build import build
+from microcosmos.spec import parse, shape
+
+SPEC = parse(
+    {
+        "experiment": "quality-diversity",
+        "world": {"width": 32, "height": 32},
+        "body": {"nodes": 8},
+        "task": {"steps": 20},
+        "search": {"generations": 1, "batch": 2, "block": 2},
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def file():
+    with jax.numpy_rank_promotion("raise"):
+        experiment = build(SPEC)
+        return creature.parse(experiment.best(experiment.advance(experiment.init())[0]))
+
+
+def test_it_gives_back_the_file_it_was_made_of(file):
+    assert creature_h5.load(creature_h5.dump(file)) == file
+
+
+def test_the_same_creature_gives_the_same_bytes(file):
+    shuffled = json.loads(json.dumps(dict(reversed(file.items()))))
+    assert creature_h5.dump(creature.parse(shuffled)) == creature_h5.dump(file)
+
+
+def test_body_genes_and_figures_are_arrays(file):
+    genome, body = file["identity"]["genome"], shape(creature.scene_of(file).body)
+    with h5py.File(BytesIO(creature_h5.dump(file)), "r") as found:
+        assert found.attrs["sha256"].decode() == file["sha256"]
+        np.testing.assert_array_equal(found["body/positions"], body.positions)
+        weights = found["genome/connections/weight"]
+        np.testing.assert_array_equal(weights, decode(genome["connections"]["weight"]))
+        names = [name.decode() for name in found["genome/nodes/activation"]]
+        assert names == list(genome["nodes"]["activation"])
+        measured = file["measured"]
+        assert found["measured/fitness"][()] == measured["fitness"]
+        for group in ("features", "descriptors"):
+            arrays = {name: item[()] for name, item in found[f"measured/{group}"].items()}
+            assert arrays == measured[group]
+
+
+NAMES = [
+    "",
+    ".",
+    "..",
+    "/",
+    "a",
+    "a/b",
+    "a/b/../c",
+    "./a",
+    "%",
+    "%2F",
+    "a%2Fb",
+    "nul\0",
+    "fitness",
+]
+NAMES += ["features", "1/2 é", " ", "%2E", "x" * 100_000]
+
+
+def test_names_that_could_be_paths_are_names(file):
+    features = {name: float(number) for number, name in enumerate(NAMES)}
+    measured = {**file["measured"], "features": {**file["measured"]["features"], **features}}
+    named = creature.parse({**file, "measured": measured})
+    data = creature_h5.dump(named)
+    assert creature_h5.load(data) == named
+    assert len({creature_h5.link(name) for name in NAMES}) == len(NAMES)
+    with h5py.File(BytesIO(data), "r") as found:
+        assert found["measured/fitness"][()] == file["measured"]["fitness"]
+        group = found["measured/features"]
+        assert {name: group[creature_h5.link(name)][()] for name in NAMES} == features
+
+
+def test_a_creature_has_a_limited_number_of_features(file):
+    many = {**file["measured"]["features"], **{f"f{i}": 0.0 for i in range(1000)}}
+    with pytest.raises(creature.CreatureError, match="at most 1000") as caught:
+        creature.parse({**file, "measured": {**file["measured"], "features": many}})
+    assert caught.value.field == "measured.features"
+
+
+def test_what_was_never_measured_is_left_out(file):
+    bare = creature.parse(creature.document(file["identity"], None, None))
+    data = creature_h5.dump(bare)
+    assert creature_h5.load(data) == bare
+    with h5py.File(BytesIO(data), "r") as found:
+        assert "measured" not in found
+
+
+@pytest.mark.parametrize("data", [b"no HDF5", b""])
+def test_other_bytes_are_refused(data):
+    with pytest.raises(ValueError, match="must be HDF5"):
+        creature_h5.load(data)
+
+
+def test_a_file_that_was_tampered_with_is_refused(file):
+    changed = {**file, "sha256": "0" * 64}
+    with pytest.raises(creature.CreatureError, match="sha256"):
+        creature_h5.load(creature_h5.dump(changed))

@@ -1,0 +1,78 @@
+"""What a search tells of a generation beside its curves."""
+
+from dataclasses import replace
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos.build import build
+from microcosmos.spec import parse
+
+POPULATION = {
+    "experiment": "neuroevolution",
+    "seed": 5,
+    "world": {"width": 24, "height": 24},
+    "body": {"nodes": 8},
+    "control": {"period": 30},
+    "genome": {"max_nodes": 10, "max_connections": 16},
+    "task": {"steps": 20},
+    "search": {"generations": 4, "batch": 24, "block": 8},
+}
+
+
+@pytest.fixture
+def failing(experiment):
+    """The small run, three of whose creatures in a block of eight have failed."""
+
+    def evaluate(block):
+        found = experiment.programs.evaluate_block(block)
+        status = jnp.asarray([0, 1, 0, 2, 0, 1, 0, 0])
+        return replace(found, status=status)
+
+    return replace(experiment, programs=replace(experiment.programs, evaluate_block=evaluate))
+
+
+def test_diverged_creatures_are_told_by_their_reasons(failing):
+    _, report = failing.advance(failing.init())
+    assert report.summary["diverged: non-finite"] == 4
+    assert report.summary["diverged: supersonic"] == 2
+    assert report.diverged == 6
+
+
+def test_where_nothing_diverged_no_reason_is_told(course):
+    _, reports = course
+    assert [report.diverged for report in reports] == [0, 0, 0, 0]
+    assert not [name for report in reports for name in report.summary if "diverged" in name]
+
+
+@pytest.fixture(scope="module")
+def population(carry_out):
+    experiment = build(parse(POPULATION))
+    return experiment, *carry_out(experiment)
+
+
+def sizes(report):
+    return {
+        int(n): int(m) for n, m in (one.split(":") for one in report.summary["species"].split())
+    }
+
+
+def test_every_member_of_a_generation_is_in_one_of_the_species_that_are_told(population):
+    _, states, reports = population
+    for state, report in zip(states[1:], reports, strict=True):
+        told, species = sizes(report), state.emitters[0].species
+        assert sum(told.values()) == 24
+        of = np.asarray(species.number)[np.asarray(species.of)]
+        assert told == {int(number): int((of == number).sum()) for number in np.unique(of)}
+
+
+def test_a_population_taken_up_again_tells_the_same_species(population):
+    experiment, states, reports = population
+    for state, report in zip(states, reports, strict=False):
+        _, again = experiment.advance(experiment.restore(experiment.save(state)))
+        assert sizes(again) == sizes(report)
+
+
+def test_a_search_without_a_population_tells_no_species(course):
+    assert not [report for report in course[1] if "species" in report.summary]

@@ -1,0 +1,19 @@
+"""The numbers that the page's evaluation of networks is held against are the engine's own."""
+
+import json
+import runpy
+from pathlib import Path
+
+import numpy as np
+
+WEB = Path(__file__).parents[3] / "web"
+
+
+def test_the_fixture_of_the_page_is_what_the_engine_computes_now():
+    kept = json.loads((WEB / "test" / "fixtures" / "networks.json").read_text())
+    made = json.loads(
+        json.dumps(runpy.run_path(str(WEB / "scripts" / "networks.py"))["cases"]())
+    )
+    assert [case["genome"] for case in made] == [case["genome"] for case in kept]
+    for now, then in zip(made, kept, strict=True):
+        np.testing.assert_allclose(now["said"], then["said"], rtol=1e-4, atol=1e-4)

@@ -1,0 +1,115 @@
+"""Archives as large as wanted, of creatures that a small search has found.
+
+A finished run is written beside the one that was carried out: its rows are as those of a run,
+but one creature may stand in many cells, and fitness is a smooth hill with noise on it.
+"""
+
+from datetime import timedelta
+from uuid import UUID
+
+import numpy as np
+from sqlalchemy import insert, select
+
+from server import services
+from server.models import FINISHED, Elite, Generation, Run
+from server.services import Services
+from server.settings import Settings
+
+GENERATIONS = 200
+
+
+def connect(data: str) -> Services:
+    return services.connect(Settings(data=data))
+
+
+def write_run(place: Services, of: str, side: int, filled: int, creatures: list[str]) -> str:
+    """A run with an archive of side × side cells, so many of them filled: its id."""
+    draw = np.random.default_rng(side)
+    cells = np.sort(draw.choice(side * side, filled, replace=False))
+    fitness = hill(cells, side) + draw.normal(0, 0.03, filled)
+    born = np.sort(draw.integers(1, GENERATIONS + 1, filled))
+    with place.sessions.write.begin() as session:
+        run = copied(session.get_one(Run, UUID(of)), side, fitness)
+        session.add(run)
+        session.flush()
+        ends = [(axis["low"], axis["high"]) for axis in run.spec["archive"]["descriptors"]]
+        rows = [
+            {
+                "run_id": run.id,
+                "cell": int(cell),
+                "generation": int(generation),
+                "fitness": float(value),
+                "descriptors": middle(int(cell), side, ends),
+                "creature": creatures[i % len(creatures)],
+            }
+            for i, (cell, value, generation) in enumerate(
+                zip(cells, fitness, born, strict=True)
+            )
+        ]
+        session.execute(insert(Elite), rows)
+        session.execute(insert(Generation), curves(run, fitness, born))
+        return str(run.id)
+
+
+def hill(cells: np.ndarray, side: int) -> np.ndarray:
+    x, y = cells // side / side, cells % side / side
+    return 2 + np.sin(3 * x) * np.cos(2 * y)
+
+
+def middle(cell: int, side: int, ends: list[tuple[float, float]]) -> list[float]:
+    """A cell's middle, on logarithmic axes."""
+    parts = [(part + 0.5) / side for part in divmod(cell, side)]
+    return [
+        float(low * (high / low) ** part) for part, (low, high) in zip(parts, ends, strict=True)
+    ]
+
+
+def copied(run: Run, side: int, fitness: np.ndarray) -> Run:
+    """A finished run with another archive."""
+    axes = [{**axis, "bins": side} for axis in run.spec["archive"]["descriptors"]]
+    archive = {**run.spec["archive"], "descriptors": axes}
+    search = {**run.spec["search"], "generations": GENERATIONS}
+    return Run(
+        experiment=run.experiment,
+        spec={**run.spec, "archive": archive, "search": search},
+        version=run.version,
+        status=FINISHED,
+        started_at=run.started_at,
+        finished_at=run.started_at and run.started_at + timedelta(hours=1),
+        generations=GENERATIONS,
+        generation=GENERATIONS,
+        evaluations=GENERATIONS * 64,
+        seconds=3600.0,
+        qd_score=float(fitness.sum()),
+        coverage=len(fitness) / side**2,
+        best=float(fitness.max()),
+    )
+
+
+def curves(run: Run, fitness: np.ndarray, born: np.ndarray) -> list[dict]:
+    """What the archive had come to after each generation."""
+    side = run.spec["archive"]["descriptors"][0]["bins"]
+    found = [fitness[born <= generation] for generation in range(1, GENERATIONS + 1)]
+    return [
+        {
+            "run_id": run.id,
+            "generation": i + 1,
+            "qd_score": float(values.sum()),
+            "coverage": len(values) / side**2,
+            "best": float(values.max(initial=0)),
+            "mean": float(values.mean()) if len(values) else 0.0,
+            "evaluations": 64 * (i + 1),
+            "diverged": 0,
+            "seconds": 18.0 * (i + 1),
+            "summary": None,
+        }
+        for i, values in enumerate(found)
+    ]
+
+
+def creatures_of(place: Services, run: str) -> list[str]:
+    """All that have been elites of a run, the newest first."""
+    mine = select(Elite.creature).where(Elite.run_id == UUID(run))
+    with place.sessions.read() as session:
+        found = session.scalars(mine.order_by(Elite.generation.desc(), Elite.cell))
+        return list(dict.fromkeys(found))

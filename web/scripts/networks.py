@@ -1,0 +1,121 @@
+"""Write what the engine says that networks compute, for the page's tests to be held against.
+
+`.venv/bin/python web/scripts/networks.py > web/test/fixtures/networks.json`. A test of the
+engine makes the same numbers anew and compares, so that the file cannot grow stale.
+"""
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from microcosmos import genomes, neat
+from microcosmos.archive.encoding import encode
+
+ROWS, COLUMNS = 48, 96
+"""Places along the body and moments of the page's pictures."""
+LOOKED_AT = np.ix_([0, 5, 31, 95], [0, 17, 30, 47])
+"""Columns and rows that are compared."""
+PERIOD, STEPS = 20, 60
+NAMES = ("position", "sine", "cosine")
+OUTPUTS = ("rest_angle", "rest_length")
+RATES = neat.Rates(0.5, 0.5, 0.1, 0.3, toggle=0.2, add_node=0.6, add_connection=0.8)
+PLACES = np.linspace(-1, 1, ROWS)
+
+
+def cases() -> list[dict[str, Any]]:
+    """Networks of every kind with their outputs at some places and moments."""
+    forward = [_forward(network) for network in _grown(6)]
+    return [*forward, _recurrent(), _layered()]
+
+
+def _grown(count: int) -> list[genomes.CPPN]:
+    def grow(key):
+        network = neat.minimal(key, len(NAMES), len(OUTPUTS), 16, 40)
+        for step in range(10):
+            key_now = jax.random.fold_in(key, step)
+            network, _ = neat.mutate(network, RATES, len(NAMES), key=key_now)
+        return network
+
+    whole = jax.device_get(jax.vmap(grow)(jax.random.split(jax.random.key(1), count)))
+    return [genomes.take(whole, i) for i in range(count)]
+
+
+def _grid() -> jnp.ndarray:
+    """Inputs (input, point) of one period, times first."""
+    phase = 2 * np.pi * np.arange(COLUMNS) / COLUMNS
+    clock = np.repeat(np.stack([np.sin(phase), np.cos(phase)]), ROWS, 1)
+    return jnp.asarray(np.concatenate([np.tile(PLACES, COLUMNS)[None], clock]), jnp.float32)
+
+
+def _forward(network: genomes.CPPN) -> dict[str, Any]:
+    # New genes have no numbers of their own until a generation gives them some.
+    network = replace(
+        network,
+        node_id=np.arange(len(network.node_id)),
+        innovation=np.arange(len(network.innovation)),
+    )
+    said = genomes.evaluate(jax.tree.map(jnp.asarray, network), _grid(), len(OUTPUTS))
+    return _case("cppn", genomes.to_genes(network), {}, np.asarray(said))
+
+
+def _recurrent() -> dict[str, Any]:
+    """One that feeds itself and its neighbour, over three periods; the last one is compared."""
+    links = {(0, 5): 1.2, (1, 5): -0.7, (2, 6): 0.5, (5, 5): 0.8, (5, 6): 1.1, (6, 5): -0.6,
+             (6, 3): 0.9, (5, 4): 0.5, (3, 6): 0.4}  # fmt: skip
+    genes = {
+        "nodes": {
+            "id": list(range(7)),
+            "activation": ["identity"] * 3 + ["tanh", "sin", "gaussian", "sin"],
+            "bias": encode(np.array([0, 0, 0, 0.1, -0.2, 0.3, 0.05])),
+        },
+        "connections": {
+            "innovation": list(range(len(links))),
+            "source": [source for source, _ in links],
+            "target": [target for _, target in links],
+            "enabled": [True] * len(links),
+            "weight": encode(np.array(list(links.values()))),
+        },
+    }
+    network = jax.tree.map(jnp.asarray, genomes.from_genes(genes, 8, 12))
+    values, said = jnp.zeros((8, ROWS), jnp.float32), []
+    for sine, cosine in genomes.sine_cosine(STEPS, PERIOD).T:
+        clock = np.repeat([[sine], [cosine]], ROWS, 1)
+        inputs = jnp.asarray(np.concatenate([PLACES[None], clock]), jnp.float32)
+        values = genomes.advance(network, values, inputs)
+        said.append(np.asarray(values[3:5]))
+    steps = STEPS - PERIOD + np.arange(COLUMNS) * PERIOD // COLUMNS
+    found = np.stack(said)[steps].swapaxes(0, 1).reshape(2, -1)
+    return _case("cppn", genes, {"recurrent": True}, found)
+
+
+def _layered() -> dict[str, Any]:
+    layers = genomes.Layers((3, 5, 4, 2), "sin", 1.7)
+    genes = np.random.default_rng(0).uniform(-1, 1, layers.genes).astype(np.float32)
+    said = genomes.forward(layers, jnp.asarray(genes), _grid())
+    control = {"hidden": [5, 4], "activation": "sin", "scale": 1.7}
+    return _case("weights", {"values": encode(genes)}, control, np.asarray(said))
+
+
+def _case(
+    encoding: str, genes: dict[str, Any], control: dict[str, Any], said: np.ndarray
+) -> dict[str, Any]:
+    clock = {"timer": "sine-cosine", "period": PERIOD, "position": "signed"}
+    told = {"encoding": encoding, "inputs": NAMES, "outputs": OUTPUTS}
+    values = said.reshape(len(OUTPUTS), COLUMNS, ROWS)
+    return {
+        "genome": {**told, "control": {**clock, **control}, **genes},
+        "steps": STEPS,
+        "said": [output[LOOKED_AT].tolist() for output in values],
+    }
+
+
+def main() -> None:
+    print(json.dumps(cases()))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,56 @@
+/** A network of given layers as a graph: its genes are rows of a bias and weights. */
+
+import type { Spec, Vector } from "../api/types";
+import { decodeFloats } from "./base64";
+import type { Link, Network, Neuron } from "./network";
+
+/** Links that can still be told apart. */
+const MOST = 600;
+
+/** Null where there are no layers, or too many links to be drawn. */
+export function layeredOf({ encoding, control, values, inputs, outputs }: Vector): Network | null {
+  if (encoding !== "weights" || !inputs || !outputs) return null;
+  const sizes = [inputs.length, ...(control.hidden as number[]), outputs.length];
+  const links = sizes.slice(1).reduce((sum, size, i) => sum + size * sizes[i]!, 0);
+  return links > MOST ? null : graph(sizes, decodeFloats(values), control, inputs, outputs);
+}
+
+function graph(sizes: number[], genes: Float32Array, control: Spec, inputs: string[], outputs: string[]) {
+  const ids = numbersOf(sizes);
+  const last = sizes.length - 1;
+  const neurons: Neuron[] = ids[0]!.map((id) => neuronOf(id, "input", inputs[id]!, "identity", 0, 0));
+  const links: Link[] = [];
+  let used = 0;
+  for (let layer = 1; layer <= last; layer++) {
+    const role = layer === last ? "output" : "hidden";
+    const activation = layer === last ? "identity" : String(control.activation);
+    ids[layer]!.forEach((id, place) => {
+      const row = [...genes.subarray(used, (used += sizes[layer - 1]! + 1))].map((gene) => gene * Number(control.scale));
+      const label = role === "output" ? outputs[place]! : "";
+      neurons.push(neuronOf(id, role, label, activation, row[0]!, layer));
+      ids[layer - 1]!.forEach((source, i) => links.push({ source, target: id, weight: row[i + 1]!, enabled: true }));
+    });
+  }
+  return { neurons, links, depth: last };
+}
+
+/** Inputs come first and outputs behind them, as among the genes of NEAT. */
+function numbersOf(sizes: number[]): number[][] {
+  const last = sizes.length - 1;
+  let next = sizes[0]! + sizes[last]!;
+  return sizes.map((size, layer) => {
+    const first = layer === 0 ? 0 : layer === last ? sizes[0]! : (next += size) - size;
+    return Array.from({ length: size }, (_, i) => first + i);
+  });
+}
+
+function neuronOf(
+  id: number,
+  role: Neuron["role"],
+  name: string,
+  activation: string,
+  bias: number,
+  depth: number,
+): Neuron {
+  return { id, role, label: name.replaceAll("_", " "), activation, bias, depth };
+}

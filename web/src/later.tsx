@@ -1,0 +1,34 @@
+/** Pages whose script comes when they are first opened. */
+
+import type { ComponentType } from "preact";
+import { useEffect, useState } from "preact/hooks";
+
+export function later<P extends object>(load: () => Promise<ComponentType<P>>): ComponentType<P> {
+  let Found: ComponentType<P> | null = null;
+  return function Later(props: P) {
+    const [, redraw] = useState(0);
+    const [failed, setFailed] = useState(false);
+    useEffect(() => {
+      if (Found) return;
+      load().then(
+        (found) => {
+          Found = found;
+          redraw((count) => count + 1);
+        },
+        () => setFailed(true),
+      );
+    }, []);
+    if (Found) return <Found {...props} />;
+    return <main>{failed ? <Gone /> : <p class="quiet loading">Loading …</p>}</main>;
+  };
+}
+
+/** The server was updated since this tab was opened, or cannot be reached. */
+function Gone() {
+  return (
+    <p class="banner wrong" role="alert">
+      This part of the page could not be loaded.{" "}
+      <button onClick={() => location.reload()}>Reload</button>
+    </p>
+  );
+}

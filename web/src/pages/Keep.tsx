@@ -1,0 +1,76 @@
+/** Everything a creature can be kept as; films are made when somebody wants them. */
+
+import { useEffect, useState } from "preact/hooks";
+import {
+  type Picture,
+  creatureFileUrl,
+  creatureH5Url,
+  pictureUrl,
+  proveRendering,
+} from "../api/client";
+import { messageOf } from "../api/problem";
+import { poll } from "../live/polling";
+import { tell } from "../live/toasts";
+import { FileLink, save } from "./FileLink";
+
+const KINDS: [Picture, string][] = [
+  ["strip.png", "PNG"],
+  ["film.gif", "GIF"],
+  ["film.mp4", "MP4"],
+];
+
+export function Keep({ sha }: { sha: string }) {
+  return (
+    <p class="links pictures" role="group" aria-label="Keep it as">
+      <span class="quiet small">Keep it as</span>
+      <button onClick={() => void copy(`${location.origin}/creatures/${sha}`)}>Copy link</button>
+      <a
+        class="button"
+        href={creatureFileUrl(sha)}
+        download={`creature-${sha.slice(0, 12)}.json`}
+        title="The creature file, which others can bring to their own installation"
+      >
+        JSON
+      </a>
+      <FileLink url={creatureH5Url(sha)} name="HDF5" />
+      {KINDS.map(([kind, title]) => (
+        <Download key={kind} url={pictureUrl(sha, kind)} title={title} />
+      ))}
+    </p>
+  );
+}
+
+/** Browsers keep the clipboard from pages that came over plain HTTP from elsewhere. */
+async function copy(link: string): Promise<void> {
+  try {
+    if (!navigator.clipboard) throw new Error(`This page may not copy: it came over plain HTTP. The link is ${link}`);
+    await navigator.clipboard.writeText(link);
+    tell({ kind: "note", text: "Link copied." });
+  } catch (error) {
+    tell({ kind: "wrong", text: messageOf(error) });
+  }
+}
+
+/** A button that waits for the rendering and then saves it. */
+function Download({ url, title }: { url: string; title: string }) {
+  const [busy, setBusy] = useState(false);
+  useEffect(() => {
+    if (!busy) return;
+    return poll(() => proveRendering(url), {
+      value: () => {
+        setBusy(false);
+        save(url);
+      },
+      note: () => {},
+      error: (text) => {
+        setBusy(false);
+        tell({ kind: "wrong", text });
+      },
+    });
+  }, [busy, url]);
+  return (
+    <button disabled={busy} onClick={() => setBusy(true)}>
+      {busy ? `Rendering ${title} …` : title}
+    </button>
+  );
+}

@@ -1,0 +1,98 @@
+/** A run in the list: how it is doing, what people say of it, what can be done. */
+
+import type { Experiment } from "../api/types";
+import { useLive } from "../live/live";
+import { addTag, removeNote, removeTag, say } from "../live/saying";
+import { setQuery } from "../router";
+import { freedomOf } from "../view/coupling";
+import { DASH, short, titleOf } from "../view/format";
+import { NotFree } from "../view/NotFree";
+import { keyFigureOf } from "../view/results/figures";
+import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
+import { Name, Note, Tags } from "../view/runs/Said";
+import { Sparkline } from "../view/Sparkline";
+import { ON } from "./wishes";
+
+interface Props {
+  id: string;
+  experiments: Experiment[];
+  chosen: boolean;
+  knownTags: string;
+  onChoose: () => void;
+}
+
+export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) {
+  const run = useLive((state) => state.runs.get(id)!);
+  const title = titleOf(run, experiments);
+  const name = `${title} ${short(run.id)}`;
+  const time = timeOf(run);
+  const [figureName, figure] = keyFigureOf(run);
+  return (
+    <tr class={chosen ? "chosen-row" : ""}>
+      <td class="row-choice">
+        <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
+      </td>
+      <th scope="row">
+        <Name run={run} title={title} onName={(name) => void say(run.id, { name })}>
+          <a class="run-name" href={`/runs/${run.id}`}>
+            {title} <code>{short(run.id)}</code>
+          </a>
+        </Name>
+        {freedomOf(run.spec) === "none" && <NotFree />}
+        {run.waiting && <span class="row-note why">{run.waiting}</span>}
+        {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
+        {run.warning && <span class="row-note warning-text">{run.warning}</span>}
+        <span class="said">
+          <Tags
+            run={run}
+            name={name}
+            known={knownTags}
+            onPick={(tag) => setQuery({ tag })}
+            onAdd={(tag) => addTag(run, tag)}
+            onRemove={(tag) => removeTag(run, tag)}
+          />
+          <Note
+            run={run}
+            name={name}
+            onNote={(note) => void say(run.id, { note })}
+            onRemove={() => removeNote(run)}
+          />
+        </span>
+      </th>
+      <td data-label="State">
+        <Badge run={run} />
+      </td>
+      <td data-label="Progress" class="with-bar">
+        <Progress run={run} />
+        <span class="quiet">
+          {run.generation} / {run.generations}
+        </span>
+      </td>
+      <td data-label={time.label} class="time">
+        {time.text}
+        {run.status === "running" && time.text !== DASH && <span class="quiet"> left</span>}
+      </td>
+      <td data-label="Evaluations/s">{rateOf(run)}</td>
+      <td data-label="Result" class="with-spark">
+        <span>
+          {figure} <span class="quiet small">{figureName}</span>
+        </span>
+        {run.sparkline.length > 1 && (
+          <Sparkline values={run.sparkline} label={`QD score of ${name} over time`} />
+        )}
+      </td>
+      <td class="row-actions">
+        <span class="actions">
+          <Actions run={run} on={ON(title)} name={name} />
+          <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
+            Clone
+          </a>
+        </span>
+      </td>
+    </tr>
+  );
+}
+
+function lastLine(text: string): string {
+  return text.trim().split("\n").at(-1) ?? "";
+}

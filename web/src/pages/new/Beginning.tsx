@@ -1,0 +1,68 @@
+/** What the spec was begun from, what was changed since, and the ways back. */
+
+import { importCreature } from "../../api/client";
+import { messageOf } from "../../api/problem";
+import type { Experiment } from "../../api/types";
+import type { Base, Work } from "../../live/draft";
+import { tell } from "../../live/toasts";
+import { navigate } from "../../router";
+import { equalPreset } from "../../view/form/differences";
+import { titleOfBase } from "./sources";
+import type { Desk } from "./work";
+
+/** A creature that came as a file, which this server need not know. */
+export interface CreatureFile {
+  sha: string;
+  text: string;
+}
+
+interface Props {
+  desk: Desk;
+  work: Work;
+  experiments: Experiment[];
+  file: CreatureFile | null;
+}
+
+export function Beginning({ desk, work, experiments, file }: Props) {
+  const { base, spec } = work;
+  const { size } = desk.changed;
+  const equal = size > 0 || base.kind !== "preset" ? equalPreset(spec, experiments) : null;
+  return (
+    <p class="beginning" role="status">
+      <span>
+        {desk.restored && "Your draft is back: "}
+        {size === 0 ? "As in " : `${size} ${size === 1 ? "change" : "changes"} from `}
+        <BaseName base={base} />
+        {base.kind === "creature" && " with its world, body, coupling, controller and task"}
+        {equal && `, the same as preset “${equal.name}”`}.
+      </span>
+      {size > 0 && (
+        <button type="button" class="plain" onClick={desk.reset}>
+          {desk.restored ? "Discard draft" : "Undo all changes"}
+        </button>
+      )}
+      {file && base.name === file.sha && (
+        <button type="button" class="plain" onClick={() => void open(file)}>
+          Open this creature instead
+        </button>
+      )}
+    </p>
+  );
+}
+
+const PAGES = { run: "runs", creature: "creatures" };
+
+function BaseName({ base }: { base: Base }) {
+  const page = PAGES[base.kind as keyof typeof PAGES];
+  if (!page || base.foreign) return <b>{titleOfBase(base)}</b>;
+  return <a href={`/${page}/${base.name}`}>{titleOfBase(base)}</a>;
+}
+
+async function open(file: CreatureFile): Promise<void> {
+  try {
+    const { creature } = await importCreature(file.text);
+    navigate(`/creatures/${creature}`);
+  } catch (error) {
+    tell({ kind: "wrong", text: messageOf(error) });
+  }
+}

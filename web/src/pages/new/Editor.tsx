@@ -1,0 +1,136 @@
+/** The spec at hand: as a form or as JSON, with what it is about and what it will cost. */
+
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Experiment, Json, Spec } from "../../api/types";
+import type { Work } from "../../live/draft";
+import { BodyDrawing } from "../../view/BodyDrawing";
+import { CostDetails, Costs } from "../../view/Costs";
+import { Outline } from "../../view/Outline";
+import { Segments } from "../../view/Choice";
+import { complaints, messagesByPath, withValue } from "../../view/form/document";
+import type { FormState } from "../../view/form/Entry";
+import { type Section, formOf } from "../../view/form/fields";
+import { JsonView } from "../../view/form/JsonView";
+import { SpecForm, partsOf } from "../../view/form/SpecForm";
+import { useEstimate } from "./estimating";
+import { useSubmission } from "./submission";
+import type { Desk } from "./work";
+
+interface EditorProps {
+  desk: Desk;
+  work: Work;
+  experiment: Experiment;
+  view: "form" | "json";
+  show: (view: "form" | "json") => void;
+  take: (text: string, file: string, typed?: boolean) => string | null;
+  replacing: boolean;
+}
+
+export function Editor({ desk, work, experiment, view, show, take, replacing }: EditorProps) {
+  const { spec, base } = work;
+  const form = useMemo(() => formOf(experiment.schema), [experiment]);
+  const parts = useMemo(() => partsOf(form), [form]);
+  const slips = useMemo(() => complaints(form, spec), [form, spec]);
+  const check = useEstimate(spec, slips);
+  const [illegible, setIllegible] = useState<string | null>(null);
+  const submission = useSubmission(spec);
+  const errors = [...slips, ...(submission.refusal?.errors ?? []), ...check.errors];
+  const [closed, close] = useClosed(form);
+  const state: FormState = {
+    document: spec as Json,
+    original: base.spec as Json,
+    changed: desk.changed,
+    messages: messagesByPath(errors, form, spec),
+    change: (path, value) => desk.change((now) => withValue(now, path, value) as Spec),
+    closed,
+    close,
+  };
+  const element = useRef<HTMLFormElement>(null);
+  useSubmitKey(element);
+  return (
+    <form
+      class="new-run"
+      noValidate
+      ref={element}
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (!illegible) void submission.start();
+      }}
+    >
+      <div class="new-columns">
+        <aside class="new-side" aria-label="The run at a glance">
+          <section class={`card ${check.estimate ? "" : "stale"}`} aria-label="Body">
+            <BodyDrawing drawing={check.drawing} />
+          </section>
+          {check.estimate && <CostDetails estimate={check.estimate} />}
+        </aside>
+        <div class="new-spec">
+          <div class="spec-bar">
+            <Segments label="How the spec is shown" choices={VIEWS} value={view} onChoose={show} />
+            {view === "form" && <Outline parts={parts} state={state} />}
+          </div>
+          {view === "form" && <SpecForm form={form} state={state} />}
+          {view === "json" && (
+            <JsonView
+              key={desk.revision}
+              spec={spec}
+              errors={illegible ? [] : errors}
+              take={(text) => take(text, "", true)}
+              onProblem={setIllegible}
+              replace={replacing}
+            />
+          )}
+        </div>
+      </div>
+      <div class="submit-bar">
+        <div class="submit-inner">
+          <Costs
+            estimate={check.estimate}
+            problem={
+              illegible
+                ? "What is written as JSON cannot be used."
+                : (submission.refusal?.message ?? check.problem)
+            }
+          />
+          <span class="submit-how">
+            <kbd class="quiet wide-only">Ctrl + Enter</kbd>
+            <button class="primary" type="submit" disabled={submission.busy}>
+              {submission.busy ? "Starting …" : "Start the run"}
+            </button>
+          </span>
+        </div>
+      </div>
+    </form>
+  );
+}
+
+const VIEWS = [
+  ["form", "Form"],
+  ["json", "JSON"],
+] as const;
+
+/** Which parts are shown closed: at first those that are seldom changed. */
+function useClosed(form: Section): [ReadonlySet<string>, FormState["close"]] {
+  const seldom = useMemo(
+    () => new Set(form.fields.filter((field) => "seldom" in field).map(({ path }) => path)),
+    [form],
+  );
+  const [closed, setClosed] = useState<ReadonlySet<string>>(seldom);
+  useEffect(() => setClosed(seldom), [seldom]);
+  const close = (path: string, shut: boolean) =>
+    setClosed((now) => new Set(shut ? [...now, path] : [...now].filter((each) => each !== path)));
+  return [closed, close];
+}
+
+/** Control or Command with Enter submits, wherever the focus is. */
+function useSubmitKey(form: { current: HTMLFormElement | null }): void {
+  useEffect(() => {
+    const press = (event: KeyboardEvent) => {
+      if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
+      event.preventDefault();
+      form.current?.requestSubmit();
+    };
+    document.addEventListener("keydown", press);
+    return () => document.removeEventListener("keydown", press);
+  }, []);
+}

@@ -1,0 +1,59 @@
+/** The elite that is looked at, in words and numbers. */
+
+import { count, number, short } from "../format";
+import { FITNESS, type MapAxis, type Measure } from "./axes";
+import { AGE } from "./colouring";
+import type { Tile } from "./projection";
+
+interface Props {
+  tile: Tile | undefined;
+  axes: readonly MapAxis[];
+  colour: Measure;
+  onOpen: (cell: number) => void;
+}
+
+export function Reading({ tile, axes, colour, onOpen }: Props) {
+  return (
+    <p id="map-reading" class="map-reading" aria-live="polite">
+      {tile ? (
+        <Words {...{ tile, onOpen, measures: [...axes, colour] }} />
+      ) : (
+        <span class="quiet">Point at a cell to see its creature swim; click it to open it.</span>
+      )}
+    </p>
+  );
+}
+
+interface WordsProps {
+  tile: Tile;
+  measures: readonly Measure[];
+  onOpen: (cell: number) => void;
+}
+
+function Words({ tile: { elite, cell, behind }, measures, onOpen }: WordsProps) {
+  const told = new Map(measures.map((measure) => [measure.name, measure]));
+  for (const name of [FITNESS, AGE]) told.delete(name);
+  return (
+    <>
+      <span>
+        Fitness <b>{number(elite.fitness)}</b>
+      </span>
+      {[...told.values()].map(({ name, title, valueOf }) => (
+        <span key={name}>
+          {title} <b>{number(valueOf(elite))}</b>
+        </span>
+      ))}
+      <span>
+        Generation <b>{elite.generation}</b>
+      </span>
+      {behind > 0 && (
+        <span>
+          best of <b>{count(behind + 1)}</b> here
+        </span>
+      )}
+      <button class="link" onClick={() => onOpen(cell)}>
+        Open <code>{short(elite.creature)}</code>
+      </button>
+    </>
+  );
+}

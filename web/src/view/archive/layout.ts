@@ -1,0 +1,104 @@
+/** How the bins of a map lie on it: places go from 0 to 1, to the right and downwards. */
+
+import type { Delaunay } from "d3-delaunay";
+import { type Shape, cellAt, rectangle } from "./geometry";
+
+export type Spot = readonly [x: number, y: number];
+
+export interface Layout {
+  readonly count: number;
+  /** The bin under a place; null beyond the map. */
+  at(x: number, y: number): number | null;
+  centre(bin: number): Spot;
+  outline(bin: number): Spot[];
+}
+
+export function gridLayout(shape: Shape): Layout {
+  return {
+    count: shape[0] * shape[1],
+    at: (x, y) => cellAt(x, y, shape),
+    centre: (bin) => {
+      const { x, y, w, h } = rectangle(bin, shape, 1, 1);
+      return [x + w / 2, y + h / 2];
+    },
+    outline: (bin) => {
+      const { x, y, w, h } = rectangle(bin, shape, 1, 1);
+      return [[x, y], [x + w, y], [x + w, y + h], [x, y + h]];
+    },
+  };
+}
+
+/** The cells around points, as far as the map goes. */
+export function voronoiLayout(points: Spot[], tessellate: typeof Delaunay): Layout {
+  const delaunay = tessellate.from(points, ([x]) => x, ([, y]) => y);
+  const cells = delaunay.voronoi([0, 0, 1, 1]);
+  let last = 0; // Where the search for the next place begins: most often nearby.
+  return {
+    count: points.length,
+    at: (x, y) => {
+      if (x < 0 || x >= 1 || y < 0 || y >= 1) return null;
+      return (last = delaunay.find(x, y, last));
+    },
+    centre: (bin) => points[bin]!,
+    outline: (bin) => (cells.cellPolygon(bin) ?? []).slice(0, -1) as unknown as Spot[],
+  };
+}
+
+export type Direction = "ArrowLeft" | "ArrowRight" | "ArrowUp" | "ArrowDown";
+
+const STEPS: Record<Direction, Spot> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
+
+export const isDirection = (key: string): key is Direction => key in STEPS;
+
+/** The nearest filled bin in a direction; being off its line counts twice. */
+export function nextBin(
+  from: number,
+  direction: Direction,
+  filled: Iterable<number>,
+  layout: Layout,
+): number | null {
+  const [dx, dy] = STEPS[direction];
+  const start = layout.centre(from);
+  let best: number | null = null;
+  let least = Infinity;
+  for (const bin of filled) {
+    const [x, y] = layout.centre(bin);
+    const ahead = (x - start[0]) * dx + (y - start[1]) * dy;
+    const aside = Math.abs((x - start[0]) * dy) + Math.abs((y - start[1]) * dx);
+    const cost = ahead + 2 * aside;
+    if (ahead > 1e-9 && cost < least) [best, least] = [bin, cost];
+  }
+  return best;
+}
+
+/** Bins narrower than this, in pixels of the page, stand without a gap. */
+const ROOMY = 5;
+
+/** The bin at each pixel of a picture; −1 in the gaps between bins. */
+export function rasterOf(layout: Layout, width: number, height: number, density: number) {
+  const raster = new Int32Array(width * height);
+  for (let row = 0, k = 0; row < height; row++) {
+    const y = (row + 0.5) / height;
+    for (let column = 0; column < width; column++, k++) {
+      raster[k] = layout.at((column + 0.5) / width, y) ?? -1;
+    }
+  }
+  const side = Math.sqrt((width * height) / layout.count) / density;
+  if (side >= ROOMY) cutGaps(raster, width, Math.max(1, Math.round(density)));
+  return raster;
+}
+
+/** From the end, so that what is compared with is as it was. */
+function cutGaps(raster: Int32Array, width: number, gap: number): void {
+  for (let k = raster.length - 1; k >= 0; k--) {
+    const column = k % width;
+    const left = column >= gap ? raster[k - gap] : raster[k];
+    const above = k >= gap * width ? raster[k - gap * width] : raster[k];
+    if (left !== raster[k] || above !== raster[k]) raster[k] = -1;
+  }
+}

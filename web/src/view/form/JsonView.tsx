@@ -1,0 +1,74 @@
+/** A spec as JSON, to be read, changed or replaced by what is pasted. */
+
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { FieldError, Spec } from "../../api/types";
+
+interface Props {
+  spec: Spec;
+  errors: FieldError[];
+  /** Takes what was written; answers what is wrong with it, if anything. */
+  take: (text: string) => string | null;
+  /** Tells whether what is written can be used. */
+  onProblem: (problem: string | null) => void;
+  /** Whether all of it is chosen at first, so that pasting replaces it. */
+  replace: boolean;
+}
+
+export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
+  const area = useRef<HTMLTextAreaElement>(null);
+  const own = useRef<string | null>(null);
+  const [text, setText] = useState(() => written(spec));
+  const [problem, setProblem] = useState<string | null>(null);
+  const tell = (found: string | null) => {
+    setProblem(found);
+    onProblem(found);
+  };
+  useEffect(() => {
+    // What came of one's own typing must not be rewritten; what others changed must.
+    const typing = own.current !== null;
+    own.current = null;
+    if (typing) return;
+    setText(written(spec));
+    tell(null);
+  }, [spec]);
+  useEffect(() => {
+    if (replace) area.current!.select();
+    return () => onProblem(null);
+  }, []);
+  return (
+    <section class="card json-view">
+      <label for="spec-json">The spec as JSON</label>
+      <p id="spec-json-about" class="help">
+        Change it here, or replace it by a spec, a run as the API gives it, or a creature file. What
+        is left out has its default.
+      </p>
+      <textarea
+        id="spec-json"
+        ref={area}
+        spellcheck={false}
+        autoComplete="off"
+        rows={28}
+        value={text}
+        aria-invalid={problem !== null || errors.length > 0}
+        aria-describedby="spec-json-about spec-json-problems"
+        onInput={(event) => {
+          own.current = event.currentTarget.value;
+          setText(own.current);
+          const found = take(own.current);
+          if (found) own.current = null;
+          tell(found);
+        }}
+      />
+      <div id="spec-json-problems" role="status">
+        {problem && <p class="wrong-text">{problem}</p>}
+        {errors.map(({ field, message }) => (
+          <p key={`${field} ${message}`} class="wrong-text">
+            <code>{field}</code>: {message.replaceAll("`", "")}
+          </p>
+        ))}
+      </div>
+    </section>
+  );
+}
+
+const written = (spec: Spec) => JSON.stringify(spec, null, 2);

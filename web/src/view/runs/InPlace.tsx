@@ -1,0 +1,44 @@
+/** Text that is changed where it stands. */
+
+import { useLayoutEffect, useRef } from "preact/hooks";
+
+interface Props {
+  label: string;
+  value: string;
+  limit: number;
+  /** Several lines, which Enter does not end. */
+  long?: boolean;
+  list?: string;
+  onDone: (value: string | null) => void;
+}
+
+/** Enter or leaving takes what was typed, Escape takes nothing. */
+export function InPlace({ label, value, limit, long = false, list, onDone }: Props) {
+  const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null);
+  const over = useRef(false);
+  useLayoutEffect(() => {
+    field.current!.focus(); // Before anything else is typed.
+    field.current!.select();
+  }, []);
+  const end = (take: boolean) => {
+    if (over.current || !field.current) return; // What is taken away loses the focus too.
+    over.current = true;
+    onDone(take ? field.current.value.trim() : null);
+  };
+  const common = {
+    ref: field,
+    class: "in-place",
+    "aria-label": label,
+    maxLength: limit,
+    defaultValue: value,
+    onBlur: () => end(true),
+    onKeyDown: (event: KeyboardEvent) => {
+      if (event.key === "Escape") end(false);
+      if (event.key === "Enter" && (!long || event.ctrlKey || event.metaKey)) {
+        event.preventDefault();
+        end(true);
+      }
+    },
+  };
+  return long ? <textarea rows={4} {...common} /> : <input type="text" list={list} {...common} />;
+}
