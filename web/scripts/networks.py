@@ -40,7 +40,7 @@ def _grown(count: int) -> list[genomes.CPPN]:
             network, _ = neat.mutate(network, RATES, len(NAMES), key=key_now)
         return network
 
-    whole = jax.device_get(jax.vmap(grow)(jax.random.split(jax.random.key(1), count)))
+    whole = jax.vmap(grow)(jax.random.split(jax.random.key(1), count))
     return [genomes.take(whole, i) for i in range(count)]
 
 
@@ -54,11 +54,11 @@ def _grid() -> jnp.ndarray:
 def _forward(network: genomes.CPPN) -> dict[str, Any]:
     # New genes have no numbers of their own until a generation gives them some.
     network = replace(
-        network,
-        node_id=np.arange(len(network.node_id)),
-        innovation=np.arange(len(network.innovation)),
+        jax.tree.map(jnp.asarray, network),
+        node_id=jnp.arange(network.node_id.shape[0]),
+        innovation=jnp.arange(network.innovation.shape[0]),
     )
-    said = genomes.evaluate(jax.tree.map(jnp.asarray, network), _grid(), len(OUTPUTS))
+    said = genomes.evaluate(network, _grid(), len(OUTPUTS))
     return _case("cppn", genomes.to_genes(network), {}, np.asarray(said))
 
 
