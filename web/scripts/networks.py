@@ -82,7 +82,7 @@ def _recurrent() -> dict[str, Any]:
     }
     network = jax.tree.map(jnp.asarray, genomes.from_genes(genes, 8, 12))
     values, said = jnp.zeros((8, ROWS), jnp.float32), []
-    for sine, cosine in genomes.sine_cosine(STEPS, PERIOD).T:
+    for sine, cosine in genomes.sine_cosine(STEPS, float(PERIOD)).T:
         clock = np.repeat([[sine], [cosine]], ROWS, 1)
         inputs = jnp.asarray(np.concatenate([PLACES[None], clock]), jnp.float32)
         values = genomes.advance(network, values, inputs)
