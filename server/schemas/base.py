@@ -1,0 +1,26 @@
+"""What all wire types are, and what every error is."""
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+
+class Wire(BaseModel):
+    model_config = ConfigDict(extra="forbid", from_attributes=True)
+
+
+class FieldError(Wire):
+    field: str
+    message: str
+    needed: str | None = None
+    got: Any = None
+
+
+class Problem(BaseModel):
+    """RFC 9457."""
+
+    type: str = "about:blank"
+    title: str
+    status: int
+    detail: str
+    errors: list[FieldError] | None = None
