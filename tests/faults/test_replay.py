@@ -21,6 +21,7 @@ def test_a_replay_is_made_though_its_renderer_is_killed(place, undisturbed):
     size = int.from_bytes(replay[:4], "little")
     header = json.loads(replay[4 : 4 + size])
     assert header["creature"] == creature
-    floats = header["frames"] * header["nodes"] * 2
-    pixels = header["frames"] * header["size"][0] * header["size"][1]
-    assert len(replay) == 4 + size + 4 * floats + pixels
+    floats = 2 * header["nodes"] + len(header["joints"]) + len(header["edges"])
+    cells = header["size"][0] * header["size"][1]
+    planes = 3 * header["frames"] + header["energy"]["frames"]
+    assert len(replay) == 4 + size + 4 * header["frames"] * floats + planes * cells
