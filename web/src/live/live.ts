@@ -1,6 +1,6 @@
 /** The one store of a tab. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
 import { type Action, EMPTY, type State, reduce } from "./store";
 
@@ -41,4 +41,15 @@ export function useLive<T>(select: (state: State) => T): T {
     return () => void listeners.delete(listener);
   });
   return selected;
+}
+
+/** Some runs, as far as they are known; the component is drawn again when one of them changes. */
+export function useRuns(ids: readonly string[]): readonly (Run | undefined)[] {
+  const last = useRef<readonly (Run | undefined)[]>([]);
+  return useLive(({ runs }) => {
+    const next = ids.map((id) => runs.get(id));
+    const same = next.length === last.current.length && next.every((run, i) => run === last.current[i]);
+    if (!same) last.current = next;
+    return last.current;
+  });
 }

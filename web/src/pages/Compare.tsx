@@ -3,7 +3,7 @@
 import type { Experiment, Run } from "../api/types";
 import type { Curves as Columns } from "../live/curves";
 import { useCurvesOf, useExperiments } from "../live/fetching";
-import { useLive } from "../live/live";
+import { useRuns } from "../live/live";
 import { Curves } from "../view/curves/Curves";
 import { type Other, lookOf, overlaid } from "../view/curves/look";
 import { type Plot, scoresOf } from "../view/curves/plots";
@@ -17,12 +17,11 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
   const asked = [...new Set((query.get("runs") ?? "").split(",").filter(Boolean))];
   const ids = asked.slice(0, COMPARED);
   const { value: curves, error } = useCurvesOf(ids);
-  const known = useLive((state) => state.runs);
+  const known = useRuns(ids);
   const experiments = useExperiments().value ?? [];
-  const runs = ids.flatMap((id, place): Compared[] => {
-    const run = known.get(id);
-    return run ? [{ run, place, name: nameOf(run, experiments) }] : [];
-  });
+  const runs = known.flatMap((run, place): Compared[] =>
+    run ? [{ run, place, name: nameOf(run, experiments) }] : [],
+  );
   return (
     <main>
       <nav class="crumbs" aria-label="Where you are">

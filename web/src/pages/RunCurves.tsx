@@ -4,7 +4,7 @@ import type { ComponentChildren } from "preact";
 import type { Run } from "../api/types";
 import type { Curves as Columns } from "../live/curves";
 import { hasArchive, useCurvesOf, useExperiments } from "../live/fetching";
-import { useLive } from "../live/live";
+import { useRuns } from "../live/live";
 import { setQuery } from "../router";
 import { Curves } from "../view/curves/Curves";
 import { type Look, type Other, dressed, lookOf } from "../view/curves/look";
@@ -101,10 +101,10 @@ export function useOthers(query: URLSearchParams, id: string): Others {
   const asked = (query.get("with") ?? "").split(",").filter((other) => other && other !== id);
   const ids = [...new Set(asked)].slice(0, MOST);
   const { value, error } = useCurvesOf(ids);
-  const runs = useLive((state) => state.runs);
+  const runs = useRuns(ids);
   const experiments = useExperiments().value ?? [];
   const others = ids.flatMap((id, i): Other[] => {
-    const [curves, run] = [value?.get(id), runs.get(id)];
+    const [curves, run] = [value?.get(id), runs[i]];
     if (!curves || !run || curves.generation.length === 0) return [];
     const name = `${titleOf(run, experiments)} ${short(id)}`;
     return [{ name, colour: `--series-${2 + i}`, curves }];
