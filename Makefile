@@ -42,12 +42,15 @@ check: install web
 	$(BIN)/pytest -m fast tests/engine
 
 # The tests of the server fork, which a process with JAX in it must not: they have their own.
+# What is about bits is compiled as the product is; the rest without optimising, see conftest.
 # Beside them, which mostly wait, goes the product whole: real processes, and a browser.
 test: install web
 	$(STYLE)
-	$(BIN)/pytest -n auto --maxprocesses 4 --dist loadfile tests/engine tests/examples
+	$(SHARED) -m "not optimised" tests/engine tests/examples
+	MICROCOSMOS_TEST_OPTIMISED=1 $(SHARED) -m optimised tests/engine
 	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target test-server test-product
 
+SHARED = $(BIN)/pytest -n auto --maxprocesses 4 --dist loadfile
 BESIDE_ENGINE = --ignore=tests/engine --ignore=tests/examples
 
 test-server:

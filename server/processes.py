@@ -4,6 +4,7 @@ import ctypes
 import os
 import signal
 import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -12,8 +13,9 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def die_with_parent(parent: int, sent: signal.Signals) -> None:
-    """Have the kernel send this process a signal when its parent dies (Linux)."""
-    _libc.prctl(PR_SET_PDEATHSIG, int(sent))
+    """Have the kernel send this process a signal when its parent dies, where it can (Linux)."""
+    if sys.platform == "linux":
+        _libc.prctl(PR_SET_PDEATHSIG, int(sent))
     if os.getppid() != parent:  # It died before the kernel was told.
         os.kill(os.getpid(), sent)
 

@@ -1,14 +1,15 @@
 """The one device that a worker computes on, found without starting it."""
 
 import os
-import shutil
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-QUERY = ("--query-gpu=name,memory.total", "--format=csv,noheader,nounits")
-MIB = 1 << 20
-NVIDIA_SECONDS = 20
+from . import nvidia, processor
+from .nvidia import MIB as MIB
+
+FRACTION = "XLA_PYTHON_CLIENT_MEM_FRACTION"
+TAKEN = 0.75
+"""The part of a GPU's memory that JAX takes where it has it alone."""
 
 
 @dataclass(frozen=True)
@@ -20,47 +21,36 @@ class Device:
     environment: dict[str, str]
     gpu: str | None = None
     """As `nvidia-smi -i` takes it; None where it is the machine's processor."""
+    threads: tuple[int, ...] = ()
+    """Of the processor, where that is the device."""
 
 
-def find(index: int) -> Device:
-    """The device of the worker with this number: a GPU where there are any, else the CPU."""
-    gpus = nvidia()
-    if not gpus:
-        return Device(processor(), memory(), {})
-    allowed = os.environ.get("CUDA_VISIBLE_DEVICES")
-    names = allowed.split(",") if allowed else [str(i) for i in range(len(gpus))]
-    chosen = names[index % len(names)]
-    name, size = gpus[int(chosen)] if chosen.isdigit() else gpus[0]
-    return Device(name, size, {"CUDA_VISIBLE_DEVICES": chosen}, chosen)
+def find(index: int, workers: int = 1) -> Device:
+    """The device of the worker with this number: a GPU of its own where there are any.
+
+    More workers than GPUs share them and their memory. Without a GPU each worker has its part
+    of the processor's threads; no result depends on how many those are.
+    """
+    gpus = nvidia.visible()
+    if gpus:
+        return _gpu(gpus[index % len(gpus)], _sharing(index, workers, len(gpus)))
+    threads = processor.share(processor.threads(), index, workers)
+    name = f"{processor.model()} ({len(threads)} threads)"
+    return Device(name, memory(), {}, threads=tuple(threads))
 
 
-def nvidia() -> list[tuple[str, int]]:
-    """Name and bytes of memory of every NVIDIA GPU that answers."""
-    if os.environ.get("JAX_PLATFORMS") == "cpu" or not shutil.which("nvidia-smi"):
-        return []
-    try:
-        answer = subprocess.run(
-            ["nvidia-smi", *QUERY],
-            check=False,
-            capture_output=True,
-            text=True,
-            timeout=NVIDIA_SECONDS,
-        )
-    except subprocess.TimeoutExpired:
-        return []
-    if answer.returncode:
-        return []
-    rows = [line.rsplit(",", 1) for line in answer.stdout.splitlines() if "," in line]
-    return [(name.strip(), int(size) * MIB) for name, size in rows if size.strip().isdigit()]
+def _sharing(index: int, workers: int, devices: int) -> int:
+    """How many workers have the same device as this one."""
+    return max(1, len(range(index % devices, workers, devices)))
 
 
-def processor() -> str:
-    """The processor's model and how many of its threads are ours."""
-    threads = len(os.sched_getaffinity(0))
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return f"{line.partition(':')[2].strip()} ({threads} threads)"
-    return f"{os.uname().machine} ({threads} threads)"
+def _gpu(gpu: nvidia.Gpu, sharing: int) -> Device:
+    environment = {"CUDA_VISIBLE_DEVICES": gpu.uuid}
+    if sharing == 1:
+        return Device(gpu.name, gpu.memory_bytes, environment, gpu.uuid)
+    part = {FRACTION: os.environ.get(FRACTION, f"{TAKEN / sharing:.3f}")}
+    name = f"{gpu.name} (shared by {sharing} workers)"
+    return Device(name, gpu.memory_bytes // sharing, environment | part, gpu.uuid)
 
 
 def memory() -> int:

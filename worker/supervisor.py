@@ -22,7 +22,7 @@ from server.reconcile import job_died, job_stopped
 from server.services import Services
 from server.settings import Settings
 
-from . import device, log, loop, stop
+from . import device, log, loop, processor, stop
 from .pulse import BEATS, Pulse
 
 SHORTEST_LEASE = 2
@@ -125,7 +125,9 @@ def supervise(settings: Settings, index: int) -> None:
     """Be the worker with this number on this machine, until told to stop."""
     shared = services.connect(settings)
     name = f"{socket.gethostname()}-{os.getpid()}"
-    found = device.find(index)
+    found = device.find(index, settings.workers)
+    if found.threads:
+        processor.keep_to(found.threads)
     lease = max(SHORTEST_LEASE, round(settings.lease))
     worker = Supervisor([shared.jobs.runs], name, worker_ttl=lease, serializer=JSONSerializer)
     worker.services, worker.lease, worker.environment = shared, lease, found.environment

@@ -33,7 +33,7 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
         os.environ["XLA_FLAGS"] = f"{flags} {GPU_FLAGS}".strip()
     jax.config.update("jax_default_matmul_precision", "highest")
     try:
-        jax.config.update("jax_num_cpu_devices", devices or len(os.sched_getaffinity(0)))
+        jax.config.update("jax_num_cpu_devices", devices or _cores())
     except RuntimeError:
         warnings.warn(_STARTED.format(jax.local_device_count()), stacklevel=2)
     if cache and not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
@@ -41,6 +41,13 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     # Even small programs are worth keeping: a resumed run then starts within a second.
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+
+
+def _cores() -> int:
+    """Those that this process may use, as far as the system tells."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def device_kind() -> str:

@@ -1,13 +1,28 @@
 """Which device a worker computes on."""
 
+import os
+import subprocess
+import sys
+
 import pytest
 
-from worker import device
+from worker import device, processor
 
 TWO = """#!/bin/sh
-echo "NVIDIA H200, 143771"
-echo "NVIDIA A100-SXM4-40GB, 40960"
+case "$*" in
+-L) echo "GPU 0: NVIDIA H200 (UUID: GPU-aaaa1111)"
+    echo "GPU 1: NVIDIA A100-SXM4-40GB (UUID: GPU-bbbb2222)" ;;
+*)  echo "GPU-aaaa1111, NVIDIA H200, 143771"
+    echo "GPU-bbbb2222, NVIDIA A100-SXM4-40GB, 40960" ;;
+esac
 """
+DIVIDED = TWO.replace(
+    " ;;",
+    """
+    echo "  MIG 3g.20gb     Device  0: (UUID: MIG-cccc3333)"
+    echo "  MIG 1g.5gb      Device  1: (UUID: MIG-dddd4444)" ;;""",
+    1,
+).replace('echo "GPU 1: NVIDIA A100-SXM4-40GB (UUID: GPU-bbbb2222)"', ":")
 
 
 @pytest.fixture
@@ -20,30 +35,68 @@ def nvidia_smi(tmp_path, monkeypatch):
         program.chmod(0o755)
         monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
 
-    monkeypatch.delenv("JAX_PLATFORMS", raising=False)
-    monkeypatch.delenv("CUDA_VISIBLE_DEVICES", raising=False)
+    for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.FRACTION):
+        monkeypatch.delenv(name, raising=False)
     return says
 
 
 def test_every_worker_has_a_gpu_of_its_own(nvidia_smi):
     nvidia_smi(TWO)
-    first, second = device.find(0), device.find(1)
+    first, second = device.find(0, 2), device.find(1, 2)
     assert (first.name, first.memory_bytes) == ("NVIDIA H200", 143771 << 20)
-    assert first.environment == {"CUDA_VISIBLE_DEVICES": "0"}
+    assert first.environment == {"CUDA_VISIBLE_DEVICES": "GPU-aaaa1111"}
     assert second.name == "NVIDIA A100-SXM4-40GB"
-    assert second.environment == {"CUDA_VISIBLE_DEVICES": "1"}
+    assert second.environment == {"CUDA_VISIBLE_DEVICES": "GPU-bbbb2222"}
+    assert first.threads == second.threads == ()
 
 
-def test_more_workers_than_gpus_share_them(nvidia_smi):
+def test_more_workers_than_gpus_share_them_and_their_memory(nvidia_smi):
     nvidia_smi(TWO)
-    assert device.find(2).environment == {"CUDA_VISIBLE_DEVICES": "0"}
+    first, second, third = (device.find(i, 3) for i in range(3))
+    assert first == third
+    assert first.name == "NVIDIA H200 (shared by 2 workers)"
+    assert first.memory_bytes == (143771 << 20) // 2
+    assert first.environment == {
+        "CUDA_VISIBLE_DEVICES": "GPU-aaaa1111",
+        device.FRACTION: "0.375",
+    }
+    assert device.FRACTION not in second.environment
 
 
-def test_only_gpus_that_the_environment_allows_are_used(nvidia_smi, monkeypatch):
+def test_a_fraction_of_memory_that_a_person_gave_stays(nvidia_smi, monkeypatch):
     nvidia_smi(TWO)
-    monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "1")
-    assert device.find(0).name == "NVIDIA A100-SXM4-40GB"
-    assert device.find(5).environment == {"CUDA_VISIBLE_DEVICES": "1"}
+    monkeypatch.setenv(device.FRACTION, "0.2")
+    assert device.find(0, 4).environment[device.FRACTION] == "0.2"
+
+
+@pytest.mark.parametrize(
+    ("allowed", "found"),
+    [
+        ("1", ["GPU-bbbb2222", "GPU-bbbb2222"]),
+        ("1,0", ["GPU-bbbb2222", "GPU-aaaa1111"]),
+        ("GPU-bbbb", ["GPU-bbbb2222", "GPU-bbbb2222"]),
+        ("1,-1,0", ["GPU-bbbb2222", "GPU-bbbb2222"]),
+        ("", [None, None]),
+        ("-1", [None, None]),
+    ],
+)
+def test_only_gpus_that_the_environment_allows_are_used(
+    nvidia_smi, monkeypatch, allowed, found
+):
+    nvidia_smi(TWO)
+    monkeypatch.setenv("CUDA_VISIBLE_DEVICES", allowed)
+    assert [device.find(i, 2).gpu for i in range(2)] == found
+
+
+def test_parts_of_a_divided_card_are_devices(nvidia_smi, monkeypatch):
+    nvidia_smi(DIVIDED)
+    first, second, third = (device.find(i, 3) for i in range(3))
+    assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.20gb")
+    assert first.memory_bytes == 20 << 30
+    assert (second.gpu, second.memory_bytes) == ("MIG-dddd4444", 5 << 30)
+    assert third.gpu == "GPU-bbbb2222"
+    monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "MIG-dddd4444,0")
+    assert [device.find(i, 2).gpu for i in range(2)] == ["MIG-dddd4444", "MIG-cccc3333"]
 
 
 @pytest.mark.parametrize("script", ["#!/bin/sh\nexit 9\n", "#!/bin/sh\necho 'No devices'\n"])
@@ -52,3 +105,52 @@ def test_without_a_gpu_that_answers_it_is_the_processor(nvidia_smi, script):
     found = device.find(0)
     assert found.memory_bytes > 1 << 20
     assert found.environment == {}
+    assert set(found.threads) == set(processor.threads())
+    assert found.name.endswith(f"({len(found.threads)} threads)")
+
+
+@pytest.mark.parametrize(("threads", "workers"), [(8, 1), (8, 2), (8, 3), (7, 7)])
+def test_threads_are_given_out_evenly_and_none_twice(threads, workers):
+    given = [10 + i for i in range(threads)]
+    shares = [processor.share(given, i, workers) for i in range(workers)]
+    assert [thread for share in shares for thread in share] == given
+    assert max(map(len, shares)) - min(map(len, shares)) <= 1
+
+
+def test_more_workers_than_threads_share_them():
+    assert [processor.share([4, 5], i, 5) for i in range(5)] == [[4], [5], [4], [5], [4]]
+
+
+def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
+    """Two sockets of two cores of two threads, numbered as Linux often does."""
+    for thread in range(8):
+        topology = tmp_path / f"cpu{thread}" / "topology"
+        topology.mkdir(parents=True)
+        (topology / "physical_package_id").write_text(f"{thread % 2}\n")
+        (topology / "core_id").write_text(f"{thread // 2 % 2}\n")
+    monkeypatch.setattr(processor, "TOPOLOGY", tmp_path)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(8)), raising=False)
+    assert processor.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
+
+
+def test_a_machine_that_tells_nothing_of_its_processor_has_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(processor, "INFORMATION", tmp_path / "none")
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.delattr(os, "sched_setaffinity", raising=False)
+    assert processor.model()
+    assert processor.threads() == list(range(os.cpu_count()))
+    processor.keep_to([0])
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system has no affinity")
+def test_what_a_worker_starts_keeps_to_its_threads():
+    one = processor.threads()[-1]
+    program = (
+        "import subprocess, sys; from worker import processor\n"
+        "processor.keep_to([int(sys.argv[1])])\n"
+        "ask = 'import os; print(*os.sched_getaffinity(0))'\n"
+        "subprocess.run([sys.executable, '-c', ask], check=True)"
+    )
+    asked = [sys.executable, "-c", program, str(one)]
+    answer = subprocess.run(asked, check=True, capture_output=True, text=True)
+    assert answer.stdout.split() == [str(one)]

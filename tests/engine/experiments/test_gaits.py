@@ -75,6 +75,7 @@ def test_a_file_of_another_spec_is_refused(sweep, course):
         other.restore(sweep.save(course[0][1]))
 
 
+@pytest.mark.optimised
 def test_a_check_of_a_row_repeats_every_number_exactly(course):
     for row in (course[0][-1].rows[0], course[0][-1].rows[-1]):
         result = check(file_of(row))

@@ -53,8 +53,12 @@ def file(request):
     return creature.document(identity(frame(scene), encoding, one), measured, None)
 
 
-def test_a_creature_of_any_encoding_is_repeated_watched_and_audited(file):
+@pytest.mark.optimised
+def test_a_creature_of_any_encoding_is_repeated_bit_for_bit(file):
     assert check(file).exact
+
+
+def test_a_creature_of_any_encoding_is_watched_and_audited(file):
     replay = read_replay(record(file))
     nodes = int(file["measured"]["features"]["nodes"])
     assert replay.header["nodes"] == nodes <= NODES

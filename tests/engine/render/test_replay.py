@@ -81,6 +81,7 @@ def test_the_motion_ends_where_the_fitness_says(replay, best):
     assert header["fitness"]["difference"] == replayed - header["fitness"]["recorded"]
 
 
+@pytest.mark.optimised
 def test_a_check_repeats_every_recorded_number_exactly(best):
     result = check(best)
     assert result.same_device
@@ -88,6 +89,7 @@ def test_a_check_repeats_every_recorded_number_exactly(best):
     assert set(result.repeated) == set(search.FEATURES)
 
 
+@pytest.mark.optimised
 def test_a_check_notices_a_wrong_record(best):
     changed = copy.deepcopy(best)
     changed["measured"]["features"]["path_length"] *= 1 + 1e-12

@@ -12,7 +12,8 @@ PROGRAM = Path(__file__).with_name("block_bits.py")
 
 
 def bits(devices: int, tmp_path: Path) -> dict[str, str]:
-    environment = os.environ | {"JAX_PLATFORMS": "cpu", "MICROCOSMOS_TEST_CACHE": str(tmp_path)}
+    given = {"JAX_PLATFORMS": "cpu", "MICROCOSMOS_TEST_CACHE": str(tmp_path)}
+    environment = os.environ | given | {"XLA_FLAGS": ""}  # Compiled as the product is.
     command = [sys.executable, str(PROGRAM), str(devices)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
@@ -20,9 +21,10 @@ def bits(devices: int, tmp_path: Path) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
-    """What one, two and four host devices found, then again after a restart."""
+    """What one and three host devices found, then one again after a restart."""
     cache = tmp_path_factory.mktemp("cache")
-    return [bits(devices, cache) for devices in (1, 2, 4, 1)]
+    # Of three devices one has two of the four blocks: they need not share evenly.
+    return [bits(devices, cache) for devices in (1, 3, 1)]
 
 
 def test_slots_and_neighbours_make_no_difference(runs):
@@ -31,7 +33,7 @@ def test_slots_and_neighbours_make_no_difference(runs):
 
 
 def test_the_number_of_devices_and_a_restart_make_no_difference(runs):
-    assert runs[0] == runs[1] == runs[2] == runs[3]
+    assert runs[0] == runs[1] == runs[2]
 
 
 def test_all_devices_take_part(runs):
