@@ -1,25 +1,65 @@
-"""Pictures, films and figures."""
+"""Pictures and films, and figures for print."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
-from .app import CACHE, app, fail
+from ..archive.file import load
+from .app import CACHE, app, console, fail
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 """How such a file begins."""
 
+DEFAULT = "file"
+"""The command that is meant where none is named."""
 
-@app.command()
-def figure(
+
+class Figures(TyperGroup):
+    """Commands by name; what is no command's name is a file to draw."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        named = bool(args) and self.get_command(ctx, args[0]) is not None
+        return super().resolve_command(ctx, args if named else [DEFAULT, *args])
+
+
+figures = typer.Typer(
+    cls=Figures,
+    no_args_is_help=True,
+    help="Pictures and films (`figure FILE OUT`), and figures for print with their captions.",
+)
+app.add_typer(figures, name="figure")
+
+File = Annotated[
+    Path, typer.Argument(exists=True, dir_okay=False, help="The archive file of a run.")
+]
+Out = Annotated[
+    Path | None, typer.Argument(help=".pdf, .svg or .png; default: a PDF beside the file.")
+]
+Axes = Annotated[
+    str | None,
+    typer.Option(help="One or two measures, as a,b; default: the archive's first two."),
+]
+Width = Annotated[str, typer.Option(help="single (85 mm), double (178 mm), 120mm, 3.5in ...")]
+Dpi = Annotated[int, typer.Option(min=50, max=1200, help="Of a PNG.")]
+Under = Annotated[bool, typer.Option("--caption", help="Put it under the figure too.")]
+Tex = Annotated[bool, typer.Option("--latex", help="Write it for LaTeX too: OUT.caption.tex.")]
+Palette = Annotated[str, typer.Option(help="viridis, cividis or magma.")]
+
+
+@figures.command(DEFAULT)
+def of_file(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
     out: Annotated[
         Path,
         typer.Argument(help=".png, .gif or .mp4 of a creature; .png, .svg or .pdf of a run."),
     ],
 ) -> None:
-    """A picture or a film of a creature or its replay; the figure of a run with a table."""
+    """A picture or a film of a creature or its replay; the figure of a run.
+
+    This is meant where no command is named: `figure FILE OUT`.
+    """
     try:
         _draw(file, out)
     except (ValueError, RuntimeError, ImportError, OSError) as error:
@@ -27,9 +67,135 @@ def figure(
     print(out)
 
 
+@figures.command()
+def archive(
+    file: File,
+    out: Out = None,
+    axes: Axes = None,
+    colour: Annotated[str, typer.Option(help="Fitness, or any measure.")] = "fitness",
+    width: Width = "single",
+    dpi: Dpi = 300,
+    caption: Under = False,
+    latex: Tex = False,
+    palette: Palette = "viridis",
+) -> None:
+    """The map of an archive: bins, or the cells of a tessellation."""
+    from ..figures import drawing
+
+    how = drawing.Print(width, dpi, caption, latex, palette)
+    _written(drawing.archive, file, _beside(file, out, "archive"), how, _names(axes), colour)
+
+
+@figures.command()
+def curves(
+    files: Annotated[
+        list[Path],
+        typer.Argument(metavar="FILE... OUT", help="Archive files, then the figure."),
+    ],
+    shown: Annotated[
+        str, typer.Option(help="Of qd_score, coverage, best, mean, evaluations ...")
+    ] = "best,coverage,qd_score",
+    against: Annotated[str, typer.Option(help="evaluations or generations.")] = "evaluations",
+    width: Width = "double",
+    dpi: Dpi = 300,
+    caption: Under = False,
+    latex: Tex = False,
+) -> None:
+    """How runs went: seeds of one spec as a median with a band, other specs as other bands."""
+    from ..figures import drawing
+
+    *given, out = files
+    if not given:
+        fail(f"FILE... OUT needs an archive file and the figure; got {out} alone")
+    if missing := [str(file) for file in given if not file.is_file()]:
+        fail(f"FILE needs files that are there; got {', '.join(missing)}")
+    how = drawing.Print(width, dpi, caption, latex)
+    _written(drawing.progress, given, out, how, _names(shown) or [], against)
+
+
+@figures.command()
+def sheet(
+    file: File,
+    out: Out = None,
+    axes: Axes = None,
+    columns: Annotated[int, typer.Option(help="Regions along the first axis.")] = 6,
+    rows: Annotated[int, typer.Option(help="Regions along the second.")] = 4,
+    moments: Annotated[int, typer.Option(help="Moments of each life.")] = 5,
+    width: Width = "double",
+    dpi: Dpi = 300,
+    caption: Under = False,
+    latex: Tex = False,
+    palette: Palette = "viridis",
+) -> None:
+    """The contact sheet of gaits: the fittest swimmer of each region over the axes."""
+    from rich.progress import Progress
+
+    from ..device import prepare
+
+    prepare(cache=CACHE)
+    from ..figures import drawing
+
+    how = drawing.Print(width, dpi, caption, latex, palette)
+    with Progress(console=console, transient=True) as bar:
+        task = bar.add_task("simulating elites", total=None)
+        _written(
+            drawing.contact,
+            file,
+            _beside(file, out, "sheet"),
+            how,
+            _names(axes),
+            (columns, rows),
+            moments,
+            lambda done, of: bar.update(task, completed=done, total=of),
+        )
+
+
+@figures.command()
+def lineage(
+    file: File,
+    out: Out = None,
+    cell: Annotated[
+        int | None, typer.Option(help="Whose ancestors; default: the fittest elite's.")
+    ] = None,
+    width: Width = "double",
+    dpi: Dpi = 300,
+    caption: Under = False,
+    latex: Tex = False,
+    palette: Palette = "viridis",
+) -> None:
+    """The descent of an archive's elites, and the ancestors of one of them."""
+    from ..figures import drawing
+
+    how = drawing.Print(width, dpi, caption, latex, palette)
+    _written(drawing.tree, file, _beside(file, out, "lineage"), how, cell)
+
+
+def _written(draw: Any, *given: Any) -> None:
+    """Carry a drawing out and name what was written."""
+    try:
+        written = draw(*given)
+    except (ValueError, ImportError, OSError) as error:
+        fail(str(error))
+    for path in written:
+        print(path)
+
+
+def _beside(file: Path, out: Path | None, name: str) -> Path:
+    return out or file.with_suffix(f".{name}.pdf")
+
+
+def _names(text: str | None) -> list[str] | None:
+    return [name.strip() for name in text.split(",") if name.strip()] if text else None
+
+
 def _draw(file: Path, out: Path) -> None:
-    """A creature file is simulated first; the file of a run holds its table."""
+    """A creature file is simulated first; the file of a run holds its table or its archive."""
     data = file.read_bytes()
+    if data[:8] == HDF5 and "archive" in load(data)[0]:
+        from ..figures import drawing
+
+        drawing.archive(file, out, drawing.Print(), None, "fitness")
+        return
     if data[:8] == HDF5:
         from ..render import figures
 

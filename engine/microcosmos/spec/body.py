@@ -8,6 +8,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from .. import bodies, creatures
 from .base import Part, unit
+from .sources import PAPER, RODS, after
 
 SUPPORT = 4.0
 """Cells that the four-point delta reaches across, beyond a body's own extent."""
@@ -18,6 +19,8 @@ MOST = 4096
 
 class Elastic(Part):
     """Stiffness, the same everywhere."""
+
+    model_config = after(RODS)
 
     stretch: float = Field(default=1.0, ge=0.0, le=1.0)
     """Share of the stretching error that one projection removes."""
@@ -140,6 +143,8 @@ Swimmer = Literal["worm", "tadpole", "ray", "cilia", "jellyfish"]
 
 class Known(Part):
     """The body of one of the five known swimmers."""
+
+    model_config = after(PAPER)
 
     builder: Swimmer
     """Whose body."""

@@ -4,7 +4,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import LATER, SELDOM, Part, unit
+from .base import LATER, Part, unit
+from .sources import CPPN, NEAT, PAPER, after, source
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
 OUTPUTS = ("rest_angle", "rest_length")
@@ -13,7 +14,9 @@ OUTPUTS = ("rest_angle", "rest_length")
 class Actuation(Part):
     """How far, how fast and with which clock rest angles and rest lengths change."""
 
-    timer: Literal["sine-cosine", "linear"] = "sine-cosine"
+    timer: Literal["sine-cosine", "linear"] = Field(
+        default="sine-cosine", json_schema_extra=source(f"linear: {PAPER}")
+    )
     """Time as sine and cosine of the phase, or rising linearly from 0 to 1."""
     period: float = Field(default=100.0, ge=4.0, le=1e6, json_schema_extra=unit("steps"))
     """Period of the sine and cosine."""
@@ -28,9 +31,11 @@ class Actuation(Part):
 class Sight(Actuation):
     """What a network is told at every node of the body."""
 
-    position: Literal["signed", "unit"] = "signed"
+    position: Literal["signed", "unit"] = Field(
+        default="signed", json_schema_extra=source(f"unit: {PAPER}")
+    )
     """Position along the filament from −1 to 1, or from 0 to 1."""
-    sense_energy: Annotated[bool, LATER] = False
+    sense_energy: Annotated[bool, LATER] = Field(default=False, json_schema_extra=source(PAPER))
     """Whether the network also sees the energy at its node, which closes the loop."""
 
     @property
@@ -40,6 +45,8 @@ class Sight(Actuation):
 
 class Control(Sight):
     """One CPPN, evaluated at every joint and edge, sets rest angles and rest lengths."""
+
+    model_config = after(CPPN)
 
     encoding: Annotated[Literal["cppn"], LATER] = "cppn"
     recurrent: Annotated[bool, LATER] = False
@@ -54,7 +61,7 @@ class Control(Sight):
 class Genome(Part):
     """Room for a CPPN, and how often each kind of mutation happens to a child."""
 
-    model_config = SELDOM
+    model_config = after(f"{NEAT}, section 3.1", seldom=True)
 
     max_nodes: int = Field(default=24, ge=8, le=1024, json_schema_extra=unit("nodes"))
     """Room for nodes, inputs and outputs among them."""

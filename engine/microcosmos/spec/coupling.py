@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from .base import LATER, SELDOM, Part, unit
+from .sources import DELTAS, FORCING, GUO, LAYERS, OURS, PBD, RODS, source
 
 
 class Coupling(Part):
@@ -12,15 +13,17 @@ class Coupling(Part):
 
     model_config = SELDOM
 
-    projection: Literal["none", "force", "force+torque"] = "force+torque"
+    projection: Literal["none", "force", "force+torque"] = Field(
+        default="force+torque", json_schema_extra=source(OURS)
+    )
     """What the forcing is freed of, so that a body cannot push itself without fluid."""
-    force_factor: Literal[1, 2] = 2
+    force_factor: Literal[1, 2] = Field(default=2, json_schema_extra=source(GUO))
     """Force per unit of velocity error; 2 meets the target at the half step."""
-    theta_feedback: Literal[0, 1] = 1
+    theta_feedback: Literal[0, 1] = Field(default=1, json_schema_extra=source(RODS))
     """1: edge angles follow the geometry each step; 0: the paper's literal form."""
-    forcing_iterations: int = Field(default=3, ge=1, le=20)
+    forcing_iterations: int = Field(default=3, ge=1, le=20, json_schema_extra=source(FORCING))
     """Iterations of multi-direct forcing."""
-    constraint_iterations: int = Field(default=10, ge=1, le=200)
+    constraint_iterations: int = Field(default=10, ge=1, le=200, json_schema_extra=source(PBD))
     """Sweeps of the constraint projection in a step."""
     limits: bool = True
     """Whether displacement and force per step are limited, as random controllers need."""
@@ -32,13 +35,15 @@ class Coupling(Part):
         default=None, gt=0.0, le=0.5, json_schema_extra=unit("cells/step")
     )
     """Limit of a node's forcing; empty: 0.1, or 0.03 below a viscosity of 0.003."""
-    layers: Annotated[Literal[1, 2], LATER] = 1
+    layers: Annotated[Literal[1, 2], LATER] = Field(default=1, json_schema_extra=source(LAYERS))
     """2: the filament acts through two layers, half a cell to either side, as in the paper."""
     nu_c: Annotated[float | None, LATER] = Field(
-        default=None, gt=0.0, le=1e3, json_schema_extra=unit("cells²/step")
+        default=None, gt=0.0, le=1e3, json_schema_extra=unit("cells²/step") | source(OURS)
     )
     """Viscosity at which actuators have half of their strength; empty: they never tire."""
-    kernel: Annotated[Literal["peskin", "roma", "hat"], LATER] = "peskin"
+    kernel: Annotated[Literal["peskin", "roma", "hat"], LATER] = Field(
+        default="peskin", json_schema_extra=source(DELTAS)
+    )
     """The delta between nodes and cells: four, three or two points wide."""
 
     @property

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from .base import Part, unit
+from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA, after
 
 Share = Annotated[int, Field(ge=1, le=1000)]
 Rate = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -21,6 +22,8 @@ class RandomEmitter(Part):
 class NeatEmitter(Part):
     """Elites varied by NEAT's mutations, some of them crossed with another elite first."""
 
+    model_config = after(f"{NEAT}, sections 3.1 and 3.2")
+
     operator: Literal["neat"] = "neat"
     share: Share = 1
     """Its share of the batch, beside the other emitters' shares."""
@@ -30,6 +33,8 @@ class NeatEmitter(Part):
 
 class LineEmitter(Part):
     """An elite, a step of its own, and a step along the line to another elite."""
+
+    model_config = after(LINE)
 
     operator: Literal["iso+line"] = "iso+line"
     share: Share = 1
@@ -53,6 +58,8 @@ class GaussianEmitter(Part):
 class CmaMaeEmitter(Part):
     """CMA-MAE: an evolution strategy climbs above thresholds that follow what was found."""
 
+    model_config = after(CMA_MAE)
+
     operator: Literal["cma-mae"] = "cma-mae"
     share: Share = 1
     """Its share of the batch, beside the other emitters' shares."""
@@ -66,6 +73,8 @@ class CmaMaeEmitter(Part):
 
 class CmaMeEmitter(Part):
     """CMA-ME's improvement emitters, as QDax has them; the package has to be installed."""
+
+    model_config = after(CMA_ME)
 
     operator: Literal["cma-me"] = "cma-me"
     share: Share = 1
@@ -81,6 +90,8 @@ class PopulationEmitter(Part):
 
     Values that are left out are those of the preset.
     """
+
+    model_config = after(NEAT)
 
     operator: Literal["population"] = "population"
     share: Share = 1
@@ -107,6 +118,8 @@ class PopulationEmitter(Part):
 class LamarckianEmitter(Part):
     """NEAT's variation; then children learn by gradients, and pass on what they have learnt."""
 
+    model_config = after(OMG_MEGA)
+
     operator: Literal["lamarckian"] = "lamarckian"
     share: Share = 1
     """Its share of the batch, beside the other emitters' shares."""
@@ -126,6 +139,8 @@ class LamarckianEmitter(Part):
 
 class CmaMegaEmitter(Part):
     """CMA-MEGA: an evolution strategy over steps along slopes of fitness and descriptors."""
+
+    model_config = after(CMA_MEGA)
 
     operator: Literal["cma-mega"] = "cma-mega"
     share: Share = 1

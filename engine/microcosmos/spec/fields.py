@@ -5,10 +5,13 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from .base import LATER, Part, unit
+from .sources import OURS, PAPER, after, source
 
 
 class Steric(Part):
     """Nodes repel each other through their smoothed density."""
+
+    model_config = after(PAPER)
 
     strength: float = Field(default=4.0, gt=0.0, le=20.0, json_schema_extra=unit("cells³"))
     """Displacement in a step per unit of the density's gradient."""
@@ -20,6 +23,8 @@ class Steric(Part):
 
 class Energy(Part):
     """Gaussian packets at random places, which creatures can sense and collect."""
+
+    model_config = after(PAPER)
 
     packets: int = Field(default=8, ge=1, le=4096)
     """How many packets there are."""
@@ -34,7 +39,7 @@ class Energy(Part):
     placements: Annotated[int, LATER] = Field(default=1, ge=1, le=64)
     """In so many worlds a creature lives, the packets moved to another place in each; what is
     measured are means. With one, a gait that knows the way does as well as one that senses."""
-    consume: bool = False
+    consume: bool = Field(default=False, json_schema_extra=source(OURS))
     """Whether what is collected is gone; if not, the field is persistent as in the paper."""
     rate: float = Field(default=0.1, gt=0.0, le=1.0)
     """Share of the energy around it that a node takes in a step, where it is consumed."""

@@ -12,11 +12,14 @@ from .body import Body, Walk, shape
 from .coupling import Coupling
 from .scene import Fold, Scene
 from .search import Task
+from .sources import ADAM, DIGITS, PAPER, after, source
 from .world import World
 
 
 class Digit(Part):
     """One of ten handwritten digits of 8 × 8 pixels."""
+
+    model_config = after(DIGITS)
 
     kind: Literal["digit"] = "digit"
     digit: int = Field(ge=0, le=9)
@@ -102,17 +105,23 @@ class Folding(Part):
         projection="force", theta_feedback=0, forcing_iterations=2, constraint_iterations=4
     )
     control: Fold = Fold()
-    steps: int = Field(default=250, ge=10, le=100_000, json_schema_extra=unit("steps"))
+    steps: int = Field(
+        default=250, ge=10, le=100_000, json_schema_extra=unit("steps") | source(PAPER)
+    )
     """Steps of the simulation, at the end of which the density counts."""
     size: int = Field(default=80, ge=4, le=2048, json_schema_extra=unit("cells"))
     """The longer side of a picture, which lies in the middle of the world."""
     width: float = Field(default=1.5, ge=0.5, le=16.0, json_schema_extra=unit("cells"))
     """Standard deviation of the Gaussian that a node counts as."""
-    density: Literal["saturated", "raw"] = "saturated"
+    density: Literal["saturated", "raw"] = Field(
+        default="saturated", json_schema_extra=source(f"raw: {PAPER}; saturated: ours")
+    )
     """1 − exp(−ρ), in which a node upon another changes little, or the sum ρ of Gaussians."""
-    rate: float = Field(default=0.04, gt=0.0, le=10.0)
+    rate: float = Field(
+        default=0.04, gt=0.0, le=10.0, json_schema_extra=source(f"{ADAM}; the value: {PAPER}")
+    )
     """Adam's learning rate, for angles in rad and for lengths."""
-    updates: int = Field(default=300, ge=1, le=1_000_000)
+    updates: int = Field(default=300, ge=1, le=1_000_000, json_schema_extra=source(PAPER))
     """Steps of Adam."""
     block: int = Field(default=1, ge=1, le=64, json_schema_extra=unit("filaments"))
     """Filaments updated by one call of the compiled program; results depend on its bits."""

@@ -10,6 +10,7 @@ from .coupling import Coupling
 from .fields import Steric
 from .scene import Gait, Scene, refuse_too_large
 from .search import Task
+from .sources import PAPER, source
 from .world import World
 
 FORMS = {
@@ -27,7 +28,9 @@ class Gaits(Part):
     """Five known swimmers, each by its own gait, at every viscosity."""
 
     experiment: Literal["gaits"] = "gaits"
-    swimmers: Annotated[tuple[Swimmer, ...], Field(min_length=1)] = get_args(Swimmer)
+    swimmers: Annotated[tuple[Swimmer, ...], Field(min_length=1)] = Field(
+        default=get_args(Swimmer), json_schema_extra=source(PAPER)
+    )
     """Who swims."""
     forms: Annotated[tuple[Form, ...], Field(min_length=1)] = ("ours", "strong", "paper")
     """Forms of the coupling, side by side: ours, ours with tireless actuators, the paper's."""

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from .base import Part, unit
 from .fields import Steric
+from .sources import PAPER, source
 
 Nodes = Annotated[int, Field(ge=20, le=2_000_000, json_schema_extra=unit("nodes"))]
 
@@ -33,11 +34,17 @@ class Scaling(Part):
     """Numbers of nodes, ascending, as filaments side by side at places drawn at random."""
     filament: int = Field(default=20, ge=3, le=1000, json_schema_extra=unit("nodes"))
     """Nodes of each filament."""
-    width: int = Field(default=256, ge=32, le=2048, json_schema_extra=unit("cells"))
+    width: int = Field(
+        default=256, ge=32, le=2048, json_schema_extra=unit("cells") | source(PAPER)
+    )
     """Size of the box along x."""
-    height: int = Field(default=256, ge=32, le=2048, json_schema_extra=unit("cells"))
+    height: int = Field(
+        default=256, ge=32, le=2048, json_schema_extra=unit("cells") | source(PAPER)
+    )
     """Size of the box along y."""
-    steps: int = Field(default=1000, ge=2, le=1_000_000, json_schema_extra=unit("steps"))
+    steps: int = Field(
+        default=1000, ge=2, le=1_000_000, json_schema_extra=unit("steps") | source(PAPER)
+    )
     """Steps that are carried out; times are told for 1,000."""
     part_steps: int = Field(default=20, ge=2, le=10_000, json_schema_extra=unit("steps"))
     """Steps of each part by itself, repeated three times."""

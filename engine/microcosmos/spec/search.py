@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from . import features
 from .base import LATER, Part, unit
 from .emitters import BY_SLOPES, GROWING, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
+from .sources import AGAIN, CVT, MAP_ELITES, PAPER, after, source
 
 
 class Task(Part):
@@ -15,7 +16,9 @@ class Task(Part):
 
     steps: int = Field(default=500, ge=10, le=1_000_000, json_schema_extra=unit("steps"))
     """Steps of the simulation."""
-    fitness: Literal["displacement", "energy", "displacement+energy"] = "displacement"
+    fitness: Literal["displacement", "energy", "displacement+energy"] = Field(
+        default="displacement", json_schema_extra=source(PAPER)
+    )
     """Distance between the mean unwrapped node position at the end and at the start; energy
     that all nodes collect; or both."""
     energy_weight: Annotated[float, LATER] = Field(
@@ -76,12 +79,14 @@ CELLS = 2**20
 class Archive(Part):
     """Cells over one to eight descriptors, one elite in each."""
 
+    model_config = after(MAP_ELITES)
+
     descriptors: Annotated[tuple[Descriptor, ...], Field(min_length=1, max_length=8)] = (
         Descriptor(name="bending_effort"),
         Descriptor(name="stretching_effort"),
     )
     """Axes of the archive: what tells its kinds of creatures apart."""
-    centroids: int | None = Field(default=None, ge=2, le=CELLS)
+    centroids: int | None = Field(default=None, ge=2, le=CELLS, json_schema_extra=source(CVT))
     """Cells of a centroidal Voronoi tessellation, equally large on the descriptors' own scales
     and in place of their bins; none: the bins make a grid."""
     seed: int = Field(default=0, ge=0, lt=2**32)
@@ -147,6 +152,8 @@ class Stop(Part):
 class Reevaluation(Part):
     """Elites evaluated again under disturbed conditions, to see how much of them was luck."""
 
+    model_config = after(AGAIN)
+
     every: int = Field(default=25, ge=1, le=1_000_000, json_schema_extra=unit("generations"))
     """After every so many generations, and after the last."""
     samples: int = Field(default=1, ge=1, le=100, json_schema_extra=unit("evaluations"))
@@ -180,6 +187,8 @@ class Generations(Part):
 
 class Search(Generations):
     """MAP-Elites: children of elites in generations of equal size."""
+
+    model_config = after(MAP_ELITES)
 
     emitters: Annotated[tuple[Emitter, ...], Field(min_length=1, max_length=16)] = (
         NeatEmitter(),

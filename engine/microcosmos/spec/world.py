@@ -6,10 +6,13 @@ from pydantic import Field, model_validator
 
 from .base import LATER, Part, unit
 from .fields import Energy, Steric
+from .sources import LATTICE, TRT, after, source
 
 
 class World(Part):
     """A periodic box of fluid."""
+
+    model_config = after(LATTICE)
 
     width: int = Field(default=64, ge=16, le=2048, json_schema_extra=unit("cells"))
     """Size of the box along x."""
@@ -19,7 +22,7 @@ class World(Part):
         default=0.05, ge=1e-3, le=2.0, json_schema_extra=unit("cells²/step")
     )
     """Kinematic viscosity ν; the relaxation time is τ = 3 ν + 1/2."""
-    magic: Literal["capped", "fixed"] = "capped"
+    magic: Literal["capped", "fixed"] = Field(default="capped", json_schema_extra=source(TRT))
     """Magic parameter Λ of the two relaxation times: 3/16, or at most (τ − 1/2)/2."""
     fluid: Annotated[bool, LATER] = True
     """Whether there is a fluid; without it bodies are moved by their constraints alone."""

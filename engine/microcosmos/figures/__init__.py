@@ -1,0 +1,1 @@
+"""Figures for print, of archive files: the map, curves, the contact sheet, the tree."""

@@ -1,0 +1,101 @@
+"""Runs that differ in their seed alone stand together, and what tells the others apart."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .reading import Archive
+
+APART = ("seed",)
+"""Fields in which runs of one group may differ."""
+
+MOST = 3
+"""Fields that a label names at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Runs of one spec, each with a seed of its own."""
+
+    label: str
+    """In which fields it differs from the other groups; empty where there are none."""
+    runs: tuple[Archive, ...]
+
+    @property
+    def seeds(self) -> list[int]:
+        return [run.spec.seed for run in self.runs]
+
+
+def grouped(runs: Sequence[Archive]) -> list[Group]:
+    """Groups in the order in which their first runs came.
+
+    Raises `ValueError` where a run was given twice.
+    """
+    found: dict[tuple, list[Archive]] = {}
+    for run in runs:
+        flat = dict(flattened(run.document))
+        key = tuple(sorted((k, repr(v)) for k, v in flat.items() if k not in APART))
+        found.setdefault(key, []).append(run)
+    for same in found.values():
+        seeds = [run.spec.seed for run in same]
+        if len(set(seeds)) < len(seeds):
+            twice = next(seed for seed in seeds if seeds.count(seed) > 1)
+            raise ValueError(f"`FILE` must differ in spec or seed, got seed {twice} twice.")
+    flats = [dict(flattened(same[0].document)) for same in found.values()]
+    return [
+        Group(
+            _label(flat, differing(flats)), tuple(sorted(same, key=lambda run: run.spec.seed))
+        )
+        for flat, same in zip(flats, found.values(), strict=True)
+    ]
+
+
+def flattened(document: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Every value of a spec by its dotted path."""
+    if isinstance(document, Mapping):
+        parts = document.items()
+    elif isinstance(document, Sequence) and any(isinstance(x, Mapping) for x in document):
+        parts = enumerate(document)
+    else:
+        yield path, document
+        return
+    for name, part in parts:
+        yield from flattened(part, f"{path}.{name}" if path else str(name))
+
+
+def differing(flats: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The paths whose values are not the same in all; those that all have come first."""
+    paths = list(dict.fromkeys(path for flat in flats for path in flat if path not in APART))
+    other = [p for p in paths if len({repr(flat.get(p, "none")) for flat in flats}) > 1]
+    shared = [path for path in other if all(path in flat for flat in flats)]
+    return shared or other
+
+
+def _label(flat: Mapping[str, Any], paths: Sequence[str]) -> str:
+    told = [f"{short(path)} {_value(flat.get(path, 'none'))}" for path in paths[:MOST]]
+    return ", ".join(told) + (" …" if len(paths) > MOST else "")
+
+
+def short(path: str) -> str:
+    """The last two words of a path, places in lists left out."""
+    words = [word for word in path.split(".") if not word.isdigit()]
+    return " ".join(words[-2:]).replace("_", " ")
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        text = ", ".join(map(_value, value))
+        return text if len(text) <= 40 else text[:39] + "…"
+    return "none" if value is None else str(value)
+
+
+def spread(runs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Lower quartile, median and upper quartile as long as all runs went on."""
+    length = min(map(len, runs))
+    values = np.stack([run[:length] for run in runs])
+    low, middle, high = np.quantile(values, (0.25, 0.5, 0.75), axis=0)
+    return low, middle, high

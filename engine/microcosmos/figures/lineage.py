@@ -1,0 +1,102 @@
+"""The tree of an archive: where its elites come from, and the ancestors of one of them."""
+
+from typing import Any
+
+import numpy as np
+
+from .axes import fitness_label
+from .family import NOBODY, Family, family, heights
+from .reading import Archive
+from .style import GREY, INK, blank, palette
+
+OTHERS = "#a9b4b9"
+"""Elites that are not the one."""
+
+
+def lineage(
+    found: Archive,
+    *,
+    cell: int | None = None,
+    colours: str = "viridis",
+    width: float = 178.0,
+) -> Any:
+    """Generations from left to right, in grey all elites and the first parents they descend
+    from; the ancestors of the elite of `cell` (none: the fittest) in the colours of their
+    fitness, second parents by dashed lines.
+    """
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    tree = family(found)
+    own = int(tree.tips[found.row(cell)])
+    above = tree.ancestors(own)
+    whole = tree.closure([*tree.tips.tolist(), *above], both=False)
+    places = heights(tree, whole)
+    ends = sum(1 for place in set(places.values()) if place == int(place))
+    figure = blank(width, float(np.clip(0.9 * ends, 55, 0.62 * width)))
+    panel = figure.add_subplot()
+    values = tree.fitness[above]
+    low, high = float(values.min()), float(values.max())
+    shades = ScalarMappable(Normalize(low, high if high > low else low + 1), palette(colours))
+    _branches(panel, tree, places, whole, colors=[OTHERS], linewidths=0.4, zorder=1)
+    last = max(int(tree.generation.max()), len(found.curves["best"]))
+    _living(panel, tree, places, last)
+    colour = shades.to_rgba(values)
+    _branches(panel, tree, places, above, colors=[INK], linewidths=2.0, zorder=2)
+    _branches(panel, tree, places, above, colors=colour, linewidths=1.3, zorder=3)
+    _crossings(panel, tree, places, above)
+    x, y = tree.generation[above], [places[entry] for entry in above]
+    panel.scatter(x, y, s=9, c=colour, edgecolors=INK, linewidths=0.4, zorder=4)
+    panel.scatter([x[0]], [y[0]], s=34, facecolors="none", edgecolors=INK, lw=0.8, zorder=5)
+    _dress(panel, last)
+    bar = figure.colorbar(shades, ax=panel, label=fitness_label(found), pad=0.01, aspect=28)
+    bar.outline.set_linewidth(0.5)
+    return figure
+
+
+def _branches(
+    panel: Any, tree: Family, places: dict[int, float], entries: list[int], **look: Any
+) -> None:
+    """From each first parent along its height's time, then across to the child's height."""
+    from matplotlib.collections import LineCollection
+
+    lines = []
+    for entry in entries:
+        parent, x, y = int(tree.parents[entry, 0]), tree.generation[entry], places[entry]
+        if parent == NOBODY:
+            start = (x, y)
+            lines.append([start, start, start])
+        else:
+            from_x = tree.generation[parent]
+            lines.append([(from_x, places[parent]), (from_x, y), (x, y)])
+    panel.add_collection(LineCollection(lines, capstyle="round", joinstyle="round", **look))
+
+
+def _living(panel: Any, tree: Family, places: dict[int, float], last: int) -> None:
+    """Elites live on to the end."""
+    from matplotlib.collections import LineCollection
+
+    tips = tree.tips.tolist()
+    lines = [[(tree.generation[tip], places[tip]), (last, places[tip])] for tip in tips]
+    look = {"colors": [OTHERS], "linewidths": 0.3, "linestyles": [(0, (1, 2))]}
+    panel.add_collection(LineCollection(lines, zorder=0, **look))
+
+
+def _crossings(panel: Any, tree: Family, places: dict[int, float], entries: list[int]) -> None:
+    for entry in entries:
+        other = int(tree.parents[entry, 1])
+        if other != NOBODY:
+            x = [tree.generation[other], tree.generation[entry]]
+            y = [places[other], places[entry]]
+            panel.plot(x, y, color=GREY, lw=0.5, ls=(0, (3, 2)), zorder=1.5)
+
+
+def _dress(panel: Any, last: int) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    panel.set(xlabel="Generation", yticks=[], xlim=(0, last + max(1, 0.01 * last)))
+    panel.margins(y=0.02)
+    panel.autoscale_view(scalex=False)
+    panel.xaxis.set_major_locator(MaxNLocator(8, integer=True))
+    for side in ("top", "right", "left"):
+        panel.spines[side].set_visible(False)

@@ -1,0 +1,139 @@
+"""The contact sheet of an archive: the fittest swimmer of each region, over the axes."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .axes import Axis, fitness_label
+from .reading import Archive
+from .regions import Layout, Motion, numerals, reading_order
+from .style import GREY, INK, PALE, blank, palette
+
+FILLED = 0.8
+"""The share of a region's side that the largest motion takes up."""
+
+BAR = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Lengths of the scale bar, in cells."""
+
+
+def sheet(
+    found: Archive,
+    plan: Layout,
+    motions: Sequence[Motion],
+    *,
+    moments: int = 5,
+    colours: str = "viridis",
+    width: float = 178.0,
+) -> Any:
+    """Each region's swimmer at `moments` of its life, all at one scale: pale at the start, at
+    the end in the colour of its fitness, with the way of its middle.
+    """
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    if not 1 <= moments <= 50:
+        raise ValueError(f"`moments` must be from 1 to 50, got {moments}.")
+    side = 0.86 * width / plan.columns
+    figure = blank(width, side * plan.rows + 14)
+    panel = figure.add_subplot()
+    panel.set(xlim=(0, plan.columns), ylim=(0, plan.rows), aspect="equal")
+    fitness = found.fitness[[region.elite for region in plan.regions]]
+    low, high = float(fitness.min()), float(fitness.max())
+    shades = ScalarMappable(Normalize(low, high if high > low else low + 1), palette(colours))
+    scale = FILLED / max(_extent(motion, moments) for motion in motions)
+    digits = max(0, 2 - int(np.floor(np.log10(max(abs(low), abs(high), 1e-9)))))
+    names = dict(zip(reading_order(plan.regions), numerals(len(motions)), strict=True))
+    for number, (region, motion) in enumerate(zip(plan.regions, motions, strict=True)):
+        corner = np.array([region.column, region.row])
+        _body(panel, motion, corner + 0.5, scale, moments, shades.to_rgba(fitness[number]))
+        _named(panel, corner, names[number], f"{fitness[number]:.{digits}f}")
+    _dress(panel, plan)
+    _bar(panel, plan, scale, side)
+    bar = figure.colorbar(shades, ax=panel, label=fitness_label(found), pad=0.01, aspect=32)
+    bar.outline.set_linewidth(0.5)
+    return figure
+
+
+def _shown(motion: Motion, moments: int) -> np.ndarray:
+    """(moment, node, 2): the last frame, and others evenly before it."""
+    last = len(motion.positions) - 1
+    frames = np.rint(np.linspace(0, last, moments)).astype(int) if moments > 1 else [last]
+    return motion.positions[frames].astype(float)
+
+
+def _extent(motion: Motion, moments: int) -> float:
+    """The longer side of the box around what is shown."""
+    return float(np.ptp(_shown(motion, moments).reshape(-1, 2), axis=0).max()) or 1.0
+
+
+def _body(
+    panel: Any, motion: Motion, middle: np.ndarray, scale: float, moments: int, colour: Any
+) -> None:
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import to_rgb
+
+    shown = _shown(motion, moments)
+    flat = shown.reshape(-1, 2)
+    centre = (flat.min(0) + flat.max(0)) / 2
+    for number, places in enumerate(shown):
+        last = number == len(shown) - 1
+        share = number / max(1, len(shown) - 1)
+        pale = np.array(to_rgb(PALE)) * (1 - 0.45 * share)
+        lines = (places[motion.edges] - centre) * scale + middle
+        for look in _strokes(last, colour, pale):
+            panel.add_collection(LineCollection(list(lines), capstyle="round", **look))
+    way = (motion.positions.mean(1) - centre) * scale + middle
+    panel.plot(*way.T, color=INK, lw=0.5, zorder=4)
+    panel.plot(*way[0], "o", color=INK, ms=1.2, mew=0, zorder=4)
+
+
+def _strokes(last: bool, colour: Any, pale: Any) -> list[dict[str, Any]]:
+    """The end stands on a dark border, so that light colours are seen on paper."""
+    if not last:
+        return [{"colors": [pale], "linewidths": 0.7, "zorder": 2}]
+    border = {"colors": [INK], "linewidths": 1.9, "zorder": 3}
+    return [border, {"colors": [colour], "linewidths": 1.2, "zorder": 3}]
+
+
+def _named(panel: Any, corner: np.ndarray, name: str, fitness: str) -> None:
+    left, bottom = corner + 0.04
+    panel.text(left, bottom + 0.92, name, fontsize=5.5, va="top", color=INK)
+    panel.text(left + 0.92, bottom, fitness, fontsize=5, ha="right", va="bottom", color=GREY)
+
+
+def _dress(panel: Any, plan: Layout) -> None:
+    """Regions as a faint grid, and ticks at round values of the axes."""
+    for at in range(1, plan.columns):
+        panel.axvline(at, color=PALE, lw=0.4, zorder=1)
+    for at in range(1, plan.rows):
+        panel.axhline(at, color=PALE, lw=0.4, zorder=1)
+    counts = (plan.columns, plan.rows)
+    for axis, ends, count, which in zip(plan.axes, plan.ends, counts, "xy", strict=True):
+        values, texts = _ticks(axis, ends)
+        share = (axis.places(values) - ends[0]) / (ends[1] - ends[0])
+        getattr(panel, f"set_{which}ticks")(share * count, texts)
+        getattr(panel, f"set_{which}label")(axis.label)
+
+
+def _ticks(axis: Axis, ends: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = axis.values(ends)
+    if axis.logarithmic:
+        decades = np.arange(np.ceil(np.log10(low) - 1e-6), np.floor(np.log10(high) + 1e-6) + 1)
+        if len(decades) > 1:
+            return 10.0**decades, [f"$10^{{{int(k)}}}$" for k in decades]
+    values = MaxNLocator(5, steps=[1, 2, 5, 10]).tick_values(low, high)
+    values = values[(values >= low - 1e-12) & (values <= high + 1e-12)]
+    return values, [f"{value:.4g}" for value in values]
+
+
+def _bar(panel: Any, plan: Layout, scale: float, side: float) -> None:
+    """A bar of a round number of cells above the sheet."""
+    length = max((cells for cells in BAR if cells * scale <= 0.6), default=BAR[0])
+    y, end = plan.rows + 2.2 / side, plan.columns
+    start = end - length * scale
+    panel.plot([start, end], [y, y], color=INK, lw=1.2, clip_on=False, solid_capstyle="butt")
+    text = f"{length} cell" + "s" * (length > 1)
+    panel.text(start - 0.05, y, text, ha="right", va="center", fontsize=6)

@@ -1,0 +1,90 @@
+"""The reference of every field of a spec, made of the schemas: `docs/spec.md`.
+
+python -m microcosmos.spec.reference > docs/spec.md
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..experiments import EXPERIMENTS, Experiment
+from ..features import FEATURES
+from .fields import Field, Part, experiment, parts
+
+HEAD = """# Every field of a spec
+
+Made of the schemas by `python -m microcosmos.spec.reference > docs/spec.md`; a test says when
+that is due. A spec is a JSON object with an `experiment`; whatever is left out has the default
+that stands here, and an unknown field is refused. Lengths are in cells and times in steps of
+the lattice, whose density is 1 at rest; where no unit stands the number has none. (a, b) leaves
+the ends out, [a, b] has them. A source says where the method comes from; *Tensen et al. 2026*
+is the Microcosmos paper, with which [reproduction.md](reproduction.md) compares value by value.
+"""
+
+COLUMNS = ("field", "type", "unit", "range", "default", "meaning", "source")
+
+
+def reference() -> str:
+    """The whole document."""
+    found = list(EXPERIMENTS.values())
+    return "\n".join(
+        [
+            HEAD,
+            *_contents(),
+            *(line for one in found for line in _experiment(one)),
+            "# Parts\n",
+            *(line for part in parts() for line in _part(part)),
+            *_measures(),
+        ]
+    )
+
+
+def _contents() -> Iterator[str]:
+    experiments = ", ".join(f"[`{name}`](#{name})" for name in EXPERIMENTS)
+    found = ", ".join(f"[{part.name}](#{part.name.lower()})" for part in parts())
+    yield f"Experiments: {experiments}.\n"
+    yield f"Parts: {found}. What is measured: [measures](#measures).\n"
+    yield "# Experiments\n"
+
+
+def _experiment(chosen: Experiment) -> Iterator[str]:
+    yield f"## {chosen.name}\n"
+    yield f"{chosen.title}. {experiment(chosen.name).text}\n"
+    yield from _table(experiment(chosen.name).fields)
+    if chosen.presets:
+        yield "Presets: " + "; ".join(f"`{p.name}`: {p.title}" for p in chosen.presets) + ".\n"
+
+
+def _part(part: Part) -> Iterator[str]:
+    yield f"## {part.name}\n"
+    said = part.text + (f" *Source: {part.source}.*" if part.source else "")
+    yield f"{said}\n"
+    yield f"Stands at {', '.join(f'`{path}`' for path in part.paths)}.\n"
+    yield from _table(part.fields)
+
+
+def _table(fields: tuple[Field, ...]) -> Iterator[str]:
+    yield _row(COLUMNS)
+    yield _row(["---"] * len(COLUMNS))
+    for field in fields:
+        values = [f"`{field.name}`", field.kind, field.unit, field.range, field.default]
+        yield _row([*values, field.text, field.source])
+    yield ""
+
+
+def _measures() -> Iterator[str]:
+    yield "# Measures\n"
+    yield (
+        "What is recorded of every creature, and the axis that each makes unless `low`, `high` "
+        "and `scale` of its [Descriptor](#descriptor) say otherwise.\n"
+    )
+    yield _row(("name", "title", "unit", "low", "high", "scale"))
+    yield _row(["---"] * 6)
+    for name, one in FEATURES.items():
+        yield _row(
+            (f"`{name}`", one.title, one.unit, f"{one.low:g}", f"{one.high:g}", one.scale)
+        )
+    yield ""
+
+
+def _row(values: Any) -> str:
+    return "| " + " | ".join(str(value).replace("|", "\\|") for value in values) + " |"

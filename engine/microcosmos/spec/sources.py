@@ -1,0 +1,41 @@
+"""Where methods come from, as the schemas and the reference of all fields say it."""
+
+from pydantic import ConfigDict
+from pydantic.config import JsonDict
+
+PAPER = "Tensen et al. 2026"
+OURS = "ours: docs/physics.md"
+NEAT = "Stanley and Miikkulainen, Evol. Comput. 10, 99 (2002)"
+CPPN = "Stanley, Genet. Program. Evolvable Mach. 8, 131 (2007)"
+MAP_ELITES = "Mouret and Clune, arXiv:1504.04909 (2015)"
+CVT = "Vassiliades, Chatzilygeroudis and Mouret, IEEE Trans. Evol. Comput. 22, 623 (2018)"
+LINE = "Vassiliades and Mouret, GECCO 2018, eq. 3"
+CMA_ME = "Fontaine et al., GECCO 2020"
+CMA_MAE = "Fontaine and Nikolaidis, GECCO 2023"
+CMA_MEGA = "Fontaine and Nikolaidis, NeurIPS 2021, algorithm 2"
+OMG_MEGA = "slopes as in OMG-MEGA: Fontaine and Nikolaidis, NeurIPS 2021"
+AGAIN = "Flageat and Cully, Artificial Life 32 (2020) and arXiv:2308.00463"
+LATTICE = "D2Q9: " + PAPER
+TRT = "Ginzburg, Verhaeghe and d’Humières, Commun. Comput. Phys. 3, 427 (2008)"
+GUO = "Guo, Zheng and Shi, Phys. Rev. E 65, 046308 (2002), eqs. 3, 4 and 20"
+FORCING = "Wang, Fan and Luo, Int. J. Multiphase Flow 34, 283 (2008)"
+PBD = "Müller et al., J. Vis. Commun. Image R. 18, 109 (2007)"
+RODS = "planar form of " + PAPER + "; Umetani, Schmidt and Stam, SCA 2014"
+LAYERS = "Mittal and Iaccarino, Annu. Rev. Fluid Mech. 37, 239 (2005), as in " + PAPER
+DELTAS = (
+    "peskin: Acta Numerica 11, 479 (2002), eq. 6.27; roma: J. Comput. Phys. 153, 509 (1999), "
+    "eq. 22"
+)
+ADAM = "Kingma and Ba, ICLR 2015, algorithm 1"
+DIGITS = "Alpaydin and Kaynak, UCI (1998), doi:10.24432/C50P49"
+
+
+def source(text: str) -> JsonDict:
+    """The source of a field, beside its unit."""
+    return {"source": text}
+
+
+def after(text: str, *, seldom: bool = False) -> ConfigDict:
+    """The source of a whole part; `seldom` marks one that people seldom change."""
+    extra: JsonDict = {"seldom": True} if seldom else {}
+    return ConfigDict(json_schema_extra=extra | source(text))

@@ -1,0 +1,69 @@
+"""The reference of all fields is complete, and is the one that is there to be read."""
+
+from pathlib import Path
+
+import pytest
+
+from microcosmos.spec.experiments import EXPERIMENTS
+from microcosmos.spec.reference.document import reference
+from microcosmos.spec.reference.fields import experiment, parts
+
+pytestmark = pytest.mark.fast
+
+DOCUMENT = Path(__file__).parents[3] / "docs" / "spec.md"
+
+WITHOUT_UNIT = """
+arms levels branches bins centroids packets placements terms emitters lessons updates digit
+edges forcing_iterations constraint_iterations share seed refinement.steps
+stretch shear bend gap length_scale faintest spread survival crossover learning_rate
+weight_rate replace_rate activation_rate toggle_rate add_node_rate add_connection_rate
+Reevaluation.viscosity Energy.rate folding.rate CmaMegaEmitter.rate
+iso line step weight_step diversity Weights.scale refinement.length PopulationEmitter.threshold
+Free.low Free.high Graph.nodes Polyline.points
+"""
+"""Counts, shares, what genes and weights are measured in, and lists of places in cells."""
+
+
+def everything():
+    for name in EXPERIMENTS:
+        yield experiment(name)
+    yield from parts()
+
+
+def test_the_document_is_what_the_schemas_give_now():
+    needed = "python -m microcosmos.spec.reference > docs/spec.md"
+    assert DOCUMENT.read_text() == reference(), needed
+
+
+@pytest.mark.parametrize("part", list(everything()), ids=lambda part: part.name)
+def test_every_field_says_what_it_means(part):
+    assert part.text
+    assert [field.name for field in part.fields if not field.text] == []
+
+
+@pytest.mark.parametrize("part", list(everything()), ids=lambda part: part.name)
+def test_every_number_has_a_unit_or_is_known_to_have_none(part):
+    plain = WITHOUT_UNIT.split()
+    numbers = [f for f in part.fields if "integer" in f.kind or "number" in f.kind]
+    lacking = [f.name for f in numbers if not f.unit and f.name not in plain]
+    assert [name for name in lacking if f"{part.name}.{name}" not in plain] == []
+
+
+def test_a_range_a_unit_and_a_default_are_those_of_the_field():
+    (world,) = [part for part in parts() if part.name == "World"]
+    viscosity = {field.name: field for field in world.fields}["viscosity"]
+    found = (viscosity.kind, viscosity.unit, viscosity.range, viscosity.default)
+    assert found == ("number", "cells²/step", "[0.001, 2]", "0.05")
+    assert world.paths == ("world",)
+    folding = {field.name: field for field in experiment("folding").fields}
+    assert folding["world"].default.startswith("width 128, height 128")
+    assert folding["body"].default == "walk"
+    assert folding["updates"].source == "Tensen et al. 2026"
+
+
+def test_every_part_that_a_field_links_to_is_there():
+    names = {part.name for part in parts()}
+    for part in everything():
+        for field in part.fields:
+            for link in field.kind.split("[")[1:]:
+                assert link.partition("]")[0] in names
