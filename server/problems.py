@@ -85,15 +85,19 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(TimeoutError)
     @app.exception_handler(RedisError)
     def away(_: Request, error: SQLAlchemyError | RedisError) -> JSONResponse:
-        name = "Redis" if isinstance(error, RedisError) else "The database"
-        log.error("%s did not answer: %s", name, error)
-        detail = f"{name} does not answer; try again."
-        return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY)
+        return unavailable(error)
 
     @app.exception_handler(Exception)
     def unforeseen(_: Request, error: Exception) -> JSONResponse:
         detail = "The server failed; its log says why."
         return answer(Problem(title="Internal server error", status=500, detail=detail))
+
+
+def unavailable(error: SQLAlchemyError | RedisError) -> JSONResponse:
+    name = "Redis" if isinstance(error, RedisError) else "The database"
+    log.error("%s did not answer: %s", name, error)
+    detail = f"{name} does not answer; try again."
+    return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY)
 
 
 def invalid_input(errors: list[FieldError]) -> Problem:
