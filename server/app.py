@@ -13,6 +13,7 @@ from . import migrations, problems, tokens
 from .description import describe
 from .guard import Guard
 from .hub import Hub
+from .readers import quarantine
 from .reconcile import reconciling
 from .routes import api, health, page
 from .services import Services, connect
@@ -54,6 +55,7 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
     await hub.begin()
     tasks = [asyncio.create_task(task) for task in (hub.run(), watch(hub, services))]
     app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
+    await asyncio.to_thread(quarantine().begin)
     with reconciling(services), told_to_stop(app.state.end_streams):
         yield
     hub.close()
