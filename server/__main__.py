@@ -1,7 +1,11 @@
 """`python -m server`: the server alone."""
 
+import sys
+
 import uvicorn
 
+from . import migrations, tokens
+from .services import connect
 from .settings import Settings
 
 GRACE = 5
@@ -10,6 +14,8 @@ GRACE = 5
 
 def main() -> None:
     settings = Settings()
+    if settings.needs_token:
+        _prepare(settings)
     uvicorn.run(
         "server.app:create",
         factory=True,
@@ -17,6 +23,19 @@ def main() -> None:
         port=settings.port,
         timeout_graceful_shutdown=GRACE,
     )
+
+
+def _prepare(settings: Settings) -> None:
+    """Before anybody is answered there is a token, which is told where it is new."""
+    services = connect(settings)
+    try:
+        migrations.upgrade(services.sessions)
+        if secret := tokens.begin(services):
+            print(tokens.told(settings, secret), flush=True)
+    except ValueError as error:
+        sys.exit(str(error))
+    finally:
+        services.close()
 
 
 if __name__ == "__main__":

@@ -2,29 +2,29 @@
 
 import asyncio
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
+from contextlib import asynccontextmanager
 from functools import partial
 
 from fastapi import FastAPI
 
 from microcosmos.version import VERSION
 
-from . import migrations, problems
+from . import migrations, problems, tokens
 from .description import describe
 from .guard import Guard
 from .hub import Hub
+from .readers import quarantine
 from .reconcile import reconciling
 from .routes import api, health, page
 from .services import Services, connect
 from .settings import Settings
 from .shutdown import told_to_stop
+from .tokens.watching import watch
 
 
 def create() -> FastAPI:
     """What uvicorn starts: the application as the environment wants it."""
-    settings = Settings()
-    settings.refuse_exposure()
-    return create_app(connect(settings))
+    return create_app(connect(Settings()))
 
 
 def create_app(services: Services) -> FastAPI:
@@ -40,8 +40,7 @@ def create_app(services: Services) -> FastAPI:
     app.state.services = services
     problems.install(app)
     describe(app)
-    token = services.settings.token
-    app.add_middleware(Guard, token=token.get_secret_value() if token else None)
+    app.add_middleware(Guard, services=services)
     for router in (api, health.router, page.router):
         app.include_router(router)
     return app
@@ -51,15 +50,17 @@ def create_app(services: Services) -> FastAPI:
 async def _life(app: FastAPI) -> AsyncIterator[None]:
     services: Services = app.state.services
     await asyncio.to_thread(migrations.upgrade, services.sessions)
+    await asyncio.to_thread(tokens.refuse_without_admin, services)
     app.state.hub = hub = Hub(services.settings.redis_url, services.events.stream)
     await hub.begin()
-    reading = asyncio.create_task(hub.run())
+    tasks = [asyncio.create_task(task) for task in (hub.run(), watch(hub, services))]
     app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
+    await asyncio.to_thread(quarantine().begin)
     with reconciling(services), told_to_stop(app.state.end_streams):
         yield
     hub.close()
-    reading.cancel()
-    with suppress(asyncio.CancelledError):
-        await reading
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
     await hub.redis.aclose()
     services.close()

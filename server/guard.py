@@ -1,78 +1,123 @@
-"""Who may speak to the server: this machine's pages, or whoever has the token."""
+"""Who may speak to the server: this machine's pages, or whoever has a token."""
 
-from hmac import compare_digest
 from urllib.parse import SplitResult, urlsplit
 
+from fastapi.concurrency import run_in_threadpool
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from .problems import answer
-from .schemas import Problem
+from . import access
+from .caller import CALLER, NOBODY, Caller
+from .cookies import COOKIE, remember
+from .needs import Unnamed, need_of
+from .problems import Refused, answer, unavailable
+from .services import Services
 from .settings import LOOPBACK
 
-COOKIE = "microcosmos_token"
-"""For pages: an event stream cannot be asked for with an Authorization header."""
+SAFE = ("GET", "HEAD")
 
 
 class Guard:
-    """With a token, `/api` needs it. Without one, Host and Origin must be this machine's own.
+    """Where tokens are needed, `/api` needs them. Else Host and Origin must be our own.
 
     The latter keeps out pages of other sites, also those that have their name resolve to us.
     """
 
-    def __init__(self, app: ASGIApp, token: str | None):
-        self.app, self.token = app, token
+    def __init__(self, app: ASGIApp, services: Services):
+        self.app, self.services = app, services
+        self.needs_token = services.settings.needs_token
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        instead = self._instead(HTTPConnection(scope)) if scope["type"] == "http" else None
-        await (instead or self.app)(scope, receive, send)
+        if scope["type"] != "http":
+            return await self.app(scope, receive, send)
+        request = HTTPConnection(scope)
+        try:
+            caller = await self._admitted(request)
+        except Refused as error:
+            return await answer(error.problem, error.headers)(scope, receive, send)
+        except SQLAlchemyError as error:
+            return await unavailable(error)(scope, receive, send)
+        if isinstance(caller, Response):
+            return await caller(scope, receive, send)
+        known = CALLER.set(caller)
+        try:
+            await self.app(scope, receive, send)
+        finally:
+            CALLER.reset(known)
 
-    def _instead(self, request: HTTPConnection) -> Response | None:
-        """What is answered in place of the application, if anything."""
-        if self.token and self._shown(request):
-            return _remember(request)
-        problem = self._unknown(request) if self.token else self._foreign(request.headers)
-        return answer(problem) if problem else None
-
-    def _foreign(self, headers: Headers) -> Problem | None:
-        host, origin = headers.get("host", ""), headers.get("origin")
-        if _split(f"//{host}").hostname not in LOOPBACK:
-            needed = f"Host must be one of {', '.join(LOOPBACK)}; got {host!r}."
-            return Problem(title="Forbidden", status=403, detail=needed)
-        if origin is not None and _split(origin).netloc != host:
-            needed = f"Origin must be this server's own page; got {origin!r}."
-            return Problem(title="Forbidden", status=403, detail=needed)
-        return None
-
-    def _unknown(self, request: HTTPConnection) -> Problem | None:
+    async def _admitted(self, request: HTTPConnection) -> Caller | Response:
+        """Whoever asks, or what is answered in place of the application."""
+        if not self.needs_token:
+            _refuse_foreign_host(request.headers)
+            _refuse_foreign_origin(request.headers)
         if not request.url.path.startswith("/api/"):
-            return None
-        scheme, _, sent = request.headers.get("authorization", "").partition(" ")
-        given = sent if scheme.lower() == "bearer" else request.cookies.get(COOKIE, "")
-        if self._right(given):
-            return None
-        needed = f"A token is needed, as `Authorization: Bearer` or cookie `{COOKIE}`."
-        return Problem(title="Unauthorized", status=401, detail=needed)
+            return await self._page(request)
+        bearer, cookie = _bearer(request.headers), request.cookies.get(COOKIE)
+        if self.needs_token and bearer is None and request.scope["method"] not in SAFE:
+            # A browser sends cookies by itself, whoever's page has it ask.
+            _refuse_foreign_origin(request.headers)
+        given = bearer if bearer is not None or not self.needs_token else cookie
+        return await self._api(request, given)
 
-    def _shown(self, request: HTTPConnection) -> bool:
-        """Whether the token is in the address, with which a person opens the page first."""
-        page = not request.url.path.startswith("/api/")
-        return page and self._right(request.query_params.get("token", ""))
+    async def _api(self, request: HTTPConnection, given: str | None) -> Caller:
+        method, path = request.scope["method"], request.url.path
+        try:
+            need = need_of(method, path)
+        except Unnamed as error:
+            await run_in_threadpool(access.identify, self.services, given)
+            raise _nothing(method, path, error.methods) from None
+        return await run_in_threadpool(access.admit, self.services, given, need)
 
-    def _right(self, given: str) -> bool:
-        return compare_digest(given.encode(), (self.token or "").encode())
+    async def _page(self, request: HTTPConnection) -> Caller | Response:
+        """The page itself is for everybody; a token in its address is taken into a cookie."""
+        given = request.query_params.get("token")
+        everybody = NOBODY
+        if given is None or not self.needs_token:
+            return everybody
+        clean = request.url.remove_query_params("token")
+        # The log of requests is written at the end: it must not name the secret.
+        request.scope["query_string"] = clean.query.encode()
+        try:
+            caller = await run_in_threadpool(access.identify, self.services, given)
+        except Refused:
+            return everybody  # Its page asks for a token.
+        redirect = RedirectResponse(clean, 303)
+        remember(redirect, given, request.url.scheme, caller.expires_at)
+        return redirect
 
 
-def _remember(request: HTTPConnection) -> Response:
-    """Keep the token in a cookie of this site, and take it out of the address."""
-    clean = request.url.remove_query_params("token")
-    answer = RedirectResponse(clean, 303)
-    token = request.query_params["token"]
-    secure = request.url.scheme == "https"
-    answer.set_cookie(COOKIE, token, httponly=True, samesite="strict", secure=secure)
-    return answer
+def _bearer(headers: Headers) -> str | None:
+    """The token in a header, empty where it is malformed; None without the header."""
+    sent = headers.get("authorization")
+    if sent is None:
+        return None
+    scheme, _, token = sent.partition(" ")
+    return token.strip() if scheme.lower() == "bearer" else ""
+
+
+def _nothing(method: str, path: str, methods: list[str]) -> Refused:
+    if not methods:
+        return Refused(404, "Not found", f"There is nothing at {path:.200}.")
+    allowed = ", ".join(methods)
+    detail = f"{path:.200} takes {allowed}; got {method}."
+    return Refused(405, "Method not allowed", detail, headers={"Allow": allowed})
+
+
+def _refuse_foreign_host(headers: Headers) -> None:
+    host = headers.get("host", "")
+    if _split(f"//{host}").hostname not in LOOPBACK:
+        needed = f"Host must be one of {', '.join(LOOPBACK)}; got {host!r}."
+        raise Refused(403, "Forbidden", needed)
+
+
+def _refuse_foreign_origin(headers: Headers) -> None:
+    origin = headers.get("origin")
+    if origin is not None and _split(origin).netloc != headers.get("host", ""):
+        needed = f"Origin must be this server's own page; got {origin!r}."
+        raise Refused(403, "Forbidden", needed)
 
 
 def _split(address: str) -> SplitResult:

@@ -2,10 +2,11 @@
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Collection, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import Any
+from uuid import UUID
 
 from fastapi.sse import ServerSentEvent
 from redis import RedisError
@@ -41,6 +42,8 @@ class Listener:
     """What has arrived for one client since a place in the stream; None is the end."""
 
     since: str
+    token: UUID | None = None
+    """What it was opened with; it ends when that does."""
     waiting: asyncio.Queue[Entry | None] = field(default_factory=lambda: asyncio.Queue(ROOM))
 
     def put(self, entry: Entry | None) -> None:
@@ -86,8 +89,8 @@ class Hub:
                 await asyncio.sleep(1)
 
     @contextmanager
-    def listening(self) -> Iterator[Listener]:
-        listener = Listener(self.read_up_to)
+    def listening(self, token: UUID | None = None) -> Iterator[Listener]:
+        listener = Listener(self.read_up_to, token)
         self.listeners.add(listener)
         if self.closed:
             listener.put(None)
@@ -121,6 +124,16 @@ class Hub:
         self.closed = True
         for listener in self.listeners:
             listener.put(None)
+
+    def tokens(self) -> set[UUID]:
+        """Those with which somebody listens."""
+        return {listener.token for listener in self.listeners if listener.token}
+
+    def end(self, tokens: Collection[UUID]) -> None:
+        """End the streams that were opened with some tokens."""
+        for listener in self.listeners:
+            if listener.token in tokens:
+                listener.put(None)
 
     def _hand_on(self, entry: Entry) -> None:
         for listener in self.listeners:

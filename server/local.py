@@ -12,7 +12,7 @@ from subprocess import Popen
 
 from sqlalchemy.exc import OperationalError
 
-from . import demonstration, locks, migrations, redis_embedded, services
+from . import demonstration, locks, migrations, redis_embedded, services, tokens
 from .process_tree import Child, Tree, say
 from .processes import spawn
 from .settings import Settings
@@ -72,9 +72,12 @@ def refuse_taken(host: str, port: int) -> None:
 def start(place: Place, tree: Tree) -> None:
     """Start everything, what others stand on first."""
     settings = start_redis(place, tree)
+    if settings.needs_token:
+        prepare_database(settings)  # The server begins only where there is a token.
     # The server brings the database up to date too; beside it, we need not wait for it.
     tree.children.append(Child("server", place.module("server", "server")))
-    prepare_database(settings)
+    if not settings.needs_token:
+        prepare_database(settings)
     for index in range(settings.workers):
         name = f"worker-{index}"
         tree.children.append(Child(name, place.module(name, "worker.supervisor", str(index))))
@@ -94,6 +97,11 @@ def prepare_database(settings: Settings) -> None:
         raise Cannot(
             f"The database {shared.sessions.engine.url!r} fails: {error.orig}"
         ) from None
+    try:
+        if secret := tokens.begin(shared):
+            say("token", tokens.told(settings, secret))
+    except ValueError as error:
+        raise Cannot(str(error)) from None
     if settings.demonstration:
         demonstration.offer(shared)
     shared.close()
@@ -126,7 +134,6 @@ def main() -> None:
     """Run until Ctrl-C; what was started ends with us and nothing is lost."""
     try:
         settings = Settings()
-        settings.refuse_exposure()
     except ValueError as error:
         sys.exit(str(error))
     address = f"http://{settings.host}:{settings.port}"

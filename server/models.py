@@ -16,10 +16,12 @@ from sqlalchemy import (
     String,
     Text,
     UniqueConstraint,
+    text,
 )
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 from sqlalchemy.types import TypeDecorator
 
+from .caller import RANKS, owner
 from .db import Moment, clock
 
 QUEUED, RUNNING, PAUSED = "queued", "running", "paused"
@@ -65,7 +67,41 @@ class Base(DeclarativeBase):
     }
 
 
-class Run(Base):
+class Token(Base):
+    """Leave to use the server: of the secret only the hash, so that nobody can read it here."""
+
+    __tablename__ = "tokens"
+    __table_args__ = (
+        CheckConstraint(f"scope IN {RANKS}", name="scope"),
+        Index(
+            None,
+            "name",
+            unique=True,
+            sqlite_where=text("revoked_at IS NULL"),
+            postgresql_where=text("revoked_at IS NULL"),
+        ),
+    )
+
+    id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
+    name: Mapped[str] = mapped_column(String(64))
+    secret_sha256: Mapped[str] = mapped_column(Sha256, unique=True)
+    beginning: Mapped[str] = mapped_column(String(16))
+    """The first characters of the secret, to tell which one it is."""
+    scope: Mapped[str] = mapped_column(String(16))
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+    expires_at: Mapped[datetime | None]
+    revoked_at: Mapped[datetime | None]
+    last_used_at: Mapped[datetime | None]
+
+
+class Owned:
+    """What belongs to whoever made it: the holder of a token, else nobody."""
+
+    owner: Mapped[UUID | None] = mapped_column(default=owner)
+    """A token, of which none is ever deleted: what is revoked still has a name."""
+
+
+class Run(Owned, Base):
     """One spec being carried out; the truth about its state."""
 
     __tablename__ = "runs"

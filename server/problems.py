@@ -3,7 +3,7 @@
 import logging
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Self
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -20,6 +20,8 @@ from .lifecycle import Conflict
 from .schemas import FieldError, Problem
 
 log = logging.getLogger(__name__)
+TOLD = 50
+"""So many errors are told at most: a document may have as many as it has values."""
 RETRY = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
 NAMED = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
@@ -40,6 +42,11 @@ class Refused(Exception):
         self.problem = Problem(title=title, status=status, detail=detail, errors=errors)
         self.headers = headers
 
+    @classmethod
+    def of(cls, problem: Problem) -> Self:
+        """Of a problem that was found elsewhere."""
+        return cls(problem.status, problem.title, problem.detail, problem.errors)
+
 
 def answer(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
     content = problem.model_dump(mode="json", exclude_none=True)
@@ -58,23 +65,20 @@ def install(app: FastAPI) -> None:
         return answer(Problem(title="Conflict", status=409, detail=str(error)))
 
     @app.exception_handler(ValidationError)
-    def invalid(_: Request, error: ValidationError) -> JSONResponse:
-        found = _without_echoes(error.errors())
-        return answer(invalid_input([_field_error(e, field_path(e["loc"])) for e in found]))
+    def unsound(_: Request, error: ValidationError) -> JSONResponse:
+        return answer(invalid(error))
 
     @app.exception_handler(RequestValidationError)
     def invalid_request(_: Request, error: RequestValidationError) -> JSONResponse:
-        found = [(e, e["loc"][1:]) for e in error.errors()]  # Without "query", "path".
+        told = error.errors()[:TOLD]
+        found = [(e, e["loc"][1:]) for e in told]  # Without "query", "path".
         return answer(
             invalid_input([_field_error(e, ".".join(map(str, place))) for e, place in found])
         )
 
     @app.exception_handler(CreatureError)
-    def bad_creature(_: Request, error: CreatureError) -> JSONResponse:
-        found = FieldError(
-            field=error.field, message=str(error), needed=error.needed, got=brief(error.got)
-        )
-        return answer(invalid_input([found]))
+    def no_creature(_: Request, error: CreatureError) -> JSONResponse:
+        return answer(bad_creature(error))
 
     @app.exception_handler(HTTPException)
     def http(_: Request, error: HTTPException) -> JSONResponse:
@@ -85,15 +89,32 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(TimeoutError)
     @app.exception_handler(RedisError)
     def away(_: Request, error: SQLAlchemyError | RedisError) -> JSONResponse:
-        name = "Redis" if isinstance(error, RedisError) else "The database"
-        log.error("%s did not answer: %s", name, error)
-        detail = f"{name} does not answer; try again."
-        return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY)
+        return unavailable(error)
 
     @app.exception_handler(Exception)
     def unforeseen(_: Request, error: Exception) -> JSONResponse:
         detail = "The server failed; its log says why."
         return answer(Problem(title="Internal server error", status=500, detail=detail))
+
+
+def unavailable(error: SQLAlchemyError | RedisError) -> JSONResponse:
+    name = "Redis" if isinstance(error, RedisError) else "The database"
+    log.error("%s did not answer: %s", name, error)
+    detail = f"{name} does not answer; try again."
+    return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY)
+
+
+def invalid(error: ValidationError) -> Problem:
+    """What is wrong with a document, as far as anybody reads on."""
+    found = _without_echoes(error.errors(include_url=False)[:TOLD])
+    return invalid_input([_field_error(e, field_path(e["loc"])) for e in found])
+
+
+def bad_creature(error: CreatureError) -> Problem:
+    found = FieldError(
+        field=error.field, message=str(error), needed=error.needed, got=brief(error.got)
+    )
+    return invalid_input([found])
 
 
 def invalid_input(errors: list[FieldError]) -> Problem:

@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import and_, or_, select
 from sqlalchemy.orm import Session
 
-from . import waiting
+from . import owners, waiting
 from .models import FAILED, FINISHED, RUNNING, Generation, Run
 from .schemas import Carried, RunRead
 from .services import Services
@@ -25,7 +25,10 @@ def evenly(last: int, points: int) -> list[int]:
 def read_runs(services: Services, session: Session, runs: Sequence[Run]) -> list[RunRead]:
     curves = _curves(session, runs)
     reasons = waiting.reasons(services, session, runs)
-    return [_read(run, curves[run.id], reasons.get(run.id)) for run in runs]
+    named = owners.names(session, (run.owner for run in runs))
+    return [
+        _read(run, curves[run.id], reasons.get(run.id), named.get(run.owner)) for run in runs
+    ]
 
 
 def read_run(services: Services, session: Session, run: Run) -> RunRead:
@@ -50,11 +53,11 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
     return curves
 
 
-def _read(run: Run, curve: list[Generation], reason: str | None) -> RunRead:
+def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | None) -> RunRead:
     generations, evaluations = _rates(curve)
     left = max(0, run.generations - run.generation)
     columns = {column.key: getattr(run, column.key) for column in Run.__table__.columns}
-    columns["error"] = run.error if run.status == FAILED else None
+    columns |= {"error": run.error if run.status == FAILED else None, "owner": owner}
     return RunRead(
         **{name: columns[name] for name in RunRead.model_fields if name in columns},
         waiting=reason,

@@ -1,7 +1,7 @@
 """What the environment decides: where things lie, how large, how often."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AliasChoices, Field, SecretStr
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -32,6 +32,9 @@ class Settings(BaseSettings):
         default=8000, ge=1, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
     )
     token: SecretStr | None = None
+    """An admin's, beside those in the database."""
+    auth: Literal["local", "required"] = "local"
+    """Who needs a token on loopback: nobody, or everybody, as it is beyond loopback."""
     workers: int = Field(
         default=1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
     )
@@ -54,10 +57,7 @@ class Settings(BaseSettings):
     def artifacts(self) -> str:
         return self.artifacts_url or str(self.data.resolve() / "artifacts")
 
-    def refuse_exposure(self) -> None:
-        """Nobody but this machine may reach a server that asks for no token."""
-        if self.host not in LOOPBACK and not self.token:
-            raise ValueError(
-                "MICROCOSMOS_TOKEN must be set where MICROCOSMOS_HOST is not loopback "
-                f"({', '.join(LOOPBACK)}); got host {self.host} and no token"
-            )
+    @property
+    def needs_token(self) -> bool:
+        """Only what this machine alone can reach may go without."""
+        return bool(self.token) or self.auth == "required" or self.host not in LOOPBACK

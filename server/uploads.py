@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Awaitable, Callable
 from typing import Any
 
@@ -12,6 +13,8 @@ from fastapi.concurrency import run_in_threadpool
 from .problems import Refused
 
 DEPTH = 32
+VALUES = 100_000
+"""More than the largest creature has: each may become an error with words to it."""
 NUL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
 """As JSON is written: escaped, and the escape itself not escaped."""
 
@@ -20,17 +23,20 @@ def json_object(limit: int) -> Callable[[Request], Awaitable[dict[str, Any]]]:
     """A dependency that reads the body as a JSON object of at most so many bytes."""
 
     async def read(request: Request) -> dict[str, Any]:
-        document = await run_in_threadpool(parse, await _limited(request, limit))
-        if not isinstance(document, dict):
-            raise Refused(
-                422, "Not an object", f"A JSON object is needed; got {document!r:.80}."
-            )
-        return document
+        return mapping(await run_in_threadpool(parse, await limited(request, limit)))
 
     return read
 
 
-async def _limited(request: Request, limit: int) -> bytes:
+def mapping(document: Any) -> dict[str, Any]:
+    """The document, if it is a JSON object."""
+    if not isinstance(document, dict):
+        raise Refused(422, "Not an object", f"A JSON object is needed; got {document!r:.80}.")
+    return document
+
+
+async def limited(request: Request, limit: int) -> bytes:
+    """The body, if it is not longer than that; nothing more of it is read."""
     body = bytearray()
     async for chunk in request.stream():
         body += chunk
@@ -42,19 +48,40 @@ async def _limited(request: Request, limit: int) -> bytes:
 def parse(body: bytes) -> Any:
     """The document in some JSON; what cannot be kept or sent on is refused.
 
-    That is NaN, infinities, deep nesting, and text with lone surrogates or NUL.
+    That is NaN, infinities, a name twice, deep nesting, and text with lone surrogates or NUL.
     """
+    if body.count(b",") > VALUES:
+        raise Refused(413, "Too large", f"At most {VALUES:,} values are taken; more came.")
     try:
-        document = json.loads(body, parse_constant=_refuse_constant, parse_float=_finite)
+        document = json.loads(
+            body.decode(),  # JSON between programs is UTF-8, without a mark that says so.
+            parse_constant=_refuse_constant,
+            parse_float=_finite,
+            object_pairs_hook=_distinct,
+        )
     except RecursionError:
         raise _too_deep() from None
     except ValueError as error:  # Among them bytes that are no UTF-8.
         raise Refused(
             422, "Not JSON", f"JSON is needed; got something else: {error}."
         ) from error
+    refuse_unkeepable(document)
+    return document
+
+
+def refuse_unkeepable(document: Any) -> None:
+    """Raise `Refused` for what databases and other readers of JSON may stumble over."""
     _refuse_depth(document)
     _refuse_text(document)
-    return document
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Readers of JSON do not agree on which one counts of two."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        ((twice, _),) = Counter(name for name, _ in pairs).most_common(1)
+        raise Refused(422, "Not JSON", f"Names must differ; got {twice[:60]!r} twice.")
+    return found
 
 
 def _refuse_constant(name: str) -> None:

@@ -15,8 +15,10 @@ from . import (
     renderings,
     results,
     runs,
+    session,
     tags,
     targets,
+    tokens,
     workers,
 )
 
@@ -36,5 +38,7 @@ for noun in (
     workers,
     queue,
     tags,
+    tokens,
+    session,
 ):
     api.include_router(noun.router)

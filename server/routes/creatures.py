@@ -3,14 +3,16 @@
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Query, Request
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
 
 from .. import creatures, lineage
 from ..deps import CreatureDep, ServicesDep, SessionDep
+from ..readers import quarantine
 from ..schemas import Ancestors, Children, CreatureName
-from ..uploads import json_object
+from ..uploads import limited
 
 FILE_BYTES = 8 << 20
 H5 = "application/x-hdf5"
@@ -20,9 +22,18 @@ router = APIRouter(prefix="/creatures", tags=["creatures"])
 body: dict[str, Any] = {
     "requestBody": {
         "required": True,
-        "content": {"application/json": {"schema": {"type": "object"}}},
+        "content": {
+            "application/json": {"schema": {"type": "object"}},
+            H5: {"schema": {"type": "string", "format": "binary"}},
+        },
     }
 }
+
+
+async def file_sent(request: Request) -> dict[str, Any]:
+    """A creature file in either form, which its first bytes tell."""
+    sent = await limited(request, FILE_BYTES)
+    return await run_in_threadpool(quarantine().creature, sent)
 
 
 @router.get("/{sha}", responses={200: {"model": dict[str, Any]}})
@@ -74,12 +85,11 @@ def read_children(
 
 @router.post("", status_code=201, responses={200: {"model": CreatureName}}, openapi_extra=body)
 def import_creature(
-    document: Annotated[dict[str, Any], Depends(json_object(FILE_BYTES))],
+    file: Annotated[dict[str, Any], Depends(file_sent)],
     services: ServicesDep,
     response: Response,
 ) -> CreatureName:
-    """Keep a creature file; its hash is verified. 200 where it is known already."""
-    file = creature.parse(document)
+    """Keep a creature file, JSON or HDF5; its hash is verified. 200 where it is known."""
     with services.sessions.write.begin() as session:
         new = creatures.add(session, file)
     response.status_code = 201 if new else 200

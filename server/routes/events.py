@@ -7,6 +7,7 @@ from uuid import UUID
 from fastapi import APIRouter, Depends, Header, Request
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
+from ..caller import CALLER
 from ..hub import Hub, Listener
 
 router = APIRouter(prefix="/events", tags=["events"])
@@ -21,7 +22,7 @@ HubDep = Annotated[Hub, Depends(hub)]
 
 async def listener(hub: HubDep) -> AsyncIterator[Listener]:
     """Listens before the answer begins: who then reads a state misses nothing after it."""
-    with hub.listening() as listener:
+    with hub.listening(CALLER.get().token) as listener:
         yield listener
 
 

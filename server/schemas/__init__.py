@@ -18,6 +18,7 @@ from .runs import (
     TagRead,
     Target,
 )
+from .tokens import CallerRead, SignIn, TokenCreate, TokenMade, TokenRead
 from .workers import Carried, Health, QueueRead, Readiness, Waiting, WorkerRead
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "ArchiveRead",
     "Axis",
     "BodyRead",
+    "CallerRead",
     "Carried",
     "CentroidsRead",
     "Children",
@@ -53,10 +55,14 @@ __all__ = [
     "RunChange",
     "RunPage",
     "RunRead",
+    "SignIn",
     "Species",
     "Status",
     "TagRead",
     "Target",
+    "TokenCreate",
+    "TokenMade",
+    "TokenRead",
     "Waiting",
     "Wire",
     "WorkerRead",

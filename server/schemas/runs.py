@@ -78,6 +78,8 @@ class RunRead(Wire):
     device: str | None
     version: str
     demonstration: bool
+    owner: str | None
+    """The name of the token it was made with."""
 
 
 class RunPage(Wire):

@@ -115,6 +115,7 @@ def settings(tmp_path, database_url, redis_url) -> Settings:
         max_bytes=1 << 30,
         host="127.0.0.1",
         token=None,
+        auth="local",
         lease=20.0,
         grace=15.0,
         reconcile_interval=3600.0,

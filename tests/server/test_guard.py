@@ -1,21 +1,25 @@
 """Who may speak to the server, and where it may listen."""
 
+import logging
+
 import httpx
 import pytest
 from pydantic import SecretStr
+from sqlalchemy.exc import OperationalError
 
+from server import access
 from server.settings import Settings
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.0.2.1", "::"])
 def test_a_server_for_others_needs_a_token(host):
-    with pytest.raises(ValueError, match="MICROCOSMOS_TOKEN must be set"):
-        Settings(host=host, token=None).refuse_exposure()
-    Settings(host=host, token=SecretStr("secret")).refuse_exposure()
+    assert Settings(host=host, token=None).needs_token
 
 
-def test_on_loopback_no_token_is_needed():
-    Settings(host="127.0.0.1", token=None).refuse_exposure()
+def test_on_loopback_a_token_is_needed_where_it_is_asked_for():
+    assert not Settings(host="127.0.0.1", token=None).needs_token
+    assert Settings(host="127.0.0.1", token=None, auth="required").needs_token
+    assert Settings(host="127.0.0.1", token=SecretStr("secret")).needs_token
 
 
 @pytest.mark.parametrize("name", ["evil.example", "127.0.0.1.evil.example", "", "["])
@@ -71,3 +75,39 @@ def test_a_port_that_nobody_can_be_told_is_refused(monkeypatch):
     monkeypatch.setenv("PORT", "0")
     with pytest.raises(ValueError, match="greater than or equal to 1"):
         Settings()
+
+
+def test_a_cookie_is_of_no_use_to_the_pages_of_other_sites(serve, spec):
+    """A browser may send it by itself; a header it does not."""
+    with serve(token=SecretStr("secret")) as address:
+        url, cookie = f"{address}/api/v1/runs", {"Cookie": "microcosmos_token=secret"}
+        other = {"Origin": "http://evil.example"}
+        assert httpx.post(url, json=spec, headers=cookie | other).status_code == 403
+        own = {"Origin": address}
+        assert httpx.post(url, json=spec, headers=cookie | own).status_code == 202
+        bearer = {"Authorization": "Bearer secret"}
+        assert httpx.post(url, json=spec, headers=bearer | other).status_code == 202
+
+
+def test_the_log_of_requests_does_not_name_a_token_in_an_address(serve, caplog):
+    log = logging.getLogger("uvicorn.access")
+    with serve(token=SecretStr("secret")) as address:
+        log.addHandler(caplog.handler)
+        caplog.set_level("INFO", "uvicorn.access")
+        for token in ("secret", "guessed"):
+            httpx.get(f"{address}/runs?token={token}&view=map")
+        log.removeHandler(caplog.handler)
+    told = [record.getMessage() for record in caplog.records]
+    assert [text.partition('"')[2].split()[1] for text in told] == ["/runs?view=map"] * 2
+
+
+def test_while_the_database_is_away_a_token_is_not_wrong(serve, monkeypatch):
+    def away(*_):
+        raise OperationalError("SELECT", {}, ConnectionError("gone"))
+
+    monkeypatch.setattr(access.tokens, "holder", away)
+    with serve(token=SecretStr("secret")) as address:
+        sent = {"Authorization": "Bearer mc_other"}
+        answer = httpx.get(f"{address}/api/v1/runs", headers=sent)
+    assert (answer.status_code, answer.headers["retry-after"]) == (503, "2")
+    assert answer.json()["detail"] == "The database does not answer; try again."

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..spec import shape
 from . import file as hdf5
+from . import strict
 from .creature import parse, scene_of
 from .encoding import decode
 from .file import Tree
@@ -20,10 +21,20 @@ FORMAT = "microcosmos-creature-hdf5/1"
 
 BODY = ("positions", "edges", "joints", "rest_length", "rest_angle", "stretch", "shear", "bend")
 PARTS = ("measured", "provenance", "licence")
+ATTRIBUTES = {"format", "sha256", *PARTS}
 
 
 def dump(file: Mapping[str, Any]) -> bytes:
     """The bytes of a parsed creature file; the same file gives the same bytes."""
+    return hdf5.dump(_tree(file), _attributes(file))
+
+
+def _attributes(file: Mapping[str, Any]) -> dict[str, str]:
+    texts = {part: json.dumps(file[part], sort_keys=True) for part in PARTS}
+    return {"format": FORMAT, "sha256": file["sha256"], **texts}
+
+
+def _tree(file: Mapping[str, Any]) -> Tree:
     body = shape(scene_of(file).body)
     measured = file["measured"]
     tree: Tree = {
@@ -36,22 +47,30 @@ def dump(file: Mapping[str, Any]) -> bytes:
             "fitness": measured["fitness"],
             **{group: _by_link(measured[group]) for group in ("descriptors", "features")},
         }
-    texts = {part: json.dumps(file[part], sort_keys=True) for part in PARTS}
-    return hdf5.dump(tree, {"format": FORMAT, "sha256": file["sha256"], **texts})
+    return tree
 
 
 def load(data: bytes) -> dict[str, Any]:
-    """The creature file in these bytes, checked as any other; `ValueError` where it is none."""
+    """The creature file in these bytes, checked as any other; `ValueError` where it is none.
+
+    It must be as `dump` writes it: arrays that differ from the identity would be believed by
+    whoever reads them, and what lies outside of the file is nobody's business.
+    """
     try:
         with h5py.File(BytesIO(data), "r") as file:
-            told = {name: bytes(value).decode() for name, value in file.attrs.items()}
-            if told.get("format") != FORMAT:
-                raise ValueError(f"`format` must be {FORMAT}, got {told.get('format')}")
-            identity = json.loads(bytes(file["identity"][()]))  # pyright: ignore[reportIndexIssue, reportArgumentType]
-    except OSError as error:
+            told = strict.texts(file, ATTRIBUTES)
+            if told["format"] != FORMAT:
+                raise ValueError(f"`format` must be {FORMAT}, got {told['format']:.60}")
+            parts = {part: json.loads(told[part]) for part in PARTS}
+            identity = json.loads(strict.text(file, "identity"))
+            found = parse({"identity": identity, "sha256": told["sha256"], **parts})
+            strict.refuse_other(file, _tree(found))
+    except (OSError, RuntimeError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"a creature's HDF5 file must be HDF5: {error}") from error
-    parts = {part: json.loads(told[part]) for part in PARTS}
-    return parse({"identity": identity, "sha256": told["sha256"], **parts})
+    expected = _attributes(found)
+    if wrong := [name for name in expected if told[name] != expected[name]]:
+        raise ValueError(f"attributes must be as they are written here, got other {wrong}")
+    return found
 
 
 def link(name: str) -> str:

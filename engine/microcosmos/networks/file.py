@@ -14,6 +14,7 @@ from .network import Network
 from .reading import read_tensorneat
 from .writing import Genome
 
+MEMBERS = ("nodes.npy", "conns.npy", "fitness.npy", "meta.npy")
 LARGEST = 64 * 2**20
 """Bytes of an array in a file, so that a small file cannot ask for all memory."""
 
@@ -65,7 +66,10 @@ def _meta(arrays: Mapping[str, np.ndarray]) -> Any:
 def _arrays(data: bytes) -> dict[str, np.ndarray]:
     try:
         with ZipFile(BytesIO(data)) as file:
-            names = [n for n in file.namelist() if n.endswith(".npy")]
+            names = file.namelist()
+            if not set(names) <= set(MEMBERS) or len(names) > len(MEMBERS):
+                needed = ", ".join(MEMBERS)
+                raise ValueError(f"the file must hold {needed} alone, got {names[:8]}")
             return {name.removesuffix(".npy"): _array(name, file) for name in names}
     except (
         BadZipFile,

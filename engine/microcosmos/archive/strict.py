@@ -1,0 +1,97 @@
+"""HDF5 from strangers: only what is expected is read, and only from the file itself."""
+
+from collections.abc import Mapping
+from itertools import islice
+from typing import Any
+
+import h5py
+import numpy as np
+
+LONGEST = 8 << 20
+"""Bytes of a text."""
+PLAIN = (h5py.h5d.CONTIGUOUS, h5py.h5d.COMPACT)
+TOLERANCE = 1e-6
+"""Between numbers that another machine has computed and those of this one."""
+
+
+def texts(item: Any, names: set[str]) -> dict[str, str]:
+    """The attributes of an object, which must be texts under just these names."""
+    found = set(islice(item.attrs, len(names) + 1))
+    if found != names:
+        raise ValueError(f"attributes must be {sorted(names)}, got {_few(found)}")
+    return {name: _text(item.attrs.get_id(name), f"attribute {name}") for name in names}
+
+
+def text(group: h5py.Group, name: str) -> str:
+    """The text that a dataset is."""
+    dataset = _own(group, name, name)
+    if not isinstance(dataset, h5py.Dataset):
+        raise ValueError(f"`{name}` must be a dataset, got a group")
+    _refuse_elsewhere(dataset, name)
+    return _text(dataset, name)
+
+
+def refuse_other(group: h5py.Group, tree: Mapping[str, Any], where: str = "") -> None:
+    """Raise `ValueError` unless a group holds a tree's arrays, no more and no less."""
+    found = set(islice(group, len(tree) + 1))
+    if found != set(tree):
+        raise ValueError(f"`{where or '/'}` must hold {sorted(tree)}, got {_few(found)}")
+    for name, expected in tree.items():
+        place = f"{where}/{name}"
+        item, inside = _own(group, name, place), isinstance(expected, Mapping)
+        if isinstance(item, h5py.Group) != inside:
+            kind = "group" if inside else "dataset"
+            raise ValueError(f"`{place}` must be a {kind}, got something else")
+        if isinstance(expected, Mapping):
+            refuse_other(item, expected, place)
+        else:
+            _refuse_unequal(item, np.asarray(expected), place)
+
+
+def _own(group: h5py.Group, name: str, place: str) -> Any:
+    """What a name means, unless that lies elsewhere: in another file or under another name."""
+    link = group.get(name, getlink=True)
+    if not isinstance(link, h5py.HardLink):
+        kind = type(link).__name__ if link else "nothing"
+        raise ValueError(f"`{place}` must lie in the file itself, got {kind}")
+    return group[name]
+
+
+def _refuse_elsewhere(dataset: h5py.Dataset, place: str) -> None:
+    """Neither other files nor filters: what is read is as large as the file, at most."""
+    layout = dataset.id.get_create_plist()
+    if layout.get_external_count():
+        raise ValueError(f"`{place}` must be stored in the file, got external storage")
+    if dataset.is_virtual:
+        raise ValueError(f"`{place}` must be stored in the file, got a virtual dataset")
+    if layout.get_layout() not in PLAIN or layout.get_nfilters():
+        raise ValueError(f"`{place}` must be stored plainly, got chunks or filters")
+
+
+def _text(item: Any, place: str) -> str:
+    """Of fixed length: one of variable length would name a place on a heap."""
+    if item.shape != () or item.dtype.kind != "S" or item.dtype.itemsize > LONGEST:
+        raise ValueError(f"`{place}` must be one text, got {item.dtype}{item.shape}")
+    if isinstance(item, h5py.Dataset):
+        return bytes(item[()]).decode()
+    value = np.empty((), item.dtype)
+    item.read(value)
+    return bytes(value[()]).decode()
+
+
+def _refuse_unequal(dataset: h5py.Dataset, expected: np.ndarray, place: str) -> None:
+    _refuse_elsewhere(dataset, place)
+    if (dataset.shape, dataset.dtype) != (expected.shape, expected.dtype):
+        raise ValueError(
+            f"`{place}` must be {expected.dtype}{expected.shape} as the identity has it, "
+            f"got {dataset.dtype}{dataset.shape}"
+        )
+    found = dataset[()]
+    floats = expected.dtype.kind == "f"
+    same = np.allclose(found, expected, TOLERANCE) if floats else np.all(found == expected)
+    if not same:
+        raise ValueError(f"`{place}` must be as the identity has it, got other values")
+
+
+def _few(names: set[str]) -> list[str]:
+    return sorted(name[:60] for name in names)[:8]

@@ -1,0 +1,97 @@
+"""What each route of the API needs. One that is not named here is not reached by anybody."""
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from starlette.routing import compile_path
+
+from .caller import ADMIN, READ, WRITE
+from .models import Run
+
+PUBLIC, OWNER = "public", "owner"
+"""Beside the scopes: no token at all, and `write` by whoever it belongs to."""
+
+ROOT = "/api/v1"
+
+NEEDS = {
+    "GET /openapi.json": READ,
+    "GET /experiments": READ,
+    "GET /runs": READ,
+    "POST /runs": WRITE,
+    "POST /runs/estimate": READ,
+    "GET /runs/{run_id}": READ,
+    "PATCH /runs/{run_id}": OWNER,
+    "DELETE /runs/{run_id}": OWNER,
+    "POST /runs/{run_id}/pause": OWNER,
+    "POST /runs/{run_id}/resume": OWNER,
+    "POST /runs/{run_id}/cancel": OWNER,
+    "POST /runs/{run_id}/extend": OWNER,
+    "POST /runs/{run_id}/restore": OWNER,
+    "POST /runs/{run_id}/fork": WRITE,  # What it makes is the forker's own.
+    "GET /runs/{run_id}/{rest:path}": READ,
+    "GET /sweeps": READ,
+    "POST /sweeps": WRITE,
+    "GET /sweeps/{sweep_id}": READ,
+    "GET /sweeps/{sweep_id}/{rest:path}": READ,
+    "POST /sweeps/{sweep_id}/pause": OWNER,
+    "POST /sweeps/{sweep_id}/resume": OWNER,
+    "POST /sweeps/{sweep_id}/cancel": OWNER,
+    "POST /creatures": WRITE,
+    "GET /creatures/{sha}": READ,
+    "GET /creatures/{sha}/{rest:path}": READ,
+    "GET /shares": READ,
+    "POST /shares": WRITE,
+    "GET /shares/{slug}": PUBLIC,
+    "GET /shares/{slug}/{rest:path}": PUBLIC,
+    "DELETE /shares/{slug}": OWNER,
+    "GET /commons": PUBLIC,
+    "GET /events": READ,
+    "GET /workers": READ,
+    "GET /queue": READ,
+    "GET /tags": READ,
+    "GET /tokens/current": READ,
+    "GET /tokens": ADMIN,
+    "POST /tokens": ADMIN,
+    "DELETE /tokens/{token_id}": ADMIN,
+    "POST /session": PUBLIC,
+    "DELETE /session": PUBLIC,
+}
+
+OWNED: dict[str, type[Any]] = {"run_id": Run}
+"""What has an `owner`, by the parameter of a path that names it."""
+
+
+@dataclass(frozen=True)
+class Need:
+    """What a request needs, and the parameters in its path."""
+
+    need: str
+    parameters: dict[str, str]
+
+
+class Unnamed(LookupError):
+    """Nobody said what a path needs; `methods` are those for which somebody did."""
+
+    def __init__(self, methods: list[str]):
+        super().__init__()
+        self.methods = methods
+
+
+def need_of(method: str, path: str) -> Need:
+    """What a request needs; `Unnamed` where that is not in the table."""
+    asked = "GET" if method == "HEAD" else method
+    others = []
+    for named, pattern, need in _patterns():
+        if found := pattern.match(path):
+            if named == asked:
+                return Need(need, found.groupdict())
+            others.append(named)
+    raise Unnamed(others)
+
+
+@cache
+def _patterns() -> list[tuple[str, re.Pattern[str], str]]:
+    split = [(*key.split(" "), need) for key, need in NEEDS.items()]
+    return [(method, compile_path(ROOT + path)[0], need) for method, path, need in split]

@@ -1,0 +1,40 @@
+"""A creature to try things with: a filament that does nothing."""
+
+from typing import Any
+
+import numpy as np
+
+from microcosmos.archive.encoding import encode
+from microcosmos.archive.naming import FORMAT
+from microcosmos.spec import EXPERIMENTS, identity
+
+
+def example() -> dict[str, Any]:
+    """The identity of a swimmer without hidden nodes, as the demonstration's have it."""
+    spec: Any = EXPERIMENTS["quality-diversity"].presets[0].spec
+    control = spec.control
+    ends = [*control.inputs, *control.outputs]
+    return {
+        "format": FORMAT,
+        "genome": {
+            "encoding": "cppn",
+            "inputs": list(control.inputs),
+            "outputs": list(control.outputs),
+            "control": identity(control),
+            "nodes": {
+                "id": list(range(len(ends))),
+                "activation": ["identity"] * len(ends),
+                "bias": encode(np.zeros(len(ends))),
+            },
+            "connections": {
+                "innovation": [],
+                "source": [],
+                "target": [],
+                "enabled": [],
+                "weight": "",
+            },
+        },
+        "world": {**identity(spec.world), "coupling": identity(spec.coupling)},
+        "body": identity(spec.body),
+        "task": identity(spec.task),
+    }
