@@ -59,8 +59,7 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(ValidationError)
     def invalid(_: Request, error: ValidationError) -> JSONResponse:
-        found = _without_echoes(error.errors())
-        return answer(invalid_input([_field_error(e, field_path(e["loc"])) for e in found]))
+        return answer(invalid_input(field_errors(error)))
 
     @app.exception_handler(RequestValidationError)
     def invalid_request(_: Request, error: RequestValidationError) -> JSONResponse:
@@ -99,6 +98,12 @@ def install(app: FastAPI) -> None:
 def invalid_input(errors: list[FieldError]) -> Problem:
     detail = "; ".join(f"{error.field}: {error.message}" for error in errors)
     return Problem(title="Invalid input", status=422, detail=detail, errors=errors)
+
+
+def field_errors(error: ValidationError) -> list[FieldError]:
+    """What is wrong with which field, as people read it."""
+    found = _without_echoes(error.errors())
+    return [_field_error(e, field_path(e["loc"])) for e in found]
 
 
 def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

@@ -15,6 +15,7 @@ from . import (
     renderings,
     results,
     runs,
+    sweeps,
     tags,
     targets,
     workers,
@@ -24,6 +25,7 @@ api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
 for noun in (
     experiments,
     runs,
+    sweeps,
     generations,
     journal,
     archives,

@@ -78,6 +78,8 @@ class RunRead(Wire):
     device: str | None
     version: str
     demonstration: bool
+    sweep: UUID | None
+    """The sweep that it was asked for with."""
 
 
 class RunPage(Wire):
