@@ -30,7 +30,7 @@ def told(
     for generation, summary in session.execute(ordered):
         place = bisect_left(generations, generation)
         if place < len(points):
-            points[place] = _joined(points[place], _numbers(summary or {}))
+            points[place] = _joined(points[place], numbers(summary or {}))
     names = dict.fromkeys(name for point in points for name in point)
     return {name: [point.get(name) for point in points] for name in names}
 
@@ -44,7 +44,8 @@ def _joined(before: dict[str, float], later: dict[str, float]) -> dict[str, floa
     return before | later | added
 
 
-def _numbers(summary: Mapping[str, Any]) -> dict[str, float]:
+def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
+    """Those of the values that are numbers."""
     return {
         name: value
         for name, value in summary.items()

@@ -7,7 +7,7 @@ from uuid import UUID
 from fastapi import Depends, Path, Request
 from sqlalchemy.orm import Session
 
-from .models import Creature, Run
+from .models import Creature, Run, Sweep
 from .problems import Refused
 from .services import Services
 
@@ -48,5 +48,17 @@ def creature(
     return found
 
 
+def find_sweep(session: Session, sweep_id: UUID) -> Sweep:
+    found = session.get(Sweep, sweep_id)
+    if found is None:
+        raise Refused(404, "Not found", f"No sweep has the id {sweep_id}.")
+    return found
+
+
+def sweep(sweep_id: UUID, session: SessionDep) -> Sweep:
+    return find_sweep(session, sweep_id)
+
+
 RunDep = Annotated[Run, Depends(run)]
+SweepDep = Annotated[Sweep, Depends(sweep)]
 CreatureDep = Annotated[Creature, Depends(creature)]

@@ -80,14 +80,17 @@ def matching(
     experiments: Sequence[str],
     tag: str | None,
     text: str | None,
+    sweep: UUID | Literal["none"] | None = None,
 ) -> Select[Run]:
-    """The runs of any of the states and experiments, with the tag and the text."""
+    """The runs of any of the states and experiments, with the tag and the text, of a sweep."""
     if statuses:
         statement = statement.where(Run.status.in_(statuses))
     if experiments:
         statement = statement.where(Run.experiment.in_(experiments))
     if tag is not None:
         statement = statement.where(_tagged(lambda value: value == tag))
+    if sweep is not None:
+        statement = statement.where(Run.sweep == (None if sweep == "none" else sweep))
     wanted = (text or "").strip()
     return statement.where(_says(wanted)) if wanted else statement
 

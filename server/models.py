@@ -64,6 +64,7 @@ class Base(DeclarativeBase):
         dict[str, Any]: JSON(none_as_null=True),
         list[str]: JSON(),
         list[float]: JSON(),
+        list[int]: JSON(),
     }
 
 
@@ -101,6 +102,24 @@ class Owned:
     """A token, of which none is ever deleted: what is revoked still has a name."""
 
 
+class Sweep(Owned, Base):
+    """Runs that were asked for together: seeds, and a grid over fields of a spec."""
+
+    __tablename__ = "sweeps"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
+    experiment: Mapped[str] = mapped_column(String(64))
+    name: Mapped[str | None] = mapped_column(String(200))
+    spec: Mapped[dict[str, Any]]
+    """What all runs have in common, but for the grid's fields and the seed."""
+    seeds: Mapped[list[int]]
+    """None where the experiment has no seed."""
+    grid: Mapped[dict[str, Any]]
+    """Values by the dotted path of a field, in the order in which they were given."""
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+
+
 class Run(Owned, Base):
     """One spec being carried out; the truth about its state."""
 
@@ -110,6 +129,7 @@ class Run(Owned, Base):
         CheckConstraint(f"wish IN {(PAUSE, CANCEL)}", name="wish"),
         Index(None, "created_at", "id"),
         Index(None, "status", "heartbeat_at"),
+        Index(None, "sweep", "place"),
     )
 
     id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
@@ -154,6 +174,9 @@ class Run(Owned, Base):
     """Figures of the result as a whole, where it is a table."""
     error: Mapped[str | None] = mapped_column(Text)
     warning: Mapped[str | None] = mapped_column(Text)
+    sweep: Mapped[UUID | None]
+    place: Mapped[int | None]
+    """Its place in the sweep, from 0: every case with the first seed, then with the next."""
 
 
 class Generation(Base):
@@ -293,11 +316,12 @@ class Worker(Base):
 
 
 class Idempotency(Base):
-    """A key that a client chose, so that asking twice gives one run."""
+    """A key that a client chose, so that asking twice gives one run, or one sweep."""
 
     __tablename__ = "idempotency"
 
     key: Mapped[str] = mapped_column(String(255), primary_key=True)
     body_sha256: Mapped[str] = mapped_column(Sha256)
-    run_id: Mapped[UUID] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    run_id: Mapped[UUID | None] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    sweep: Mapped[UUID | None] = mapped_column(ForeignKey("sweeps.id", ondelete="CASCADE"))
     created_at: Mapped[datetime] = mapped_column(default=clock())

@@ -8,7 +8,7 @@ from typing import Any
 from starlette.routing import compile_path
 
 from .caller import ADMIN, READ, WRITE
-from .models import Run
+from .models import Run, Sweep
 
 PUBLIC, OWNER = "public", "owner"
 """Beside the scopes: no token at all, and `write` by whoever it belongs to."""
@@ -33,6 +33,7 @@ NEEDS = {
     "GET /runs/{run_id}/{rest:path}": READ,
     "GET /sweeps": READ,
     "POST /sweeps": WRITE,
+    "POST /sweeps/estimate": READ,
     "GET /sweeps/{sweep_id}": READ,
     "GET /sweeps/{sweep_id}/{rest:path}": READ,
     "POST /sweeps/{sweep_id}/pause": OWNER,
@@ -59,7 +60,7 @@ NEEDS = {
     "DELETE /session": PUBLIC,
 }
 
-OWNED: dict[str, type[Any]] = {"run_id": Run}
+OWNED: dict[str, type[Any]] = {"run_id": Run, "sweep_id": Sweep}
 """What has an `owner`, by the parameter of a path that names it."""
 
 

@@ -1,12 +1,12 @@
 """How long a run will take, judged by earlier runs of its kind on a device that there is."""
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Collection, Hashable, Sequence
 from dataclasses import dataclass
 from math import log
 from statistics import median
 from typing import Any
 
-from sqlalchemy import and_, select
+from sqlalchemy import Row, and_, select
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import Folding, Scaling, Spec, estimate
@@ -60,11 +60,22 @@ def pace_of(session: Session, spec: Spec, live: Sequence[Worker]) -> Pace | None
 
     Without live workers any device counts: one such may come back.
     """
+    return paces_of(session, [spec], live)[0]
+
+
+def paces_of(
+    session: Session, specs: Sequence[Spec], live: Sequence[Worker]
+) -> list[Pace | None]:
+    """The same of several specs of one experiment, asked of the database once."""
     models = {model_of(worker.device) for worker in live}
+    recent = _recent(session, specs[0].experiment)
+    measured = {kind: _measured(recent, kind) for kind in {_kind(spec) for spec in specs}}
+    return [_judged(measured[_kind(spec)], spec, models) for spec in specs]
+
+
+def _judged(measured: Sequence[Measured], spec: Spec, models: Collection[str]) -> Pace | None:
     found = [
-        one
-        for one in _measured(session, spec)
-        if not models or any(model in one.device for model in models)
+        one for one in measured if not models or any(model in one.device for model in models)
     ]
     same = [one for one in found if one.device == found[0].device]
     if not same:
@@ -83,27 +94,31 @@ def model_of(device: str) -> str:
     return device.partition(" (")[0]
 
 
-def _name(device: str, models: Iterable[str]) -> str:
+def _name(device: str, models: Collection[str]) -> str:
     """What people call the device of a run: its platform and software left out."""
     found = [model for model in models if model in device]
     return found[0] if found else device.split(", ")[1]
 
 
-def _measured(session: Session, spec: Spec) -> list[Measured]:
-    """What the newest runs of the same kind tell, the newest first."""
+def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:
+    """The newest runs of an experiment with the seconds of their first generation."""
     first = and_(Generation.run_id == Run.id, Generation.generation == 1)
     statement = (
         select(Run, Generation.seconds)
         .join(Generation, first)
-        .where(Run.experiment == spec.experiment, Run.generation > 1)
+        .where(Run.experiment == experiment, Run.generation > 1)
         .where(Run.seconds > Generation.seconds, Run.device.is_not(None))
         .order_by(Run.created_at.desc())
         .limit(RECENT)
     )
-    kind = _kind(spec)
+    return session.execute(statement).all()
+
+
+def _measured(recent: Sequence[Row[Run, float]], kind: Hashable) -> list[Measured]:
+    """What runs of a kind tell, the newest first."""
     return [
         _told(run, seconds, earlier.needs.cell_steps / earlier.spec.generations)
-        for run, seconds in session.execute(statement)
+        for run, seconds in recent
         if (earlier := known(run.spec)) and _kind(earlier.spec) == kind
     ]
 

@@ -106,8 +106,7 @@ def unavailable(error: SQLAlchemyError | RedisError) -> JSONResponse:
 
 def invalid(error: ValidationError) -> Problem:
     """What is wrong with a document, as far as anybody reads on."""
-    found = _without_echoes(error.errors(include_url=False)[:TOLD])
-    return invalid_input([_field_error(e, field_path(e["loc"])) for e in found])
+    return invalid_input(field_errors(error))
 
 
 def bad_creature(error: CreatureError) -> Problem:
@@ -120,6 +119,12 @@ def bad_creature(error: CreatureError) -> Problem:
 def invalid_input(errors: list[FieldError]) -> Problem:
     detail = "; ".join(f"{error.field}: {error.message}" for error in errors)
     return Problem(title="Invalid input", status=422, detail=detail, errors=errors)
+
+
+def field_errors(error: ValidationError) -> list[FieldError]:
+    """What is wrong with which field, as people read it."""
+    found = _without_echoes(error.errors(include_url=False)[:TOLD])
+    return [_field_error(e, field_path(e["loc"])) for e in found]
 
 
 def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

@@ -1,6 +1,7 @@
 """The queues: messages that a run or a rendering is to be made. The truth is in SQL."""
 
 import re
+from collections.abc import Iterable
 from contextlib import suppress
 from typing import Any
 from uuid import UUID
@@ -22,6 +23,8 @@ RENDER = "worker.jobs.render"
 TIMEOUTS = {AUDIT: 3600}
 RENDER_SECONDS = 600
 """How long a rendering may take, those of `TIMEOUTS` aside."""
+KEPT: Any = {"result_ttl": 0, "failure_ttl": 3600}
+"""Seconds for which Redis keeps what became of a run's job."""
 FAILURE_KEPT = 60
 """Seconds for which a failed rendering is remembered, before it may be tried again."""
 
@@ -33,27 +36,37 @@ def open_redis(url: str) -> Redis:
 
 
 class Jobs:
-    """The queues `runs`, `renderings` and `audits`, under a prefix."""
+    """The queues `runs`, `sweeps`, `renderings` and `audits`, under a prefix."""
 
     def __init__(self, redis: Redis, prefix: str):
         self.redis = redis
         self.slug = re.sub(r"[^\w-]", "-", prefix)
-        self.runs, self.renderings, self.audits = (
+        self.runs, self.sweeps, self.renderings, self.audits = (
             Queue(f"{prefix}{name}", connection=redis, serializer=JSONSerializer)
-            for name in ("runs", "renderings", "audits")
+            for name in ("runs", "sweeps", "renderings", "audits")
         )
 
-    def evolve(self, run_id: UUID) -> None:
+    @property
+    def evolving(self) -> list[Queue]:
+        """Where runs wait, in the order in which workers look there.
+
+        Runs of sweeps wait aside, so that a hundred of them hold up nobody's single run.
+        """
+        return [self.runs, self.sweeps]
+
+    def evolve(self, run_id: UUID, of_sweep: bool = False) -> None:
         """Ask for a run to be computed, in place of any earlier request."""
         self.forget(str(run_id))
-        self.runs.enqueue(
-            EVOLVE,
-            str(run_id),
-            job_id=str(run_id),
-            job_timeout=-1,
-            result_ttl=0,
-            failure_ttl=3600,
-        )
+        queue = self.sweeps if of_sweep else self.runs
+        queue.enqueue(EVOLVE, str(run_id), job_id=str(run_id), job_timeout=-1, **KEPT)
+
+    def evolve_new(self, run_ids: Iterable[UUID]) -> None:
+        """Ask for runs of a sweep that were never asked for, in their order."""
+        jobs = [
+            Queue.prepare_data(EVOLVE, (name,), job_id=name, timeout=-1, **KEPT)
+            for name in map(str, run_ids)
+        ]
+        self.sweeps.enqueue_many(jobs)
 
     def render(
         self, creature: str, kind: str = REPLAY, meta: dict[str, Any] | None = None
@@ -113,10 +126,13 @@ class Jobs:
 
     def runs_at_hand(self) -> set[str]:
         """Jobs of runs that wait in the queue or that a worker has taken."""
-        waiting = self.runs.get_job_ids()
-        return {*waiting, *self.runs.started_job_registry.get_job_ids(cleanup=False)}
+        found: set[str] = set()
+        for queue in self.evolving:
+            started = queue.started_job_registry.get_job_ids(cleanup=False)
+            found |= {*queue.get_job_ids(), *started}
+        return found
 
     def clean(self) -> None:
         """Drop jobs whose worker has died; idle workers do it too, but none may be idle."""
-        for queue in (self.runs, self.renderings, self.audits):
+        for queue in (*self.evolving, self.renderings, self.audits):
             clean_registries(queue)

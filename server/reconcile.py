@@ -16,7 +16,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from .db import ago
 from .journal import note
 from .lifecycle import announce, hand_back, lost, release, yield_up
-from .models import CANCEL, QUEUED, RUNNING, Run, Worker
+from .models import CANCEL, QUEUED, RUNNING, Run, Sweep, Worker
 from .services import Services
 from .waiting import in_line
 
@@ -58,6 +58,7 @@ def reconcile(services: Services) -> None:
     services.jobs.clean()
     enqueue_missing(services)
     forget_workers(services)
+    forget_empty_sweeps(services)
 
 
 def end_disobedient(services: Services) -> None:
@@ -99,10 +100,22 @@ def enqueue_missing(services: Services) -> None:
     """Enqueue runs that wait and have no job, in the order in which they came."""
     with services.sessions.read() as session:
         line = in_line(session)
+        waits = (Run.status == QUEUED, Run.sweep.is_not(None))
+        of_sweeps = set(session.scalars(select(Run.id).where(*waits)))
     at_hand = services.jobs.runs_at_hand() if line else set()
     for run_id in line:
         if str(run_id) not in at_hand:
-            services.jobs.evolve(run_id)
+            services.jobs.evolve(run_id, run_id in of_sweeps)
+
+
+def forget_empty_sweeps(services: Services) -> None:
+    """A sweep ends with the last of its runs."""
+    alone = ~select(Run.id).where(Run.sweep == Sweep.id).exists()
+    with services.sessions.read() as session:
+        found = session.scalars(select(Sweep.id).where(alone)).all()
+    if found:
+        with services.sessions.write.begin() as session:
+            session.execute(delete(Sweep).where(Sweep.id.in_(found), alone))
 
 
 def forget_workers(services: Services) -> None:
@@ -141,6 +154,6 @@ def _enqueue(services: Services, run: Run) -> None:
     if run.status != QUEUED:
         return
     try:
-        services.jobs.evolve(run.id)
+        services.jobs.evolve(run.id, run.sweep is not None)
     except RedisError as error:
         log.warning("run %s stays queued until Redis answers: %s", run.id, error)

@@ -30,6 +30,7 @@ DECISIVE = {
     "scaling": ("nodes",),
 }
 """The fields of each experiment that may decide most about its memory."""
+TOO_LARGE = "More memory than there is"
 
 
 @dataclass(frozen=True)
@@ -53,14 +54,19 @@ def refuse_too_large(services: Services, spec: Spec) -> None:
     """Raise `Refused` where no worker has the memory."""
     with services.sessions.read() as session:
         limit = memory_limit(services, session)
+    if error := too_large(spec, limit):
+        raise Refused(422, TOO_LARGE, error.message, [error])
+
+
+def too_large(spec: Spec, limit: int) -> FieldError | None:
+    """What is wrong with a spec that needs more than so many bytes."""
     needed = estimate(spec).memory_bytes
-    if needed > limit:
-        detail = f"The run needs {needed:,} bytes of memory; {limit:,} bytes are available."
-        field = decisive(spec)
-        error = FieldError(
-            field=field, message=detail, needed=f"at most {limit} bytes", got=needed
-        )
-        raise Refused(422, "More memory than there is", detail, [error])
+    if needed <= limit:
+        return None
+    detail = f"The run needs {needed:,} bytes of memory; {limit:,} bytes are available."
+    return FieldError(
+        field=decisive(spec), message=detail, needed=f"at most {limit} bytes", got=needed
+    )
 
 
 def decisive(spec: Spec) -> str:
@@ -97,7 +103,7 @@ def submit(
             session.flush()
             note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
             if key is not None:
-                session.add(Idempotency(key=key, body_sha256=_digest(run), run_id=run.id))
+                session.add(Idempotency(key=key, body_sha256=digest(run.spec), run_id=run.id))
     except IntegrityError:
         if key is None:
             raise
@@ -108,17 +114,23 @@ def submit(
     return run, True
 
 
-def _digest(run: Run) -> str:
-    return sha256(rfc8785.dumps(run.spec)).hexdigest()
+def digest(document: dict[str, Any]) -> str:
+    """What two requests under one key must have in common."""
+    return sha256(rfc8785.dumps(document)).hexdigest()
 
 
 def _earlier(services: Services, key: str, run: Run) -> Run:
     """The run that a key stands for already; `Refused` where its spec was another."""
     with services.sessions.read() as session:
-        known = session.get_one(Idempotency, key)
-        if known.body_sha256 != _digest(run):
-            detail = (
-                f"Idempotency-Key {key!r} was used with another spec, for run {known.run_id}."
-            )
-            raise Refused(422, "Idempotency key reused", detail)
+        known = same_request(session, key, run.spec)
         return session.get_one(Run, known.run_id)
+
+
+def same_request(session: Session, key: str, document: dict[str, Any]) -> Idempotency:
+    """What a key stands for already; `Refused` where another request came under it."""
+    known = session.get_one(Idempotency, key)
+    if known.body_sha256 != digest(document):
+        made = f"sweep {known.sweep}" if known.sweep else f"run {known.run_id}"
+        detail = f"Idempotency-Key {key!r} was used with another spec, for {made}."
+        raise Refused(422, "Idempotency key reused", detail)
+    return known

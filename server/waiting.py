@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from uuid import UUID
 
-from sqlalchemy import select
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from . import workers
@@ -26,6 +26,8 @@ class Line:
     alive: list[Worker]
     at_work: dict[str, Run]
     """By worker."""
+    singles: int
+    """Runs of no sweep: these wait before all others."""
 
     @property
     def busy(self) -> list[str]:
@@ -43,21 +45,28 @@ class Line:
         """
         return place - sum(name not in self.at_work for name in self.busy)
 
-    def ahead(self) -> AheadRead:
-        """What a run that is submitted now will have to wait for."""
-        before = max(0, self.before(len(self.runs)))
+    def ahead(self, sweep: bool = False) -> AheadRead:
+        """What a run, or a sweep, that is submitted now will have to wait for."""
+        before = max(0, self.before(len(self.runs) if sweep else self.singles))
         return AheadRead(waiting=before, workers=len(self.alive), free=self.free)
 
 
 def line(services: Services, session: Session) -> Line:
     alive = workers.live(session, services.settings.lease)
-    return Line(in_line(session), alive, workers.at_work(session, alive))
+    single = select(func.count()).where(Run.status == QUEUED, Run.sweep.is_(None))
+    return Line(
+        runs=in_line(session),
+        alive=alive,
+        at_work=workers.at_work(session, alive),
+        singles=session.scalars(single).one(),
+    )
 
 
 def in_line(session: Session) -> list[UUID]:
-    """Runs that wait, in the order in which they are taken."""
+    """Runs that wait, in the order in which they are taken: those of sweeps last."""
     waiting = select(Run.id).where(Run.status == QUEUED)
-    return list(session.scalars(waiting.order_by(Run.queued_at, Run.id)))
+    order = (Run.sweep.is_not(None), Run.queued_at, Run.id)
+    return list(session.scalars(waiting.order_by(*order)))
 
 
 def reasons(services: Services, session: Session, runs: Sequence[Run]) -> dict[UUID, str]:

@@ -129,7 +129,7 @@ def supervise(settings: Settings, index: int) -> None:
     if found.threads:
         processor.keep_to(found.threads)
     lease = max(SHORTEST_LEASE, round(settings.lease))
-    worker = Supervisor([shared.jobs.runs], name, worker_ttl=lease, serializer=JSONSerializer)
+    worker = Supervisor(shared.jobs.evolving, name, worker_ttl=lease, serializer=JSONSerializer)
     worker.services, worker.lease, worker.environment = shared, lease, found.environment
     worker.pulse = Pulse(shared.sessions, name, found, settings.lease)
     stop.listen(worker.pass_on, interrupt=True)

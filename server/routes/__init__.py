@@ -16,6 +16,7 @@ from . import (
     results,
     runs,
     session,
+    sweeps,
     tags,
     targets,
     tokens,
@@ -26,6 +27,7 @@ api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
 for noun in (
     experiments,
     runs,
+    sweeps,
     generations,
     journal,
     archives,

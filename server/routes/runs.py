@@ -1,7 +1,7 @@
 """Runs: estimate, submit, list, read, name, pause, resume, cancel."""
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Header, Query, Response
@@ -89,15 +89,16 @@ def list_runs(
     experiment: Annotated[list[str], Query()] = [],  # noqa: B006
     tag: Text | None = None,
     q: Text | None = None,
+    sweep: UUID | Literal["none"] | None = None,
     sort: listing.Sort = "-created",
 ) -> RunPage:
     """Runs of any of these states and experiments, with this tag and this text.
 
-    `q` is looked for in names, tags and notes and at the beginning of ids. With `-`, the sort
-    is descending; runs without a value come last.
+    `q` is looked for in names, tags and notes and at the beginning of ids; `sweep` is one, or
+    `none`. With `-`, the sort is descending; runs without a value come last.
     """
     _refuse_unknown(experiment)
-    statement = listing.matching(select(Run), status, experiment, tag, q)
+    statement = listing.matching(select(Run), status, experiment, tag, q, sweep)
     rows = listing.page(session, statement, sort, cursor, limit)
     items = read_runs(services, session, [run for run, _ in rows[:limit]])
     return RunPage(items=items, next=listing.cursor(sort, rows, limit))

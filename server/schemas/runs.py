@@ -80,6 +80,8 @@ class RunRead(Wire):
     demonstration: bool
     owner: str | None
     """The name of the token it was made with."""
+    sweep: UUID | None
+    """The sweep that it was asked for with."""
 
 
 class RunPage(Wire):

@@ -140,7 +140,7 @@ def services(settings, migrated) -> Iterator[Services]:
 
 def empty_redis(services: Services) -> None:
     """Remove everything that is ours, as FLUSHALL would."""
-    for queue in (services.jobs.runs, services.jobs.renderings, services.jobs.audits):
+    for queue in (*services.jobs.evolving, services.jobs.renderings, services.jobs.audits):
         queue.delete(delete_jobs=True)
     for key in services.redis.scan_iter(f"*{services.settings.redis_prefix[:-1]}*"):
         services.redis.delete(key)

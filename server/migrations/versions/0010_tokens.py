@@ -1,10 +1,10 @@
-"""Tokens, and to whom runs belong."""
+"""Tokens, and to whom runs and sweeps belong."""
 
 import sqlalchemy as sa
 from alembic import op
 
 revision = "0010"
-down_revision = "0006"
+down_revision = "0008"
 branch_labels = None
 depends_on = None
 
@@ -33,9 +33,11 @@ def upgrade() -> None:
             sqlite_where=sa.text("revoked_at IS NULL"),
             postgresql_where=sa.text("revoked_at IS NULL"),
         )
-    op.add_column("runs", sa.Column("owner", sa.Uuid(), nullable=True))
+    for table in ("runs", "sweeps"):
+        op.add_column(table, sa.Column("owner", sa.Uuid(), nullable=True))
 
 
 def downgrade() -> None:
-    op.drop_column("runs", "owner")
+    for table in ("sweeps", "runs"):
+        op.drop_column(table, "owner")
     op.drop_table("tokens")

@@ -1,0 +1,173 @@
+"""Sweeps: many runs that are asked for, looked at and steered together."""
+
+from collections.abc import Callable
+from datetime import datetime
+from typing import Annotated, Any
+from uuid import UUID
+
+from fastapi import APIRouter, Depends, Query, Response
+from sqlalchemy import and_, or_, select
+from sqlalchemy.orm import Session
+
+from microcosmos.spec import estimate
+
+from .. import bands, lifecycle, waiting
+from ..deps import ServicesDep, SessionDep, SweepDep, find_sweep
+from ..models import Run, Sweep
+from ..pace import paces_of
+from ..planning import Plan, plan, refuse_too_large
+from ..problems import Refused
+from ..schemas import (
+    FieldError,
+    SweepChanged,
+    SweepCurves,
+    SweepEstimate,
+    SweepPage,
+    SweepRead,
+    SweepSent,
+    SweepSummary,
+)
+from ..services import Services
+from ..submission import memory_limit
+from ..sweeping import submit_sweep
+from ..sweeps import read_sweep, read_sweeps, requeue, steer
+from ..uploads import json_object
+from .runs import SPEC_BYTES, Key, described
+
+router = APIRouter(prefix="/sweeps", tags=["sweeps"])
+body = described(SweepSent.model_json_schema())
+Points = Annotated[int | None, Query(ge=2, le=10_000)]
+
+
+def plan_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))]) -> Plan:
+    return plan(SweepSent.model_validate(document))
+
+
+PlanDep = Annotated[Plan, Depends(plan_sent)]
+
+
+@router.post("", status_code=202, openapi_extra=body)
+def create_sweep(
+    plan: PlanDep, services: ServicesDep, response: Response, idempotency_key: Key = None
+) -> SweepRead:
+    """Queue all runs of a sweep, or none. The same key with the same request is the same."""
+    with services.sessions.read() as session:
+        limit = memory_limit(services, session)
+    refuse_too_large(plan, limit)
+    sweep_id, new = submit_sweep(services, plan, idempotency_key)
+    response.status_code = 202 if new else 200
+    response.headers["Location"] = f"/api/v1/sweeps/{sweep_id}"
+    with services.sessions.read() as session:
+        return read_sweep(session, find_sweep(session, sweep_id))
+
+
+@router.post("/estimate", openapi_extra=body)
+def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) -> SweepEstimate:
+    """What all runs of a sweep will need, without queueing them."""
+    needs = [estimate(case.spec) for case in plan.cases]
+    line = waiting.line(services, session)
+    paces = paces_of(session, [case.spec for case in plan.cases], line.alive)
+    times = [
+        pace.seconds(needed.cell_steps)
+        for pace, needed in zip(paces, needs, strict=True)
+        if pace
+    ]
+    seeds = plan.total // len(plan.cases)
+    return SweepEstimate(
+        runs=plan.total,
+        cases=len(plan.cases),
+        memory_bytes=max(needed.memory_bytes for needed in needs),
+        memory_limit_bytes=memory_limit(services, session),
+        evaluations=seeds * sum(needed.evaluations for needed in needs),
+        cell_steps=seeds * sum(needed.cell_steps for needed in needs),
+        seconds=seeds * sum(times) if len(times) == len(needs) else None,
+        pace=paces[0].read(needs[0].cell_steps) if paces[0] else None,
+        queue=line.ahead(sweep=True),
+    )
+
+
+@router.get("")
+def list_sweeps(
+    session: SessionDep,
+    cursor: Annotated[str | None, Query(max_length=100)] = None,
+    limit: Annotated[int, Query(ge=1, le=100)] = 20,
+) -> SweepPage:
+    """Newest first."""
+    listed = select(Sweep).order_by(Sweep.created_at.desc(), Sweep.id.desc())
+    if cursor is not None:
+        listed = listed.where(_after(cursor))
+    found = session.scalars(listed.limit(limit + 1)).all()
+    more = len(found) > limit
+    return SweepPage(
+        items=read_sweeps(session, found[:limit]),
+        next=_place(found[limit - 1]) if more else None,
+    )
+
+
+def _place(sweep: Sweep) -> str:
+    return f"{sweep.created_at.isoformat()}~{sweep.id}"
+
+
+def _after(cursor: str) -> Any:
+    moment, _, last = cursor.partition("~")
+    try:
+        created, identity = datetime.fromisoformat(moment).astimezone(), UUID(last)
+    except (ValueError, OverflowError):
+        needed = "the `next` of an earlier answer"
+        detail = f"`cursor` must be {needed}; got {cursor!r:.80}."
+        error = FieldError(field="cursor", message=detail, needed=needed, got=cursor)
+        raise Refused(422, "Invalid input", detail, [error]) from None
+    same = and_(Sweep.created_at == created, Sweep.id < identity)
+    return or_(Sweep.created_at < created, same)
+
+
+@router.get("/{sweep_id}")
+def read(sweep: SweepDep, session: SessionDep) -> SweepRead:
+    return read_sweep(session, sweep)
+
+
+@router.get("/{sweep_id}/summary")
+def read_summary(sweep: SweepDep, session: SessionDep, points: Points = None) -> SweepSummary:
+    """Median and spread of each case, by generation and at last.
+
+    Of all generations, or of about so many, evenly spaced; of fewer where there are very many
+    runs.
+    """
+    return bands.summary(session, sweep, points)
+
+
+@router.get("/{sweep_id}/curves")
+def read_curves(sweep: SweepDep, session: SessionDep, points: Points = None) -> SweepCurves:
+    """The curves of every run by itself, over the same generations."""
+    return bands.curves(session, sweep, points)
+
+
+@router.post("/{sweep_id}/pause", status_code=202)
+def pause_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+    """Pause every run that can be paused; `left` tells of those that cannot."""
+    return _steered(services, sweep_id, lifecycle.pause)
+
+
+@router.post("/{sweep_id}/resume", status_code=202)
+def resume_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+    """Resume every run that is paused; `left` tells of the others."""
+    resumed = _steered(services, sweep_id, lifecycle.resume)
+    requeue(services, resumed.changed)
+    return resumed
+
+
+@router.post("/{sweep_id}/cancel", status_code=202)
+def cancel_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+    """Cancel every run that has not ended; `left` tells of those that have."""
+    return _steered(services, sweep_id, lifecycle.cancel)
+
+
+def _steered(
+    services: Services, sweep_id: UUID, change: Callable[[Session, Run], Run]
+) -> SweepChanged:
+    with services.sessions.read() as session:
+        find_sweep(session, sweep_id)
+    changed, left = steer(services, sweep_id, change)
+    with services.sessions.read() as session:
+        now = read_sweep(session, find_sweep(session, sweep_id))
+    return SweepChanged(**dict(now), changed=changed, left=left)

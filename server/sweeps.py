@@ -1,0 +1,118 @@
+"""How sweeps stand, and what is asked of all their runs at once."""
+
+import logging
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
+from itertools import product
+from typing import Any
+from uuid import UUID
+
+from redis import RedisError
+from sqlalchemy import select
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from .lifecycle import Conflict
+from .models import STATUSES, Run, Sweep
+from .progress import progress, read_runs
+from .schemas import CaseRead, Left, SweepRead
+from .services import Services
+
+AT_ONCE = 50
+"""Runs that are changed in one transaction: nobody is held up for long."""
+
+log = logging.getLogger(__name__)
+
+
+def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
+    """With their runs, all in one query."""
+    of_sweeps: dict[UUID, list[Any]] = defaultdict(list)
+    columns = (Run.id, Run.sweep, Run.place, Run.status, Run.generation, Run.generations)
+    mine = Run.sweep.in_([sweep.id for sweep in sweeps])
+    for row in session.execute(select(*columns).where(mine).order_by(Run.sweep, Run.place)):
+        of_sweeps[row.sweep].append(row)
+    return [_read(sweep, of_sweeps[sweep.id]) for sweep in sweeps]
+
+
+def read_sweep(session: Session, sweep: Sweep) -> SweepRead:
+    return read_sweeps(session, [sweep])[0]
+
+
+def _read(sweep: Sweep, runs: Sequence[Any]) -> SweepRead:
+    cases = [CaseRead(values=values, runs=[]) for values in combinations(sweep.grid)]
+    for run in runs:
+        cases[run.place % len(cases)].runs.append(run.id)
+    counted = Counter(run.status for run in runs)
+    shares = [progress(run) for run in runs]
+    names = ("id", "name", "experiment", "spec", "seeds", "grid", "created_at")
+    return SweepRead(
+        **{name: getattr(sweep, name) for name in names},
+        cases=cases,
+        total=len(runs),
+        standing={status: counted[status] for status in STATUSES if counted[status]},
+        progress=sum(shares) / len(shares) if shares else 1.0,
+    )
+
+
+def combinations(grid: dict[str, list[Any]]) -> list[dict[str, Any]]:
+    """The values of each case, the last field fastest."""
+    return [dict(zip(grid, values, strict=True)) for values in product(*grid.values())]
+
+
+def steer(
+    services: Services, sweep_id: UUID, change: Callable[[Session, Run], Run]
+) -> tuple[list[UUID], list[Left]]:
+    """Change each run by itself: those that did, and those that could not."""
+    with services.sessions.read() as session:
+        mine = select(Run.id).where(Run.sweep == sweep_id).order_by(Run.place)
+        ids = list(session.scalars(mine))
+    changed: list[UUID] = []
+    left: list[Left] = []
+    for some in several(ids):
+        with services.sessions.write.begin() as session:
+            # In one order, so that two who ask cannot wait for each other.
+            runs = select(Run).where(Run.id.in_(some)).order_by(Run.place)
+            for run in session.scalars(runs).all():
+                try:
+                    changed.append(change(session, run).id)
+                except Conflict as refusal:
+                    left.append(_left(session, run, refusal))
+        announce_runs(services, [run_id for run_id in some if run_id in changed])
+    announce(services, sweep_id)
+    return changed, left
+
+
+def _left(session: Session, run: Run, refusal: Conflict) -> Left:
+    session.refresh(run)
+    return Left.model_validate({"run": run.id, "status": run.status, "reason": f"{refusal}."})
+
+
+def requeue(services: Services, run_ids: Sequence[UUID]) -> None:
+    """Enqueue runs that wait again; where Redis does not answer, the next pass does it."""
+    try:
+        for run_id in run_ids:
+            services.jobs.evolve(run_id, of_sweep=True)
+    except RedisError as error:
+        log.warning("runs stay queued until Redis answers: %s", error)
+
+
+def several(ids: Sequence[UUID]) -> list[Sequence[UUID]]:
+    return [ids[first : first + AT_ONCE] for first in range(0, len(ids), AT_ONCE)]
+
+
+def announce_runs(services: Services, run_ids: Sequence[UUID]) -> None:
+    """Tell everybody how some runs stand, read all at once."""
+    try:
+        with services.sessions.read() as session:
+            runs = session.scalars(select(Run).where(Run.id.in_(run_ids))).all()
+            told = read_runs(services, session, runs)
+    except SQLAlchemyError as error:
+        log.warning("no event of %d runs: %s", len(run_ids), error)
+        return
+    for run in told:
+        services.events.publish("run", run.id, run.model_dump(mode="json"))
+
+
+def announce(services: Services, sweep_id: UUID) -> None:
+    """Tell everybody that a sweep began or was steered; how it stands they ask themselves."""
+    services.events.publish("sweep", sweep_id, {"sweep": str(sweep_id)})
