@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 import httpx
 
 from ..version import VERSION
-from . import errors
+from . import errors, plain
 
 API = "/api/v1/"
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -60,7 +60,11 @@ class Connection:
         self, method: str, path: str, document: Any = None, *, key: str | None = None
     ) -> Any:
         """What a change comes to; `key` names it, so that it is made once."""
-        return self.json(self.ask(method, path, json=document, key=key))
+        if document is None:
+            return self.json(self.ask(method, path, key=key))
+        kind = {"Content-Type": "application/json"}
+        content = plain.dumps(document)
+        return self.json(self.ask(method, path, key=key, headers=kind, content=content))
 
     def json(self, answer: httpx.Response) -> Any:
         try:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Self
 from uuid import uuid4
 
-from . import files, following, watching
+from . import files, following, forking, watching
 from .archive import Archive
 from .columns import Columns
 from .connection import Connection
@@ -133,19 +133,9 @@ class Run:
         `region` gives low and high along axes by name; `spec` says what is to differ, and
         None in it takes a field back to its default.
         """
-        whence = {
-            "creatures": creatures and [getattr(one, "sha", one) for one in creatures],
-            "cells": cells and list(cells),
-            "region": region and {axis: list(ends) for axis, ends in region.items()},
-        }
-        chosen = {how: what for how, what in whence.items() if what is not None}
-        if len(chosen) > 1:
-            raise ValueError(f"fork needs one of {', '.join(whence)}; got {', '.join(chosen)}")
-        document = {"from": chosen or {"archive": True}, "spec": dict(spec or {})}
-        document |= {"generation": generation} if generation is not None else {}
-        document |= {"name": name} if name else {}
+        asked = forking.document(creatures, cells, region, generation, spec, name)
         path, key = f"{self._path}/fork", str(uuid4())
-        return Run(self._connection, self._connection.send("POST", path, document, key=key))
+        return Run(self._connection, self._connection.send("POST", path, asked, key=key))
 
     def delete(self) -> Self:
         """Into the bin, from which `restore` takes it back for a day."""
