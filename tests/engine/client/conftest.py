@@ -21,8 +21,12 @@ class Asked(NamedTuple):
 
 
 class Fake(NamedTuple):
-    client: Client
+    connect: Callable[[], Client]
     asked: list[Asked]
+
+    @property
+    def client(self) -> Client:
+        return self.connect()
 
 
 @pytest.fixture
@@ -70,7 +74,7 @@ def fake() -> Callable[..., Fake]:
                 found if isinstance(found, httpx.Response) else httpx.Response(200, json=found)
             )
 
-        client = Client("http://fake", "secret", transport=httpx.MockTransport(answer))
-        return Fake(client, asked)
+        transport = httpx.MockTransport(answer)
+        return Fake(lambda: Client("http://fake", "secret", transport=transport), asked)
 
     return make
