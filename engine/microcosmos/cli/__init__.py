@@ -2,6 +2,7 @@
 
 from . import (
     creature,
+    doctor,
     draw,
     following,
     keeping,
@@ -17,6 +18,7 @@ from .app import app
 __all__ = [
     "app",
     "creature",
+    "doctor",
     "draw",
     "following",
     "keeping",
