@@ -10,6 +10,7 @@ from typing import Any
 from .version import VERSION as __version__
 
 _HOME = {
+    "Client": "client",
     "EXPERIMENTS": "spec",
     "Folding": "spec",
     "Gaits": "spec",

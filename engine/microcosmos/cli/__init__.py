@@ -1,6 +1,31 @@
 """The command line. JAX is loaded only to compute."""
 
-from . import creature, draw, network, pictures, refine, run
+from . import (
+    creature,
+    doctor,
+    draw,
+    following,
+    keeping,
+    network,
+    pictures,
+    refine,
+    run,
+    sharing,
+    submit,
+)
 from .app import app
 
-__all__ = ["app", "creature", "draw", "network", "pictures", "refine", "run"]
+__all__ = [
+    "app",
+    "creature",
+    "doctor",
+    "draw",
+    "following",
+    "keeping",
+    "network",
+    "pictures",
+    "refine",
+    "run",
+    "sharing",
+    "submit",
+]

@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 app = typer.Typer(
-    help="Evolve and replay without a server.",
+    help="Evolve swimming creatures, on this machine or on a server.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )

@@ -96,7 +96,8 @@ def test_memory_grows_with_the_block_and_work_with_the_steps():
 
 
 @pytest.mark.parametrize(
-    "module", ["spec", "bodies", "archive.creature", "archive.export", "cli"]
+    "module",
+    ["spec", "bodies", "archive.creature", "archive.export", "cli", "client", "doctor"],
 )
 def test_importing_it_loads_no_jax(module):
     code = f"import sys, microcosmos.{module}; sys.exit('jax' in sys.modules)"

@@ -1,0 +1,96 @@
+"""Fields of a spec set on the command line, by their dotted paths."""
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import typer
+
+
+def value(text: str) -> Any:
+    """JSON, else the text itself."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def pair(text: str, option: str) -> tuple[str, str]:
+    path, equals, given = text.partition("=")
+    if not equals or not all(path.strip().split(".")):
+        raise typer.BadParameter(
+            f"{option} needs FIELD=VALUE, as world.viscosity=0.1; got {text!r}"
+        )
+    return path.strip(), given.strip()
+
+
+def applied(spec: dict[str, Any], settings: Sequence[str]) -> dict[str, Any]:
+    """A copy of a spec with some fields set; parts that it leaves out are made."""
+    spec = json.loads(json.dumps(spec))
+    for text in settings:
+        path, given = pair(text, "--set")
+        *parents, last = path.split(".")
+        place: Any = spec
+        for name in parents:
+            place = _within(place, name, path)
+        _put(place, last, value(given), path)
+    return spec
+
+
+def patch(settings: Sequence[str]) -> dict[str, Any]:
+    """The same as what is merged into a spec; lists are replaced whole."""
+    for text in settings:
+        path, _ = pair(text, "--set")
+        if any(name.isdigit() for name in path.split(".")):
+            raise typer.BadParameter(
+                f"--set needs a whole list where a fork changes one; got {path}"
+            )
+    return applied({}, settings)
+
+
+def grid(sweeps: Sequence[str]) -> dict[str, list[Any]]:
+    """Values by path: a JSON list, or values with commas between them."""
+    found: dict[str, list[Any]] = {}
+    for text in sweeps:
+        path, given = pair(text, "--sweep")
+        whole = value(given)
+        values = whole if isinstance(whole, list) else [value(v) for v in given.split(",")]
+        found[path] = values
+    return found
+
+
+def region(bounds: Sequence[str]) -> dict[str, list[float]]:
+    """Low and high by axis."""
+    found = {}
+    for text in bounds:
+        axis, given = pair(text, "--region")
+        try:
+            low, high = map(float, given.split(":"))
+        except ValueError:
+            raise typer.BadParameter(
+                f"--region needs AXIS=LOW:HIGH, as turning=0:1.5; got {text!r}"
+            ) from None
+        found[axis] = [low, high]
+    return found
+
+
+def _within(place: Any, name: str, path: str) -> Any:
+    if isinstance(place, list):
+        return place[_index(place, name, path)]
+    if place.get(name) is None:
+        place[name] = {}
+    if not isinstance(place[name], dict | list):
+        raise typer.BadParameter(f"{path}: {name} is no part with fields; got {place[name]!r}")
+    return place[name]
+
+
+def _put(place: Any, name: str, given: Any, path: str) -> None:
+    place[_index(place, name, path) if isinstance(place, list) else name] = given
+
+
+def _index(place: list[Any], name: str, path: str) -> int:
+    if not name.isdigit() or int(name) >= len(place):
+        raise typer.BadParameter(
+            f"{path}: a number from 0 to {len(place) - 1} is needed; got {name}"
+        )
+    return int(name)

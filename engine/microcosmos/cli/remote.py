@@ -1,0 +1,88 @@
+"""What all commands that speak to a server share."""
+
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+
+from .app import console
+
+if TYPE_CHECKING:
+    from ..client import Client, Run, Sweep
+
+RUNS = "Runs on a server"
+SHARING = "Sharing and access"
+SERVER = "Server"
+WIDE = 200
+"""Columns of a table that no terminal shows."""
+
+Url = Annotated[
+    str | None,
+    typer.Option(
+        envvar="MICROCOSMOS_URL",
+        help="Where the server is.",
+        show_default="http://127.0.0.1:8000",
+        rich_help_panel=SERVER,
+    ),
+]
+Token = Annotated[
+    str | None,
+    typer.Option(
+        envvar="MICROCOSMOS_TOKEN", help="If the server asks for one.", rich_help_panel=SERVER
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="All that the server tells, as JSON.")]
+Id = Annotated[str, typer.Argument(metavar="ID", help="An id, or its beginning.")]
+Ids = Annotated[list[str], typer.Argument(metavar="ID...", help="Ids, or their beginnings.")]
+
+
+@contextmanager
+def reaching(url: str | None, token: str | None) -> Iterator["Client"]:
+    """A client; whatever goes wrong is one sentence on standard error, and the end."""
+    from ..client import Client, ServerError
+
+    try:
+        with Client(url, token) as client:
+            yield client
+    except (ServerError, ValueError, OSError) as error:
+        say(str(error), "red")
+        raise typer.Exit(1) from None
+    except KeyboardInterrupt:
+        raise typer.Exit(130) from None
+
+
+def say(text: str, style: str | None = None) -> None:
+    """For people: on standard error, unbroken, so that standard output is for scripts."""
+    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+
+def show(document: Any) -> None:
+    """For scripts."""
+    print(json.dumps(document, indent=1, ensure_ascii=False))
+
+
+def stdout() -> Console:
+    return Console() if sys.stdout.isatty() else Console(width=WIDE)
+
+
+def found(client: "Client", id: str) -> "Run | Sweep":
+    """The run of an id, else the sweep."""
+    from ..client import NotFound
+
+    try:
+        return client.run(id)
+    except NotFound as error:
+        try:
+            return client.sweep(id)
+        except NotFound:
+            raise error from None
+
+
+def told(run: Mapping[str, Any]) -> str:
+    """A run in a few words."""
+    name = f" “{run['name']}”" if run.get("name") else ""
+    return f"run {run['id'][:8]}{name}"

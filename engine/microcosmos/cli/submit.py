@@ -1,0 +1,81 @@
+"""Submitting runs and sweeps to a server."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import overrides
+from .app import app
+from .following import ended
+from .remote import RUNS, Json, Token, Url, reaching, say, show
+
+if TYPE_CHECKING:
+    from ..client import Client, Run, Sweep
+
+Set = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="FIELD=VALUE", help="Change a field: world.viscosity=0.1."),
+]
+Name = Annotated[str | None, typer.Option(help="What it is called.")]
+Watch = Annotated[bool, typer.Option("--watch", "-w", help="Watch it until it ends.")]
+
+
+@app.command(rich_help_panel=RUNS)
+def submit(
+    spec: Annotated[str, typer.Argument(help="A spec file, or the name of a preset.")],
+    seeds: Annotated[
+        int | None, typer.Option(min=1, help="A sweep of so many runs with seeds of their own.")
+    ] = None,
+    settings: Set = None,
+    grid: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--sweep",
+            metavar="FIELD=A,B,...",
+            help="A run for each value; several make a grid.",
+        ),
+    ] = None,
+    name: Name = None,
+    watch: Watch = False,
+    json: Json = False,
+    url: Url = None,
+    token: Token = None,
+) -> None:
+    """Queue a run, or a sweep of many; its id goes to standard output."""
+    with reaching(url, token) as client:
+        made = _submitted(client, spec, seeds, settings or [], overrides.grid(grid or []), name)
+        tell(made, json)
+        if watch:
+            raise typer.Exit(ended(made))
+
+
+def _submitted(
+    client: "Client",
+    spec: str,
+    seeds: int | None,
+    settings: list[str],
+    grid: dict[str, list[Any]],
+    name: str | None,
+) -> "Run | Sweep":
+    from ..client import specs
+
+    document = overrides.applied(specs.document(client.connection, spec), settings)
+    if seeds is None and not grid:
+        return client.submit(document, name=name)
+    return client.submit(document, seeds=seeds or 1, grid=grid, name=name)
+
+
+def tell(made: "Run | Sweep", json: bool) -> None:
+    """The id for scripts, and for people where to look."""
+    if json:
+        show(made.record)
+        return
+    print(made.id, flush=True)
+    if "cases" in made.record:
+        say(f"A sweep of {made.record['total']} runs; to watch it: {_watching(made)}")
+    else:
+        say(f"{made.record['status']}; to watch it: {_watching(made)}")
+
+
+def _watching(made: "Run | Sweep") -> str:
+    return f"microcosmos watch {made.id[:8]}"

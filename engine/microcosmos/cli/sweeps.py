@@ -1,0 +1,53 @@
+"""The table of a sweep."""
+
+from typing import TYPE_CHECKING, Any
+
+from rich.markup import escape
+from rich.table import Table
+
+from .remote import stdout
+
+if TYPE_CHECKING:
+    from ..client import Sweep
+
+MEASURES = ("qd_score", "coverage", "best")
+
+
+def members(sweep: "Sweep") -> list[dict[str, Any]]:
+    """A row for each run."""
+    return [{**row, "run": row["run"][:8]} for row in sweep.rows()]
+
+
+def cases(sweep: "Sweep") -> list[dict[str, Any]]:
+    """A row for each case: of each measure the newest median, and a quarter to either side."""
+    return [
+        {
+            **case["values"],
+            "generation": case["generation"][-1] if case["generation"] else 0,
+            "runs": case["runs"][-1] if case["runs"] else 0,
+            **{name: _newest(case[name]) for name in MEASURES},
+        }
+        for case in sweep.summary().cases
+    ]
+
+
+def _newest(band: dict[str, list[Any]]) -> dict[str, Any]:
+    return {name: band[name][-1] if band[name] else None for name in ("median", "low", "high")}
+
+
+def table(rows: list[dict[str, Any]]) -> None:
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    found = Table(*names, box=None, pad_edge=False)
+    for row in rows:
+        found.add_row(*(escape(_cell(row.get(name))) for name in names))
+    stdout().print(found)
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, dict) and "median" in value:
+        if value["median"] is None:
+            return "–"
+        return f"{value['median']:.4g} ({value['low']:.4g} to {value['high']:.4g})"
+    if value is None:
+        return "–"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,42 @@
+"""A server from Python: submit, watch, fetch. No JAX is loaded until something is computed."""
+
+from .archive import Archive
+from .client import Client
+from .columns import Columns
+from .creature import Creature
+from .errors import (
+    Conflict,
+    NoAnswer,
+    NotAllowed,
+    NotFound,
+    NotMicrocosmos,
+    Refused,
+    ServerError,
+)
+from .replay import Replay
+from .run import Run
+from .sharing import Share
+from .streaming import Event
+from .sweep import Summary, Sweep
+from .table import Table
+
+__all__ = [
+    "Archive",
+    "Client",
+    "Columns",
+    "Conflict",
+    "Creature",
+    "Event",
+    "NoAnswer",
+    "NotAllowed",
+    "NotFound",
+    "NotMicrocosmos",
+    "Refused",
+    "Replay",
+    "Run",
+    "ServerError",
+    "Share",
+    "Summary",
+    "Sweep",
+    "Table",
+]

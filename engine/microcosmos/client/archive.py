@@ -1,0 +1,100 @@
+"""The archive of a run: who is in which cell."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..archive.export import scaled, unit
+from . import columns
+from .connection import Connection
+from .creature import Creature
+
+
+class Archive:
+    """Columns of elites, an entry for each filled cell, as the archive was at a generation."""
+
+    def __init__(self, connection: Connection, run: str, document: Mapping[str, Any]):
+        self._connection = connection
+        self.run = run
+        self.generation: int = document["generation"]
+        self.kind: str = document["kind"]
+        """`grid`, whose cells are numbered in C order over the bins of the axes, or `cvt`."""
+        self.cells: int = document["cells"]
+        self.axes: list[dict[str, Any]] = document["axes"]
+        self.recorded: list[dict[str, Any]] = document["recorded"]
+        """What is known of every elite, with title, unit and the ends of an axis."""
+        self.cell = np.array(document["cell"], np.int32)
+        self.fitness = np.array(document["fitness"], np.float32)
+        shape = (len(self.cell), len(self.axes))
+        self.descriptors = np.array(document["descriptors"], np.float32).reshape(shape)
+        """(elite, axis), raw values."""
+        self.elite_generation = np.array(document["elite_generation"], np.int32)
+        """When each of them arose."""
+        self.creature: list[str] = document["creature"]
+        self.features = {
+            name: columns.array(values).astype(np.float32)
+            for name, values in document["features"].items()
+        }
+
+    def __len__(self) -> int:
+        return len(self.cell)
+
+    def __repr__(self) -> str:
+        best = f", best {self.fitness.max():.4g}" if len(self) else ""
+        where = f"{len(self)} of {self.cells} cells filled at generation {self.generation}"
+        return f"<Archive of run {self.run[:8]}: {where}{best}>"
+
+    @property
+    def coverage(self) -> float:
+        return len(self) / self.cells
+
+    def best(self) -> Creature:
+        """The fittest elite. Raises `ValueError` where the archive is empty."""
+        if not len(self):
+            raise ValueError(f"an archive with elites is needed; run {self.run} has none yet")
+        return self._nth(int(self.fitness.argmax()))
+
+    def elite(self, cell: int | Sequence[int]) -> Creature:
+        """Who is in a cell: its number, or in a grid its bin along each axis."""
+        number = self._number(cell)
+        found = np.flatnonzero(self.cell == number)
+        if not len(found):
+            raise KeyError(f"cell {cell} is empty; {len(self)} of {self.cells} are filled")
+        return self._nth(int(found[0]))
+
+    def to_pandas(self) -> Any:
+        """A data frame with the columns of `archive.csv`, which are pyribs', but for the genes.
+
+        Those are in the run's file: `microcosmos.to_pandas(run.pull("run.h5"))`.
+        """
+        return columns.frame(self.columns())
+
+    def columns(self) -> dict[str, Any]:
+        """The columns of the data frame."""
+        place = unit if self.kind == "cvt" else scaled
+        measures = {
+            f"measures_{i}": place(self.descriptors[:, i], axis)
+            for i, axis in enumerate(self.axes)
+        }
+        found = {"objective": self.fitness, **measures, "threshold": self.fitness}
+        found |= self.features
+        found |= {"generation": self.elite_generation, "creature": self.creature}
+        return found | {"index": self.cell}
+
+    def _nth(self, index: int) -> Creature:
+        return Creature(self._connection, self.creature[index])
+
+    def _number(self, cell: int | Sequence[int]) -> int:
+        bins = [axis["bins"] for axis in self.axes]
+        if isinstance(cell, int | np.integer):
+            number = int(cell)
+        elif self.kind == "grid" and len(cell) == len(bins):
+            inside = all(0 <= place < size for place, size in zip(cell, bins, strict=True))
+            number = int(np.ravel_multi_index(tuple(cell), bins)) if inside else -1
+        else:
+            number = -1
+        if not 0 <= number < self.cells:
+            shape = f", or a bin along each axis of {bins}" if self.kind == "grid" else ""
+            raise ValueError(f"`cell` must be from 0 to {self.cells - 1}{shape}; got {cell}")
+        return number

@@ -1,0 +1,130 @@
+"""What went wrong with a server, as sentences."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import httpx
+
+PROBLEM = "application/problem+json"
+TOKEN = "Give one with --token, MICROCOSMOS_TOKEN, or Client(url, token)."
+
+
+class ServerError(Exception):
+    """Why something could not be done; `status` is HTTP's, `errors` names fields at fault."""
+
+    def __init__(
+        self,
+        message: str,
+        status: int | None = None,
+        errors: Sequence[Mapping[str, Any]] = (),
+    ):
+        super().__init__(message)
+        self.status, self.errors = status, list(errors)
+
+
+class NoAnswer(ServerError):
+    """Nobody answers at the address."""
+
+
+class NotMicrocosmos(ServerError):
+    """Something else answers there."""
+
+
+class NotFound(ServerError):
+    """There is nothing of this name."""
+
+
+class NotAllowed(ServerError):
+    """A token is needed, or one that may do more."""
+
+
+class Conflict(ServerError):
+    """The state of a thing does not allow what was asked."""
+
+
+class Refused(ServerError):
+    """What was sent cannot be done as it is."""
+
+
+KINDS: dict[int, type[ServerError]] = {
+    401: NotAllowed,
+    403: NotAllowed,
+    404: NotFound,
+    409: Conflict,
+}
+
+
+def checked(answer: httpx.Response, url: str) -> httpx.Response:
+    """An answer that is a server's of ours and no error, its body read if it is one."""
+    kind = answer.headers.get("content-type", "").partition(";")[0].strip()
+    if (answer.is_success or answer.status_code == 304) and kind != "text/html":
+        return answer
+    answer.read()
+    if kind != PROBLEM:
+        raise stranger(answer, url, kind)
+    raise of(answer)
+
+
+def of(answer: httpx.Response) -> ServerError:
+    """The error that a problem stands for."""
+    try:
+        problem = answer.json()
+        errors = problem.get("errors") or []
+        message = sentence(str(problem["detail"]), errors)
+    except (ValueError, AttributeError, KeyError, TypeError):
+        message, errors = f"The server answered {answer.status_code} without a reason.", []
+    if answer.status_code == 401:
+        message = f"{message} {TOKEN}"
+    usual = Refused if answer.status_code < 500 else ServerError
+    return KINDS.get(answer.status_code, usual)(message, answer.status_code, errors)
+
+
+def sentence(detail: str, errors: Sequence[Mapping[str, Any]]) -> str:
+    """What is wrong, with every field that is at fault, as one sentence."""
+    told = detail.strip()
+    for error in errors:
+        if str(error["message"]) not in told:
+            told = f"{told.rstrip('.')}; {error['field']}: {error['message']}"
+    return told if told.endswith((".", "!", "?")) else f"{told}."
+
+
+def stranger(answer: httpx.Response, url: str, kind: str) -> ServerError:
+    """What an answer tells that no server of ours would give."""
+    status = f"{answer.status_code} {answer.reason_phrase}".strip()
+    if answer.status_code in (502, 503, 504):
+        return NoAnswer(
+            f"A proxy at {url} answers {status}: the server behind it is down or starting. "
+            "Try again in a moment.",
+            answer.status_code,
+        )
+    if answer.is_redirect:
+        where = answer.headers.get("location", "another address")
+        return NotMicrocosmos(
+            f"{url} sends on to {where}: give the address that answers itself.",
+            answer.status_code,
+        )
+    what = "a web page" if kind == "text/html" else kind or "nothing"
+    return NotMicrocosmos(
+        f"{url} answers {status} with {what}, as no Microcosmos server does: is the address "
+        "right, and is a proxy in between that wants a log-in?",
+        answer.status_code,
+    )
+
+
+def unreachable(error: httpx.TransportError, url: str) -> NoAnswer:
+    """Why no answer came."""
+    if isinstance(error, httpx.ConnectTimeout | httpx.ReadTimeout | httpx.PoolTimeout):
+        return NoAnswer(f"The server at {url} did not answer in time; it may be overloaded.")
+    if isinstance(error, httpx.ConnectError):
+        reason = _reason(error)
+        return NoAnswer(
+            f"No server answers at {url}{reason}: start one with `make run`, or name another "
+            "with --url or MICROCOSMOS_URL."
+        )
+    return NoAnswer(f"The connection to {url} broke off ({error or type(error).__name__}).")
+
+
+def _reason(error: httpx.TransportError) -> str:
+    """What is worth telling beside that nobody listens."""
+    said = str(error)
+    return "" if not said or "refused" in said.lower() else f" ({said})"

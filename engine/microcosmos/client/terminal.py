@@ -1,0 +1,79 @@
+"""A run in a terminal: its progress, its figures, its curves."""
+
+from typing import Self
+
+from rich.console import Console, Group, RenderableType
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from . import drawing, words
+from .following import Standing
+
+COLOURS = {"finished": "green", "failed": "red", "cancelled": "yellow", "paused": "yellow"}
+HEIGHT = 4
+
+
+class Terminal:
+    """Drawn anew a few times a second, in place; the last state stays."""
+
+    def __init__(self, console: Console | None = None) -> None:
+        self.console = console or Console()
+        self.standing: Standing | None = None
+        self.live = Live(console=self.console, get_renderable=self._drawn, refresh_per_second=4)
+
+    def __enter__(self) -> Self:
+        self.live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.live.stop()
+
+    def show(self, standing: Standing) -> None:
+        self.standing = standing
+
+    def _drawn(self) -> RenderableType:
+        if self.standing is None:
+            return Text("...")
+        return drawn(self.standing, self.console.width)
+
+
+def drawn(standing: Standing, width: int) -> RenderableType:
+    record = standing.record
+    head = Text(words.titled(record) + "  ")
+    head.append(words.standing(record), COLOURS.get(record["status"], "cyan"))
+    figures = "   ".join(f"{name} {value}" for name, value in words.figures(record))
+    parts: list[RenderableType] = [head, _bar(standing), Text(figures)]
+    parts += _curves(standing, width)
+    for trouble in (record.get("warning"), standing.trouble):
+        if trouble:
+            parts.append(Text(trouble, "yellow"))
+    return Group(*parts)
+
+
+def _bar(standing: Standing) -> RenderableType:
+    record = standing.record
+    table = Table.grid(padding=(0, 2))
+    bar = ProgressBar(total=1.0, completed=record["progress"], width=32)
+    share = f"{100 * record['progress']:.0f} %"
+    done = f"{record['generation']}/{record['generations']} {record.get('unit', 'generations')}"
+    table.add_row(bar, share, done, words.pace(record))
+    return table
+
+
+def _curves(standing: Standing, width: int) -> list[RenderableType]:
+    """Side by side, as many as there is room and something to tell."""
+    known = [
+        (title, standing.curves[name])
+        for title, name in words.FIGURES
+        if sum(value is not None for value in standing.curves.get(name, [])) > 1
+    ]
+    if not known:
+        return []
+    table = Table.grid(padding=(0, 2))
+    each = max(8, min(36, (width - 2 * len(known)) // len(known)))
+    table.add_row(*(Text(title, "dim") for title, _ in known))
+    pictures = (drawing.braille(values, each, HEIGHT) for _, values in known)
+    table.add_row(*(Text("\n".join(lines), "cyan", no_wrap=True) for lines in pictures))
+    return [table]

@@ -1,0 +1,59 @@
+"""What JAX can do here, as JSON; in a process of its own, since a broken driver may hang it."""
+
+import json
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..device import device_kind, prepare
+
+HIT = "/jax/compilation_cache/cache_hits"
+
+
+def main(cache: Path) -> None:
+    prepare()
+    found = {"kind": device_kind(), "devices": [_device(one) for one in jax.local_devices()]}
+    print(json.dumps(found | {"cache": _cache(cache)}))
+
+
+def _device(device: Any) -> dict[str, Any]:
+    """Whether a tiny computation comes out right, and the memory there is."""
+    told = {"platform": device.platform, "model": device.device_kind, "id": device.id}
+    numbers = np.arange(64, dtype=np.float32)
+    try:
+        came = float(_sum(jax.device_put(numbers, device)))
+    except Exception as error:  # Whatever a driver throws is what has to be told.
+        return told | {"error": f"{type(error).__name__}: {error}"[:300]}
+    needed = float(numbers @ numbers)
+    memory = device.memory_stats() or {}
+    return told | {
+        "right": came == needed,
+        "memory_bytes": memory.get("bytes_limit"),
+        "memory_used_bytes": memory.get("bytes_in_use"),
+    }
+
+
+@jax.jit
+def _sum(x: jax.Array) -> jax.Array:
+    return jnp.sum(x * x)
+
+
+def _cache(folder: Path) -> dict[str, Any]:
+    """Whether a program that is kept there is found again."""
+    hits: list[str] = []
+    jax.monitoring.register_event_listener(lambda event, **_: hits.append(event))
+    with tempfile.TemporaryDirectory(prefix="doctor-", dir=folder) as place:
+        jax.config.update("jax_compilation_cache_dir", place)
+        for _ in range(2):
+            jax.clear_caches()
+            jax.block_until_ready(jax.jit(lambda x: jnp.cos(x) + 1)(jnp.arange(7.0)))
+        return {"kept": bool(list(Path(place).iterdir())), "found": HIT in hits}
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,80 @@
+"""A server that is none: it notes what it is asked, and answers as it is told."""
+
+import json
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import httpx
+import pytest
+
+from microcosmos.client import Client
+
+RUN = "0f3c1a2b-0000-4000-8000-000000000001"
+
+
+class Asked(NamedTuple):
+    method: str
+    path: str
+    document: Any
+    key: str | None
+    query: dict[str, str]
+
+
+class Fake(NamedTuple):
+    connect: Callable[[], Client]
+    asked: list[Asked]
+
+    @property
+    def client(self) -> Client:
+        return self.connect()
+
+
+@pytest.fixture
+def record() -> dict[str, Any]:
+    """A run as a server tells of it."""
+    return {
+        "id": RUN,
+        "experiment": "quality-diversity",
+        "name": "mine",
+        "tags": [],
+        "note": None,
+        "status": "running",
+        "wish": None,
+        "waiting": None,
+        "spec": {"experiment": "quality-diversity", "seed": 4},
+        "progress": 0.5,
+        "eta_seconds": 75.0,
+        "generation": 5,
+        "generations": 10,
+        "evaluations": 80,
+        "evaluations_per_second": 12.5,
+        "qd_score": 3.25,
+        "coverage": 0.125,
+        "best": 1.5,
+        "summary": None,
+        "error": None,
+        "warning": None,
+    }
+
+
+@pytest.fixture
+def fake() -> Callable[..., Fake]:
+    """A client whose server answers by method and path."""
+
+    def make(answers: dict[tuple[str, str], Any]) -> Fake:
+        asked: list[Asked] = []
+
+        def answer(request: httpx.Request) -> httpx.Response:
+            path = request.url.path.removeprefix("/api/v1/")
+            sent = json.loads(request.content) if request.content else None
+            key = request.headers.get("idempotency-key")
+            asked.append(Asked(request.method, path, sent, key, dict(request.url.params)))
+            found = answers[request.method, path]
+            return (
+                found if isinstance(found, httpx.Response) else httpx.Response(200, json=found)
+            )
+
+        transport = httpx.MockTransport(answer)
+        return Fake(lambda: Client("http://fake", "secret", transport=transport), asked)
+
+    return make

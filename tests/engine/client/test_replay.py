@@ -1,0 +1,90 @@
+"""A replay in a notebook holds all it needs, and not more than it may."""
+
+import json
+import re
+import struct
+from base64 import b64decode
+from html import unescape
+
+import numpy as np
+import pytest
+
+from microcosmos.client import Replay
+from microcosmos.client import replay as module
+
+
+def recording(frames, nodes, size):
+    random = np.random.default_rng(0)
+    positions = random.uniform(0, 50, (frames, nodes, 2)).astype("<f4")
+    levels = random.integers(-127, 128, (frames, *size)).astype(np.int8)
+    header = {
+        "format": "microcosmos-replay/1",
+        "creature": "</script><b>" + "ab" * 26,
+        "frames": frames,
+        "every": 5,
+        "nodes": nodes,
+        "edges": [[k, k + 1] for k in range(nodes - 1)],
+        "size": list(size),
+        "vorticity": {"scale": 0.5},
+    }
+    text = json.dumps(header).encode()
+    text += b" " * (-len(text) % 4)
+    data = struct.pack("<I", len(text)) + text + positions.tobytes() + levels.tobytes()
+    return data, positions, levels
+
+
+def within(page, name):
+    (found,) = re.findall(rf'<script id="{name}"[^>]*>(.*?)</script>', page, re.DOTALL)
+    return found
+
+
+def test_a_small_replay_is_embedded_whole():
+    data, positions, levels = recording(31, 10, (32, 24))
+    replay = Replay(data)
+    header = json.loads(within(replay.html, "header"))
+    assert (header["frames"], header["every"], header["note"]) == (31, 5, "")
+    assert b64decode(within(replay.html, "positions")) == positions.tobytes()
+    assert b64decode(within(replay.html, "levels")) == levels.tobytes()
+
+
+def test_a_large_one_is_thinned_with_a_note():
+    data, positions, levels = recording(251, 400, (256, 128))
+    page = Replay(data).html
+    header = json.loads(within(page, "header"))
+    assert len(page) < 1.4 * module.LIMIT + 20_000
+    assert header["grid"] == [85, 42]
+    assert header["every"] > 5
+    step = header["every"] // 5
+    assert f"one frame in {step}" in header["note"]
+    assert "of 256 × 128 cells" in header["note"]
+    shown = np.frombuffer(b64decode(within(page, "positions")), "<f4")
+    np.testing.assert_array_equal(shown.reshape(-1, 400, 2), positions[::step])
+    mean = levels[0, 3:6, 6:9].astype(float).mean()
+    kept = np.frombuffer(b64decode(within(page, "levels")), np.int8).reshape(-1, 85, 42)
+    assert kept[0, 1, 2] == round(mean)
+
+
+def test_a_notebook_keeps_it_in_a_frame_of_its_own():
+    data, _, _ = recording(3, 4, (16, 8))
+    replay = Replay(data)
+    bundle = replay._repr_mimebundle_()
+    assert bundle["text/plain"] == repr(replay)
+    assert "10 steps in 16 × 8 cells" in repr(replay)
+    html = bundle["text/html"]
+    (inside,) = re.findall(r'srcdoc="([^"]*)"', html)
+    assert unescape(inside) == replay.html
+    assert 'sandbox="allow-scripts"' in html
+    assert html.count("<b>") == 0  # What a file says of itself is no markup.
+    assert not re.search(r"https?://|src=|@import|fetch\(", replay.html)  # No network.
+
+
+def test_it_is_saved_as_a_page_or_as_it_came(tmp_path):
+    data, _, _ = recording(3, 4, (16, 8))
+    replay = Replay(data)
+    assert replay.save(tmp_path / "one.replay").read_bytes() == data
+    assert replay.save(tmp_path / "one.html").read_text() == replay.html
+
+
+def test_what_is_no_replay_is_refused():
+    with pytest.raises(ValueError, match="header"):
+        Replay(b"\xff\xff\xff\xff{}")

@@ -1,0 +1,154 @@
+"""How a run looks where it is watched."""
+
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from microcosmos.client import drawing, notebook, terminal, views, words
+from microcosmos.client.columns import Columns, array
+from microcosmos.client.following import Standing
+
+CURVES = {
+    "generation": [1, 2, 3],
+    "qd_score": [1.0, 2.0, 3.25],
+    "coverage": [0.0, 0.1, 0.125],
+    "best": [1.5, 1.5, 1.5],
+}
+
+
+def dots(lines):
+    """(column, row from below) of every dot that is set."""
+    found = set()
+    for line, text in enumerate(lines):
+        for sign, letter in enumerate(text):
+            for x in (0, 1):
+                for y in range(4):
+                    if (ord(letter) - 0x2800) & drawing.DOTS[x][y]:
+                        found.add((2 * sign + x, 4 * (len(lines) - line) - 1 - y))
+    return found
+
+
+def test_a_straight_line_is_drawn_straight():
+    assert dots(drawing.braille(np.arange(8.0).tolist(), 4, 2)) == {(i, i) for i in range(8)}
+
+
+def test_a_step_is_drawn_without_a_gap():
+    assert dots(drawing.braille([0.0, 0.0, 1.0, 1.0], 2, 1)) == {
+        (0, 0), (1, 0), (2, 1), (2, 2), (2, 3), (3, 3)
+    }  # fmt: skip
+
+
+def test_what_is_unknown_is_a_gap_and_what_is_constant_a_line():
+    assert dots(drawing.braille([2.0, None, 2.0, 2.0], 2, 1)) == {(0, 0), (2, 0), (3, 0)}
+    assert drawing.braille([None], 3, 1) == ["⠀⠀⠀"]
+    assert drawing.polyline([None, 1.0, 3.0], 10, 4) == "5.0,4.0 10.0,0.0"
+    assert drawing.polyline([], 10, 4) == ""
+
+
+def shown(standing, width=100):
+    console = Console(width=width, record=True, file=sys.stderr)
+    console.print(terminal.drawn(standing, width))
+    return console.export_text()
+
+
+def test_a_terminal_shows_how_it_stands(record):
+    text = shown(Standing(record, CURVES))
+    for part in ("“mine”", "0f3c1a2b", "50 %", "5/10 generations", "1 min 15 s left"):
+        assert part in text
+    for part in ("12.5 evaluations/s", "QD score 3.25", "coverage 12.5 %", "best 1.5"):
+        assert part in text
+    assert any(letter > "\u2800" for letter in text)
+    narrow = shown(Standing(record, CURVES), 40)
+    assert max(map(len, narrow.splitlines())) <= 40
+
+
+def test_trouble_and_reasons_are_shown(record):
+    waits = record | {"status": "queued", "waiting": "no worker is free", "eta_seconds": None}
+    text = shown(Standing(waits, {}, "No server answers."))
+    assert "queued: no worker is free" in text
+    assert "No server answers." in text
+    assert "evaluations/s" not in text
+
+
+def test_a_table_shows_its_summary(record):
+    table = record | {"qd_score": None, "summary": {"fastest_speed": 0.25, "name": "x"}}
+    assert "fastest speed 0.25" in shown(Standing(table))
+
+
+def test_plain_lines_come_when_something_changes(record, capsys):
+    view = views.Lines()
+    for progress, status in (
+        (0.5, "running"),
+        (0.51, "running"),
+        (0.6, "running"),
+        (1, "failed"),
+    ):
+        view.show(Standing(record | {"progress": progress, "status": status, "error": "why"}))
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 3
+    assert "failed: why" in lines[-1]
+
+
+@pytest.fixture
+def ipython(monkeypatch):
+    """As if a notebook's kernel ran this: what it displays."""
+    shown = []
+    handle = SimpleNamespace(update=shown.append)
+
+    def display(page, display_id):
+        assert display_id
+        shown.append(page)
+        return handle
+
+    shell = SimpleNamespace(kernel=None)
+    library = SimpleNamespace(get_ipython=lambda: shell)
+    monkeypatch.setitem(sys.modules, "IPython", library)
+    monkeypatch.setitem(sys.modules, "IPython.display", SimpleNamespace(display=display))
+    return shown
+
+
+def test_a_notebook_brings_one_display_up_to_date(ipython, record):
+    view = views.fitting()
+    assert isinstance(view, notebook.Notebook)
+    named = record | {"name": "<script>"}
+    with view:
+        view.show(Standing(named, CURVES))
+        view.show(Standing(named | {"status": "finished"}, CURVES))
+    first, last = ipython[0]._repr_html_(), ipython[-1]._repr_html_()
+    assert first.count("<polyline") == 3
+    assert "<script>" not in first
+    assert "running" in first
+    assert "finished" in last  # Whatever was left out for speed, the end is shown.
+
+
+def test_without_a_terminal_or_notebook_there_are_lines(monkeypatch):
+    monkeypatch.delitem(sys.modules, "IPython", raising=False)
+    assert isinstance(views.fitting(), views.Lines)
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
+    assert isinstance(views.fitting(), terminal.Terminal)
+
+
+def test_columns_are_arrays_with_gaps_as_nan():
+    found = Columns({"a": [1, 2], "b": [None, 0.5], "c": ["x", "y"], "d": [[1], []]})
+    assert found["a"].dtype == np.int64
+    np.testing.assert_array_equal(found["b"], [np.nan, 0.5])
+    assert found["d"][0] == [1]
+    assert dict(found).keys() == {"a", "b", "c", "d"}
+    assert array([]).dtype == float
+
+
+def test_without_pandas_it_is_said_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError, match="pip install pandas"):
+        Columns({"a": [1]}).to_pandas()
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words_"),
+    [(0.4, "0 s"), (75, "1 min 15 s"), (3720, "1 h 2 min"), (90000, "1 d 1 h"), (None, "")],
+)
+def test_durations_have_two_units(seconds, words_):
+    assert words.lasting(seconds) == words_

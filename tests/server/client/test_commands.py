@@ -1,0 +1,131 @@
+"""The commands, over a real server."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+from microcosmos.archive import creature
+from microcosmos.cli import app
+from microcosmos.client import Client
+from server.claims import claim
+
+
+@pytest.fixture
+def command(address: str, monkeypatch) -> Callable[..., Result]:
+    """Carries a command out, which has to end as expected."""
+    monkeypatch.setenv("MICROCOSMOS_URL", address)
+    monkeypatch.setenv("COLUMNS", "200")
+
+    def carry_out(*arguments: str, code: int = 0, **options: Any) -> Result:
+        found = CliRunner().invoke(app, list(arguments), **options)
+        assert found.exit_code == code, found.output
+        return found
+
+    return carry_out
+
+
+def test_a_run_is_submitted_listed_and_kept(command, client):
+    made = command("submit", "demo", "--set", "seed=11", "--name", "first")
+    (id,) = made.stdout.split()
+    run = client.run(id)
+    assert (run.name, run.spec["seed"]) == ("first", 11)
+    assert f"microcosmos watch {id[:8]}" in made.stderr
+    listed = command("runs", "--search", "first").stdout
+    assert id[:8] in listed
+    assert "queued" in listed
+    assert json.loads(command("runs", "--json").stdout)[0]["id"] == id
+    assert json.loads(command("runs", "--json", "--status", "failed").stdout) == []
+    assert "paused" in command("pause", id[:8]).stderr
+    assert "queued" in command("resume", id[:8]).stderr
+    assert "cancelled" in command("cancel", id[:8]).stderr
+    assert command("watch", "--last", code=1).stdout.count("cancelled") == 1
+
+
+def test_what_is_wrong_is_a_sentence_and_1(command):
+    wrong = command("submit", "demo", "--set", "world.viscosity=-1", code=1)
+    assert "world.viscosity" in wrong.stderr
+    assert wrong.stdout == ""
+    assert "Traceback" not in wrong.output
+    assert "presets" in command("submit", "nonsense", code=1).stderr
+    assert "begins with 00000000" in command("pull", "00000000", code=1).stderr
+    nobody = command("runs", "--url", "http://127.0.0.1:9", code=1)
+    assert "No server answers at http://127.0.0.1:9" in nobody.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("submit", "demo", "--set", "seed"),
+        ("submit", "demo", "--set", "archive.descriptors.9.bins=3"),
+        ("watch",),
+        ("watch", "abc", "--last"),
+        ("fork", "abc", "--all", "--cells", "3"),
+        ("fork", "abc", "--cells", "x"),
+        ("fork", "abc", "--region", "turning=1"),
+        ("fork", "abc", "--set", "archive.descriptors.0.bins=3"),
+    ],
+)
+def test_what_cannot_be_meant_is_2(command, arguments):
+    assert "Usage" in command(*arguments, code=2).stderr
+
+
+def test_a_file_is_pulled_under_the_runs_name(command, services, run_id, report, tmp_path):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1), 1.0)
+    attempt.save(1, b"the archive")
+    pulled = command("pull", str(run_id), "--out", str(tmp_path)).stdout.strip()
+    assert pulled == str(tmp_path / f"quality-diversity-{str(run_id)[:8]}.h5")
+    assert (tmp_path / pulled).read_bytes() == b"the archive"
+    assert "existing folder" in command("pull", str(run_id), "--out", "no/x", code=1).stderr
+
+
+def test_creatures_are_brought_with_their_hashes(command, client, identity, tmp_path):
+    file = creature.document(identity(3), None, None)
+    (tmp_path / "one.json").write_text(json.dumps(file))
+    assert command("import", str(tmp_path / "one.json")).stdout.strip() == file["sha256"]
+    (tmp_path / "two.json").write_text(json.dumps(file | {"sha256": "ab" * 32}))
+    assert "sha256" in command("import", str(tmp_path / "two.json"), code=1).stderr
+    (tmp_path / "three.json").write_text("{")
+    command("import", str(tmp_path / "three.json"), code=1)
+    assert client.creature(file["sha256"]).identity == file["identity"]
+
+
+def test_watching_ends_as_the_run_does(command, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1), 1.0)
+    later = threading.Timer(0.3, attempt.finish)
+    later.start()
+    watched = command("watch", str(run_id)[:8]).stdout
+    later.join()
+    assert "running" in watched
+    assert watched.splitlines()[-1].count("finished") == 1
+
+
+def test_ctrl_c_leaves_the_run_going(address, client, run):
+    """In a process of its own, as a person would."""
+    watching = subprocess.Popen(
+        [sys.executable, "-m", "microcosmos.cli", "watch", run.id[:8]],
+        env=os.environ | {"MICROCOSMOS_URL": address},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert watching.stdout is not None
+    first = watching.stdout.readline()
+    assert re.search(f"{run.id[:8]}.*queued", first)
+    watching.send_signal(signal.SIGINT)
+    rest = watching.communicate(timeout=60)[0]
+    assert watching.returncode == 130
+    assert "goes on without being watched" in rest
+    assert "Traceback" not in rest
+    assert Client(address).run(run.id).status == "queued"

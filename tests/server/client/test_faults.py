@@ -1,0 +1,335 @@
+"""What the client does where the network, or what is at the other end, fails."""
+
+import hashlib
+import os
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from urllib.parse import urlsplit
+
+import pytest
+
+from microcosmos.client import (
+    Client,
+    Conflict,
+    NoAnswer,
+    NotMicrocosmos,
+    ServerError,
+    connection,
+    files,
+    streaming,
+)
+from server.claims import claim
+
+
+class Relay:
+    """Hands bytes on between a client and a server, and breaks off as it is told."""
+
+    def __init__(self, address: str):
+        parts = urlsplit(address)
+        self.to = (parts.hostname, parts.port)
+        self.allowance: list[int] = []
+        """Bytes of an answer after which a connection breaks, for one after another."""
+        self.asked: list[bytes] = []
+        self.open: list[socket.socket] = []
+        self.door = socket.create_server(("127.0.0.1", 0))
+        self.url = f"http://127.0.0.1:{self.door.getsockname()[1]}"
+        threading.Thread(target=self.serve, daemon=True).start()
+
+    def serve(self) -> None:
+        with suppress(OSError):
+            while True:
+                client, _ = self.door.accept()
+                server = socket.create_connection(self.to)
+                self.open += [client, server]
+                left = self.allowance.pop(0) if self.allowance else None
+                for work in (
+                    (self.requests, client, server),
+                    (self.answers, server, client, left),
+                ):
+                    threading.Thread(target=work[0], args=work[1:], daemon=True).start()
+
+    def requests(self, client: socket.socket, server: socket.socket) -> None:
+        with suppress(OSError):
+            while sent := client.recv(65536):
+                self.asked.append(sent)
+                server.sendall(sent)
+
+    def answers(self, server: socket.socket, client: socket.socket, left: int | None) -> None:
+        with suppress(OSError):
+            while came := server.recv(65536):
+                client.sendall(came if left is None else came[:left])
+                left = left if left is None else left - len(came)
+                if left is not None and left <= 0:
+                    break
+        hang_up(client)
+        hang_up(server)
+
+    def cut(self) -> None:
+        """Break off whatever is going on."""
+        for each in self.open:
+            hang_up(each)
+
+    def close(self) -> None:
+        self.door.close()
+        self.cut()
+        for each in self.open:
+            each.close()
+
+
+def hang_up(end: socket.socket) -> None:
+    with suppress(OSError):
+        end.shutdown(socket.SHUT_RDWR)
+
+
+@pytest.fixture
+def relay(address: str) -> Iterator[Relay]:
+    relay = Relay(address)
+    yield relay
+    relay.close()
+
+
+@pytest.fixture
+def hasty(monkeypatch) -> list[float]:
+    """Pauses are noted instead of made."""
+    pauses: list[float] = []
+    for module in (connection, files, streaming):
+        monkeypatch.setattr(module.time, "sleep", pauses.append)
+    return pauses
+
+
+@pytest.fixture
+def archive(services, run_id, report) -> bytes:
+    """What the run's checkpoint holds, larger than a relay hands on at once."""
+    content = os.urandom(3_000_000)
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1), 1.0)
+    attempt.save(1, content)
+    return content
+
+
+def test_a_download_goes_on_where_it_broke_off(relay, run_id, archive, tmp_path, hasty):
+    told: list[tuple[int, int]] = []
+    relay.allowance = [1 << 40, 1_000_000, 1_000_000]
+    run = Client(relay.url).run(str(run_id))
+    relay.cut()
+    relay.asked.clear()
+    to = tmp_path / "run.h5"
+    found = files.fetch(
+        run._connection, f"runs/{run_id}/archive.h5", to, lambda *now: told.append(now)
+    )
+    assert found.read_bytes() == archive
+    ranges = [ask for ask in relay.asked if b"range: bytes=" in ask.lower()]
+    assert len(ranges) == 2
+    assert all(b"if-range" in ask.lower() for ask in ranges)
+    assert {whole for _, whole in told} == {len(archive)}
+    assert [path.name for path in tmp_path.iterdir() if "part" in path.name] == []
+    relay.asked.clear()
+    assert run.pull(to).read_bytes() == archive
+    assert b"If-None-Match" in relay.asked[-1]  # Nothing is fetched twice.
+
+
+def test_a_download_that_is_given_up_is_taken_up_later(relay, run_id, archive, tmp_path, hasty):
+    run = Client(relay.url).run(str(run_id))
+    relay.cut()
+    relay.allowance = [1_000_000] + [50] * 20
+    to = tmp_path / "run.h5"
+    with pytest.raises(NoAnswer, match="broke off"):
+        run.pull(to)
+    (part,) = tmp_path.glob(".run.h5.*.part")
+    had = part.stat().st_size
+    assert 0 < had < len(archive)
+    relay.allowance = []
+    relay.asked.clear()
+    assert run.pull(to).read_bytes() == archive
+    assert f"bytes={had}-".encode() in b"".join(relay.asked)
+
+
+def test_a_file_that_changed_meanwhile_is_fetched_anew(
+    client, services, run_id, archive, report, tmp_path
+):
+    old = hashlib.sha256(b"an older checkpoint").hexdigest()
+    (tmp_path / f".run.h5.{old}.part").write_bytes(b"an older")
+    run = client.run(str(run_id))
+    assert run.pull(tmp_path / "run.h5").read_bytes() == archive
+    assert list(tmp_path.glob("*.part")) + list(tmp_path.glob(".*.part")) == []
+
+
+def test_a_part_that_was_whole_already_is_put_in_place(client, run_id, archive, tmp_path):
+    name = hashlib.sha256(archive).hexdigest()
+    (tmp_path / f".run.h5.{name}.part").write_bytes(archive)
+    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
+
+
+def test_a_damaged_part_is_not_kept(client, run_id, archive, tmp_path):
+    name = hashlib.sha256(archive).hexdigest()
+    (tmp_path / f".run.h5.{name}.part").write_bytes(b"x" * 100)
+    with pytest.raises(ServerError, match="damaged on its way"):
+        client.run(str(run_id)).pull(tmp_path / "run.h5")
+    assert not (tmp_path / "run.h5").exists()
+    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
+
+
+def test_a_request_whose_answer_is_lost_is_made_again_and_counts_once(
+    relay, services, spec, hasty
+):
+    client = Client(relay.url)
+    list(client.runs())
+    relay.cut()
+    relay.allowance = [1]  # The run is queued, and nobody is told.
+    run = client.submit(spec)
+    assert [one.id for one in client.runs()] == [run.id]
+    sent = [ask for ask in relay.asked if ask.startswith(b"POST")]
+    assert len(sent) == 2
+
+
+def test_what_would_be_done_twice_is_not_sent_again(relay, run, hasty):
+    client = Client(relay.url)
+    mine = client.run(run.id)
+    relay.cut()
+    relay.allowance = [1]
+    with pytest.raises(NoAnswer, match="broke off"):
+        mine.extend(5)
+    assert sum(b"/extend" in ask for ask in relay.asked) == 1
+
+
+def test_events_go_on_behind_the_last_one(relay, services, run_id, report):
+    client = Client(relay.url)
+    attempt = claim(services, run_id, "worker")
+    found = streaming.events(client.connection, str(run_id))
+    assert next(found).kind == "beat"  # From here on.
+    heard: list[int] = []
+    for generation in range(1, 7):
+        attempt.record(report(generation), float(generation))
+        if generation == 3:
+            relay.cut()
+        while generation not in heard:
+            event = next(found)
+            if event.kind == "generation":
+                heard.append(event.data["generation"])
+    assert heard == [1, 2, 3, 4, 5, 6]
+    assert any(b"last-event-id" in ask.lower() for ask in relay.asked)
+
+
+def test_where_nobody_listens_it_is_said_what_to_do(hasty):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+    expected = f"No server answers at http://127.0.0.1:{port}: start one with `make run`"
+    with pytest.raises(NoAnswer, match=expected):
+        list(Client(f"127.0.0.1:{port}").runs())
+    assert sum(hasty) < 2  # A person waits.
+
+
+@contextmanager
+def other(*answers: tuple[int, dict[str, str], bytes]) -> Iterator[tuple[str, list[str]]]:
+    """Something that is no server of ours; its answers in order, the last again and again."""
+    left, asked = list(answers), []
+
+    class Handler(BaseHTTPRequestHandler):
+        def answer(self) -> None:
+            asked.append(self.command)
+            self.rfile.read(int(self.headers.get("content-length") or 0))
+            status, headers, body = left.pop(0) if len(left) > 1 else left[0]
+            self.send_response(status)
+            for name, value in {**headers, "Content-Length": str(len(body))}.items():
+                self.send_header(name, value)
+            self.end_headers()
+            self.wfile.write(body)
+
+        do_GET = do_POST = do_DELETE = answer
+
+        def log_message(self, *_: object) -> None: ...
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}", asked
+    finally:
+        server.shutdown()
+        server.server_close()
+        thread.join()
+
+
+HTML = {"Content-Type": "text/html"}
+
+
+@pytest.mark.parametrize(
+    ("answer", "said"),
+    [
+        ((200, HTML, b"<h1>Log in</h1>"), "answers 200 OK with a web page"),
+        ((404, HTML, b"<h1>nginx</h1>"), "as no Microcosmos server does"),
+        ((404, {"Content-Type": "application/json"}, b"{}"), "404 Not Found"),
+        ((302, {"Location": "https://sso.example/"}, b""), "sends on to https://sso.example/"),
+        ((200, {"Content-Type": "application/json"}, b"{"), "as no Microcosmos server does"),
+    ],
+)
+def test_what_is_no_microcosmos_is_named_so(answer, said, hasty):
+    with other(answer) as (url, _), pytest.raises(NotMicrocosmos, match=said):
+        list(Client(url).runs())
+
+
+PROBLEM = {"Content-Type": "application/problem+json"}
+
+
+def test_who_is_busy_is_asked_again_when_it_says(hasty):
+    empty = (200, {"Content-Type": "application/json"}, b'{"items": [], "next": null}')
+    busy = (503, PROBLEM | {"Retry-After": "2"}, b'{"detail": "The database does not answer."}')
+    with other(busy, busy, empty) as (url, asked):
+        assert list(Client(url).runs()) == []
+    assert (hasty, asked) == ([2.0, 2.0], ["GET"] * 3)
+
+
+def test_patience_ends_with_the_servers_own_words(hasty):
+    body = b'{"detail": "The database does not answer; try again."}'
+    with other((503, PROBLEM | {"Retry-After": "4"}, body)) as (url, asked):
+        with pytest.raises(ServerError, match="The database does not answer; try again"):
+            list(Client(url, patience=10.0).runs())
+        assert len(asked) == 3
+    gateway = (502, HTML, b"Bad Gateway")
+    said = "the server behind it is down or starting"
+    with other(gateway) as (url, _), pytest.raises(NoAnswer, match=said):
+        list(Client(url).runs())
+
+
+@pytest.mark.parametrize(
+    ("status", "body", "kind", "said"),
+    [
+        (409, b'{"detail": "It is running."}', Conflict, "It is running."),
+        (500, b"{", ServerError, "answered 500 without a reason"),
+        (
+            422,
+            b'{"detail": "No.", "errors": [{"field": "a.b", "message": "needs 1"}]}',
+            ServerError,
+            r"No; a\.b: needs 1\.",
+        ),
+    ],
+)
+def test_problems_are_sentences(status, body, kind, said):
+    with other((status, PROBLEM, body)) as (url, _), pytest.raises(kind, match=said):
+        Client(url).workers()
+
+
+@pytest.mark.parametrize(
+    ("given", "meant"),
+    [
+        ("localhost:9", "http://localhost:9"),
+        ("https://lab.example/micro/", "https://lab.example/micro"),
+        ("http://127.0.0.1:8000/api/v1/", "http://127.0.0.1:8000"),
+    ],
+)
+def test_addresses_are_taken_as_people_write_them(given, meant):
+    assert Client(given).url == meant
+
+
+@pytest.mark.parametrize("given", ["ftp://x", "http://", "http://x:99999"])
+def test_what_is_no_address_is_refused(given):
+    with pytest.raises(ValueError, match="`url` must be an address"):
+        Client(given)
+
+
+def test_a_proxy_of_the_environment_is_not_asked_for_this_machine(address, monkeypatch):
+    monkeypatch.setenv("HTTP_PROXY", "http://127.0.0.1:9")
+    assert list(Client(address).runs()) == []

@@ -1,0 +1,154 @@
+"""Runs by the client: submitted once, found, changed, read as columns."""
+
+import json
+
+import numpy as np
+import pytest
+
+from microcosmos.client import Client, Conflict, NotFound, Refused
+from server.claims import claim
+
+
+def test_a_spec_a_file_and_a_preset_are_submitted(client, spec, tmp_path):
+    (tmp_path / "spec.json").write_text(json.dumps(spec | {"seed": 7}))
+    plain = client.submit(spec | {"seed": 5}, name="mine")
+    assert (plain.status, plain.name, plain.spec["seed"]) == ("queued", "mine", 5)
+    assert client.submit(tmp_path / "spec.json").spec["seed"] == 7
+    assert client.submit("demo").spec == spec
+    assert client.submit("gaits/demo").experiment == "gaits"
+    assert len(list(client.runs())) == 4
+    assert client.last().experiment == "gaits"
+
+
+def test_a_key_names_one_run(client, spec):
+    first = client.submit(spec, key="the same")
+    assert client.submit(spec, key="the same") == first
+    assert client.submit(spec) != first
+
+
+def test_an_unknown_preset_is_refused_with_those_there_are(client):
+    with pytest.raises(ValueError, match=r"quality-diversity/demo.*got nonsense"):
+        client.submit("nonsense")
+
+
+def test_the_fields_at_fault_arrive_as_a_sentence(client, spec):
+    wrong = spec | {"seed": -1, "world": {"viscosity": -2}}
+    with pytest.raises(Refused) as caught:
+        client.submit(wrong)
+    said = str(caught.value)
+    assert "seed: needs greater than or equal to 0; got -1" in said
+    assert "world.viscosity" in said
+    assert said.endswith(".")
+    assert {error["field"] for error in caught.value.errors} == {"seed", "world.viscosity"}
+    assert caught.value.status == 422
+
+
+def test_a_run_is_found_by_the_beginning_of_its_id(client, run, spec):
+    assert client.run(run.id[:8]) == run
+    assert client.run(run.id.upper()) == run
+    with pytest.raises(NotFound, match="begins with 00000000"):
+        client.run("00000000")
+    with pytest.raises(Refused, match="got 'a name'"):
+        client.run("a name")
+    for _ in range(20):  # Of so many, two begin alike.
+        client.submit(spec)
+    ids = [one.id for one in client.runs()]
+    twice = next(i[0] for i in ids if sum(j[0] == i[0] for j in ids) > 1)
+    with pytest.raises(Refused, match="Write more of it"):
+        client.run(twice)
+
+
+def test_a_list_goes_on_over_pages(client, spec, monkeypatch):
+    sent = {client.submit(spec | {"seed": seed}).id for seed in range(3)}
+    ask = client.connection.read
+    monkeypatch.setattr(
+        client.connection, "read", lambda path, **asked: ask(path, **{**asked, "limit": 2})
+    )
+    assert {one.id for one in client.runs()} == sent
+    assert list(client.runs(status="running")) == []
+    assert list(client.runs(experiment=["gaits", "folding"])) == []
+
+
+def test_a_run_is_paused_resumed_changed_and_cancelled(run):
+    assert run.pause().status == "paused"
+    assert run.resume().status == "queued"
+    assert run.change(tags=["a", "b"], note="why").record["tags"] == ["a", "b"]
+    assert run.cancel().status == "cancelled"
+    with pytest.raises(Conflict, match="it is cancelled"):
+        run.pause()
+    assert run.wait(timeout=0) == "cancelled"
+
+
+def test_waiting_for_a_run_has_its_limits(run):
+    with pytest.raises(TimeoutError, match="it is queued"):
+        run.wait(timeout=0.05)
+
+
+def test_an_estimate_queues_nothing(client, spec):
+    assert client.estimate(spec)["memory_bytes"] > 0
+    assert list(client.runs()) == []
+
+
+def test_curves_are_columns(run, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, summary={"hit_rate": 0.5}), 1.0)
+    attempt.record(report(2), 2.0)
+    curves = run.curves()
+    assert curves["generation"].tolist() == [1, 2]
+    assert curves["qd_score"].tolist() == [10.0, 20.0]
+    np.testing.assert_array_equal(curves["hit_rate"], [0.5, np.nan])
+    assert run.refresh().generation == 2
+    assert any("Submitted" in entry["text"] for entry in run.log())
+
+
+def test_an_archive_is_columns_and_creatures(run, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}, features={"turning": 0.25}), 1.0)
+    attempt.record(report(2, {5: 3.0}, features={"turning": 0.5}), 1.0)
+    archive = run.archive()
+    assert archive.cell.tolist() == [3, 5]
+    assert archive.fitness.tolist() == [2.0, 3.0]
+    assert archive.features["turning"].tolist() == [0.25, 0.5]
+    assert archive.best().fitness == 3.0
+    assert archive.elite(3) == archive.elite((0, 3))
+    assert archive.coverage == 2 / archive.cells
+    assert run.archive(generation=1).fitness.tolist() == [2.0, 1.0]
+    with pytest.raises(KeyError, match="cell 4 is empty"):
+        archive.elite(4)
+    with pytest.raises(ValueError, match="bin along each axis"):
+        archive.elite((0, 999))
+
+
+def test_an_archive_without_elites_has_no_best(run):
+    archive = run.archive()
+    assert len(archive) == 0
+    with pytest.raises(ValueError, match="has none yet"):
+        archive.best()
+
+
+def test_a_table_comes_as_rows(client, services, sweep_id, table):
+    attempt = claim(services, sweep_id, "worker")
+    attempt.record(table(1, {"number": 1, "speed": 0.5}, summary={"fastest": 0.5}), 1.0)
+    found = client.run(str(sweep_id)).results()
+    assert found.rows[0]["speed"] == 0.5
+    assert found.summary == {"fastest": 0.5}
+    with pytest.raises(NotFound, match="fills no archive"):
+        client.run(str(sweep_id)).archive()
+
+
+def test_workers_and_kinds_of_run_are_told(client, services, run_id):
+    assert client.workers() == []
+    assert {one["experiment"] for one in client.experiments()} >= {"gaits", "folding"}
+
+
+def test_a_token_is_needed_and_given(serve, monkeypatch):
+    from pydantic import SecretStr
+
+    with serve(token=SecretStr("sesame")) as address:
+        monkeypatch.delenv("MICROCOSMOS_TOKEN", raising=False)
+        with pytest.raises(Exception, match=r"token is needed.*MICROCOSMOS_TOKEN"):
+            list(Client(address).runs())
+        assert list(Client(address, "sesame").runs()) == []
+        monkeypatch.setenv("MICROCOSMOS_TOKEN", "sesame")
+        monkeypatch.setenv("MICROCOSMOS_URL", address)
+        assert list(Client().runs()) == []
