@@ -115,7 +115,7 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
         "version": VERSION,
         "device": json.dumps(state.devices),
         "spec": plan.spec,
-        "features": json.dumps(search.FEATURES),
+        "features": json.dumps(plan.features),
         "force_free": json.dumps(plan.force_free),
         "operators": json.dumps(search.OPERATORS),
         "statuses": json.dumps(search.STATUSES),
