@@ -1,7 +1,9 @@
 """The queues: messages that a run or a rendering is to be made. The truth is in SQL."""
 
 import re
+from collections.abc import Sequence
 from contextlib import suppress
+from hashlib import sha256
 from typing import Any
 from uuid import UUID
 
@@ -14,11 +16,14 @@ from rq.job import Job, JobStatus
 from rq.registry import clean_registries
 from rq.results import Result
 from rq.serializers import JSONSerializer
+from rq.utils import as_text
 
 from .models import AUDIT, REPLAY
 
 EVOLVE = "worker.jobs.evolve"
 RENDER = "worker.jobs.render"
+OWN = "-own-"
+"""Begins the second part of names of queues that only some workers listen to."""
 TIMEOUTS = {AUDIT: 3600}
 RENDER_SECONDS = 600
 """How long a rendering may take, those of `TIMEOUTS` aside."""
@@ -39,14 +44,13 @@ class Jobs:
         self.redis = redis
         self.slug = re.sub(r"[^\w-]", "-", prefix)
         self.runs, self.renderings, self.audits = (
-            Queue(f"{prefix}{name}", connection=redis, serializer=JSONSerializer)
-            for name in ("runs", "renderings", "audits")
+            self._queue(f"{prefix}{name}") for name in ("runs", "renderings", "audits")
         )
 
-    def evolve(self, run_id: UUID) -> None:
+    def evolve(self, run_id: UUID, sources: Sequence[str] | None = None) -> None:
         """Ask for a run to be computed, in place of any earlier request."""
         self.forget(str(run_id))
-        self.runs.enqueue(
+        self.runs_with(sources).enqueue(
             EVOLVE,
             str(run_id),
             job_id=str(run_id),
@@ -111,12 +115,36 @@ class Jobs:
             with suppress(InvalidJobOperation):
                 job.delete()
 
+    def runs_with(self, sources: Sequence[str] | None) -> Queue:
+        """The queue of runs that need these versions of users' own modules: only workers that
+        have them listen."""
+        if not sources:
+            return self.runs
+        name = sha256("".join(sorted(sources)).encode()).hexdigest()[:16]
+        return self._queue(f"{self.runs.name}{OWN}{name}")
+
+    def runs_with_any(self) -> list[Queue]:
+        """All queues of runs that Redis knows."""
+        found = [as_text(name) for name in self.redis.smembers(Queue.redis_queues_keys)]  # pyright: ignore
+        names = [name.removeprefix(Queue.redis_queue_namespace_prefix) for name in found]
+        own = sorted(name for name in names if name.startswith(self.runs.name + OWN))
+        return [self.runs, *map(self._queue, own)]
+
+    def _queue(self, name: str) -> Queue:
+        return Queue(name, connection=self.redis, serializer=JSONSerializer)
+
     def runs_at_hand(self) -> set[str]:
         """Jobs of runs that wait in the queue or that a worker has taken."""
-        waiting = self.runs.get_job_ids()
-        return {*waiting, *self.runs.started_job_registry.get_job_ids(cleanup=False)}
+        return {
+            job_id
+            for queue in self.runs_with_any()
+            for job_id in (
+                *queue.get_job_ids(),
+                *queue.started_job_registry.get_job_ids(cleanup=False),
+            )
+        }
 
     def clean(self) -> None:
         """Drop jobs whose worker has died; idle workers do it too, but none may be idle."""
-        for queue in (self.runs, self.renderings, self.audits):
+        for queue in (*self.runs_with_any(), self.renderings, self.audits):
             clean_registries(queue)

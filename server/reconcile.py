@@ -18,7 +18,7 @@ from .journal import note
 from .lifecycle import announce, hand_back, lost, release, yield_up
 from .models import CANCEL, QUEUED, RUNNING, Run, Worker
 from .services import Services
-from .waiting import in_line
+from .waiting import needed_in_line
 
 FORGOTTEN_AFTER = 3600.0
 """Seconds after which a silent worker is no longer remembered."""
@@ -98,11 +98,11 @@ def take_back_lost(services: Services) -> None:
 def enqueue_missing(services: Services) -> None:
     """Enqueue runs that wait and have no job, in the order in which they came."""
     with services.sessions.read() as session:
-        line = in_line(session)
+        line = needed_in_line(session)
     at_hand = services.jobs.runs_at_hand() if line else set()
-    for run_id in line:
+    for run_id, sources in line:
         if str(run_id) not in at_hand:
-            services.jobs.evolve(run_id)
+            services.jobs.evolve(run_id, sources)
 
 
 def forget_workers(services: Services) -> None:
@@ -141,6 +141,6 @@ def _enqueue(services: Services, run: Run) -> None:
     if run.status != QUEUED:
         return
     try:
-        services.jobs.evolve(run.id)
+        services.jobs.evolve(run.id, run.sources)
     except RedisError as error:
         log.warning("run %s stays queued until Redis answers: %s", run.id, error)

@@ -1,13 +1,13 @@
 """Why runs wait: the queue, and what those who work it off are at."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from uuid import UUID
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from . import workers
+from . import own, workers
 from .models import QUEUED, Run, Worker
 from .schemas import AheadRead
 from .services import Services
@@ -56,8 +56,14 @@ def line(services: Services, session: Session) -> Line:
 
 def in_line(session: Session) -> list[UUID]:
     """Runs that wait, in the order in which they are taken."""
-    waiting = select(Run.id).where(Run.status == QUEUED)
-    return list(session.scalars(waiting.order_by(Run.queued_at, Run.id)))
+    return [run_id for run_id, _ in needed_in_line(session)]
+
+
+def needed_in_line(session: Session) -> list[tuple[UUID, list[str] | None]]:
+    """The same, each with the versions of users' own modules that it needs."""
+    waiting = select(Run.id, Run.sources).where(Run.status == QUEUED)
+    found = session.execute(waiting.order_by(Run.queued_at, Run.id))
+    return [(run_id, sources) for run_id, sources in found]
 
 
 def reasons(services: Services, session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
@@ -76,6 +82,10 @@ def reason(run: Run, place: int, line: Line) -> str:
     """A sentence about a run at this place in the line, from 0."""
     if not line.alive:
         return NOBODY
+    fit = [worker for worker in line.alive if own.fit(worker, run.sources)]
+    if not fit:
+        return own.missing(line.alive, run.spec)
+    line = replace(line, alive=fit)
     before = line.before(place)
     if before < 0:
         return "A worker is about to begin."

@@ -18,7 +18,16 @@ from .runs import (
     TagRead,
     Target,
 )
-from .workers import Carried, Health, QueueRead, Readiness, Waiting, WorkerRead
+from .workers import (
+    Carried,
+    Health,
+    PluginRead,
+    QueueRead,
+    Readiness,
+    UnloadedRead,
+    Waiting,
+    WorkerRead,
+)
 
 __all__ = [
     "NAME",
@@ -43,6 +52,7 @@ __all__ = [
     "Log",
     "PaceRead",
     "PictureRead",
+    "PluginRead",
     "PresetRead",
     "Problem",
     "QueueRead",
@@ -57,6 +67,7 @@ __all__ = [
     "Status",
     "TagRead",
     "Target",
+    "UnloadedRead",
     "Waiting",
     "Wire",
     "WorkerRead",

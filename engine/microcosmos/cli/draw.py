@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from .app import CACHE, app, fail
+from .modules import Modules, load_modules
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 """How such a file begins."""
@@ -18,8 +19,10 @@ def figure(
         Path,
         typer.Argument(help=".png, .gif or .mp4 of a creature; .png, .svg or .pdf of a run."),
     ],
+    module: Modules = None,
 ) -> None:
     """A picture or a film of a creature or its replay; the figure of a run with a table."""
+    load_modules(module)
     try:
         _draw(file, out)
     except (ValueError, RuntimeError, ImportError, OSError) as error:

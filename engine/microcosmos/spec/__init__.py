@@ -14,7 +14,7 @@ from .fields import Energy, Steric
 from .folding import Digit, Folding, Picture, picture
 from .gaits import FORMS, Gaits
 from .neuroevolution import Neuroevolution
-from .own import Own
+from .own import Own, Used, used
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement
 from .scaling import Scaling
@@ -67,6 +67,7 @@ __all__ = [
     "Steric",
     "Stop",
     "Task",
+    "Used",
     "Weights",
     "World",
     "drawing",
@@ -79,4 +80,5 @@ __all__ = [
     "parse",
     "picture",
     "shape",
+    "used",
 ]

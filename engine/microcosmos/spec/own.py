@@ -1,6 +1,7 @@
 """What a spec says of something of one's own: which version, and with which settings."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import Field, PlainSerializer, ValidationInfo, WrapValidator
@@ -98,3 +99,43 @@ def completed(
     if own is not None:
         raise ValueError(f"`own` must be left out where `{field}` is {name!r}, got some")
     return given, None
+
+
+@dataclass(frozen=True)
+class Used:
+    """Something of one's own that a document names."""
+
+    path: str
+    """Of the field with its name."""
+    name: str
+    own: Own
+
+
+NAMING = ("fitness", "name", "builder", "encoding", "swimmer")
+"""Fields that hold names of one's own."""
+
+
+def used(document: Any, path: str = "") -> Iterator[Used]:
+    """Everything of one's own in a spec or a creature file, as JSON has them."""
+    if isinstance(document, list):
+        for number, part in enumerate(document):
+            yield from used(part, f"{path}{number}.")
+    if not isinstance(document, dict):
+        return
+    own = document.get("own")
+    if isinstance(own, dict):
+        yield from _versions(document, own, path)
+    for name, part in document.items():
+        if name != "own":
+            yield from used(part, f"{path}{name}.")
+
+
+def _versions(document: Mapping[str, Any], own: Mapping[str, Any], path: str) -> Iterator[Used]:
+    """Of the field beside it, or of names by which there are several."""
+    for field in NAMING:
+        if is_own(document.get(field)):
+            yield Used(f"{path}{field}", str(document[field]), Own.model_validate(own))
+            return
+    for name, version in own.items():
+        if is_own(name):
+            yield Used(f"{path}own", name, Own.model_validate(version))
