@@ -6,6 +6,7 @@ from typing import Any
 
 from jsonschema import Draft202012Validator
 from referencing import Registry
+from referencing.exceptions import Unresolvable
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
@@ -59,7 +60,11 @@ class Reported:
         whole = {**declared.defaults, **given}
         # Without a registry it would fetch what a schema refers to.
         validator = Draft202012Validator(declared.settings, registry=Registry())
-        for error in validator.iter_errors(whole):
+        try:
+            error = next(validator.iter_errors(whole), None)
+        except Unresolvable as wrong:
+            raise ValueError(f"`own.settings` of {declared.name} refer to {wrong}") from wrong
+        if error:
             place = ".".join(map(str, ("own.settings", *error.absolute_path)))
             raise ValueError(f"`{place}` must be as {declared.name} has it: {error.message}")
         return whole
