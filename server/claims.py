@@ -13,7 +13,7 @@ from uuid import UUID
 from sqlalchemy import case, func, or_
 from sqlalchemy.orm import Session
 
-from . import journal, records
+from . import journal, own, records
 from .artifacts import Stored, checkpoint_path
 from .checkpoints import fall_back, last_checkpoint, point_at, rewind
 from .db import clock
@@ -22,6 +22,7 @@ from .lifecycle import announce, change, hand_back, lost, release
 from .models import (
     CANCEL,
     CANCELLED,
+    FAILED,
     FINISHED,
     GIVEN,
     NEEDED,
@@ -30,6 +31,7 @@ from .models import (
     RUNNING,
     Artifact,
     Run,
+    Worker,
 )
 from .reports import Report
 from .services import Services
@@ -51,6 +53,8 @@ def claim(services: Services, run_id: UUID, worker: str) -> "Claim | None":
     attempt is over. What was written beyond the checkpoint is deleted.
     """
     with services.sessions.write.begin() as session:
+        if not _fit(session, run_id, worker):  # Whoever has it finds it in another queue.
+            return None
         over = or_(Run.worker == worker, lost(session, services.settings.lease))
         release(session, run_id, over, error="the worker ended without a word")
         run = change(session, run_id, Run.status == QUEUED, **_begun(worker))
@@ -63,6 +67,12 @@ def claim(services: Services, run_id: UUID, worker: str) -> "Claim | None":
         _tell_rewind(begun)
     announce(services, run_id)
     return begun
+
+
+def _fit(session: Session, run_id: UUID, worker: str) -> bool:
+    """Whether a worker has what a run needs of users' own."""
+    run = session.get(Run, run_id)
+    return run is None or own.fit(session.get(Worker, worker), run.sources)
 
 
 def _begun(worker: str) -> dict[str, Any]:
@@ -228,6 +238,15 @@ class Claim:
     def wait_for_leave(self, text: str) -> None:
         """Pause until people say that another kind of device will do, by resuming it."""
         self._end(text, "warning", **_paused(), warning=text, device_leave=NEEDED)
+
+    def set_aside(self, text: str) -> None:
+        """Pause until people have mended what this worker lacks, and resume it."""
+        self._end(text, "warning", **_paused(), warning=text)
+
+    def refuse(self, text: str) -> None:
+        """Fail at once: what is wrong with it would be wrong in every attempt."""
+        ended = {"status": FAILED, "finished_at": clock(), "error": text}
+        self._end(text, "error", **ended, wish=None, wished_at=None)
 
     def cancel(self) -> None:
         ended = {"status": CANCELLED, "finished_at": clock()}

@@ -8,6 +8,7 @@ from typing import Literal
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
+from microcosmos.spec import Own, used
 from microcosmos.spec.features import FEATURES
 
 from .models import Creature, Elite, Run
@@ -22,7 +23,8 @@ def searched(run: Run) -> bool:
 
 def axes(run: Run) -> list[Axis]:
     """The archive's own axes."""
-    return [Axis(**axis) for axis in run.spec["archive"]["descriptors"]]
+    described = run.spec["archive"]["descriptors"]
+    return [Axis(**{name: axis[name] for name in Axis.model_fields}) for axis in described]
 
 
 def kind(run: Run) -> tuple[Literal["grid", "cvt"], int]:
@@ -38,12 +40,28 @@ def recorded(session: Session, run: Run) -> list[Feature]:
     one = select(Creature.measured).join(Elite, Elite.creature == Creature.sha256)
     measured = session.scalars(one.where(Elite.run_id == run.id).limit(1)).first()
     names = measured["features"] if measured else list(FEATURES)
-    return [_told(name) for name in names]
+    mine = {one.name: one.own for one in used(run.spec)}
+    ends = {axis.name: axis for axis in axes(run)}
+    return [
+        _told(name, mine.get(name), ends.get(name))
+        for name in dict.fromkeys((*names, *_own_axes(run)))
+    ]
 
 
-def _told(name: str) -> Feature:
+def _own_axes(run: Run) -> list[str]:
+    """Descriptors of users' own, which are recorded as well."""
+    return [axis["name"] for axis in run.spec["archive"]["descriptors"] if axis.get("own")]
+
+
+def _told(name: str, own: Own | None, axis: Axis | None) -> Feature:
     """A feature under its title; one that is not known any more is told by its name."""
     known = FEATURES.get(name)
+    if own is not None:
+        low, high = (axis.low, axis.high) if axis else (None, None)
+        scale = axis.scale if axis else "linear"
+        return Feature(
+            name=name, title=own.title, unit=own.unit, low=low, high=high, scale=scale
+        )
     if known is None:
         title = name.replace("_", " ").capitalize()
         return Feature(name=name, title=title, unit="", low=None, high=None, scale="linear")

@@ -63,6 +63,7 @@ class Base(DeclarativeBase):
         float: Double(),
         dict[str, Any]: JSON(none_as_null=True),
         list[str]: JSON(),
+        list[dict[str, Any]]: JSON(),
         list[float]: JSON(),
         list[int]: JSON(),
     }
@@ -135,6 +136,8 @@ class Run(Owned, Base):
     id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
     experiment: Mapped[str] = mapped_column(String(64))
     spec: Mapped[dict[str, Any]]
+    sources: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
+    """Versions of modules of users' own that a worker must have to carry it out."""
     version: Mapped[str] = mapped_column(String(64))
     demonstration: Mapped[bool] = mapped_column(default=False)
     name: Mapped[str | None] = mapped_column(String(200))
@@ -313,6 +316,23 @@ class Worker(Base):
     since: Mapped[datetime] = mapped_column(default=clock())
     """When its status or its run last changed."""
     heartbeat_at: Mapped[datetime] = mapped_column(default=clock())
+    plugins: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
+    """Declarations of what it has of users' own."""
+    unloaded: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
+    """Modules that it could not load: `module` and `reason`."""
+
+
+class Plugin(Base):
+    """Something of users' own that a worker has, or had; a row for each version."""
+
+    __tablename__ = "plugins"
+
+    kind: Mapped[str] = mapped_column(String(16), primary_key=True)
+    name: Mapped[str] = mapped_column(String(128), primary_key=True)
+    source: Mapped[str] = mapped_column(Sha256, primary_key=True)
+    declaration: Mapped[dict[str, Any]] = mapped_column(JSON())
+    seen_at: Mapped[datetime] = mapped_column(default=clock())
+    """When a worker first came with it, or came back."""
 
 
 class Idempotency(Base):

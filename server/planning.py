@@ -9,9 +9,10 @@ from typing import Any
 import rfc8785
 from pydantic import ValidationError
 
-from microcosmos.spec import Spec, parse
+from microcosmos.spec import Spec
 
 from . import grid
+from .own_specs import Parse
 from .problems import Refused, brief, field_errors, invalid_input
 from .schemas import MOST, NAME, FieldError, SweepSent
 from .submission import TOO_LARGE, too_large
@@ -60,19 +61,20 @@ class Plan:
                 yield run_name(self.name, case.values, seed), seeded
 
 
-def plan(sent: SweepSent) -> Plan:
+def plan(sent: SweepSent, parse: Parse) -> Plan:
     """The runs that are asked for; `Refused` where any of them could not be."""
-    base = _base(sent.spec)
+    base = _base(sent.spec, parse)
     document = base.model_dump(mode="json")
     _refuse_paths(document, sent.grid)
-    seeds = _seeds(sent, document)
+    seeds = _seeds(sent, document, parse)
     _refuse_many(sent, max(1, len(seeds)))
     if seeds:
         document = {**document, "seed": seeds[0]}
-    return Plan(sent.name or None, base, seeds, dict(sent.grid), _cases(document, sent.grid))
+    cases = _cases(document, sent.grid, parse)
+    return Plan(sent.name or None, base, seeds, dict(sent.grid), cases)
 
 
-def _base(document: Mapping[str, Any]) -> Spec:
+def _base(document: Mapping[str, Any], parse: Parse) -> Spec:
     try:
         return parse(document)
     except ValidationError as error:
@@ -103,7 +105,7 @@ def _wrong_path(
     return None
 
 
-def _seeds(sent: SweepSent, document: dict[str, Any]) -> list[int]:
+def _seeds(sent: SweepSent, document: dict[str, Any], parse: Parse) -> list[int]:
     """Those asked for; none where the experiment leaves nothing to chance."""
     if "seed" not in document:
         if sent.seeds == 1:
@@ -136,7 +138,9 @@ def _refuse_many(sent: SweepSent, seeds: int) -> None:
     raise _refused([FieldError(field=field, message=message, needed=f"{MOST}", got=total)])
 
 
-def _cases(document: dict[str, Any], asked: Mapping[str, Sequence[Any]]) -> list[Case]:
+def _cases(
+    document: dict[str, Any], asked: Mapping[str, Sequence[Any]], parse: Parse
+) -> list[Case]:
     """Every combination, the last field fastest; `Refused` with all that is wrong with any."""
     cases: list[Case] = []
     errors: dict[str, FieldError] = {}
@@ -144,7 +148,7 @@ def _cases(document: dict[str, Any], asked: Mapping[str, Sequence[Any]]) -> list
         at = dict(zip(asked, places, strict=True))
         values = {path: asked[path][place] for path, place in at.items()}
         try:
-            cases.append(_case(document, values, at))
+            cases.append(Case(values, at, parse(_replaced(document, values))))
         except ValidationError as error:
             for found in field_errors(error):
                 blamed = _blamed(found, values, at)
@@ -155,11 +159,10 @@ def _cases(document: dict[str, Any], asked: Mapping[str, Sequence[Any]]) -> list
     return cases
 
 
-def _case(document: dict[str, Any], values: dict[str, Any], places: dict[str, int]) -> Case:
-    changed = document
+def _replaced(document: dict[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
     for path, value in values.items():
-        changed = grid.replaced(changed, path, value)
-    return Case(values, places, parse(changed))
+        document = grid.replaced(document, path, value)
+    return document
 
 
 def _blamed(error: FieldError, values: dict[str, Any], places: dict[str, int]) -> FieldError:

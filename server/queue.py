@@ -1,8 +1,9 @@
 """The queues: messages that a run or a rendering is to be made. The truth is in SQL."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from hashlib import sha256
 from typing import Any
 from uuid import UUID
 
@@ -15,11 +16,14 @@ from rq.job import Job, JobStatus
 from rq.registry import clean_registries
 from rq.results import Result
 from rq.serializers import JSONSerializer
+from rq.utils import as_text
 
-from .models import AUDIT, REPLAY
+from .models import AUDIT, REPLAY, Run
 
 EVOLVE = "worker.jobs.evolve"
 RENDER = "worker.jobs.render"
+OWN = "-own-"
+"""Begins the second part of names of queues that only some workers listen to."""
 TIMEOUTS = {AUDIT: 3600}
 RENDER_SECONDS = 600
 """How long a rendering may take, those of `TIMEOUTS` aside."""
@@ -42,31 +46,35 @@ class Jobs:
         self.redis = redis
         self.slug = re.sub(r"[^\w-]", "-", prefix)
         self.runs, self.sweeps, self.renderings, self.audits = (
-            Queue(f"{prefix}{name}", connection=redis, serializer=JSONSerializer)
+            self._queue(f"{prefix}{name}")
             for name in ("runs", "sweeps", "renderings", "audits")
         )
 
     @property
     def evolving(self) -> list[Queue]:
-        """Where runs wait, in the order in which workers look there.
+        """Where runs wait that every worker can carry out, in the order in which workers look.
 
         Runs of sweeps wait aside, so that a hundred of them hold up nobody's single run.
         """
         return [self.runs, self.sweeps]
 
-    def evolve(self, run_id: UUID, of_sweep: bool = False) -> None:
+    def evolve(
+        self, run_id: UUID, of_sweep: bool = False, sources: Sequence[str] | None = None
+    ) -> None:
         """Ask for a run to be computed, in place of any earlier request."""
         self.forget(str(run_id))
-        queue = self.sweeps if of_sweep else self.runs
+        queue = self.evolving_with(sources, of_sweep)
         queue.enqueue(EVOLVE, str(run_id), job_id=str(run_id), job_timeout=-1, **KEPT)
 
-    def evolve_new(self, run_ids: Iterable[UUID]) -> None:
+    def evolve_new(self, runs: Iterable[Run]) -> None:
         """Ask for runs of a sweep that were never asked for, in their order."""
-        jobs = [
-            Queue.prepare_data(EVOLVE, (name,), job_id=name, timeout=-1, **KEPT)
-            for name in map(str, run_ids)
-        ]
-        self.sweeps.enqueue_many(jobs)
+        jobs: dict[Queue, list[Any]] = {}
+        for run in runs:
+            queue, name = self.evolving_with(run.sources, of_sweep=True), str(run.id)
+            job = Queue.prepare_data(EVOLVE, (name,), job_id=name, timeout=-1, **KEPT)
+            jobs.setdefault(queue, []).append(job)
+        for queue, some in jobs.items():
+            queue.enqueue_many(some)
 
     def render(
         self, creature: str, kind: str = REPLAY, meta: dict[str, Any] | None = None
@@ -124,15 +132,35 @@ class Jobs:
             with suppress(InvalidJobOperation):
                 job.delete()
 
+    def evolving_with(self, sources: Sequence[str] | None, of_sweep: bool) -> Queue:
+        """Where runs wait that need these versions of users' own modules: only workers that
+        have them listen."""
+        queue = self.sweeps if of_sweep else self.runs
+        if not sources:
+            return queue
+        name = sha256("".join(sorted(sources)).encode()).hexdigest()[:16]
+        return self._queue(f"{queue.name}{OWN}{name}")
+
+    def evolving_anywhere(self) -> list[Queue]:
+        """All queues of runs that Redis knows."""
+        found = [as_text(name) for name in self.redis.smembers(Queue.redis_queues_keys)]  # pyright: ignore
+        names = [name.removeprefix(Queue.redis_queue_namespace_prefix) for name in found]
+        ours = tuple(queue.name + OWN for queue in self.evolving)
+        own = sorted(name for name in names if name.startswith(ours))
+        return [*self.evolving, *map(self._queue, own)]
+
+    def _queue(self, name: str) -> Queue:
+        return Queue(name, connection=self.redis, serializer=JSONSerializer)
+
     def runs_at_hand(self) -> set[str]:
         """Jobs of runs that wait in the queue or that a worker has taken."""
         found: set[str] = set()
-        for queue in self.evolving:
+        for queue in self.evolving_anywhere():
             started = queue.started_job_registry.get_job_ids(cleanup=False)
             found |= {*queue.get_job_ids(), *started}
         return found
 
     def clean(self) -> None:
         """Drop jobs whose worker has died; idle workers do it too, but none may be idle."""
-        for queue in (*self.evolving, self.renderings, self.audits):
+        for queue in (*self.evolving_anywhere(), self.renderings, self.audits):
             clean_registries(queue)

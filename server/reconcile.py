@@ -100,12 +100,10 @@ def enqueue_missing(services: Services) -> None:
     """Enqueue runs that wait and have no job, in the order in which they came."""
     with services.sessions.read() as session:
         line = in_line(session)
-        waits = (Run.status == QUEUED, Run.sweep.is_not(None))
-        of_sweeps = set(session.scalars(select(Run.id).where(*waits)))
     at_hand = services.jobs.runs_at_hand() if line else set()
-    for run_id in line:
-        if str(run_id) not in at_hand:
-            services.jobs.evolve(run_id, run_id in of_sweeps)
+    for one in line:
+        if str(one.run) not in at_hand:
+            services.jobs.evolve(*one)
 
 
 def forget_empty_sweeps(services: Services) -> None:
@@ -154,6 +152,6 @@ def _enqueue(services: Services, run: Run) -> None:
     if run.status != QUEUED:
         return
     try:
-        services.jobs.evolve(run.id, run.sweep is not None)
+        services.jobs.evolve(run.id, run.sweep is not None, run.sources)
     except RedisError as error:
         log.warning("run %s stays queued until Redis answers: %s", run.id, error)

@@ -15,7 +15,7 @@ from .models import REPLAY, Artifact, Creature
 from .records import insert_missing
 from .services import Services
 
-REFUSAL = re.compile(r"^[\w.]*CreatureError: ")
+REFUSAL = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
 """Before the words in which the engine refuses a creature; other errors say what they are."""
 VERSIONS = {REPLAY: REPLAY_VERSION}
 """Of formats that have changed: what was kept in an earlier one counts as not there."""

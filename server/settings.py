@@ -39,6 +39,9 @@ class Settings(BaseSettings):
         default=1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
     )
     """How many workers `make run` starts."""
+    modules: str = ""
+    """Python files with something of users' own, a colon between them. Workers alone read it;
+    installed packages with entry points `microcosmos.plugins` need not be named."""
     demonstration: bool = True
     """Whether a new data folder begins with a small run."""
     checkpoint_interval: float = Field(default=60.0, ge=0.0)

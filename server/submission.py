@@ -1,7 +1,7 @@
 """From a spec to a queued run."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Any
 
@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import Spec, estimate
 from microcosmos.version import VERSION
 
-from . import workers
+from . import own, workers
 from .journal import note
 from .lifecycle import announce
 from .models import Idempotency, Run
@@ -38,6 +38,7 @@ class OneCell:
     """The smallest archive, as far as an estimate looks at it."""
 
     cells: int = 1
+    own: dict[str, Any] = field(default_factory=dict)
 
 
 def memory_limit(services: Services, session: Session) -> int:
@@ -90,9 +91,11 @@ def submit(
     services: Services, spec: Spec, key: str | None = None, demonstration: bool = False
 ) -> tuple[Run, bool]:
     """The run of a spec and whether it is new; the same key with the same spec is one run."""
+    document = spec.model_dump(mode="json")
     run = Run(
         experiment=spec.experiment,
-        spec=spec.model_dump(mode="json"),
+        spec=document,
+        sources=own.needs(document),
         generations=spec.generations,
         version=VERSION,
         demonstration=demonstration,

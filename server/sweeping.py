@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.version import VERSION
 
+from . import own
 from .db import clock
 from .models import Entry, Idempotency, Run, Sweep
 from .planning import Plan
@@ -58,7 +59,7 @@ def _write(session: Session, plan: Plan, key: str | None) -> Sweep:
     return sweep
 
 
-def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[UUID]:
+def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[Run]:
     """Their rows, a microsecond apart: lists and the queue have them in their own order."""
     now = session.execute(select(clock())).scalar_one()
     generations = [case.spec.generations for case in plan.cases]
@@ -66,6 +67,7 @@ def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[UUID]:
         Run(
             experiment=sweep.experiment,
             spec=spec,
+            sources=own.needs(spec),
             generations=generations[place % len(generations)],
             version=VERSION,
             name=name,
@@ -79,7 +81,7 @@ def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[UUID]:
     session.add_all(runs)
     session.flush()
     session.add_all(_first_entry(run, len(runs)) for run in runs)
-    return [run.id for run in runs]
+    return runs
 
 
 def _first_entry(run: Run, total: int) -> Entry:

@@ -89,9 +89,12 @@ def _left(session: Session, run: Run, refusal: Conflict) -> Left:
 
 def requeue(services: Services, run_ids: Sequence[UUID]) -> None:
     """Enqueue runs that wait again; where Redis does not answer, the next pass does it."""
+    with services.sessions.read() as session:
+        rows = session.execute(select(Run.id, Run.sources).where(Run.id.in_(run_ids)))
+        sources = dict(rows.tuples().all())
     try:
         for run_id in run_ids:
-            services.jobs.evolve(run_id, of_sweep=True)
+            services.jobs.evolve(run_id, True, sources.get(run_id))
     except RedisError as error:
         log.warning("runs stay queued until Redis answers: %s", error)
 

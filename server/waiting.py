@@ -1,13 +1,14 @@
 """Why runs wait: the queue, and what those who work it off are at."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 from uuid import UUID
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from . import workers
+from . import own, workers
 from .models import QUEUED, Run, Worker
 from .schemas import AheadRead
 from .services import Services
@@ -55,18 +56,28 @@ def line(services: Services, session: Session) -> Line:
     alive = workers.live(session, services.settings.lease)
     single = select(func.count()).where(Run.status == QUEUED, Run.sweep.is_(None))
     return Line(
-        runs=in_line(session),
+        runs=[one.run for one in in_line(session)],
         alive=alive,
         at_work=workers.at_work(session, alive),
         singles=session.scalars(single).one(),
     )
 
 
-def in_line(session: Session) -> list[UUID]:
+class InLine(NamedTuple):
+    """A run that waits, and which workers may take it."""
+
+    run: UUID
+    of_sweep: bool
+    sources: list[str] | None
+    """Versions of users' own modules that it needs."""
+
+
+def in_line(session: Session) -> list[InLine]:
     """Runs that wait, in the order in which they are taken: those of sweeps last."""
-    waiting = select(Run.id).where(Run.status == QUEUED)
-    order = (Run.sweep.is_not(None), Run.queued_at, Run.id)
-    return list(session.scalars(waiting.order_by(*order)))
+    of_sweep = Run.sweep.is_not(None)
+    waiting = select(Run.id, of_sweep, Run.sources).where(Run.status == QUEUED)
+    found = session.execute(waiting.order_by(of_sweep, Run.queued_at, Run.id))
+    return [InLine(run, bool(swept), sources) for run, swept, sources in found]
 
 
 def reasons(services: Services, session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
@@ -85,6 +96,10 @@ def reason(run: Run, place: int, line: Line) -> str:
     """A sentence about a run at this place in the line, from 0."""
     if not line.alive:
         return NOBODY
+    fit = [worker for worker in line.alive if own.fit(worker, run.sources)]
+    if not fit:
+        return own.missing(line.alive, run.spec)
+    line = replace(line, alive=fit)
     before = line.before(place)
     if before < 0:
         return "A worker is about to begin."

@@ -1,14 +1,14 @@
 """What workers say about themselves."""
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 from uuid import UUID
 
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from .db import Sessions, ago, clock
-from .models import RUNNING, Run, Worker
+from .models import RUNNING, Plugin, Run, Worker
 
 
 def report(
@@ -22,8 +22,11 @@ def report(
     kind: Literal["cpu", "gpu"] = "cpu",
     memory_used_bytes: int | None = None,
     load: float | None = None,
+    plugins: Sequence[dict[str, Any]] = (),
+    unloaded: Sequence[dict[str, Any]] = (),
 ) -> None:
-    """Say that a worker is alive, what it is at, and how busy its device is."""
+    """Say that a worker is alive, what it is at, how busy its device is, and what it has of
+    users' own."""
     said = Worker(
         name=name,
         device=device,
@@ -33,14 +36,27 @@ def report(
         load=load,
         status=status,
         run_id=run_id,
+        plugins=list(plugins),
+        unloaded=list(unloaded),
     )
     with sessions.write.begin() as session:
         known = session.get(Worker, name)
         same = known is not None and (known.status, known.run_id) == (status, run_id)
+        if known is None or known.plugins != said.plugins:
+            _remember(session, said.plugins)
         row = session.merge(said)
         row.heartbeat_at = clock()
         if not same:
             row.since = clock()
+
+
+def _remember(session: Session, plugins: Sequence[dict[str, Any]]) -> None:
+    """Runs may ask for what a worker had that is away by then."""
+    for one in plugins:
+        row = Plugin(
+            kind=one["kind"], name=one["name"], source=one["source"], declaration=dict(one)
+        )
+        session.merge(row).seen_at = clock()
 
 
 def retire(sessions: Sessions, name: str) -> None:

@@ -15,6 +15,7 @@ from server.claims import Claim, Fenced, claim
 from server.models import CANCEL, PAUSE
 from server.reports import Report
 from server.services import Services
+from server.settings import Settings
 
 from . import stop
 
@@ -59,6 +60,10 @@ class Attempt:
     def spec(self) -> dict[str, Any]:
         return self._claim.spec
 
+    @property
+    def settings(self) -> Settings:
+        return self._claim.services.settings
+
     def use(self, device: str) -> None:
         """Say on which kind of device it is computed."""
         persist(lambda: self._claim.use(device))
@@ -74,6 +79,15 @@ class Attempt:
         """Pause: on this kind of device bits may differ, which is for people to allow."""
         text = f"{reason} To go on here, resume the run; its archive will say so."
         persist(lambda: self._claim.wait_for_leave(text))
+
+    def set_aside(self, reason: str) -> None:
+        """Pause: this worker lacks something of users' own that can be brought back."""
+        text = f"{reason}. When the worker has it again, resume the run."
+        persist(lambda: self._claim.set_aside(text))
+
+    def refuse(self, reason: str) -> None:
+        """Fail at once: another attempt would come to the same."""
+        persist(lambda: self._claim.refuse(reason))
 
     def interrupted(self) -> bool:
         """Whether to stop here; asked between blocks."""

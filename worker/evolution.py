@@ -3,19 +3,35 @@
 import time
 from contextlib import suppress
 
+from pydantic import ValidationError
+
 from microcosmos.build import build
 from microcosmos.device import device_kind, prepare
-from microcosmos.experiments import OtherDevice, Stopped
+from microcosmos.experiments import Experiment, OtherDevice, Stopped
+from microcosmos.plugins import Broken, Missing
 from microcosmos.spec import parse
 
 from .attempt import Attempt
+from .own import load
 
 
 def carry_out(attempt: Attempt) -> None:
     """Compute, generation by generation, until it is done or somebody wants it to stop."""
     prepare()
+    load(attempt.settings)
     attempt.use(device_kind())
-    experiment = build(parse(attempt.spec))
+    try:
+        compute(attempt, build(parse(attempt.spec)))
+    except Missing as error:
+        attempt.set_aside(str(error))
+    except Broken as error:
+        attempt.refuse(str(error))
+    except ValidationError as error:  # What a server could not see: it has no modules.
+        attempt.refuse("; ".join(str(found["msg"]) for found in error.errors()))
+
+
+def compute(attempt: Attempt, experiment: Experiment) -> None:
+    """Go on from the last checkpoint to the end, or to where it is to stop."""
     data = attempt.restore()
     try:
         state = (

@@ -13,6 +13,7 @@ from server.models import REPLAY
 from server.services import Services, connect
 from server.settings import Settings
 
+from . import own
 from .attempt import claimed
 
 WORKER = "MICROCOSMOS_WORKER"
@@ -39,6 +40,7 @@ def prepared() -> None:
     from microcosmos.device import prepare
 
     prepare()
+    own.load(services().settings)
 
 
 def render(creature: str, kind: str = REPLAY) -> None:

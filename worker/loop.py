@@ -6,7 +6,7 @@ taken.
 
 import logging
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 from redis.exceptions import RedisError
@@ -26,10 +26,12 @@ PAUSE_SECONDS = 1.0
 log = logging.getLogger(__name__)
 
 
-def serve(worker: BaseWorker) -> None:
-    """Carry out jobs until this process is told to stop."""
+def serve(worker: BaseWorker, queues: Callable[[], list[Queue]] | None = None) -> None:
+    """Carry out jobs until this process is told to stop; `queues` says of which now."""
     while not stop.requested():
         with surviving():
+            if queues:
+                worker.queues = queues()
             take_one(worker)
     with suppress(RedisError):
         worker.register_death()

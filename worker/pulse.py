@@ -14,6 +14,7 @@ from server.db import Sessions
 from server.leases import Lease
 
 from .device import Device
+from .own import Told
 from .usage import Gauge, usage
 
 BEATS = 4
@@ -37,9 +38,17 @@ class Watch:
 class Pulse(threading.Thread):
     """Writes heartbeats by SQL alone, so that a lost Redis cannot make a live run look dead."""
 
-    def __init__(self, sessions: Sessions, worker: str, device: Device, lease: float):
+    def __init__(
+        self,
+        sessions: Sessions,
+        worker: str,
+        device: Device,
+        lease: float,
+        own: Callable[[], Told] = Told,
+    ):
         super().__init__(name="pulse", daemon=True)
         self._sessions, self._worker, self._device = sessions, worker, device
+        self._own = own
         self._interval = lease / BEATS
         self.gauge = Gauge(partial(usage, device), self._interval)
         self._ended = threading.Event()
@@ -74,7 +83,7 @@ class Pulse(threading.Thread):
         workers.retire(self._sessions, self._worker)
 
     def beat(self) -> None:
-        watch = self._watch
+        watch, own = self._watch, self._own()
         lease: Lease | None = None
         if watch:
             lease = leases.heartbeat(self._sessions, watch.run, self._worker)
@@ -89,6 +98,8 @@ class Pulse(threading.Thread):
             kind="cpu" if self._device.gpu is None else "gpu",
             memory_used_bytes=self.gauge.last.memory_bytes,
             load=self.gauge.last.load,
+            plugins=own.plugins,
+            unloaded=own.unloaded,
         )
 
     def _judge(self, watch: Watch, lease: Lease) -> None:

@@ -21,8 +21,9 @@ from server import services
 from server.reconcile import job_died, job_stopped
 from server.services import Services
 from server.settings import Settings
+from server.waiting import in_line
 
-from . import device, log, loop, processor, stop
+from . import device, log, loop, own, processor, stop
 from .pulse import BEATS, Pulse
 
 SHORTEST_LEASE = 2
@@ -121,6 +122,18 @@ class Supervisor(SpawnWorker):
         return self.lease
 
 
+def own_queues(shared: Services, sources: set[str]) -> list[Queue]:
+    """The queues of runs that can be carried out with these modules of users' own, those
+    first whose runs have waited longest."""
+    if not sources:
+        return shared.jobs.evolving
+    with shared.sessions.read() as session:
+        waiting = in_line(session)
+    able = [one for one in waiting if sources.issuperset(one.sources or ())]
+    queues = [shared.jobs.evolving_with(one.sources, one.of_sweep) for one in able]
+    return list({queue.name: queue for queue in (*queues, *shared.jobs.evolving)}.values())
+
+
 def supervise(settings: Settings, index: int) -> None:
     """Be the worker with this number on this machine, until told to stop."""
     shared = services.connect(settings)
@@ -131,11 +144,15 @@ def supervise(settings: Settings, index: int) -> None:
     lease = max(SHORTEST_LEASE, round(settings.lease))
     worker = Supervisor(shared.jobs.evolving, name, worker_ttl=lease, serializer=JSONSerializer)
     worker.services, worker.lease, worker.environment = shared, lease, found.environment
-    worker.pulse = Pulse(shared.sessions, name, found, settings.lease)
+    shelf = own.Shelf(settings, settings.lease / BEATS)
+    told = lambda: shelf.last  # noqa: E731
+    worker.pulse = Pulse(shared.sessions, name, found, settings.lease, told)
     stop.listen(worker.pass_on, interrupt=True)
     journal.info("Worker %s on %s", name, found.name)
     worker.pulse.start()
-    loop.serve(worker)
+    shelf.start()
+    loop.serve(worker, lambda: own_queues(shared, shelf.last.sources))
+    shelf.end()
     with suppress(SQLAlchemyError):
         worker.pulse.end()
     shared.close()

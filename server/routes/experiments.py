@@ -6,14 +6,25 @@ from fastapi import APIRouter
 
 from microcosmos.spec import EXPERIMENTS, Experiment
 
+from .. import own
+from ..deps import ServicesDep, SessionDep
+from ..own_schemas import with_own
 from ..schemas import ExperimentRead, PresetRead
 
 router = APIRouter(prefix="/experiments", tags=["experiments"])
 
 
 @router.get("")
-def list_experiments() -> list[ExperimentRead]:
-    return _all()
+def list_experiments(services: ServicesDep, session: SessionDep) -> list[ExperimentRead]:
+    """With what live workers have of users' own among the choices."""
+    known = own.reported(services, session)
+    offered = known.offered()
+    if not offered:
+        return _all()
+    return [
+        one.model_copy(update={"schema_": with_own(one.schema_, offered, known.having)})
+        for one in _all()
+    ]
 
 
 @cache

@@ -8,9 +8,9 @@ from fastapi import APIRouter, Depends, Header, Query, Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate, parse
+from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
-from .. import lifecycle, listing, waiting
+from .. import lifecycle, listing, own_specs, waiting
 from ..deps import RunDep, ServicesDep, SessionDep, find_run
 from ..drawings import drawing_read
 from ..models import Run
@@ -38,8 +38,11 @@ def described(schema: dict[str, Any]) -> dict[str, Any]:
 body = described({"type": "object"})
 
 
-def spec_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))]) -> Spec:
-    return parse(document)
+def spec_sent(
+    document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))],
+    services: ServicesDep,
+) -> Spec:
+    return own_specs.parse(services, document)
 
 
 SpecDep = Annotated[Spec, Depends(spec_sent)]

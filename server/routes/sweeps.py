@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import estimate
 
-from .. import bands, lifecycle, waiting
+from .. import bands, lifecycle, own_specs, waiting
 from ..deps import ServicesDep, SessionDep, SweepDep, find_sweep
 from ..models import Run, Sweep
 from ..pace import paces_of
@@ -39,8 +39,13 @@ body = described(SweepSent.model_json_schema())
 Points = Annotated[int | None, Query(ge=2, le=10_000)]
 
 
-def plan_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))]) -> Plan:
-    return plan(SweepSent.model_validate(document))
+def plan_sent(
+    document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))],
+    services: ServicesDep,
+) -> Plan:
+    sent = SweepSent.model_validate(document)
+    with own_specs.parsing(services) as parse:
+        return plan(sent, parse)
 
 
 PlanDep = Annotated[Plan, Depends(plan_sent)]

@@ -6,7 +6,7 @@ from .. import workers
 from ..deps import ServicesDep, SessionDep
 from ..models import Run, Worker
 from ..progress import carried
-from ..schemas import WorkerRead
+from ..schemas import PluginRead, WorkerRead
 
 router = APIRouter(prefix="/workers", tags=["workers"])
 
@@ -22,6 +22,8 @@ def list_workers(services: ServicesDep, session: SessionDep) -> list[WorkerRead]
 def _read(worker: Worker, run: Run | None) -> WorkerRead:
     columns = {column.key: getattr(worker, column.key) for column in Worker.__table__.columns}
     told = columns.pop("run_id")
+    names = list(PluginRead.model_fields)
+    columns["plugins"] = [{name: one[name] for name in names} for one in worker.plugins]
     return WorkerRead(
         **columns, run=run.id if run else told, carries=carried(run) if run else None
     )

@@ -37,7 +37,16 @@ from .sweeps import (
     SweepSummary,
 )
 from .tokens import CallerRead, SignIn, TokenCreate, TokenMade, TokenRead
-from .workers import Carried, Health, QueueRead, Readiness, Waiting, WorkerRead
+from .workers import (
+    Carried,
+    Health,
+    PluginRead,
+    QueueRead,
+    Readiness,
+    UnloadedRead,
+    Waiting,
+    WorkerRead,
+)
 
 __all__ = [
     "MOST",
@@ -71,6 +80,7 @@ __all__ = [
     "Member",
     "PaceRead",
     "PictureRead",
+    "PluginRead",
     "PresetRead",
     "Problem",
     "QueueRead",
@@ -97,6 +107,7 @@ __all__ = [
     "TokenCreate",
     "TokenMade",
     "TokenRead",
+    "UnloadedRead",
     "Waiting",
     "Wire",
     "WorkerRead",

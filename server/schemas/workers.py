@@ -22,6 +22,24 @@ class Carried(Wire):
     attempt: int
 
 
+class PluginRead(Wire):
+    """Something of users' own that a worker has."""
+
+    kind: Literal["fitness", "descriptor", "body", "gait", "encoding"]
+    name: str
+    title: str
+    unit: str
+    source: str
+    """SHA-256 of its module's source."""
+
+
+class UnloadedRead(Wire):
+    """A module of users' own that a worker could not load."""
+
+    module: str
+    reason: str
+
+
 class WorkerRead(Wire):
     name: str
     device: str
@@ -38,6 +56,8 @@ class WorkerRead(Wire):
     carries: Carried | None
     """The run that it is at."""
     heartbeat_at: datetime
+    plugins: list[PluginRead]
+    unloaded: list[UnloadedRead]
 
 
 class Waiting(Carried):

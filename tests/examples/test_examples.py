@@ -1,10 +1,16 @@
 """Each example runs, at a tiny size."""
 
 import importlib.util
+import json
+from hashlib import sha256
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
+
+from microcosmos.archive.creature import parse
+from microcosmos.render import check
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TINY = {"body": {"nodes": 8}, "task": {"steps": 20}}
@@ -74,3 +80,26 @@ def test_a_gait_is_designed_for_a_path():
 def test_a_rest_shape_is_designed_for_a_viscosity():
     ((before, after),) = example("rest_shape").main((0.5,), steps=60, updates=2).values()
     assert after > before
+
+
+def test_a_task_of_ones_own_evolves_and_its_file_says_which_version_it_is(tmp_path):
+    module = example("own_task")
+    search = {"generations": 2, "batch": 4, "block": 4}
+    path = module.main(tmp_path / "own.h5", task={"steps": 20}, search=search)
+    source = sha256((EXAMPLES / "own_task.py").read_bytes()).hexdigest()
+    with h5py.File(path) as file:  # Without the module.
+        spec, names = (json.loads(bytes(file.attrs[name])) for name in ("spec", "features"))
+        rows, fitness = file["archive/features"][:], file["archive/fitness"][:]
+        sway = file["archive/descriptors"][:, 0]
+    for part in (spec["task"], spec["body"], spec["archive"]["descriptors"][0]):
+        assert part["own"]["source"] == source
+    values = {name: rows[:, names.index(name)] for name in names}
+    straight = values["displacement"] * values["straightness"]
+    np.testing.assert_allclose(fitness, straight, rtol=1e-5)
+    np.testing.assert_array_equal(values["own_task.straight"], fitness)
+    np.testing.assert_array_equal(values["own_task.sway"], sway)
+    creature = json.loads(path.with_suffix(".best.json").read_bytes())
+    assert creature["identity"]["task"]["fitness"] == "own_task.straight"
+    assert creature["identity"]["task"]["own"]["source"] == source
+    assert creature["identity"]["body"]["builder"] == "graph"
+    assert check(parse(creature)).exact

@@ -183,7 +183,7 @@ def test_single_runs_are_taken_before_those_of_a_sweep(api, services, six, spec)
     single = api.post("runs", json=spec).json()["id"]
     ids = runs_of(api, six)
     with services.sessions.read() as session:
-        assert list(map(str, in_line(session))) == [single, *ids]
+        assert [str(one.run) for one in in_line(session)] == [single, *ids]
     assert [queue.get_job_ids() for queue in services.jobs.evolving] == [[single], ids]
     assert api.post("runs/estimate", json=spec).json()["queue"]["waiting"] == 1
     both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["waiting"]

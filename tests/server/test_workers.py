@@ -165,7 +165,7 @@ def test_a_list_asks_the_queue_once_however_many_runs_wait(api, services, spec, 
 
     def count(limit):
         with services.sessions.read() as session:
-            runs = [session.get(Run, run_id) for run_id in in_line(session)[:limit]]
+            runs = [session.get(Run, run_id) for run_id, *_ in in_line(session)[:limit]]
             asked.clear()
             event.listen(services.sessions.engine, "before_cursor_execute", note)
             read_runs(services, session, runs)

@@ -10,6 +10,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from ..spec import Part, Scene, Task, field_path
 from ..spec import identity as identity_of
+from ..spec.own import Own
 from .genomes import Network
 from .identity import Identity
 from .naming import FORMAT, LICENCE, canonical, name
@@ -50,6 +51,8 @@ class Measured(Part):
     room: tuple[Room, Room] | None = None
     """`max_nodes` and `max_connections` of the evaluated arrays; none without a network."""
     device: str
+    own: dict[str, Own] = Field(default={}, exclude_if=lambda own: not own)
+    """Versions of the measures of one's own among the features."""
 
     @model_validator(mode="after")
     def check_agreement(self) -> Self:
@@ -97,6 +100,8 @@ class CreatureFile(Part):
 
 def fitness_of(task: Task, features: Mapping[str, float]) -> float:
     """Fitness in float32, as it is computed where a creature is evaluated."""
+    if task.own is not None:  # Which is among what was measured.
+        return features.get(task.fitness, np.nan)
     displacement = np.float32(features.get("displacement", np.nan))
     energy = np.float32(task.energy_weight) * np.float32(features.get("energy", np.nan))
     both = {"displacement": displacement, "energy": energy}
@@ -145,7 +150,9 @@ def parse(data: Any) -> dict[str, Any]:
 
 def scene_of(file: Mapping[str, Any]) -> Scene:
     """What is simulated when a parsed file is evaluated or replayed."""
-    return Identity.model_validate(file["identity"]).scene
+    scene = Identity.model_validate(file["identity"]).scene
+    own = (file.get("measured") or {}).get("own")
+    return Scene(**{**dict(scene), "own": own}) if own else scene
 
 
 def room_of(genome: Part, recorded: tuple[int, int] | None) -> tuple[int, int] | None:

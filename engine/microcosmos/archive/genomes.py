@@ -91,6 +91,26 @@ class Weights(Vector):
         _refuse_other_length(self.values, self.control, body)
 
 
+class Own(Vector):
+    """Numbers that a module of one's own makes movements of."""
+
+    encoding: str
+    control: spec.OwnControl
+
+    @model_validator(mode="after")
+    def check(self) -> Self:
+        if self.encoding != self.control.encoding:
+            raise ValueError(
+                f"`encoding` must be {self.control.encoding!r} as `control` has it, got "
+                f"{self.encoding!r}"
+            )
+        return self
+
+    def refuse_other_length(self, body: Body) -> None:
+        """There must be as many genes as the body needs."""
+        _refuse_other_length(self.values, self.control, body)
+
+
 class Fold(Part):
     """The rest angle of every joint and the rest length of every edge."""
 

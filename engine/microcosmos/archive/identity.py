@@ -1,11 +1,37 @@
 """Everything that a creature is, as it is written and named."""
 
-from typing import Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Tag, model_validator
 
 from ..spec import Body, Coupling, Gait, Part, Scene, Task, World
-from .genomes import CPPN, Direct, Fold, Grown, Stroke, Weights
+from ..spec.body import OwnBody
+from ..spec.encodings import kind
+from .genomes import CPPN, Direct, Fold, Grown, Own, Stroke, Weights
+
+NAMES = ("cppn", "direct", "weights", "cppn-body", "gait", "fold")
+
+
+def _kind(value: Any) -> Any:
+    """The tag of a genome, which has to name its encoding."""
+    named = not isinstance(value, dict) or "encoding" in value
+    return kind(value) if named else None
+
+
+Genome = Annotated[
+    Annotated[CPPN, Tag("cppn")]
+    | Annotated[Direct, Tag("direct")]
+    | Annotated[Weights, Tag("weights")]
+    | Annotated[Grown, Tag("cppn-body")]
+    | Annotated[Stroke, Tag("gait")]
+    | Annotated[Fold, Tag("fold")]
+    | Annotated[Own, Tag("own")],
+    Discriminator(
+        _kind,
+        custom_error_type="unknown_encoding",
+        custom_error_message="`encoding` must be one of " + ", ".join(NAMES),
+    ),
+]
 
 
 class PlacedWorld(World):
@@ -18,7 +44,7 @@ class Identity(Part):
     """Everything that a creature is."""
 
     format: Literal["microcosmos-creature/1"]
-    genome: CPPN | Direct | Weights | Grown | Stroke | Fold = Field(discriminator="encoding")
+    genome: Genome
     world: PlacedWorld
     body: Body
     task: Task
@@ -26,7 +52,9 @@ class Identity(Part):
     @model_validator(mode="after")
     def check_fit(self) -> Self:
         scene = self.scene
-        if isinstance(self.genome, Direct | Weights | Fold):
+        if isinstance(self.body, OwnBody):
+            raise ValueError(f"`body` must be the graph that it is, got {self.body.builder!r}")
+        if isinstance(self.genome, Direct | Weights | Fold | Own):
             self.genome.refuse_other_length(scene.body)
         return self
 

@@ -6,6 +6,7 @@ from .encodings import build_controls, build_encoding
 from .experiments import build, build_plan
 from .folding import build_descent, build_pictures
 from .niches import build_axes, build_niches
+from .own import build_measures, features_of
 from .peers import scoring_function, to_repertoire
 from .scene import (
     build_energy,
@@ -30,6 +31,7 @@ __all__ = [
     "build_energy",
     "build_gaits",
     "build_limits",
+    "build_measures",
     "build_niches",
     "build_pictures",
     "build_plan",
@@ -42,6 +44,7 @@ __all__ = [
     "build_stroke_block",
     "build_task",
     "build_world",
+    "features_of",
     "frame",
     "scoring_function",
     "to_repertoire",

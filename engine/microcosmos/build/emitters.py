@@ -9,6 +9,7 @@ from ..search import emitters, qdax, tensorneat
 from ..search.emitters.tensorneat import TensorNeat
 from ..spec import emitters as words
 from .niches import build_niches
+from .own import features_of
 
 
 def build_emitters(chosen: spec.Evolution, encoding: Encoding) -> tuple[search.Emitter, ...]:
@@ -72,7 +73,7 @@ def _(emitter: words.CmaMaeEmitter, slots, chosen, encoding):
 
 @_build.register
 def _(emitter: words.CmaMeEmitter, slots, chosen, encoding):
-    niches, asked = build_niches(chosen.archive), emitter.emitters
+    niches, asked = build_niches(chosen.archive, features_of(chosen.scene)), emitter.emitters
     return qdax.cma_me(slots, encoding.newcomer, niches, step=emitter.step, emitters=asked)
 
 

@@ -5,6 +5,7 @@ from functools import singledispatch
 import numpy as np
 
 from .. import bodies, genomes, spec
+from .own import build_act
 
 TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
 LENGTHS = {"log": genomes.scaled, "raw": genomes.added}
@@ -74,6 +75,11 @@ def _(control: spec.Direct, controls, body, room):
         spread=control.spread,
         faintest=control.faintest,
     )
+
+
+@_encoding.register
+def _(control: spec.OwnControl, controls, body, room):
+    return genomes.Own(controls, control.genes(body), build_act(control, controls))
 
 
 @_encoding.register

@@ -15,6 +15,7 @@ from .creatures import build_block, build_disturbed_block, frame
 from .emitters import build_emitters
 from .folding import build_folding
 from .niches import build_niches
+from .own import features_of, own_of
 from .refinement import build_refinement
 from .scene import build_encoding, build_task
 from .tables import build_gaits, build_scaling
@@ -88,16 +89,17 @@ def build_repeats(chosen: spec.Evolution, plan: Plan) -> again.Programs | None:
 
 def build_plan(chosen: spec.Evolution) -> Plan:
     """What the experiment needs of the spec besides programs."""
-    encoding = build_encoding(chosen.scene, room_of(chosen))
+    scene = chosen.scene
+    encoding = build_encoding(scene, room_of(chosen))
     fixed = len(chosen.control.inputs), len(chosen.control.outputs)
     return Plan(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
-        frame=frame(chosen.scene),
+        frame=frame(scene),
         seed=chosen.seed,
         generations=chosen.search.generations,
         block=chosen.search.block,
         descriptors=tuple(axis.name for axis in chosen.archive.descriptors),
-        niches=build_niches(chosen.archive),
+        niches=build_niches(chosen.archive, features_of(scene)),
         encoding=encoding,
         emitters=build_emitters(chosen, encoding),
         names=names_of(chosen.emitters),
@@ -106,6 +108,8 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         limits=build_limits(chosen.search.stop),
         again=build_again(chosen),
         force_free=chosen.coupling.force_free,
+        features=features_of(scene),
+        own=own_of(scene),
     )
 
 

@@ -12,6 +12,7 @@ from ..genomes import Genotype
 from ..search import qdax
 from .experiments import build_evolution, room_of
 from .niches import build_niches
+from .own import features_of
 from .scene import build_task
 
 
@@ -32,7 +33,7 @@ def scoring_function(chosen: spec.Evolution, *, slopes: bool = False) -> Callabl
     def derive(genotypes: Genotype) -> search.Slopes:
         return search.mapped(lambda one: search.slopes(task, one, descriptors), genotypes)
 
-    niches = build_niches(chosen.archive)
+    niches = build_niches(chosen.archive, features_of(chosen.scene))
     return qdax.scoring_function(evaluate, niches, derive if slopes else None)
 
 

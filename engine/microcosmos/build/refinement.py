@@ -1,6 +1,7 @@
 """From the spec of a refinement to the experiment that carries it out."""
 
 import json
+from typing import Any
 
 import jax
 import numpy as np
@@ -11,13 +12,14 @@ from ..experiments import refinement
 from ..spec.refinement import parsed
 from .creatures import build_block, frame
 from .niches import build_niches
+from .own import features_of, own_of
 from .scene import build_task
 
 
 def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
     """A refinement, its programs compiled when they are first used."""
     found = parsed(chosen.creature)
-    scene, room = creature.scene_of(found), creature.room(found)
+    scene, room = _scene(chosen, found), creature.room(found)
     task, names = build_task(scene, room=room), _names(chosen)
     assert task.encoding is not None
     options = device.compiler_options()
@@ -27,7 +29,7 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         genotype=jax.tree.map(lambda x: np.asarray(x)[None], genotype),
         slopes=search.slopes_program(task, names, chosen.segment, options),
         evaluate_block=build_block(scene, room),
-        niches=build_niches(chosen.archive),
+        niches=build_niches(chosen.archive, features_of(scene)),
         names=names,
         steps=chosen.steps,
         length=chosen.length,
@@ -37,7 +39,15 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         origin=found["sha256"],
         provenance=found["provenance"],
         device=device.device_kind(),
+        features=features_of(scene),
+        own=own_of(scene),
     )
+
+
+def _scene(chosen: spec.Refinement, found: dict[str, Any]) -> spec.Scene:
+    """The creature's, with what its own archive and this one measure."""
+    scene = creature.scene_of(found)
+    return scene.model_copy(update={"own": {**scene.own, **chosen.archive.own}})
 
 
 def _names(chosen: spec.Refinement) -> tuple[str, ...]:

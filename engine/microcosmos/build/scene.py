@@ -8,7 +8,6 @@ import numpy as np
 from .. import (
     bodies,
     coupling,
-    creatures,
     fields,
     filaments,
     fluid,
@@ -19,6 +18,7 @@ from .. import (
 )
 from ..bodies.extent import reach
 from .encodings import build_encoding
+from .own import build_measures, strokes_of
 
 PROJECTIONS = {
     "none": coupling.unprojected,
@@ -52,16 +52,23 @@ def build_task(
     start = world.at_rest(place, jnp.asarray(positions, dtype))
     gait = isinstance(scene.control, spec.Gait)
     encoding = None if gait else build_encoding(scene, room or ROOM)
-    displacement, energy = GOALS[scene.task.fitness]
-    goal = search.Goal(displacement, energy * scene.task.energy_weight)
     return search.Task(
         place,
         start,
         encoding,
-        goal,
+        build_goal(scene.task),
         reach(body),
         placements=build_placements(scene.world),
+        own=build_measures(scene),
     )
+
+
+def build_goal(task: spec.Task) -> search.Goal:
+    """What fitness is made of."""
+    if task.own is not None:
+        return search.Goal(own=task.fitness)
+    displacement, energy = GOALS[task.fitness]
+    return search.Goal(displacement, energy * task.energy_weight)
 
 
 def build_placements(place: spec.World) -> jnp.ndarray | None:
@@ -163,9 +170,8 @@ def build_rods(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Rods:
 
 def build_stroke(gait: spec.Gait, steps: int, dtype: Any = jnp.float32) -> filaments.Rest:
     """The rest shapes of a known swimmer over time."""
-    swimmer = creatures.SWIMMERS[gait.swimmer]()
     t = np.arange(steps) / gait.period
-    angle, length = swimmer.gait(t)
+    swimmer, angle, length = strokes_of(gait, t)
     rise = t / gait.ramp if gait.ramp else np.ones(steps)
     ramp = np.minimum(1, rise)[:, None]
     body = swimmer.body

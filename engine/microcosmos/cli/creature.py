@@ -7,7 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
+from ..plugins import Broken, Missing
 from .app import CACHE, app, fail
+from .modules import Modules, load_modules
 
 
 @app.command()
@@ -17,8 +19,10 @@ def replay(
         bool, typer.Option("--check", help="Evaluate again and compare bit for bit.")
     ] = False,
     out: Annotated[Path | None, typer.Option(help="Where the replay is written.")] = None,
+    module: Modules = None,
 ) -> None:
     """Simulate a creature file again."""
+    load_modules(module)
     from ..archive.creature import CreatureError
     from ..device import prepare
 
@@ -28,7 +32,7 @@ def replay(
             _check(file)
         else:
             _record(file, out or file.with_suffix(".replay"))
-    except (CreatureError, OSError) as error:
+    except (CreatureError, Missing, Broken, OSError) as error:
         fail(f"{file}: {error}")
 
 
@@ -36,8 +40,10 @@ def replay(
 def audit(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
     out: Annotated[Path | None, typer.Option(help="Where it is written as JSON too.")] = None,
+    module: Modules = None,
 ) -> None:
     """Does a creature swim by the fluid, or by the way it is computed?"""
+    load_modules(module)
     from ..archive.creature import CreatureError, parse
     from ..archive.store import write_whole
     from ..device import prepare
@@ -47,7 +53,7 @@ def audit(
 
     try:
         found = examined(parse(file.read_bytes()))
-    except (CreatureError, OSError) as error:
+    except (CreatureError, Missing, Broken, OSError) as error:
         fail(f"{file}: {error}")
     if out:
         write_whole(out, json.dumps(found, indent=1).encode())
@@ -66,8 +72,10 @@ def gradient(
     ] = None,
     starts: Annotated[int, typer.Option(min=1, help="Other starts to compare with.")] = 8,
     out: Annotated[Path | None, typer.Option(help="Where it is written as JSON too.")] = None,
+    module: Modules = None,
 ) -> None:
     """How far can the gradient of a creature's fitness, or of a feature, be trusted?"""
+    load_modules(module)
     from ..archive.creature import CreatureError, parse
     from ..archive.store import write_whole
     from ..device import prepare

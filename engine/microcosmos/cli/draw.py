@@ -8,6 +8,7 @@ from typer.core import TyperGroup
 
 from ..archive.file import load
 from .app import CACHE, app, console, fail
+from .modules import Modules, load_modules
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 """How such a file begins."""
@@ -55,11 +56,13 @@ def of_file(
         Path,
         typer.Argument(help=".png, .gif or .mp4 of a creature; .png, .svg or .pdf of a run."),
     ],
+    module: Modules = None,
 ) -> None:
     """A picture or a film of a creature or its replay; the figure of a run.
 
     This is meant where no command is named: `figure FILE OUT`.
     """
+    load_modules(module)
     try:
         _draw(file, out)
     except (ValueError, RuntimeError, ImportError, OSError) as error:

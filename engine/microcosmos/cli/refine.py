@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from ..archive.creature import CreatureError, parse
 from ..spec import Archive, Refinement
 from .app import CACHE, app, console, fail
+from .modules import Modules, load_modules
 from .run import carry_on, evaluations_of
 from .specs import read_spec, said
 
@@ -33,8 +34,10 @@ def refine(
     other_device: Annotated[
         bool, typer.Option(help="Go on although another kind of device began the run.")
     ] = False,
+    module: Modules = None,
 ) -> None:
     """Make a creature fitter by gradient steps that do not leave its cell."""
+    load_modules(module)
     path = out or file.with_name(f"{file.name.removesuffix('.json')}.refined.h5")
     try:
         creature = parse(file.read_bytes())

@@ -18,6 +18,7 @@ from rich.progress import (
 
 from ..spec import Spec, estimate
 from .app import CACHE, app, console, fail
+from .modules import Modules, load_modules
 from .specs import presets, read_spec
 
 
@@ -31,8 +32,10 @@ def evolve(
     other_device: Annotated[
         bool, typer.Option(help="Go on although another kind of device began the run.")
     ] = False,
+    module: Modules = None,
 ) -> None:
     """Carry out a run; called again, it goes on from the archive file."""
+    load_modules(module)
     chosen = read_spec(spec)
     path = archive or Path(spec.replace("/", "-") if spec in presets() else spec).with_suffix(
         ".h5"

@@ -115,7 +115,7 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
         "version": VERSION,
         "device": json.dumps(state.devices),
         "spec": plan.spec,
-        "features": json.dumps(search.FEATURES),
+        "features": json.dumps(plan.features),
         "force_free": json.dumps(plan.force_free),
         "operators": json.dumps(search.OPERATORS),
         "statuses": json.dumps(search.STATUSES),
@@ -131,7 +131,13 @@ def devices_of(
     Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
     `other_device` allows it.
     """
-    if json.loads(attributes["spec"]) != json.loads(spec):
+    kept, own = json.loads(attributes["spec"]), json.loads(spec)
+    if kept != own:
+        if _unversioned(kept) == _unversioned(own):
+            raise ValueError(
+                "the file was computed with another version of a module of one's own: go on "
+                "with that one, or begin anew"
+            )
         raise ValueError("`spec` in the file must be the run's own, got another")
     devices = json.loads(attributes["device"])
     if devices[-1] != device and not other_device:
@@ -140,6 +146,13 @@ def devices_of(
             f"bits; got {device!r}."
         )
     return tuple(devices if devices[-1] == device else [*devices, device])
+
+
+def _unversioned(spec: Any) -> Any:
+    """A spec without the versions of what is of one's own."""
+    if isinstance(spec, dict):
+        return {name: _unversioned(part) for name, part in spec.items() if name != "source"}
+    return [_unversioned(part) for part in spec] if isinstance(spec, list) else spec
 
 
 def _centroids(niches: search.Cells) -> dict[str, Any]:

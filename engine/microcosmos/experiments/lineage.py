@@ -141,7 +141,7 @@ def _elite(
     device: str,
 ) -> Elite:
     whole = identity(plan.frame, plan.encoding, genotype)
-    features: dict[str, float] = dict(zip(search.FEATURES, values.tolist(), strict=True))
+    features: dict[str, float] = dict(zip(plan.features, values.tolist(), strict=True))
     descriptors = {name: features[name] for name in plan.descriptors}
     named = tuple(bytes(parent).hex() for parent in parents if parent.any())
     measured = {
@@ -151,6 +151,7 @@ def _elite(
         "block": plan.block,
         "room": list(plan.encoding.room) if plan.encoding.room else None,
         "device": device,
+        **({"own": dict(plan.own)} if plan.own else {}),
     }
     provenance = {
         "parents": list(named),

@@ -6,7 +6,7 @@ lengths are evaluated as in a search, and the best that is in the cell still is 
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import jax
@@ -59,6 +59,9 @@ class Refinement:
     provenance: Mapping[str, Any] | None
     """How it came to be, if that is known."""
     device: str
+    features: tuple[str, ...] = search.FEATURES
+    own: Mapping[str, Any] = field(default_factory=dict)
+    """Versions of the measures of one's own among the features."""
 
     def init(self) -> State:
         """Before the creature is measured."""
@@ -159,7 +162,7 @@ class Refinement:
     def _home(self, state: State) -> int:
         measured = state.table.rows[0].measured
         assert measured is not None
-        features = np.array([[measured["features"][name] for name in search.FEATURES]])
+        features = np.array([[measured["features"][name] for name in self.features]])
         return int(self.niches.of(jnp.asarray(features, jnp.float32))[0])
 
     def _identity(self, genes: np.ndarray) -> dict[str, Any]:
@@ -167,7 +170,7 @@ class Refinement:
 
     def _row(self, state: State, found: search.Evaluation, best: int, genes: np.ndarray) -> Row:
         features: dict[str, float] = dict(
-            zip(search.FEATURES, found.features[best].tolist(), strict=True)
+            zip(self.features, found.features[best].tolist(), strict=True)
         )
         descriptors = {name: features[name] for name in self.names}
         first = not state.table.rows
@@ -183,6 +186,7 @@ class Refinement:
             "block": self.block,
             "room": list(self.encoding.room) if self.encoding.room else None,
             "device": self.device,
+            **({"own": dict(self.own)} if self.own else {}),
         }
         refined = {
             "parents": [self.origin],

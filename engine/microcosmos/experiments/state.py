@@ -1,7 +1,7 @@
 """What a search is: its plan, which never changes, and its state."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from typing import Any
 
@@ -85,6 +85,10 @@ class Plan:
     force_free: bool = True
     """Whether bodies cannot push themselves; if not, their swimming may be the solver's."""
 
+    features: tuple[str, ...] = search.FEATURES
+    """What is recorded of every creature, in this order."""
+    own: Mapping[str, Any] = field(default_factory=dict)
+    """Versions of the measures of one's own among them."""
     names: tuple[str, ...] = ()
     """What the emitters are called, each by a name of its own."""
 
@@ -181,11 +185,11 @@ def start(plan: Plan) -> State:
         evaluations=0,
         diverged=0,
         niches=plan.niches,
-        elites=search.no_elites(plan.cells, len(search.FEATURES), plan.genotype),
+        elites=search.no_elites(plan.cells, len(plan.features), plan.genotype),
         counters=plan.counters,
         emitters=tuple(e.init(key=key) for e, key in zip(plan.emitters, keys, strict=True)),
         kin=np.zeros((plan.batch, 2, 32), np.uint8),
-        repeats=search.reevaluation.no_repeats(plan.cells, len(search.FEATURES)),
+        repeats=search.reevaluation.no_repeats(plan.cells, len(plan.features)),
         creatures=np.zeros((plan.cells, 32), np.uint8),
         operators=np.zeros(plan.cells, np.int32),
         origins=np.zeros(plan.cells, np.int32),

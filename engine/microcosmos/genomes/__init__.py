@@ -10,6 +10,7 @@ from .genes import empty, from_genes, take, to_genes
 from .genotype import Genotype, Vector, words
 from .grown import Grown
 from .layers import Layers, forward
+from .own import Clock, Own
 from .recurrent import advance
 from .shaping import Plan
 from .waves import fourier, phases, table, wave
@@ -20,6 +21,7 @@ __all__ = [
     "CPPN",
     "OUTPUTS",
     "CPPNControl",
+    "Clock",
     "Controls",
     "Direct",
     "Drive",
@@ -28,6 +30,7 @@ __all__ = [
     "Genotype",
     "Grown",
     "Layers",
+    "Own",
     "Plan",
     "Vector",
     "Weights",

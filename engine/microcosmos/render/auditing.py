@@ -19,7 +19,7 @@ from ..archive import creature
 from ..device import compiler_options, device_kind
 from ..filaments import Rest
 from ..genomes import Drive
-from .replay import CELL_STEPS, actuator_of
+from .replay import CELL_STEPS, actuator_of, unmeasured
 from .variants import body_of, other_delta, reciprocal, refine, tireless, with_other_delta
 
 AGREES = (0.5, 2.0)
@@ -64,7 +64,7 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     Raises `creature.CreatureError` for a file that is not sound, too large, or diverges.
     """
     file = creature.parse(file)
-    scene = creature.scene_of(file)
+    scene = unmeasured(creature.scene_of(file))
     work = WORK * scene.world.width * scene.world.height * scene.task.steps
     if work > CELL_STEPS:
         needed = f"at most {CELL_STEPS // WORK:.1e} cell steps for an audit"

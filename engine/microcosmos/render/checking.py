@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import search
 from ..archive import creature
-from ..build import build_block, build_point, build_stroke_block
+from ..build import build_block, build_point, build_stroke_block, features_of
 from ..device import device_kind
 from ..spec import Gait
 from .replay import actuator_of
@@ -52,7 +52,7 @@ def _repeat(file: Mapping[str, Any]) -> dict[str, float]:
         return dict(zip(search.STROKE_FEATURES, found.features[0].tolist(), strict=True))
     genotype = actuator_of(file, scene)
     found = search.evaluate_blocks(build_block(scene), _alone(genotype), block=block)
-    return dict(zip(search.FEATURES, found.features[0].tolist(), strict=True))
+    return dict(zip(features_of(scene), found.features[0].tolist(), strict=True))
 
 
 def _alone(item: Any) -> Any:

@@ -18,15 +18,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from .. import search, world
+from .. import plugins, search, world
 from ..archive import creature
 from ..archive.naming import REPLAY_FORMAT
-from ..build import build_encoding, build_stroke, build_task
+from ..build import build_encoding, build_measures, build_stroke, build_task
 from ..device import device_kind
 from ..filaments import Rest
 from ..fluid import vorticity
 from ..genomes import Drive
-from ..spec import Gait, Scene, shape
+from ..spec import Gait, Scene, Task, shape
 from ..spec.estimate import placements, simulation
 
 FRAMES = 250
@@ -52,7 +52,7 @@ def record(file: Mapping[str, Any]) -> bytes:
     file that is not sound.
     """
     file = creature.parse(file)
-    scene = creature.scene_of(file)
+    scene = watchable(creature.scene_of(file))
     nodes, _ = creature.room(file) or (0, 0)
     every = interval(scene, nodes)
     program = _program(scene.model_dump_json(), every)
@@ -99,19 +99,36 @@ def _comparison(
     replayed = {name: float(value) for name, value in features.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
-    fitness = creature.fitness_of(scene.task, replayed)
+    told = creature.scene_of(file).task
+    fitness = creature.fitness_of(told, replayed) if told == scene.task else None
     names = list(measured.get("descriptors", ())) or ["bending_effort", "stretching_effort"]
     return {
         "fitness": {
             "recorded": recorded,
             "replayed": fitness,
-            "difference": None if recorded is None else fitness - recorded,
+            "difference": None if recorded is None or fitness is None else fitness - recorded,
         },
         "descriptors": {
             "recorded": measured.get("descriptors"),
-            "replayed": {name: replayed[name] for name in names},
+            "replayed": {name: replayed.get(name) for name in names},
         },
     }
+
+
+def watchable(scene: Scene) -> Scene:
+    """The scene without measures of one's own that are not to be had here: what is seen of a
+    creature does not depend on them."""
+    try:
+        build_measures(scene)
+    except plugins.Missing:
+        return unmeasured(scene)
+    return scene
+
+
+def unmeasured(scene: Scene) -> Scene:
+    """The scene without any measures of one's own."""
+    task = Task(steps=scene.task.steps) if scene.task.own else scene.task
+    return scene.model_copy(update={"task": task, "own": {}})
 
 
 def there_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -22,6 +22,7 @@ from .evaluation import (
 from .features import FEATURES, Seen, motion, observe
 from .health import Health, gradient_health
 from .insertion import Elites, Inserted, clipped, digest, insert, insert_program, no_elites
+from .own import Measure, Motion
 from .slopes import slopes, slopes_program
 from .strokes import STROKE_FEATURES, Conditions, Watched, impulse, stroke_program, swim, watch
 
@@ -43,6 +44,8 @@ __all__ = [
     "Grid",
     "Health",
     "Inserted",
+    "Measure",
+    "Motion",
     "Outcome",
     "Seen",
     "Slopes",

@@ -5,7 +5,7 @@ rounding counts, and a program of another shape rounds differently: whatever the
 slot, neighbours or device, a creature goes through this same program.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -20,6 +20,7 @@ from ..filaments import Rest
 from ..genomes import Drive, Encoding, Genotype
 from ..world import Measures, State, World, flow, rollout
 from .features import FEATURES, Seen, motion, observe
+from .own import Measure, seen_as
 
 STATUSES = ("ok", "non-finite", "supersonic")
 """Why an evaluation counts or does not, by status code."""
@@ -43,6 +44,8 @@ class Goal(eqx.Module):
 
     displacement: float = eqx.field(static=True, default=1.0)
     energy: float = eqx.field(static=True, default=0.0)
+    own: str | None = eqx.field(static=True, default=None)
+    """The name of the task's own measure that is all of it."""
 
 
 class Task(eqx.Module):
@@ -59,6 +62,13 @@ class Task(eqx.Module):
     placements: Int[Array, "placement 2"] | None = None
     """Cells by which the energy is moved in each of the worlds in which a creature is measured;
     None: there is one, as it is."""
+    own: tuple[Measure, ...] = eqx.field(static=True, default=())
+    """What is measured beside the usual features."""
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """What is recorded of every creature, in this order."""
+        return FEATURES + tuple(measure.name for measure in self.own)
 
 
 def evaluate(task: Task, genotype: Genotype) -> Evaluation:
@@ -91,8 +101,8 @@ def _measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     values = motion_of(task, driven, end, seen)
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
     dtype = seen.centre.dtype
-    features = jnp.stack([values[name].astype(dtype) for name in FEATURES])
-    fitness = fitness_of(task, values["displacement"], values["energy"])
+    features = jnp.stack([values[name].astype(dtype) for name in task.features])
+    fitness = fitness_of(task, values)
     return Evaluation(fitness.astype(dtype), features, status(driven.world, end, features))
 
 
@@ -116,12 +126,20 @@ def simulate(
 def motion_of(task: Task, driven: Drive, end: State, seen: Seen) -> dict[str, Any]:
     """What can be measured of any actuator's motion."""
     length = task.length if driven.length is None else driven.length
-    return motion(driven.world, driven.start, end, seen, length)
+    values = motion(driven.world, driven.start, end, seen, length)
+    if not task.own:
+        return values
+    whole = seen_as(driven.world, driven.start, end, seen, values)
+    return values | {measure.name: measure.of(whole) for measure in task.own}
 
 
-def fitness_of(task: Task, displacement: Scalar, energy: Scalar) -> Scalar:
-    """Displacement in cells, collected energy, or both, as the goal weighs them."""
+def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
+    """Displacement in cells, collected energy, or both, as the goal weighs them; or a measure
+    of one's own."""
     goal = task.goal
+    if goal.own is not None:
+        return values[goal.own]
+    displacement, energy = values["displacement"], values["energy"]
     if goal.energy == 0:
         return displacement
     if goal.displacement == 0:

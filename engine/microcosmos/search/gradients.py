@@ -105,8 +105,7 @@ def measures(
     def measure(driven: Drive) -> dict[str, Any]:
         end, seen = simulate(driven, segment=segment)
         found = motion_of(task, driven, end, seen)
-        fitness = fitness_of(task, found["displacement"], found["energy"])
-        return {**found, "fitness": fitness}
+        return {**found, "fitness": fitness_of(task, found)}
 
     if task.placements is None:
         found = measure(driven)

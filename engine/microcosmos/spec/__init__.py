@@ -1,12 +1,12 @@
 """Everything a run can be, validated: the only place where a default is written."""
 
 from .base import Part, field_path, identity
-from .body import Body, Chain, Known, shape
+from .body import Body, Chain, Known, OwnBody, made_elsewhere, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
 from .drawing import Drawing, drawing
 from .emitters import Emitter
-from .encodings import Controller, Direct, Free, Grown, Weights, genes, lengthening
+from .encodings import Controller, Direct, Free, Grown, OwnControl, Weights, genes, lengthening
 from .estimate import Estimate, estimate
 from .evolution import Evolution
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
@@ -14,6 +14,7 @@ from .fields import Energy, Steric
 from .folding import Digit, Folding, Picture, picture
 from .gaits import FORMS, Gaits
 from .neuroevolution import Neuroevolution
+from .own import Own, Used, used
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement
 from .scaling import Scaling
@@ -50,6 +51,9 @@ __all__ = [
     "Grown",
     "Known",
     "Neuroevolution",
+    "Own",
+    "OwnBody",
+    "OwnControl",
     "Part",
     "Picture",
     "Preset",
@@ -63,6 +67,7 @@ __all__ = [
     "Steric",
     "Stop",
     "Task",
+    "Used",
     "Weights",
     "World",
     "drawing",
@@ -71,7 +76,9 @@ __all__ = [
     "genes",
     "identity",
     "lengthening",
+    "made_elsewhere",
     "parse",
     "picture",
     "shape",
+    "used",
 ]

@@ -23,9 +23,20 @@ class Part(BaseModel):
 
 
 TAGS: dict[str, tuple[str, ...]] = {
-    "body": ("chain", "ring", "arc", "walk", "star", "tree", "polyline", "graph", "known"),
-    "genome": ("cppn", "direct", "weights", "cppn-body", "gait", "fold"),
-    "control": ("cppn", "direct", "weights", "cppn-body", "gait", "fold"),
+    "body": (
+        "chain",
+        "ring",
+        "arc",
+        "walk",
+        "star",
+        "tree",
+        "polyline",
+        "graph",
+        "known",
+        "own",
+    ),
+    "genome": ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "own"),
+    "control": ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "own"),
     "targets": ("digit", "picture"),
     "emitters": (
         "random",

@@ -4,10 +4,12 @@ from functools import lru_cache
 from typing import Annotated, Any, Literal, Self, get_args
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic.json_schema import SkipJsonSchema
 
-from .. import bodies, creatures
+from .. import bodies, creatures, plugins
 from .base import Part, unit
+from .own import Own, OwnName, completed
 from .sources import PAPER, RODS, after
 
 SUPPORT = 4.0
@@ -150,6 +152,24 @@ class Known(Part):
     """Whose body."""
 
 
+class OwnBody(Part):
+    """A body that a module of one's own builds, or that of a swimmer with a gait of its own."""
+
+    builder: OwnName
+    """Its name."""
+    own: Own
+    """Which version it is."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def complete(cls, given: Any, info: ValidationInfo) -> Any:
+        """It is told with its version."""
+        return completed(given, OF_BODIES, "builder", info)[0]
+
+
+OF_BODIES = ("body", "gait")
+"""Kinds of things of one's own that have a body."""
+
 NAMES = (
     "chain",
     "ring",
@@ -169,6 +189,8 @@ def _tag(value: Any) -> Any:
         name = value.get("builder", "chain")
     else:
         name = getattr(value, "builder", None)
+    if plugins.is_own(name):
+        return "own"
     return "known" if name in get_args(Swimmer) else name
 
 
@@ -181,7 +203,8 @@ Body = Annotated[
     | Annotated[Tree, Tag("tree")]
     | Annotated[Polyline, Tag("polyline")]
     | Annotated[Graph, Tag("graph")]
-    | Annotated[Known, Tag("known")],
+    | Annotated[Known, Tag("known")]
+    | Annotated[SkipJsonSchema[OwnBody], Tag("own")],
     Discriminator(
         _tag,
         custom_error_type="unknown_builder",
@@ -192,8 +215,69 @@ Body = Annotated[
 
 
 def shape(body: Body) -> bodies.Body:
-    """The graph of a body at rest. Raises `ValueError` where it is malformed."""
-    return _shape(body)  # pyright: ignore[reportArgumentType]
+    """The graph of a body at rest; `ValueError` where it is malformed or not to be had."""
+    return _shape(resolved(body))  # pyright: ignore[reportArgumentType]
+
+
+def about(body: Body) -> bodies.Body:
+    """The graph of a body, or where it is made elsewhere a chain with as many nodes at most."""
+    if made_elsewhere(body):
+        assert isinstance(body, OwnBody)
+        return bodies.chain(max(3, body.own.sizes.get("nodes", MOST)), 1.0)
+    return shape(body)
+
+
+def made_elsewhere(body: Body) -> bool:
+    """Whether it is of one's own, in a version that is not loaded here."""
+    if not isinstance(body, OwnBody):
+        return False
+    try:
+        plugins.find(OF_BODIES, body.builder, body.own.source)
+    except plugins.Missing:
+        return True
+    return False
+
+
+def resolved(body: Body) -> Body:
+    """A body of one's own as the graph that it is: that means the same to everybody."""
+    if not isinstance(body, OwnBody):
+        return body
+    plugin = plugins.find(OF_BODIES, body.builder, body.own.source)
+    made = plugin(settings=body.own.settings)
+    made = getattr(made, "body", made)  # A swimmer has one.
+    if not isinstance(made, bodies.Body):
+        raise plugins.Broken(f"{body.builder} must give a body, got {type(made).__name__}")
+    return _graph(body, made)
+
+
+def _graph(body: OwnBody, made: bodies.Body) -> Graph:
+    most = body.own.sizes.get("nodes", MOST)
+    if len(made.positions) > most:
+        raise plugins.Broken(
+            f"{body.builder} must give at most the {most} `nodes` that it declares, got "
+            f"{len(made.positions)}"
+        )
+    uneven = [name for name in ("stretch", "shear", "bend") if np.ptp(getattr(made, name)) > 0]
+    if uneven:
+        raise plugins.Broken(f"{body.builder} must be equally stiff in {uneven[0]} everywhere")
+    graph = Graph(
+        builder="graph",
+        nodes=tuple((float(x), float(y)) for x, y in made.positions),
+        edges=tuple((int(a), int(b)) for a, b in made.edges),
+        stretch=float(made.stretch[0]),
+        shear=float(made.shear[0]),
+        bend=float(made.bend[0]) if len(made.bend) else 1.0,
+    )
+    drawn = shape(graph)
+    same = np.array_equal(drawn.joints, made.joints) and all(
+        np.allclose(getattr(drawn, name), getattr(made, name), atol=1e-6)
+        for name in ("rest_length", "rest_angle")
+    )
+    if not same:
+        raise plugins.Broken(
+            f"{body.builder} must be at rest as it is drawn: build it with `bodies.from_edges`"
+        )
+    return graph
 
 
 def _nodes(body: Elastic) -> float:

@@ -1,12 +1,12 @@
 """What a spec is about, to be drawn before anything runs: bodies in their worlds, pictures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import singledispatch
 
 import numpy as np
 
 from .. import bodies, pictures
-from .body import Body, shape
+from .body import Body, made_elsewhere, shape
 from .evolution import Evolution
 from .experiments import Spec
 from .folding import Folding
@@ -74,17 +74,18 @@ def _(spec: Refinement) -> Drawing:
 
 @drawing.register
 def _(spec: Folding) -> Drawing:
-    body = _drawn(spec.body.builder, spec.world.width, spec.world.height, spec.body)
+    alone = _alone(spec.world, spec.body)
     shown = spec.targets[:MOST_PICTURES]
     found = tuple((target.name, pictures.fitted(target.ink, PIXELS)) for target in shown)
-    return Drawing(spec.world.width, spec.world.height, (body,), found, spec.size)
+    return replace(alone, pictures=found, picture_size=spec.size)
 
 
 @drawing.register
 def _(spec: Gaits) -> Drawing:
     size = spec.width, spec.height
-    drawn = tuple(_drawn(name, *size, swimmer_body(name)) for name in spec.swimmers)
-    return Drawing(*size, drawn)
+    found = {name: swimmer_body(name, spec.own.get(name)) for name in spec.swimmers}
+    drawn = [_drawn(n, *size, body) for n, body in found.items() if not made_elsewhere(body)]
+    return Drawing(*size, tuple(drawn))
 
 
 @drawing.register
@@ -94,6 +95,8 @@ def _(spec: Scaling) -> Drawing:
 
 
 def _alone(world: World, body: Body) -> Drawing:
+    if made_elsewhere(body):  # Nobody here knows what it looks like.
+        return Drawing(world.width, world.height, ())
     drawn = _drawn(body.builder, world.width, world.height, body)
     return Drawing(world.width, world.height, (drawn,))
 

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from .. import plugins
 from .base import Part, unit
 from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA, after
 
@@ -188,7 +189,8 @@ WITH_NUMBERS = ("direct", "weights")
 
 def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:
     """Operators must vary what is inherited; TensorNEAT's program works alone."""
-    unfit = OF_NETWORKS if encoding in WITH_NUMBERS else OF_NUMBERS
+    numbers = encoding in WITH_NUMBERS or plugins.is_own(encoding)
+    unfit = OF_NETWORKS if numbers else OF_NUMBERS
     for emitter in emitters:
         if emitter.operator in unfit:
             fit = OF_NUMBERS if unfit is OF_NETWORKS else OF_NETWORKS

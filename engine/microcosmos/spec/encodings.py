@@ -3,12 +3,14 @@
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic.json_schema import SkipJsonSchema
 
-from .. import bodies
+from .. import bodies, plugins
 from .base import LATER, Part, unit
-from .body import Body, shape
+from .body import Body, made_elsewhere, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
+from .own import Own, OwnName, completed
 
 TRAITS = {
     "rest_angle": (-3.0, 3.0),
@@ -164,6 +166,37 @@ class Grown(Sight, Shaping):
         return (*OUTPUTS, *(f"body_{name}" for name in self.free), "growth")
 
 
+class OwnControl(Actuation):
+    """Genes are numbers that a module of one's own makes movements of."""
+
+    encoding: OwnName
+    """Its name."""
+    own: Own
+    """Which version it is."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def complete(cls, given: Any, info: ValidationInfo) -> Any:
+        """It is told with its version."""
+        return completed(given, ("encoding",), "encoding", info)[0]
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """None: there is no network."""
+        return ()
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """None: there is no network."""
+        return ()
+
+    def genes(self, body: bodies.Body) -> int:
+        """Numbers of a creature with such a body."""
+        sizes = self.own.sizes
+        each = {"genes": 1, "per_joint": len(body.joints), "per_edge": len(body.edges)}
+        return sum(count * sizes.get(name, 0) for name, count in each.items())
+
+
 MOST_GENES = 65_536
 """Numbers of one creature."""
 
@@ -173,15 +206,18 @@ NAMES = ("cppn", "direct", "weights", "cppn-body")
 def kind(value: Any) -> Any:
     """The tag of a controller; one that names no encoding is a CPPN."""
     if isinstance(value, dict):
-        return value.get("encoding", "cppn")
-    return getattr(value, "encoding", None)
+        name = value.get("encoding", "cppn")
+    else:
+        name = getattr(value, "encoding", None)
+    return "own" if plugins.is_own(name) else name
 
 
 Controller = Annotated[
     Annotated[Control, Tag("cppn")]
     | Annotated[Direct, Tag("direct")]
     | Annotated[Weights, Tag("weights")]
-    | Annotated[Grown, Tag("cppn-body")],
+    | Annotated[Grown, Tag("cppn-body")]
+    | Annotated[SkipJsonSchema[OwnControl], Tag("own")],
     Discriminator(
         kind,
         custom_error_type="unknown_encoding",
@@ -200,6 +236,8 @@ def lengthening(control: Controller) -> float:
 
 def refuse_unfit(control: Controller, body: Body) -> None:
     """The body must be one that the encoding can change as it is asked to."""
+    if made_elsewhere(body):  # Whoever can make it looks.
+        return
     whole = shape(body)
     if isinstance(control, Grown) and body.builder != "chain":
         raise ValueError(
@@ -241,6 +279,8 @@ def genes(control: Controller, body: bodies.Body) -> int:
     """Length of a vector of genes; 0 where they are a network's."""
     if isinstance(control, Direct):
         return sum(control.parts(body).values())
+    if isinstance(control, OwnControl):
+        return control.genes(body)
     if isinstance(control, Weights):
         return sum((a + 1) * b for a, b in pairwise(control.sizes))
     return 0

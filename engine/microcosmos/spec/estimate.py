@@ -6,7 +6,7 @@ from math import ceil
 
 from ..bodies.unfolding import MOST as LAID_OUT
 from . import reverse
-from .body import shape
+from .body import about as shape
 from .encodings import Controller, Direct, Grown, Weights, genes
 from .evolution import Evolution
 from .experiments import Spec

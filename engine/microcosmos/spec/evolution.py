@@ -6,7 +6,7 @@ from typing import Generic, Self, TypeVar
 from pydantic import Field, model_validator
 
 from .base import Part
-from .body import Body, Chain
+from .body import Body, Chain, made_elsewhere, resolved
 from .control import Control, Genome
 from .coupling import Coupling
 from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
@@ -70,8 +70,9 @@ class Evolution(Part, Generic[Name, How]):
         """What is simulated for each creature."""
         return Scene(
             world=self.world,
-            body=self.body,
+            body=self.body if made_elsewhere(self.body) else resolved(self.body),
             coupling=self.coupling,
             control=self.control,
             task=self.task,
+            own=self.archive.own,
         )

@@ -7,11 +7,13 @@ from typing import Any, cast
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from ..plugins import Known
 from . import folding, gaits, neuroevolution, quality_diversity, refinement, scaling
 from .base import Part
 from .folding import Folding
 from .gaits import Gaits
 from .neuroevolution import Neuroevolution
+from .own import CONTEXT
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement
 from .scaling import Scaling
@@ -55,8 +57,10 @@ _ALL = (
 EXPERIMENTS = {experiment.name: experiment for experiment in _ALL}
 
 
-def parse(document: Mapping[str, Any]) -> Spec:
+def parse(document: Mapping[str, Any], known: Known | None = None) -> Spec:
     """The spec in a document, its `experiment` named.
+
+    `known` says what there is of one's own; else it is what this process has loaded.
 
     Raises `pydantic.ValidationError`, whose errors name each field, what was needed and
     what came.
@@ -70,4 +74,6 @@ def parse(document: Mapping[str, Any]) -> Spec:
         )
         details = InitErrorDetails(type=error, loc=("experiment",), input=name)
         raise ValidationError.from_exception_data("Spec", [details])
-    return TypeAdapter(cast(type[Spec], experiment.spec)).validate_python(document)
+    return TypeAdapter(cast(type[Spec], experiment.spec)).validate_python(
+        document, context={CONTEXT: known} if known else None
+    )

@@ -8,7 +8,8 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from .. import pictures
 from . import reverse
 from .base import Part, unit
-from .body import Body, Walk, shape
+from .body import Body, Walk, made_elsewhere, resolved
+from .body import about as shape
 from .coupling import Coupling
 from .scene import Fold, Scene
 from .search import Task
@@ -183,7 +184,7 @@ class Folding(Part):
         """What is simulated of each filament."""
         return Scene(
             world=self.world,
-            body=self.body,
+            body=self.body if made_elsewhere(self.body) else resolved(self.body),
             coupling=self.coupling,
             control=self.control,
             task=Task(steps=self.steps),

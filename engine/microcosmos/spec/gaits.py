@@ -1,13 +1,16 @@
 """The spec of a sweep of hand-made gaits over viscosity, and its presets."""
 
-from typing import Annotated, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
+from pydantic.json_schema import SkipJsonSchema
 
+from ..plugins import is_own
 from .base import Part, unit
-from .body import Known, Swimmer
+from .body import Body, Known, OwnBody, Swimmer, made_elsewhere, resolved
 from .coupling import Coupling
 from .fields import Steric
+from .own import OR_OWN, Own, version
 from .scene import Gait, Scene, refuse_too_large
 from .search import Task
 from .sources import PAPER, source
@@ -28,7 +31,7 @@ class Gaits(Part):
     """Five known swimmers, each by its own gait, at every viscosity."""
 
     experiment: Literal["gaits"] = "gaits"
-    swimmers: Annotated[tuple[Swimmer, ...], Field(min_length=1)] = Field(
+    swimmers: Annotated[tuple[Annotated[Swimmer, *OR_OWN], ...], Field(min_length=1)] = Field(
         default=get_args(Swimmer), json_schema_extra=source(PAPER)
     )
     """Who swims."""
@@ -64,6 +67,22 @@ class Gaits(Part):
     """Viscosity at which actuators have half of their strength, in the form `ours`."""
     steric: Steric | None = None
     """Repulsion between nodes; empty: none."""
+    own: SkipJsonSchema[dict[str, Own]] = Field(default={}, exclude_if=lambda own: not own)
+    """Versions of the gaits of one's own, by name."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def complete(cls, given: Any, info: ValidationInfo) -> Any:
+        """Gaits of one's own are told with their versions."""
+        swimmers = given.get("swimmers") if isinstance(given, dict) else None
+        names = [n for n in swimmers if is_own(n)] if isinstance(swimmers, list | tuple) else []
+        if not names:
+            return given
+        told = given.get("own") or {}
+        if not isinstance(told, dict):
+            raise ValueError(f"`own` must be an object with gaits by name, got {told!r:.80}")
+        found = {n: version(("gait",), "swimmers", n, told.get(n), info)[0] for n in names}
+        return {**given, "own": found}
 
     @model_validator(mode="after")
     def check(self) -> Self:
@@ -72,9 +91,8 @@ class Gaits(Part):
             if len(set(values)) < len(values):
                 raise ValueError(f"`{name}` must differ, got {list(values)}")
         for swimmer in self.swimmers:
-            refuse_too_large(
-                World(width=self.width, height=self.height), swimmer_body(swimmer), 0.1
-            )
+            place = World(width=self.width, height=self.height)
+            refuse_too_large(place, swimmer_body(swimmer, self.own.get(swimmer)), 0.1)
         return self
 
     @property
@@ -97,10 +115,15 @@ class Gaits(Part):
                     viscosity=viscosity,
                     steric=self.steric,
                 ),
-                "body": swimmer_body(swimmer),
+                "body": swimmer_body(swimmer, self.own.get(swimmer)),
                 "coupling": self.coupling(form),
                 "control": Gait.model_validate(
-                    {"swimmer": swimmer, "period": self.period, "ramp": self.ramp}
+                    {
+                        "swimmer": swimmer,
+                        "period": self.period,
+                        "ramp": self.ramp,
+                        "own": self.own.get(swimmer),
+                    }
                 ),
                 "task": Task(steps=self.period * self.cycles),
             }
@@ -113,9 +136,12 @@ class Gaits(Part):
         return Coupling(nu_c=self.nu_c if form == "ours" else None)
 
 
-def swimmer_body(swimmer: str) -> Known:
-    """The body of a known swimmer."""
-    return Known.model_validate({"builder": swimmer})
+def swimmer_body(swimmer: str, own: Own | None = None) -> Body:
+    """The body of a known swimmer, or of one of one's own."""
+    if own is None:
+        return Known.model_validate({"builder": swimmer})
+    body = OwnBody(builder=swimmer, own=own)
+    return body if made_elsewhere(body) else resolved(body)
 
 
 PRESETS = {

@@ -3,14 +3,25 @@
 from math import ceil
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic.json_schema import SkipJsonSchema
 
 from ..bodies.extent import reach
 from .base import Part, unit
-from .body import SUPPORT, Body, Chain, Swimmer, shape
+from .body import SUPPORT, Body, Chain, Swimmer, made_elsewhere, shape
 from .control import Control, Sight
 from .coupling import Coupling
-from .encodings import Controller, Direct, Grown, Weights, kind, lengthening, refuse_unfit
+from .encodings import (
+    Controller,
+    Direct,
+    Grown,
+    OwnControl,
+    Weights,
+    kind,
+    lengthening,
+    refuse_unfit,
+)
+from .own import OR_OWN, MaybeOwn, Own, completed, left_out
 from .search import Task
 from .world import World
 
@@ -18,12 +29,20 @@ from .world import World
 class Gait(Part):
     """A hand-made gait of one of the known swimmers."""
 
-    swimmer: Swimmer
+    swimmer: Annotated[Swimmer, *OR_OWN]
     """Whose gait."""
     period: int = Field(default=1200, ge=20, le=1_000_000, json_schema_extra=unit("steps"))
     """Steps of one stroke."""
     ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
     """Over how many periods the stroke grows from nothing to its full size; 0: at once."""
+    own: MaybeOwn = left_out()
+    """Which version of a gait of one's own it is."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def complete(cls, given: Any, info: ValidationInfo) -> Any:
+        """A gait of one's own is told with its version."""
+        return completed(given, ("gait",), "swimmer", info)[0]
 
 
 class Fold(Part):
@@ -54,10 +73,13 @@ class Scene(Part):
         | Annotated[Weights, Tag("weights")]
         | Annotated[Grown, Tag("cppn-body")]
         | Annotated[Gait, Tag("gait")]
-        | Annotated[Fold, Tag("fold")],
+        | Annotated[Fold, Tag("fold")]
+        | Annotated[SkipJsonSchema[OwnControl], Tag("own")],
         Discriminator(_kind),
     ] = Control()
     task: Task = Task()
+    own: SkipJsonSchema[dict[str, Own]] = Field(default={}, exclude_if=lambda own: not own)
+    """Versions of the measures of one's own that are recorded beside the usual ones."""
 
     @model_validator(mode="after")
     def check(self) -> Self:
@@ -68,6 +90,8 @@ class Scene(Part):
             refuse_misfit(self.world, self.body, self.control)
             return self
         refuse_too_large(self.world, self.body, 0.0)
+        if self.control.own:  # Whose body may stand there as the graph that it is.
+            return self
         if self.body.builder != self.control.swimmer:
             raise ValueError(
                 f"`body.builder` must be {self.control.swimmer!r} for its gait, "
@@ -84,6 +108,8 @@ def refuse_misfit(world: World, body: Body, control: Controller) -> None:
 
 def refuse_too_large(world: World, body: Body, stretch: float) -> None:
     """However it turns and unfolds, a stretched body and the delta's support must fit in."""
+    if made_elsewhere(body):  # Whoever can make it looks.
+        return
     longest = reach(shape(body))
     needed = ceil(longest * (1 + stretch) + SUPPORT)
     side = "width" if world.width <= world.height else "height"
@@ -97,7 +123,8 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
 def refuse_senseless(world: World, control: Controller | Gait | Fold, task: Task) -> None:
     """Energy must be there to be sensed or to count."""
     senses = isinstance(control, Sight) and control.sense_energy
-    if world.energy is None and (senses or task.fitness != "displacement"):
+    collects = task.own is None and task.fitness != "displacement"
+    if world.energy is None and (senses or collects):
         field = "control.sense_energy" if senses else "task.fitness"
         value = True if senses else task.fitness
         raise ValueError(f"`world.energy` must be there where `{field}` is {value!r}; got none")

@@ -3,12 +3,15 @@
 from math import prod
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
 from . import features
 from .base import LATER, Part, unit
 from .emitters import BY_SLOPES, GROWING, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
+from .own import OR_OWN, MaybeOwn, Own, completed, left_out
 from .sources import AGAIN, CVT, MAP_ELITES, PAPER, after, source
+
+Fitness = Literal["displacement", "energy", "displacement+energy"]
 
 
 class Task(Part):
@@ -16,7 +19,7 @@ class Task(Part):
 
     steps: int = Field(default=500, ge=10, le=1_000_000, json_schema_extra=unit("steps"))
     """Steps of the simulation."""
-    fitness: Literal["displacement", "energy", "displacement+energy"] = Field(
+    fitness: Annotated[Fitness, *OR_OWN] = Field(
         default="displacement", json_schema_extra=source(PAPER)
     )
     """Distance between the mean unwrapped node position at the end and at the start; energy
@@ -25,6 +28,14 @@ class Task(Part):
         default=1e-3, gt=0.0, le=1e3, json_schema_extra=unit("cells/energy")
     )
     """What a unit of collected energy is worth beside a cell of displacement."""
+    own: MaybeOwn = left_out()
+    """Which version of a fitness of one's own it is."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def complete(cls, given: Any, info: ValidationInfo) -> Any:
+        """A fitness of one's own is told with its version."""
+        return completed(given, ("fitness",), "fitness", info)[0]
 
 
 def _by_name(schema: dict[str, Any]) -> None:
@@ -42,7 +53,7 @@ def _end(schema: dict[str, Any]) -> None:
 class Descriptor(Part):
     """One axis of the archive."""
 
-    name: features.Name
+    name: Annotated[features.Name, *OR_OWN]
     """What is measured; ends and scale are the measure's own unless they are given."""
     low: float = Field(default=0.0, ge=-1e30, le=1e30, json_schema_extra=_end)
     """Lower end of the axis, in raw units; what is below counts in the first bin."""
@@ -53,14 +64,19 @@ class Descriptor(Part):
     scale: features.Scale = Field(default="linear", json_schema_extra=_by_name)
     """Whether bins are equally wide in the logarithm or in the raw value."""
 
+    own: MaybeOwn = left_out()
+    """Which version of a measure of one's own it is."""
+
     @model_validator(mode="before")
     @classmethod
-    def complete(cls, given: Any) -> Any:
+    def complete(cls, given: Any, info: ValidationInfo) -> Any:
         """What is left out is the measure's own."""
+        given, declared = completed(given, ("descriptor",), "name", info)
         known = isinstance(given, dict) and features.FEATURES.get(str(given.get("name")))
-        if not known:
+        usual = declared.axis if declared else known
+        if not usual:
             return given
-        own = {name: getattr(known, name) for name in ("low", "high", "scale")}
+        own = {name: getattr(usual, name) for name in ("low", "high", "scale")}
         return own | {name: value for name, value in given.items() if value is not None}
 
     @model_validator(mode="after")
@@ -91,6 +107,11 @@ class Archive(Part):
     and in place of their bins; none: the bins make a grid."""
     seed: int = Field(default=0, ge=0, lt=2**32)
     """Which of many tessellations that is."""
+
+    @property
+    def own(self) -> dict[str, Own]:
+        """Versions of the measures of one's own."""
+        return {axis.name: axis.own for axis in self.descriptors if axis.own}
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -1,0 +1,39 @@
+"""Modules of one's own, for the commands that compute."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .. import plugins
+from .app import app, console, fail
+
+Modules = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--module", help="A Python file with something of one's own; see docs/plugins.md."
+    ),
+]
+
+
+def load_modules(files: list[Path] | None) -> None:
+    """Load what installed packages name and what is given: the latter has to be sound."""
+    for failed in plugins.load_all(()):
+        console.print(f"{failed.module} is not loaded: {failed.reason}", style="yellow")
+    for file in files or ():
+        try:
+            plugins.load(file)
+        except ValueError as error:
+            fail(f"--module: {error}")
+
+
+@app.command("plugins")
+def show(module: Modules = None) -> None:
+    """What modules of one's own add: names, titles, versions."""
+    load_modules(module)
+    for plugin in plugins.loaded():
+        one = plugin.declaration
+        unit = f" in {one.unit}" if one.unit else ""
+        print(
+            f"{one.name}  {one.kind}  {one.title}{unit}  ({one.source[:12]}, {plugin.origin})"
+        )

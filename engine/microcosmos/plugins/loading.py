@@ -1,0 +1,142 @@
+"""Modules with something of one's own: from files, and from installed packages."""
+
+import importlib.util
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from . import registry
+from .declaration import NAME, Declaration
+from .declaring import MARK, Draft
+from .registry import Plugin
+
+GROUP = "microcosmos.plugins"
+"""The entry points by which installed packages name their modules."""
+
+
+@dataclass(frozen=True)
+class Unloaded:
+    """A module that could not be loaded, and why."""
+
+    module: str
+    reason: str
+
+
+def load(path: Path | str) -> tuple[Declaration, ...]:
+    """Run a module's file and take up what it declares, under the file's own name.
+
+    Raises `ValueError` where it is no module, declares nothing or has errors of its own.
+    """
+    file = Path(path).resolve()
+    if file.suffix != ".py" or not file.is_file():
+        raise ValueError(f"a module must be a Python file (.py), got {path}")
+    name = f"microcosmos_own_{file.stem}"
+    found = importlib.util.spec_from_file_location(name, file)
+    assert found is not None
+    assert found.loader is not None
+    module = importlib.util.module_from_spec(found)
+    sys.modules[name] = module  # Where annotations of its classes are looked up.
+    try:
+        found.loader.exec_module(module)
+    except BaseException as error:
+        del sys.modules[name]
+        if isinstance(error, KeyboardInterrupt):
+            raise
+        raise ValueError(f"{path} fails with {type(error).__name__}: {error}") from error
+    return load_module(module, file.stem)
+
+
+def load_module(module: ModuleType, namespace: str) -> tuple[Declaration, ...]:
+    """Take up what a module declares; `namespace` comes before its names."""
+    if not re.fullmatch(NAME, namespace):
+        raise ValueError(f"a module's name must be of a-z, 0-9 and _, got {namespace!r}")
+    file = str(module.__file__)
+    other = registry.origin_of(namespace)
+    if other not in (None, file):
+        raise ValueError(f"two modules are called {namespace!r}: {other} and {file}")
+    source = digest(Path(file))
+    found = [_plugin(*one, f"{namespace}.", source, file) for one in _declared(module)]
+    if not found:
+        raise ValueError(f"{file} declares nothing: it needs a @plugins.fitness or another")
+    names = [(one.declaration.kind, one.declaration.name) for one in found]
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise ValueError(f"{file} declares {twice[0][0]} {twice[0][1]!r} more than once")
+    registry.replace(namespace, found)
+    return tuple(one.declaration for one in found)
+
+
+def load_all(paths: Iterable[Path | str]) -> tuple[Unloaded, ...]:
+    """Load files, and what installed packages name: those that cannot be, and why."""
+    return tuple(
+        failed for load_one in (*_files(paths), *_installed()) if (failed := load_one())
+    )
+
+
+def digest(file: Path) -> str:
+    """SHA-256 of a module's source; of a package that of all its Python files."""
+    if file.name != "__init__.py":
+        return sha256(file.read_bytes()).hexdigest()
+    whole = sha256()
+    for part in sorted(file.parent.rglob("*.py")):
+        name = part.relative_to(file.parent).as_posix()
+        whole.update(f"{name}\0{sha256(part.read_bytes()).hexdigest()}\n".encode())
+    return whole.hexdigest()
+
+
+def _files(paths: Iterable[Path | str]) -> Iterator[Any]:
+    for path in paths:
+        yield lambda path=path: _tried(str(path), lambda: load(path))
+
+
+def _installed() -> Iterator[Any]:
+    for entry in sorted(entry_points(group=GROUP), key=lambda one: one.name):
+        yield lambda entry=entry: _tried(f"{entry.name} ({entry.value})", lambda: _load(entry))
+
+
+def _load(entry: EntryPoint) -> None:
+    module = entry.load()
+    if not isinstance(module, ModuleType):
+        raise ValueError(f"the entry point must name a module, got {type(module).__name__}")
+    load_module(module, entry.name)
+
+
+def _tried(module: str, load_one: Any) -> Unloaded | None:
+    """What a module of somebody's own does wrong must not end whoever loads it."""
+    try:
+        load_one()
+    except (Exception, SystemExit) as error:
+        own = isinstance(error, ValueError)
+        return Unloaded(module, str(error) if own else f"{type(error).__name__}: {error}")
+    return None
+
+
+def _declared(module: ModuleType) -> list[tuple[Draft, Any]]:
+    """Functions with a mark that were made in this module, in their order."""
+    found = [
+        one for one in vars(module).values() if isinstance(getattr(one, MARK, None), Draft)
+    ]
+    own = [one for one in dict.fromkeys(found) if one.__module__ == module.__name__]
+    return [(getattr(one, MARK), one) for one in own]
+
+
+def _plugin(draft: Draft, function: Any, prefix: str, source: str, origin: str) -> Plugin:
+    model = draft.settings
+    declaration = Declaration(
+        kind=draft.kind,
+        name=prefix + draft.name,
+        source=source,
+        title=draft.title,
+        unit=draft.unit,
+        about=" ".join((function.__doc__ or "").split("\n\n")[0].split()),
+        axis=draft.axis,
+        sizes=draft.sizes,
+        settings=model.model_json_schema() if model else None,
+        defaults=model().model_dump(mode="json") if model else {},
+    )
+    return Plugin(declaration, function, model, origin)

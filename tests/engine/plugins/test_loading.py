@@ -1,0 +1,140 @@
+"""What modules of one's own declare, and what is wrong with those that are not loaded."""
+
+import importlib.util
+import sys
+from hashlib import sha256
+from types import SimpleNamespace
+
+import pytest
+
+from microcosmos import plugins
+from microcosmos.plugins import loading, registry
+
+pytestmark = pytest.mark.fast
+
+HEAD = "from microcosmos import plugins\nfrom microcosmos.spec import Part\n"
+ONE = HEAD + '@plugins.fitness("far", title="Far")\ndef far(motion):\n    return motion\n'
+
+
+@pytest.fixture(autouse=True)
+def none_before(monkeypatch):
+    monkeypatch.setattr(registry, "_plugins", {})
+
+
+@pytest.fixture
+def write(tmp_path):
+    """A function that writes a module's file."""
+
+    def write(text, name="mine.py"):
+        (tmp_path / name).write_text(text)
+        return tmp_path / name
+
+    return write
+
+
+def test_a_file_is_loaded_under_its_name_with_its_hash(write):
+    file = write(ONE)
+    (one,) = plugins.load(file)
+    assert (one.kind, one.name, one.title) == ("fitness", "mine.far", "Far")
+    assert one.source == sha256(file.read_bytes()).hexdigest()
+    assert plugins.find(("fitness",), "mine.far", one.source)(7, settings={}) == 7
+
+
+def test_a_file_that_is_loaded_again_takes_the_place_of_what_it_was(write):
+    (first,) = plugins.load(write(ONE))
+    (second,) = plugins.load(write(ONE.replace("far", "near")))
+    assert [one.declaration for one in plugins.loaded()] == [second]
+    with pytest.raises(plugins.Missing, match="--module"):
+        plugins.find(("fitness",), "mine.far", first.source)
+    (third,) = plugins.load(write(ONE + "# Changed.\n"))
+    with pytest.raises(
+        plugins.Missing, match=f"{first.source[:12]}, got version {third.source[:12]}"
+    ):
+        plugins.find(("fitness",), "mine.far", first.source)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "declares nothing"),
+        ("1 / 0", "ZeroDivisionError: division by zero"),
+        ("import sys; sys.exit(3)", "SystemExit: 3"),
+        ("def (", "SyntaxError"),
+        (ONE + ONE.replace("def far", "def other"), "'mine.far' more than once"),
+        (ONE.replace('"far"', '"Far!"'), "`name` must be of a-z, 0-9 and _, got 'Far!'"),
+        (ONE.replace("motion)", ")"), "'far' must take 1 arguments"),
+        (
+            HEAD + "class S(Part):\n    a: int\n"
+            '@plugins.body("b", title="B", nodes=3, settings=S)\ndef b(s): ...',
+            "must all have defaults, got none for a",
+        ),
+        (
+            HEAD + '@plugins.body("b", title="B", nodes=3, settings=dict)\ndef b(s): ...',
+            "must be a `microcosmos.spec.Part`",
+        ),
+        (
+            HEAD + '@plugins.descriptor("d", title="D", low=0, high=1, scale="log10")\n'
+            "def d(m): ...",
+            "`low` must be above 0 where `scale` is log10, got 0",
+        ),
+        (HEAD + '@plugins.encoding("e", title="E")\ndef e(g, c): ...', "must be at least 1"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_with_a_module_is_said_and_ends_nobody(write, text, words):
+    file = write(text)
+    with pytest.raises(ValueError) as refused:  # noqa: PT011
+        plugins.load(file)
+    assert words in str(refused.value)
+    good = write(ONE, "good.py")
+    (failed,) = plugins.load_all([file, good])
+    assert (failed.module, words in failed.reason) == (str(file), True)
+    assert [one.declaration.name for one in plugins.loaded()] == ["good.far"]
+
+
+def test_two_modules_of_one_name_are_refused(write, tmp_path):
+    plugins.load(write(ONE))
+    (tmp_path / "other").mkdir()
+    with pytest.raises(ValueError, match="two modules are called 'mine'"):
+        plugins.load(write(ONE, "other/mine.py"))
+
+
+@pytest.mark.parametrize("name", ["mine.txt", "none.py"])
+def test_what_is_no_python_file_is_refused(write, name):
+    write(ONE, "mine.txt")
+    with pytest.raises(ValueError, match="must be a Python file"):
+        plugins.load(name)
+
+
+def test_an_installed_package_names_its_module_and_all_its_files_count(
+    write, tmp_path, monkeypatch
+):
+    (tmp_path / "swim").mkdir()
+    write(ONE, "swim/__init__.py")
+    write("x = 1", "swim/part.py")
+    found = importlib.util.spec_from_file_location("swim", tmp_path / "swim" / "__init__.py")
+
+    def entry():
+        module = importlib.util.module_from_spec(found)
+        monkeypatch.setitem(sys.modules, "swim", module)
+        found.loader.exec_module(module)
+        return module
+
+    entries = [SimpleNamespace(name="swim", value="swim", load=entry)]
+    broken = SimpleNamespace(name="bad", value="bad", load=lambda: 1 / 0)
+    monkeypatch.setattr(loading, "entry_points", lambda group: [broken, *entries])
+    (failed,) = plugins.load_all([])
+    assert (failed.module, failed.reason) == (
+        "bad (bad)",
+        "ZeroDivisionError: division by zero",
+    )
+    (one,) = plugins.loaded()
+    assert one.declaration.name == "swim.far"
+    write("x = 2", "swim/part.py")
+    plugins.load_all([])
+    assert plugins.loaded()[0].declaration.source != one.declaration.source
+
+
+def test_errors_of_a_function_are_named_as_its_own(write):
+    (one,) = plugins.load(write(ONE.replace("return motion", "return motion.missing")))
+    with pytest.raises(plugins.Broken, match=r"mine\.far .* failed with AttributeError"):
+        plugins.find(("fitness",), "mine.far", one.source)(7, settings={})
