@@ -13,8 +13,9 @@ from . import migrations, problems
 from .description import describe
 from .guard import Guard
 from .hub import Hub
+from .open import Discretion
 from .reconcile import reconciling
-from .routes import api, health, page
+from .routes import api, health, page, share_page
 from .services import Services, connect
 from .settings import Settings
 from .shutdown import told_to_stop
@@ -40,9 +41,10 @@ def create_app(services: Services) -> FastAPI:
     app.state.services = services
     problems.install(app)
     describe(app)
+    app.add_middleware(Discretion)
     token = services.settings.token
     app.add_middleware(Guard, token=token.get_secret_value() if token else None)
-    for router in (api, health.router, page.router):
+    for router in (api, health.router, share_page.router, page.router):
         app.include_router(router)
     return app
 

@@ -8,6 +8,7 @@ from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from .open import public
 from .problems import answer
 from .schemas import Problem
 from .settings import LOOPBACK
@@ -47,7 +48,8 @@ class Guard:
         return None
 
     def _unknown(self, request: HTTPConnection) -> Problem | None:
-        if not request.url.path.startswith("/api/"):
+        path = request.url.path
+        if not path.startswith("/api/") or public(request.scope["method"], path):
             return None
         scheme, _, sent = request.headers.get("authorization", "").partition(" ")
         given = sent if scheme.lower() == "bearer" else request.cookies.get(COOKIE, "")

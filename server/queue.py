@@ -15,11 +15,11 @@ from rq.registry import clean_registries
 from rq.results import Result
 from rq.serializers import JSONSerializer
 
-from .models import AUDIT, REPLAY
+from .models import AUDIT, MEASUREMENT, REPLAY
 
 EVOLVE = "worker.jobs.evolve"
 RENDER = "worker.jobs.render"
-TIMEOUTS = {AUDIT: 3600}
+TIMEOUTS = {AUDIT: 3600, MEASUREMENT: 3600}
 RENDER_SECONDS = 600
 """How long a rendering may take, those of `TIMEOUTS` aside."""
 FAILURE_KEPT = 60
@@ -56,22 +56,27 @@ class Jobs:
         )
 
     def render(
-        self, creature: str, kind: str = REPLAY, meta: dict[str, Any] | None = None
+        self,
+        creature: str,
+        kind: str = REPLAY,
+        meta: dict[str, Any] | None = None,
+        *,
+        patient: bool = False,
     ) -> None:
         """Ask for a rendering to be made.
 
-        Replays come first: somebody waits to watch. Audits take minutes, and have a queue of
-        their own.
+        Replays come first, unless who asks is `patient`: somebody waits to watch. What takes
+        minutes has a queue of its own.
         """
         job_id = self.rendering_id(creature, kind)
         self.forget(job_id)
-        queue = self.audits if kind == AUDIT else self.renderings
+        queue = self.audits if kind in TIMEOUTS else self.renderings
         queue.enqueue(
             RENDER,
             creature,
             kind,
             job_id=job_id,
-            at_front=kind == REPLAY,
+            at_front=kind == REPLAY and not patient,
             job_timeout=TIMEOUTS.get(kind, RENDER_SECONDS),
             result_ttl=0,
             failure_ttl=FAILURE_KEPT,

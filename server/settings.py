@@ -32,6 +32,8 @@ class Settings(BaseSettings):
         default=8000, ge=1, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
     )
     token: SecretStr | None = None
+    public_url: str = Field(default="", pattern=r"^(https?://[^\s/]+(/\S*)?)?$")
+    """How the outside reaches the server, for links that are shared. Empty: as it is asked."""
     workers: int = Field(
         default=1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
     )

@@ -19,7 +19,7 @@ from .naming import canonical
 FORMAT = "microcosmos-creature-hdf5/1"
 
 BODY = ("positions", "edges", "joints", "rest_length", "rest_angle", "stretch", "shear", "bend")
-PARTS = ("measured", "provenance", "licence")
+PARTS = ("measured", "provenance", "licence", "credit")
 
 
 def dump(file: Mapping[str, Any]) -> bytes:
@@ -50,7 +50,7 @@ def load(data: bytes) -> dict[str, Any]:
             identity = json.loads(bytes(file["identity"][()]))  # pyright: ignore[reportIndexIssue, reportArgumentType]
     except OSError as error:
         raise ValueError(f"a creature's HDF5 file must be HDF5: {error}") from error
-    parts = {part: json.loads(told[part]) for part in PARTS}
+    parts = {part: json.loads(told[part]) for part in PARTS if part in told}
     return parse({"identity": identity, "sha256": told["sha256"], **parts})
 
 
