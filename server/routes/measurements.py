@@ -1,18 +1,21 @@
 """Whether a creature does here what its file says: measured again when somebody asks."""
 
+from typing import Any
+
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
 from .. import renderings
 from ..deps import CreatureDep, ServicesDep, SessionDep
-from ..models import MEASUREMENT, Creature
+from ..models import MEASUREMENT
 from ..problems import Refused
 from ..schemas import Measurement, Rendering
-from ..services import Services
 from .renderings import kept, ordered
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
-UNDERWAY = {202: {"model": Rendering}}
+Answers = dict[int | str, dict[str, Any]]
+UNDERWAY: Answers = {202: {"model": Rendering}}
+NEVER: Answers = {204: {"description": "Nobody has had it measured here"}}
 
 
 @router.post("/measure", status_code=202)
@@ -27,18 +30,12 @@ def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
     return Rendering()
 
 
-@router.get("/measurement", responses={200: {"model": Measurement}, **UNDERWAY})
+@router.get("/measurement", responses={200: {"model": Measurement}, **UNDERWAY, **NEVER})
 def read_measurement(
     request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
 ) -> Response:
-    """What came of it; 202 while it is measured, 404 where nobody has asked for it."""
-    found = kept(request, row, session, services, MEASUREMENT)
-    return found or _underway(services, row)
-
-
-def _underway(services: Services, row: Creature) -> Response:
+    """What came of it; 202 while it is measured, 204 where nobody has asked for it."""
+    if found := kept(request, row, session, services, MEASUREMENT):
+        return found
     job = services.jobs.find(services.jobs.rendering_id(row.sha256, MEASUREMENT))
-    if job is None:
-        detail = f"Nobody has had it measured here; POST /api/v1/creatures/{row.sha256}/measure"
-        raise Refused(404, "Not measured here", f"{detail} does.")
-    return ordered(services, row.sha256, MEASUREMENT)
+    return ordered(services, row.sha256, MEASUREMENT) if job else Response(status_code=204)

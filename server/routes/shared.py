@@ -165,6 +165,8 @@ def read_shared_rendering(
 ) -> Response:
     """A film, a picture or a measurement that its owner has had made."""
     there = of_creature.kept(request, row, session, services, kind) if kind in KEPT else None
+    if there is None and kind == MEASUREMENT:
+        return Response(status_code=204)  # As where it was not shared.
     if there is None:
         raise Refused(404, "Not found", f"Nothing was made of it as {kind!r:.20}.")
     return there

@@ -43,9 +43,9 @@ def publish(
     """Publish a creature or an archive. What is live already is answered again, with 200."""
     with services.sessions.write.begin() as session:
         share, new = shares.publish(session, sent)
-        if new and share.run_id:
-            published.keep(session, services.artifacts, share)
         read = told(request, session, share)
+    if share.run_id:
+        published.keep(services, share)
     _prepare(services, share.cover)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/shares/{share.slug}"

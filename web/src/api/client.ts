@@ -226,7 +226,7 @@ export function measure(sha: string) {
 export async function readMeasurement(sha: string): Promise<Measurement | "never" | null> {
   const asked = client.GET(`${ROOT}/creatures/{sha}/measurement`, { params: { path: { sha } } });
   const { status } = (await asked).response;
-  if (status === 404) return "never";
+  if (status === 204) return "never";
   const found = (await success(asked)) as Measurement;
   return status === 202 ? null : found;
 }

@@ -215,7 +215,7 @@ export interface paths {
         };
         /**
          * Read Measurement
-         * @description What came of it; 202 while it is measured, 404 where nobody has asked for it.
+         * @description What came of it; 202 while it is measured, 204 where nobody has asked for it.
          */
         get: operations["read_measurement_api_v1_creatures__sha__measurement_get"];
         put?: never;
@@ -2282,6 +2282,13 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Rendering"];
                 };
+            };
+            /** @description Nobody has had it measured here */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {
