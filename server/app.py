@@ -11,11 +11,12 @@ from microcosmos.version import VERSION
 
 from . import migrations, problems, tokens
 from .description import describe
+from .discretion import Discretion
 from .guard import Guard
 from .hub import Hub
 from .readers import quarantine
 from .reconcile import reconciling
-from .routes import api, health, page
+from .routes import api, health, page, share_page
 from .services import Services, connect
 from .settings import Settings
 from .shutdown import told_to_stop
@@ -40,8 +41,9 @@ def create_app(services: Services) -> FastAPI:
     app.state.services = services
     problems.install(app)
     describe(app)
+    app.add_middleware(Discretion)
     app.add_middleware(Guard, services=services)
-    for router in (api, health.router, page.router):
+    for router in (api, health.router, share_page.router, page.router):
         app.include_router(router)
     return app
 

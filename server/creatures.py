@@ -1,14 +1,23 @@
 """Creatures between the database and the files that people share."""
 
 import json
+from collections.abc import Sequence
+from operator import itemgetter
 from typing import Any
 
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from microcosmos.archive import creature
+from microcosmos.archive import creature, kin
 
+from . import lineage
 from .models import Creature
 from .records import creature_columns, insert_missing, link
+
+FARTHEST = 32
+"""Generations of ancestors that travel with a creature."""
+ANCESTRY_BYTES = 3 << 20
+"""Of their identities: a document can be sent where it is to be imported."""
 
 
 def document(row: Creature) -> dict[str, Any]:
@@ -24,7 +33,29 @@ def document(row: Creature) -> dict[str, Any]:
         "measured": row.measured,
         "provenance": provenance,
         "licence": row.licence,
+        "credit": row.credit,
     }
+
+
+def with_ancestors(session: Session, row: Creature) -> dict[str, Any]:
+    """The creature file with those of its ancestors that are kept, the nearest first."""
+    found = lineage.ancestors(session, row, FARTHEST).items
+    names = [relative.creature for relative in found if relative.kept]
+    rows = session.scalars(select(Creature).where(Creature.sha256.in_(names)))
+    by_name = {row.sha256: row for row in rows}
+    taken, room = [], ANCESTRY_BYTES
+    for name in names:
+        room -= len(by_name[name].identity)
+        if room < 0:
+            break
+        taken.append(document(by_name[name]))
+    return kin.document(document(row), taken)
+
+
+def add_all(session: Session, files: Sequence[dict[str, Any]]) -> None:
+    """Keep several: in one order, so that two such requests cannot wait for each other."""
+    for file in sorted(files, key=itemgetter("sha256")):
+        add(session, file)
 
 
 def add(session: Session, file: dict[str, Any]) -> bool:
@@ -37,6 +68,7 @@ def add(session: Session, file: dict[str, Any]) -> bool:
         file["measured"],
         file["provenance"],
         file["licence"],
+        file["credit"],
     )
     insert_missing(session, Creature, [row])
     link(session, [file["sha256"]])

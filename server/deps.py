@@ -39,9 +39,10 @@ def run(run_id: UUID, session: SessionDep) -> Run:
     return find_run(session, run_id)
 
 
-def creature(
-    sha: Annotated[str, Path(pattern="^[0-9a-f]{64}$")], session: SessionDep
-) -> Creature:
+Sha = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
+
+
+def creature(sha: Sha, session: SessionDep) -> Creature:
     found = session.get(Creature, sha)
     if found is None:
         raise Refused(404, "Not found", f"No creature has the name {sha}.")

@@ -50,6 +50,8 @@ def _relatives(session: Session, names: list[str], distance: int) -> dict[str, R
         Creature.operator,
         Creature.measured,
         Creature.provenance,
+        Creature.licence,
+        Creature.credit,
     )
     found = session.execute(select(*columns).where(Creature.sha256.in_(names)))
     return {
@@ -61,8 +63,10 @@ def _relatives(session: Session, names: list[str], distance: int) -> dict[str, R
             operator=operator,
             generation=(origin or {}).get("generation"),
             fitness=(measured or {}).get("fitness"),
+            licence=licence,
+            credit=credit,
         )
-        for name, parents, operator, measured, origin in found
+        for name, parents, operator, measured, origin, licence, credit in found
     }
 
 

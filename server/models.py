@@ -32,7 +32,10 @@ PAUSE, CANCEL = "pause", "cancel"
 NEEDED, GIVEN = "needed", "given"
 CHECKPOINT = "checkpoint"
 REPLAY, AUDIT, STRIP, GIF, MP4 = "replay", "audit", "strip.png", "film.gif", "film.mp4"
+PREVIEW, MEASUREMENT = "preview.png", "measurement"
 """What can be made of a creature, under the names that the API has for it."""
+PUBLISHED = "published"
+"""An archive file as it was when it was shared."""
 
 
 class Sha256(TypeDecorator[str]):
@@ -247,6 +250,8 @@ class Creature(Base):
     provenance: Mapped[dict[str, Any] | None]
     """What else is known of its origin: generation, seed, version."""
     licence: Mapped[str] = mapped_column(Text)
+    credit: Mapped[list[str]] = mapped_column(default=list)
+    """Who is to be named wherever it is shown."""
     created_at: Mapped[datetime] = mapped_column(default=clock())
 
 
@@ -281,6 +286,32 @@ class Artifact(Base):
     size: Mapped[int] = mapped_column(BigInteger)
     sha256: Mapped[str] = mapped_column(Sha256)
     created_at: Mapped[datetime] = mapped_column(default=clock())
+
+
+class Share(Owned, Base):
+    """What anybody may see who has its address, until it is revoked or expires."""
+
+    __tablename__ = "shares"
+    __table_args__ = (
+        CheckConstraint("(creature IS NULL) <> (run_id IS NULL)", name="one_thing"),
+        Index(None, "created_at", "slug"),
+    )
+
+    slug: Mapped[str] = mapped_column(String(43), primary_key=True)
+    """Random: whoever was not told it does not find it."""
+    creature: Mapped[str | None] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
+    run_id: Mapped[UUID | None] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    generation: Mapped[int | None]
+    """The last one of the run that is seen: what comes later was not shared."""
+    cover: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
+    """Whose picture stands for it: the creature itself, or the archive's best."""
+    title: Mapped[str] = mapped_column(Text)
+    credit: Mapped[list[str]]
+    licence: Mapped[str] = mapped_column(Text)
+    listed: Mapped[bool]
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+    expires_at: Mapped[datetime | None]
+    revoked_at: Mapped[datetime | None]
 
 
 class Entry(Base):

@@ -8,7 +8,7 @@ from typing import Any
 from starlette.routing import compile_path
 
 from .caller import ADMIN, READ, WRITE
-from .models import Run, Sweep
+from .models import Run, Share, Sweep
 
 PUBLIC, OWNER = "public", "owner"
 """Beside the scopes: no token at all, and `write` by whoever it belongs to."""
@@ -60,7 +60,7 @@ NEEDS = {
     "DELETE /session": PUBLIC,
 }
 
-OWNED: dict[str, type[Any]] = {"run_id": Run, "sweep_id": Sweep}
+OWNED: dict[str, type[Any]] = {"run_id": Run, "sweep_id": Sweep, "slug": Share}
 """What has an `owner`, by the parameter of a path that names it."""
 
 

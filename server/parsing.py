@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from microcosmos.archive import creature, creature_h5
+from microcosmos.archive import creature_h5, kin
 from microcosmos.archive.creature import CreatureError
 
 from . import problems, uploads
@@ -16,9 +16,10 @@ HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
 def creature_file(body: bytes) -> dict[str, Any]:
-    """The creature file in some bytes, checked; `Refused` says why there is none."""
+    """The creature file in some bytes, checked, with those of its `ancestors`, as few as
+    there may be; `Refused` says why there is none."""
     if not body.startswith(HDF5):
-        return creature.parse(uploads.mapping(uploads.parse(body)))
+        return kin.document(*kin.split(uploads.mapping(uploads.parse(body))))
     try:
         file = creature_h5.load(body)
     except CreatureError:
@@ -26,7 +27,7 @@ def creature_file(body: bytes) -> dict[str, Any]:
     except ValueError as error:
         raise Refused(422, "Not a creature file", f"{error}.") from error
     uploads.refuse_unkeepable(file)
-    return file
+    return kin.document(file, [])
 
 
 def answer(body: bytes) -> bytes:

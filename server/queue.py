@@ -18,13 +18,13 @@ from rq.results import Result
 from rq.serializers import JSONSerializer
 from rq.utils import as_text
 
-from .models import AUDIT, REPLAY, Run
+from .models import AUDIT, MEASUREMENT, REPLAY, Run
 
 EVOLVE = "worker.jobs.evolve"
 RENDER = "worker.jobs.render"
 OWN = "-own-"
 """Begins the second part of names of queues that only some workers listen to."""
-TIMEOUTS = {AUDIT: 3600}
+TIMEOUTS = {AUDIT: 3600, MEASUREMENT: 3600}
 RENDER_SECONDS = 600
 """How long a rendering may take, those of `TIMEOUTS` aside."""
 KEPT: Any = {"result_ttl": 0, "failure_ttl": 3600}
@@ -77,22 +77,27 @@ class Jobs:
             queue.enqueue_many(some)
 
     def render(
-        self, creature: str, kind: str = REPLAY, meta: dict[str, Any] | None = None
+        self,
+        creature: str,
+        kind: str = REPLAY,
+        meta: dict[str, Any] | None = None,
+        *,
+        patient: bool = False,
     ) -> None:
         """Ask for a rendering to be made.
 
-        Replays come first: somebody waits to watch. Audits take minutes, and have a queue of
-        their own.
+        Replays come first, unless who asks is `patient`: somebody waits to watch. What takes
+        minutes has a queue of its own.
         """
         job_id = self.rendering_id(creature, kind)
         self.forget(job_id)
-        queue = self.audits if kind == AUDIT else self.renderings
+        queue = self.audits if kind in TIMEOUTS else self.renderings
         queue.enqueue(
             RENDER,
             creature,
             kind,
             job_id=job_id,
-            at_front=kind == REPLAY,
+            at_front=kind == REPLAY and not patient,
             job_timeout=TIMEOUTS.get(kind, RENDER_SECONDS),
             result_ttl=0,
             failure_ttl=FAILURE_KEPT,

@@ -109,6 +109,7 @@ def creature_columns(
     measured: Mapping[str, Any] | None,
     provenance: Mapping[str, Any] | None,
     licence: str,
+    credit: Sequence[str] = (),
 ) -> dict[str, Any]:
     """A creature's row; lineage has columns of its own."""
     origin = dict(provenance) if provenance else {}
@@ -120,6 +121,7 @@ def creature_columns(
         "measured": dict(measured) if measured else None,
         "provenance": origin or None,
         "licence": licence,
+        "credit": list(credit),
     }
 
 

@@ -19,6 +19,8 @@ REFUSAL = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
 """Before the words in which the engine refuses a creature; other errors say what they are."""
 VERSIONS = {REPLAY: REPLAY_VERSION}
 """Of formats that have changed: what was kept in an earlier one counts as not there."""
+STRANGERS = 8
+"""Renderings that may wait before strangers' orders are put off."""
 UNDERWAY = (JobStatus.QUEUED, JobStatus.STARTED, JobStatus.DEFERRED, JobStatus.SCHEDULED)
 
 
@@ -32,8 +34,13 @@ def find(session: Session, creature: str, kind: str = REPLAY) -> Artifact | None
     return found if found and found.number == VERSIONS.get(kind) else None
 
 
-def order(services: Services, creature: str, kind: str = REPLAY) -> None:
-    """Have a rendering made, once; `RenderingFailed` says why the last try gave none."""
+def order(
+    services: Services, creature: str, kind: str = REPLAY, *, patient: bool = False
+) -> None:
+    """Have a rendering made, once; `RenderingFailed` says why the last try gave none.
+
+    Who is `patient` waits behind everybody else, and asks again where many wait already.
+    """
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     status = job.get_status(refresh=False) if job else None
     if status in UNDERWAY:
@@ -42,7 +49,21 @@ def order(services: Services, creature: str, kind: str = REPLAY) -> None:
         result = job.latest_result()
         text = (result.exc_string if result else None) or "the renderer ended without a word"
         raise RenderingFailed(REFUSAL.sub("", _reason(text)))
-    services.jobs.render(creature, kind)
+    if not (patient and services.jobs.renderings.count >= STRANGERS):
+        services.jobs.render(creature, kind, patient=patient)
+
+
+def underway(services: Services, creature: str, kind: str) -> bool:
+    """Whether a rendering was ordered and is not there yet."""
+    job = services.jobs.find(services.jobs.rendering_id(creature, kind))
+    return job is not None and job.get_status(refresh=False) in UNDERWAY
+
+
+def forget(services: Services, creature: str, kind: str) -> None:
+    """Have a rendering that is kept made anew, the next time that it is ordered."""
+    mine = (Artifact.creature == creature) & (Artifact.kind == kind)
+    with services.sessions.write.begin() as session:
+        session.execute(delete(Artifact).where(mine))
 
 
 def _reason(traceback: str) -> str:

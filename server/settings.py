@@ -35,6 +35,8 @@ class Settings(BaseSettings):
     """An admin's, beside those in the database."""
     auth: Literal["local", "required"] = "local"
     """Who needs a token on loopback: nobody, or everybody, as it is beyond loopback."""
+    public_url: str = Field(default="", pattern=r"^(https?://[^\s/]+(/\S*)?)?$")
+    """How the outside reaches the server, for links that are shared. Empty: as it is asked."""
     workers: int = Field(
         default=1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
     )

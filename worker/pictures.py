@@ -5,13 +5,19 @@ from collections.abc import Callable
 
 from microcosmos import render
 from microcosmos.render.movie import gif, mp4
+from microcosmos.render.preview import preview
 from microcosmos.render.reading import Replay, read_replay
 from microcosmos.render.strip import strip
 from server import renderings
-from server.models import AUDIT, GIF, MP4, REPLAY, STRIP
+from server.models import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
 from server.services import Services
 
-PICTURES: dict[str, Callable[[Replay], bytes]] = {STRIP: strip, GIF: gif, MP4: mp4}
+PICTURES: dict[str, Callable[[Replay], bytes]] = {
+    STRIP: strip,
+    PREVIEW: preview,
+    GIF: gif,
+    MP4: mp4,
+}
 
 
 def make(services: Services, creature: str, kind: str) -> bytes:
@@ -21,9 +27,11 @@ def make(services: Services, creature: str, kind: str) -> bytes:
     file = renderings.creature(services, creature)
     if kind == AUDIT:
         return json.dumps(render.audit(file), allow_nan=False).encode()
+    if kind == MEASUREMENT:
+        return json.dumps(render.measurement(file), allow_nan=False).encode()
     if kind == REPLAY:
         return render.record(file)
-    known = ", ".join((REPLAY, AUDIT, *PICTURES))
+    known = ", ".join((REPLAY, AUDIT, MEASUREMENT, *PICTURES))
     raise ValueError(f"`kind` of a rendering must be one of {known}; got {kind!r}")
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
-from sqlalchemy import Select, func, select
+from sqlalchemy import ColumnElement, Select, and_, func, select
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
@@ -86,7 +86,7 @@ def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> C
 
 def _refuse_too_long(session: Session, run: Run) -> None:
     """A history is sent whole, and has to find room in a page."""
-    mine = select(func.count()).select_from(Elite).where(Elite.run_id == run.id)
+    mine = select(func.count()).select_from(Elite).where(_until_now(run))
     entries = session.execute(mine).scalar_one()
     if entries > HISTORY_ENTRIES:
         detail = (
@@ -127,10 +127,15 @@ def _refuse_without(run: Run) -> None:
 
 
 def _all(run: Run, names: Sequence[str]) -> Select[*tuple[Any, ...]]:
-    """A run's elites, past ones too, and their features by name."""
+    """A run's elites up to its generation, past ones too, and their features by name."""
     features = [of_elites.column(name) for name in names]
-    statement = select(*COLUMNS, *features).where(Elite.run_id == run.id)
+    statement = select(*COLUMNS, *features).where(_until_now(run))
     return statement.join(Creature, Creature.sha256 == Elite.creature) if names else statement
+
+
+def _until_now(run: Run) -> ColumnElement[bool]:
+    """One that was shared is seen as it was, though it may have gone on."""
+    return and_(Elite.run_id == run.id, Elite.generation <= run.generation)
 
 
 def _now(run: Run, as_of: int, names: Sequence[str]) -> Select[*tuple[Any, ...]]:
@@ -151,7 +156,7 @@ def download_archive(
 ) -> Response:
     """The last checkpoint's file; of a run without an archive it holds the table."""
     artifact = _checkpoint(session, run)
-    headers = {**_attachment(run, "h5"), "Cache-Control": "no-cache"}
+    headers = {**attachment(run, "h5"), "Cache-Control": "no-cache"}
     return ranges.file(request, services.artifacts, artifact, headers)
 
 
@@ -162,7 +167,7 @@ def download_table(run: RunDep, session: SessionDep, services: ServicesDep) -> R
     """The last checkpoint's archive in the columns of pyribs."""
     _refuse_without(run)
     table = export.csv(services.artifacts.read(_checkpoint(session, run).path))
-    return Response(table, headers=_attachment(run, "csv"), media_type="text/csv")
+    return Response(table, headers=attachment(run, "csv"), media_type="text/csv")
 
 
 def _checkpoint(session: Session, run: Run) -> Artifact:
@@ -173,7 +178,7 @@ def _checkpoint(session: Session, run: Run) -> Artifact:
     return artifact
 
 
-def _attachment(run: Run, ending: str) -> dict[str, str]:
+def attachment(run: Run, ending: str) -> dict[str, str]:
     kind = "archive" if of_elites.searched(run) else run.experiment
     name = f"{kind}-{str(run.id)[:8]}.{ending}"
     return {"Content-Disposition": f'attachment; filename="{name}"'}

@@ -10,6 +10,7 @@ from microcosmos.archive import creature, creature_h5
 
 from .. import creatures, lineage
 from ..deps import CreatureDep, ServicesDep, SessionDep
+from ..models import Creature
 from ..readers import quarantine
 from ..schemas import Ancestors, Children, CreatureName
 from ..uploads import limited
@@ -37,16 +38,31 @@ async def file_sent(request: Request) -> dict[str, Any]:
 
 
 @router.get("/{sha}", responses={200: {"model": dict[str, Any]}})
-def read_creature(request: Request, row: CreatureDep, download: bool = False) -> Response:
-    """The creature file."""
+def read_creature(
+    request: Request,
+    row: CreatureDep,
+    session: SessionDep,
+    download: bool = False,
+    ancestors: bool = False,
+) -> Response:
+    """The creature file; with `ancestors` those that are kept of them come along."""
+    if ancestors:
+        whole = creatures.with_ancestors(session, row)
+        headers = named(row) if download else {}
+        return JSONResponse(whole, headers={"Cache-Control": "no-cache", **headers})
     etag = f'"{row.sha256}"'
     headers = {"Cache-Control": FOR_EVER, "ETag": etag}
     if request.headers.get("if-none-match") == etag:
         return Response(status_code=304, headers=headers)
     if download:
-        name = f"creature-{row.sha256[:12]}.json"
-        headers["Content-Disposition"] = f'attachment; filename="{name}"'
+        headers |= named(row)
     return JSONResponse(creatures.document(row), headers=headers)
+
+
+def named(row: Creature) -> dict[str, str]:
+    """How the file is called that somebody keeps."""
+    name = f"creature-{row.sha256[:12]}.json"
+    return {"Content-Disposition": f'attachment; filename="{name}"'}
 
 
 @router.get(
@@ -89,9 +105,14 @@ def import_creature(
     services: ServicesDep,
     response: Response,
 ) -> CreatureName:
-    """Keep a creature file, JSON or HDF5; its hash is verified. 200 where it is known."""
+    """Keep a creature file, JSON or HDF5; its hash is verified. 200 where it is known.
+
+    Files of its ancestors, listed in `ancestors`, are verified and kept likewise.
+    """
+    ancestors = file.pop("ancestors")
     with services.sessions.write.begin() as session:
-        new = creatures.add(session, file)
+        new = session.get(Creature, file["sha256"]) is None
+        creatures.add_all(session, [file, *ancestors])
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
     return CreatureName(creature=file["sha256"])

@@ -27,7 +27,7 @@ def read_generations(
     """
     names = [name for name in Curves.model_fields if name != "summary"]
     statement = select(*(getattr(Generation, name) for name in names)).where(
-        Generation.run_id == run.id
+        Generation.run_id == run.id, Generation.generation <= run.generation
     )
     if points:
         statement = statement.where(Generation.generation.in_(evenly(run.generation, points)))

@@ -5,10 +5,11 @@ from typing import Any
 
 from fastapi import APIRouter, Request
 from fastapi.responses import JSONResponse, Response
+from sqlalchemy.orm import Session
 
 from .. import motions, ranges, renderings
 from ..deps import CreatureDep, ServicesDep, SessionDep
-from ..models import AUDIT, GIF, MP4, REPLAY, STRIP
+from ..models import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP, Creature
 from ..problems import Refused
 from ..queue import FAILURE_KEPT
 from ..schemas import Rendering
@@ -18,10 +19,14 @@ MEDIA_TYPES = {
     REPLAY: "application/octet-stream",
     AUDIT: "application/json",
     STRIP: "image/png",
+    PREVIEW: "image/png",
     GIF: "image/gif",
     MP4: "video/mp4",
+    MEASUREMENT: "application/json",
 }
-WORDS = {AUDIT: "audit", STRIP: "picture", GIF: "film", MP4: "film"}
+ON_SIGHT = (REPLAY, AUDIT, STRIP, PREVIEW, GIF, MP4)
+"""What is made as soon as somebody wants to see it."""
+WORDS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
 
@@ -30,23 +35,30 @@ def _reader(kind: str) -> Callable[..., Response]:
     def read(
         request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
     ) -> Response:
-        artifact = renderings.find(session, row.sha256, kind)
-        if artifact:
-            headers = {"Cache-Control": "no-cache", **_named(row.sha256, kind)}
-            return ranges.file(
-                request, services.artifacts, artifact, headers, MEDIA_TYPES[kind]
-            )
-        return _ordered(services, row.sha256, kind)
+        return kept(request, row, session, services, kind) or ordered(
+            services, row.sha256, kind
+        )
 
     read.__name__ = f"read_{kind.replace('.', '_')}"
     read.__doc__ = f"The {WORDS.get(kind, kind)}, or 202 while it is made."
     return read
 
 
-def _ordered(services: Services, sha: str, kind: str) -> Response:
+def kept(
+    request: Request, row: Creature, session: Session, services: Services, kind: str
+) -> Response | None:
+    """A rendering that is there already."""
+    artifact = renderings.find(session, row.sha256, kind)
+    if artifact is None:
+        return None
+    headers = {"Cache-Control": "no-cache", **_named(row.sha256, kind)}
+    return ranges.file(request, services.artifacts, artifact, headers, MEDIA_TYPES[kind])
+
+
+def ordered(services: Services, sha: str, kind: str, *, patient: bool = False) -> Response:
     """Says that a rendering is being made, or why it cannot be."""
     try:
-        renderings.order(services, sha, kind)
+        renderings.order(services, sha, kind, patient=patient)
     except renderings.RenderingFailed as error:
         made = f"The {WORDS.get(kind, kind)} could not be made"
         detail = f"{made}: {error}. It can be tried again in a minute."
@@ -57,15 +69,15 @@ def _ordered(services: Services, sha: str, kind: str) -> Response:
 
 def _named(sha: str, kind: str) -> dict[str, str]:
     """How a file is called that somebody keeps."""
-    if kind in (REPLAY, AUDIT):
+    if kind in (REPLAY, AUDIT, MEASUREMENT):
         return {}
     name = f"creature-{sha[:12]}.{kind.rpartition('.')[2]}"
     return {"Content-Disposition": f'inline; filename="{name}"'}
 
 
-for kind, media_type in MEDIA_TYPES.items():
+for kind in ON_SIGHT:
     answers: dict[int | str, dict[str, Any]] = {
-        200: {"content": {media_type: {}}},
+        200: {"content": {MEDIA_TYPES[kind]: {}}},
         202: {"model": Rendering},
     }
     router.get(f"/{kind}", response_class=Response, responses=answers)(_reader(kind))
@@ -80,9 +92,15 @@ def read_motion(
     request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
 ) -> Response:
     """The body's motion alone, of the same recording as the replay; or 202 while it is made."""
+    return kept_motion(request, row, session, services) or ordered(services, row.sha256, REPLAY)
+
+
+def kept_motion(
+    request: Request, row: Creature, session: Session, services: Services
+) -> Response | None:
     replay = renderings.find(session, row.sha256, REPLAY)
-    if not replay:
-        return _ordered(services, row.sha256, REPLAY)
+    if replay is None:
+        return None
     headers = {"Cache-Control": "no-cache", "ETag": f'"motion-{replay.sha256}"'}
     if headers["ETag"] in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)

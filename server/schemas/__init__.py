@@ -2,7 +2,7 @@
 
 from .archives import ArchiveRead, Axis, CentroidsRead, Feature, HistoryRead, ResultsRead
 from .base import FieldError, Problem, Wire
-from .creatures import Ancestors, Children, CreatureName, Relative, Rendering
+from .creatures import Ancestors, Children, CreatureName, Measurement, Relative, Rendering
 from .estimates import AheadRead, BodyRead, DrawingRead, EstimateRead, PaceRead, PictureRead
 from .experiments import ExperimentRead, PresetRead
 from .runs import (
@@ -18,6 +18,7 @@ from .runs import (
     TagRead,
     Target,
 )
+from .shares import ShareAsked, SharePage, ShareRead, ShareState
 from .sweeps import (
     MOST,
     Band,
@@ -77,6 +78,7 @@ __all__ = [
     "Left",
     "Line",
     "Log",
+    "Measurement",
     "Member",
     "PaceRead",
     "PictureRead",
@@ -91,6 +93,10 @@ __all__ = [
     "RunChange",
     "RunPage",
     "RunRead",
+    "ShareAsked",
+    "SharePage",
+    "ShareRead",
+    "ShareState",
     "SignIn",
     "Species",
     "Spread",

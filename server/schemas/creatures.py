@@ -2,6 +2,8 @@
 
 from typing import Literal
 
+from pydantic import Field
+
 from .base import Wire
 
 
@@ -17,6 +19,9 @@ class Relative(Wire):
     operator: str | None
     generation: int | None
     fitness: float | None
+    licence: str | None = None
+    credit: list[str] = Field(default=[])
+    """Whom its file asks to name; what came of it is theirs too."""
 
 
 class Ancestors(Wire):
@@ -40,3 +45,24 @@ class CreatureName(Wire):
 
 class Rendering(Wire):
     status: Literal["rendering"] = "rendering"
+
+
+class Again(Wire):
+    """A recorded figure and the same one measured here; None where it is not finite."""
+
+    name: str
+    recorded: float
+    measured: float | None
+
+
+class Measurement(Wire):
+    """What came of evaluating a creature again by the program that measured it."""
+
+    creature: str
+    exact: bool
+    """Whether every recorded figure is the same to the bit."""
+    device: str
+    recorded_device: str
+    fitness: Again
+    figures: list[Again]
+    """Those that differ, the largest share first."""

@@ -35,6 +35,8 @@ def places(address: str, among: Collection[str] | None = None) -> list[Place]:
         return [
             Place("runs", "/"),
             Place("workers", "/workers"),
+            Place("shares", "/shares"),
+            Place("commons", "/commons"),
             *compared(known),
             *(Place(f"run-{name}", f"/runs/{run['id']}") for name, run in runs.items()),
             *searched(http, runs.get("quality-diversity")),

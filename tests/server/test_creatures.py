@@ -167,3 +167,52 @@ def test_a_lost_order_is_given_again(api, services, known, flush):
     flush()
     assert api.get(f"creatures/{known}/replay").status_code == 202
     assert services.jobs.renderings.count == 1
+
+
+@pytest.fixture
+def family(identity) -> list[dict]:
+    """A creature, a parent of it, and a parent of that."""
+
+    def one(number: int, *parents: dict) -> dict:
+        origin = {"operator": "neat", "generation": number, "seed": 1, "version": "0.1.0"}
+        names = [parent["sha256"] for parent in parents]
+        return creature.document(identity(number), None, {"parents": names, **origin})
+
+    oldest = one(1)
+    parent = one(2, oldest)
+    return [one(3, parent), parent, oldest]
+
+
+def test_a_creature_brings_its_ancestors_with_hashes_credit_and_licence(api, family):
+    young, parent, oldest = family
+    oldest |= {"credit": ["Ada"], "licence": "CC0-1.0"}
+    whole = {**young, "ancestors": [parent, oldest]}
+    assert api.post("creatures", json=whole).status_code == 201
+    query = {"ancestors": True, "download": True}
+    answer = api.get(f"creatures/{young['sha256']}", params=query)
+    assert answer.json() == whole, "and can be handed on as it came"
+    assert "attachment" in answer.headers["content-disposition"]
+    kin = api.get(f"creatures/{young['sha256']}/ancestors").json()["items"]
+    assert [(one["creature"], one["kept"]) for one in kin] == [
+        (parent["sha256"], True),
+        (oldest["sha256"], True),
+    ]
+    assert (kin[1]["credit"], kin[1]["licence"]) == (["Ada"], "CC0-1.0")
+
+
+def test_ancestors_that_are_none_are_refused_and_nothing_is_kept(api, family, identity):
+    young, parent, oldest = family
+    stranger = creature.document(identity(9), None, None)
+    cases = [
+        ([stranger], "ancestors.0"),
+        ([parent, young], "ancestors.1"),
+        ([oldest], "ancestors.0"),
+        ([{**parent, "sha256": "00" * 32}], "ancestors.0.sha256"),
+        ([parent] * 201, "ancestors"),
+        ("none", "ancestors"),
+    ]
+    for ancestors, field in cases:
+        answer = api.post("creatures", json={**young, "ancestors": ancestors})
+        assert answer.status_code == 422
+        assert answer.json()["errors"][0]["field"] == field
+    assert api.get(f"creatures/{young['sha256']}").status_code == 404

@@ -10,7 +10,7 @@ import pytest
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, Gaits, identity
 from server import creatures, renderings
-from server.models import AUDIT, GIF, MP4, REPLAY, STRIP
+from server.models import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
 from worker import pictures
 
 FRAMES, NODES, SIZE = 7, 3, (24, 16)
@@ -69,12 +69,19 @@ def asked(monkeypatch):
         calls.append(("audit", file["sha256"]))
         return {"verdict": {"survives": True, "reasons": []}, "rows": []}
 
-    monkeypatch.setattr(pictures, "render", SimpleNamespace(record=record, audit=audit))
+    def measurement(file):
+        calls.append(("measurement", file["sha256"]))
+        return {"exact": True}
+
+    monkeypatch.setattr(
+        pictures, "render", SimpleNamespace(record=record, audit=audit, measurement=measurement)
+    )
     return calls
 
 
 @pytest.mark.parametrize(
-    ("kind", "start"), [(STRIP, b"\x89PNG"), (GIF, b"GIF89a"), (MP4, b"\x00\x00\x00 ftyp")]
+    ("kind", "start"),
+    [(STRIP, b"\x89PNG"), (PREVIEW, b"\x89PNG"), (GIF, b"GIF89a"), (MP4, b"\x00\x00\x00 ftyp")],
 )
 def test_films_and_pictures_are_drawn_of_the_replay_that_is_kept(
     services, known, asked, kind, start
@@ -104,3 +111,8 @@ def test_an_audit_is_kept_as_json(services, known, asked):
     document = json.loads(pictures.make(services, known, AUDIT))
     assert document["verdict"] == {"survives": True, "reasons": []}
     assert asked == [("audit", known)]
+
+
+def test_a_measurement_is_kept_as_json(services, known, asked):
+    assert json.loads(pictures.make(services, known, MEASUREMENT)) == {"exact": True}
+    assert asked == [("measurement", known)]

@@ -12,6 +12,7 @@ const ComparePage = later(async () => (await import("./pages/Compare")).CompareP
 const CreaturePage = later(async () => (await import("./pages/Creature")).CreaturePage);
 const NewRunPage = later(async () => (await import("./pages/NewRun")).NewRunPage);
 const RunPage = later(async () => (await import("./pages/Run")).RunPage);
+const SharesPage = later(async () => (await import("./pages/Shares")).SharesPage);
 const WorkersPage = later(async () => (await import("./pages/Workers")).WorkersPage);
 
 const TITLES: Record<string, string> = {
@@ -19,6 +20,7 @@ const TITLES: Record<string, string> = {
   new: "New run",
   compare: "Compare",
   workers: "Workers",
+  shares: "Shares",
   unknown: "Not found",
 };
 
@@ -47,6 +49,12 @@ export function App() {
           <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
             Workers
           </a>
+          <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
+            Shares
+          </a>
+          <a href="/commons" target="_self">
+            Commons
+          </a>
         </nav>
         <span class="spring" />
         <OpenButton />
@@ -73,7 +81,9 @@ function Page({ route, query }: Place) {
       return <RunPage key={route.id} id={route.id} query={query} />;
     case "creature":
       return <CreaturePage key={route.sha} sha={route.sha} query={query} />;
-    case "unknown":
+    case "shares":
+      return <SharesPage />;
+    default:
       return (
         <main>
           <section class="empty card">
@@ -104,7 +114,7 @@ function Connection() {
   );
 }
 
-function Toasts() {
+export function Toasts() {
   const toasts = useToasts();
   return (
     <div class="toasts" role="status" aria-live="polite">

@@ -1,5 +1,6 @@
 import { render } from "preact";
 import "uplot/dist/uPlot.min.css";
+import { isOpen } from "./api/place";
 import { App } from "./app";
 import { connect } from "./live/stream";
 import "./styles/base.css";
@@ -17,6 +18,13 @@ import "./styles/archive.css";
 import "./styles/guide.css";
 import "./styles/run-page.css";
 import "./styles/lists.css";
+import "./styles/shares.css";
 
-await connect();
-render(<App />, document.getElementById("app")!);
+const app = document.getElementById("app")!;
+if (isOpen(location.pathname)) {
+  const { Open } = await import("./open");
+  render(<Open />, app);
+} else {
+  await connect();
+  render(<App />, app);
+}

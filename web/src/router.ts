@@ -7,6 +7,9 @@ export type Route =
   | { page: "new" }
   | { page: "compare" }
   | { page: "workers" }
+  | { page: "shares" }
+  | { page: "commons" }
+  | { page: "share"; slug: string; sha: string | null }
   | { page: "run"; id: string }
   | { page: "creature"; sha: string }
   | { page: "unknown" };
@@ -16,7 +19,7 @@ export interface Place {
   query: URLSearchParams;
 }
 
-const PAGES = ["new", "compare", "workers"] as const;
+const PAGES = ["new", "compare", "workers", "shares", "commons"] as const;
 const isPage = (name: string): name is (typeof PAGES)[number] =>
   (PAGES as readonly string[]).includes(name);
 
@@ -27,7 +30,15 @@ export function routeOf(path: string): Route {
   const name = rest.length === 0 ? decoded(second) : null;
   if (name !== null && first === "runs") return { page: "run", id: name };
   if (name !== null && first === "creatures") return { page: "creature", sha: name };
+  if (first === "s" && second !== undefined) return shared(second, rest);
   return { page: "unknown" };
+}
+
+/** A share itself, or a creature in it. */
+function shared(slug: string, [kind, sha, ...more]: string[]): Route {
+  if (kind === undefined) return { page: "share", slug, sha: null };
+  const one = kind === "creatures" && sha !== undefined && more.length === 0;
+  return one ? { page: "share", slug, sha } : { page: "unknown" };
 }
 
 /** Null where there is no text, or its escapes are of none. */

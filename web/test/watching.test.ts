@@ -241,7 +241,7 @@ const base64 = (values: number[]) =>
 
 describe("a family tree", () => {
   const person = (creature: string, distance: number, parents: string[] = [], fitness = 1): Relative => ({
-    creature, distance, parents, fitness, kept: true, operator: "neat", generation: 1,
+    creature, distance, parents, fitness, kept: true, operator: "neat", generation: 1, credit: [],
   });
   const me = person("me", 0, ["a", "b"]);
   const ancestors: Ancestors = {

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, StringConstraints, ValidationError, model_validator
 
 from ..spec import Part, Scene, Task, field_path
 from ..spec import identity as identity_of
@@ -31,6 +31,8 @@ __all__ = [
 Room = Annotated[int, Field(ge=8, le=8192)]
 Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 Figures = Annotated[dict[str, float], Field(max_length=1000)]
+Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+Credit = Annotated[tuple[Name, ...], Field(max_length=50)]
 
 
 class CreatureError(ValueError):
@@ -81,6 +83,8 @@ class CreatureFile(Part):
     measured: Measured | None = None
     provenance: Provenance | None = None
     licence: str = LICENCE
+    credit: Credit = ()
+    """Who is to be named wherever the creature is shown."""
 
     @model_validator(mode="after")
     def check_measured(self) -> Self:
@@ -120,6 +124,7 @@ def document(
         "measured": dict(measured) if measured else None,
         "provenance": dict(provenance) if provenance else None,
         "licence": LICENCE,
+        "credit": [],
     }
 
 

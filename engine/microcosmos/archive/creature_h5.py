@@ -20,8 +20,10 @@ from .naming import canonical
 FORMAT = "microcosmos-creature-hdf5/1"
 
 BODY = ("positions", "edges", "joints", "rest_length", "rest_angle", "stretch", "shear", "bend")
-PARTS = ("measured", "provenance", "licence")
+PARTS = ("measured", "provenance", "licence", "credit")
 ATTRIBUTES = {"format", "sha256", *PARTS}
+LATER = {"credit"}
+"""What files do not have that are older."""
 
 
 def dump(file: Mapping[str, Any]) -> bytes:
@@ -58,17 +60,17 @@ def load(data: bytes) -> dict[str, Any]:
     """
     try:
         with h5py.File(BytesIO(data), "r") as file:
-            told = strict.texts(file, ATTRIBUTES)
+            told = strict.texts(file, ATTRIBUTES - (LATER - set(file.attrs)))
             if told["format"] != FORMAT:
                 raise ValueError(f"`format` must be {FORMAT}, got {told['format']:.60}")
-            parts = {part: json.loads(told[part]) for part in PARTS}
+            parts = {part: json.loads(told[part]) for part in PARTS if part in told}
             identity = json.loads(strict.text(file, "identity"))
             found = parse({"identity": identity, "sha256": told["sha256"], **parts})
             strict.refuse_other(file, _tree(found))
     except (OSError, RuntimeError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"a creature's HDF5 file must be HDF5: {error}") from error
     expected = _attributes(found)
-    if wrong := [name for name in expected if told[name] != expected[name]]:
+    if wrong := [name for name in told if told[name] != expected[name]]:
         raise ValueError(f"attributes must be as they are written here, got other {wrong}")
     return found
 

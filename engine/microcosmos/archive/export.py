@@ -2,12 +2,13 @@
 
 import csv as csv_module
 import json
+from collections.abc import Sequence
 from io import StringIO
 from typing import Any
 
 import numpy as np
 
-from .file import Tree, load
+from .file import Tree, dump, load
 
 Columns = dict[str, Any]
 
@@ -48,6 +49,13 @@ def columns(data: bytes) -> Columns:
     found |= {"generation": archive["generation"]}
     found |= {"creature": [bytes(row).hex() for row in archive["creature"]]}
     return found | repeated(archive) | {"index": archive["cell"]}
+
+
+def licensed(data: bytes, licence: str, credit: Sequence[str]) -> bytes:
+    """The same file with what others may do with it, and whom they are to name."""
+    tree, attributes = load(data)
+    told = {"licence": licence, "credit": json.dumps(list(credit))}
+    return dump(tree, {**attributes, **told})
 
 
 def centroids(data: bytes) -> np.ndarray:

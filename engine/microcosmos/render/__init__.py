@@ -10,6 +10,7 @@ _HOME = {
     "Check": "checking",
     "check": "checking",
     "audit": "auditing",
+    "measurement": "measuring",
     "gradient": "derivatives",
     "gradient_health": "derivatives",
     "record": "replay",

@@ -18,7 +18,7 @@ LETTERS = 14
 
 def png(replay: Replay, number: int, **options: Any) -> bytes:
     """One frame as a PNG; `options` are those of `frame`."""
-    return _encoded(frame(replay, number, **options))
+    return encoded(frame(replay, number, **options))
 
 
 def strip(
@@ -52,7 +52,7 @@ def strip(
         sheet[top : top + high, left : left + wide] = panel
         corners.append((left, top + high + GAP // 2))
     captions = [f"step {replay.step(k):,}" for k in numbers]
-    return _encoded(_written(sheet, corners, captions, theme_of(theme).ink))
+    return encoded(_written(sheet, corners, captions, theme_of(theme).ink))
 
 
 def moments(replay: Replay, count: int) -> list[int]:
@@ -79,7 +79,7 @@ def _written(
     return np.asarray(image)
 
 
-def _encoded(picture: np.ndarray) -> bytes:
+def encoded(picture: np.ndarray) -> bytes:
     out = io.BytesIO()
     needed("PIL.Image").fromarray(picture).save(out, "PNG", optimize=True)
     return out.getvalue()

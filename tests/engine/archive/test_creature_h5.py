@@ -32,7 +32,9 @@ def file():
 
 
 def test_it_gives_back_the_file_it_was_made_of(file):
+    credited = {**file, "credit": ["Ada", "Bob"], "licence": "CC0-1.0"}
     assert creature_h5.load(creature_h5.dump(file)) == file
+    assert creature_h5.load(creature_h5.dump(credited)) == credited
 
 
 def test_the_same_creature_gives_the_same_bytes(file):

@@ -13,7 +13,7 @@ from microcosmos import fields, search
 from microcosmos.archive import creature
 from microcosmos.archive.identity import Identity
 from microcosmos.build import build, build_encoding, build_task
-from microcosmos.render import check, record
+from microcosmos.render import check, measurement, record
 from microcosmos.render.reading import read_replay
 from microcosmos.render.replay import actuator_of
 from microcosmos.spec import identity as identity_of
@@ -87,13 +87,20 @@ def test_a_check_repeats_every_recorded_number_exactly(best):
     assert result.same_device
     assert result.exact
     assert set(result.repeated) == set(search.FEATURES)
+    told = measurement(best)
+    assert (told["exact"], told["figures"]) == (True, [])
+    assert told["fitness"]["measured"] == best["measured"]["fitness"]
+    assert told["device"] == told["recorded_device"]
 
 
 @pytest.mark.optimised
 def test_a_check_notices_a_wrong_record(best):
     changed = copy.deepcopy(best)
-    changed["measured"]["features"]["path_length"] *= 1 + 1e-12
+    right = changed["measured"]["features"]["path_length"]
+    wrong = changed["measured"]["features"]["path_length"] = right * (1 + 1e-12)
     assert not check(changed).exact
+    (told,) = measurement(changed)["figures"]
+    assert told == {"name": "path_length", "recorded": wrong, "measured": right}
     # Older files know fewer features; what a file does not say is not compared.
     del changed["measured"]["features"]["path_length"]
     assert check(changed).exact

@@ -1,17 +1,23 @@
 /** Every request of the page. Answers other than success are thrown as `Problem`. */
 
 import createClient from "openapi-fetch";
+import { BASE, placed, share } from "./place";
 import { problemOf } from "./problem";
 import type { paths } from "./schema";
 import type {
+  Ancestors,
   Audit,
+  Children,
   Creature,
   Experiment,
+  Measurement,
   Results,
   Run,
   RunChange,
   RunPage,
   RunQuery,
+  Share,
+  ShareAsked,
   Spec,
 } from "./types";
 
@@ -21,6 +27,7 @@ export const EVENTS_URL = `${ROOT}/events`;
 export type Wish = "pause" | "resume" | "cancel";
 
 const client = createClient<paths>({ baseUrl: "" });
+if (share) client.use({ onRequest: ({ request }) => new Request(placed(request.url), request) });
 
 interface Answer<T> {
   data?: T;
@@ -36,7 +43,9 @@ async function success<T>(asked: Promise<Answer<T>>): Promise<T> {
 
 const run = (id: string) => ({ params: { path: { run_id: id } } });
 
+/** Strangers start none. */
 export async function readExperiments(): Promise<Experiment[]> {
+  if (share) return [];
   return (await success(client.GET(`${ROOT}/experiments`))) as Experiment[];
 }
 
@@ -119,10 +128,13 @@ export async function readCreature(sha: string): Promise<Creature> {
   return (await success(asked)) as unknown as Creature;
 }
 
-/** Parents and theirs over some generations, and what came of a creature. */
-export function readFamily(sha: string, depth: number) {
+const CHILDLESS: Children = { total: 0, items: [] };
+
+/** Parents and theirs over some generations, and what came of a creature: that is not shared. */
+export function readFamily(sha: string, depth: number): Promise<[Ancestors, Children]> {
   const path = { path: { sha } };
   const up = client.GET(`${ROOT}/creatures/{sha}/ancestors`, { params: { ...path, query: { depth } } });
+  if (share) return Promise.all([success(up), CHILDLESS]);
   const down = client.GET(`${ROOT}/creatures/{sha}/children`, { params: path });
   return Promise.all([success(up), success(down)]);
 }
@@ -175,11 +187,55 @@ async function proved(url: string): Promise<Response> {
   return response;
 }
 
-export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
-export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
+/** A share, as whoever has its address sees it. */
+export function readShare(slug: string): Promise<Share> {
+  return success(client.GET(`${ROOT}/shares/{slug}`, { params: { path: { slug } } }));
+}
+
+export function readShares(cursor?: string) {
+  return success(client.GET(`${ROOT}/shares`, { params: { query: { cursor } } }));
+}
+
+export function readCommons(cursor?: string) {
+  return success(client.GET(`${ROOT}/commons`, { params: { query: { cursor } } }));
+}
+
+export function publish(asked: ShareAsked): Promise<Share> {
+  return success(client.POST(`${ROOT}/shares`, { body: asked }));
+}
+
+export function revoke(slug: string): Promise<Share> {
+  return success(client.DELETE(`${ROOT}/shares/{slug}`, { params: { path: { slug } } }));
+}
+
+/** The motion of the creature whose picture stands for a share; null while it is made. */
+export async function readCover({ slug, cover }: Share): Promise<ArrayBuffer | null> {
+  const params = { path: { slug, sha: cover } };
+  const path = `${ROOT}/shares/{slug}/creatures/{sha}/motion` as const;
+  const asked = client.GET(path, { params, parseAs: "arrayBuffer" });
+  const bytes = (await success(asked as Promise<Answer<unknown>>)) as ArrayBuffer;
+  return (await asked).response.status === 202 ? null : bytes;
+}
+
+/** Has a creature evaluated again by the program that measured it. */
+export function measure(sha: string) {
+  return success(client.POST(`${ROOT}/creatures/{sha}/measure`, { params: { path: { sha } } }));
+}
+
+/** What came of it: null while it is measured, `never` where nobody has asked for it. */
+export async function readMeasurement(sha: string): Promise<Measurement | "never" | null> {
+  const asked = client.GET(`${ROOT}/creatures/{sha}/measurement`, { params: { path: { sha } } });
+  const { status } = (await asked).response;
+  if (status === 204) return "never";
+  const found = (await success(asked)) as Measurement;
+  return status === 202 ? null : found;
+}
+
+export const archiveUrl = (id: string, kind: "h5" | "csv") => `${BASE}/runs/${id}/archive.${kind}`;
+export const resultsUrl = (id: string) => `${BASE}/runs/${id}/results.csv`;
 export type Picture = "strip.png" | "film.gif" | "film.mp4";
-export const pictureUrl = (sha: string, kind: Picture) => `${ROOT}/creatures/${sha}/${kind}`;
+export const pictureUrl = (sha: string, kind: Picture) => `${BASE}/creatures/${sha}/${kind}`;
 export type Form = "svg" | "dot" | "py" | "npz";
-export const networkUrl = (sha: string, form: Form) => `${ROOT}/creatures/${sha}/network.${form}`;
-export const creatureFileUrl = (sha: string) => `${ROOT}/creatures/${sha}?download=1`;
-export const creatureH5Url = (sha: string) => `${ROOT}/creatures/${sha}/creature.h5`;
+export const networkUrl = (sha: string, form: Form) => `${BASE}/creatures/${sha}/network.${form}`;
+export const creatureFileUrl = (sha: string) => `${BASE}/creatures/${sha}?download=1&ancestors=1`;
+export const creatureH5Url = (sha: string) => `${BASE}/creatures/${sha}/creature.h5`;

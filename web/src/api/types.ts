@@ -83,6 +83,10 @@ export type Genome = Genes | Vector | Stroke;
 export type Relative = Wire["Relative"];
 export type Ancestors = Wire["Ancestors"];
 export type Children = Wire["Children"];
+export type Measurement = Wire["Measurement"];
+export type Share = Wire["ShareRead"];
+export type ShareAsked =
+  operations["publish_api_v1_shares_post"]["requestBody"]["content"]["application/json"];
 
 export interface AuditRow {
   name: string;
@@ -127,6 +131,8 @@ export interface Creature {
     version: string;
   } | null;
   licence: string;
+  /** Who is to be named. */
+  credit?: string[];
 }
 
 /** What an error's body should be; something between page and server may answer otherwise. */

@@ -2,6 +2,7 @@
 
 import { useEffect, useMemo } from "preact/hooks";
 import * as api from "../api/client";
+import { share } from "../api/place";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../frames/replay";
 import { useFetched } from "../live/fetching";
@@ -17,6 +18,8 @@ import { Facts } from "./Facts";
 import { Family } from "./Family";
 import { Genome } from "./Genome";
 import { Keep } from "./Keep";
+import { MeasuredCard } from "./Measured";
+import { Publish } from "./Publish";
 import { Refine } from "./Refine";
 import { Rendering, useReplays } from "./rendering";
 import { SpaceTimeCard } from "./SpaceTimeCard";
@@ -47,6 +50,7 @@ export function CreaturePage({ sha, query }: Props) {
         </h1>
         {creature && !isFree(creature.identity.world.coupling) && <NotFree />}
         <span class="spring" />
+        {creature && <Publish of={{ creature: sha }} file={creature} title="" />}
         {creature && searched(creature) && <Refine creature={creature} run={run} />}
       </header>
       {error && <p class="banner wrong">{error}</p>}
@@ -57,7 +61,7 @@ export function CreaturePage({ sha, query }: Props) {
 }
 
 /** Everything about one creature, around one moment of its replay. */
-function Whole({ creature, query }: { creature: Creature; query: URLSearchParams }) {
+export function Whole({ creature, query }: { creature: Creature; query: URLSearchParams }) {
   const { sha256: sha, identity } = creature;
   const moment = useMemo(newMoment, []);
   const rendering = useReplays([sha]);
@@ -84,7 +88,8 @@ function Whole({ creature, query }: { creature: Creature; query: URLSearchParams
           {replay?.drive && <SpaceTimeCard {...{ replay, query, moment }} />}
           <Genome {...{ creature, moment }} every={replay?.header.every ?? null} />
           <Family {...{ creature, query }} />
-          {swims(creature) && <AuditCard sha={sha} query={query} />}
+          {creature.measured && <MeasuredCard sha={sha} />}
+          {swims(creature) && !share && <AuditCard sha={sha} query={query} />}
         </div>
       </div>
       <Facts creature={creature} />

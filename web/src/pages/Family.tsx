@@ -2,6 +2,7 @@
 
 import { useMemo } from "preact/hooks";
 import * as api from "../api/client";
+import { share, within } from "../api/place";
 import type { Creature, Relative } from "../api/types";
 import { useFetched } from "../live/fetching";
 import { setQuery } from "../router";
@@ -23,7 +24,10 @@ export function Family({ creature, query }: Props) {
   const { value, error } = useFetched(() => api.readFamily(sha, back), [sha, back]);
   const tree = useMemo(() => value && treeOf(selfOf(creature), ...value), [creature, value]);
   const run = query.get("run");
-  const hrefOf = (name: string) => `/creatures/${name}${run ? `?run=${run}` : ""}`;
+  // Through a share of one creature its ancestors are told of, and not shown.
+  const hrefOf = (name: string) =>
+    share && !run ? null : within(`/creatures/${name}${run ? `?run=${run}` : ""}`);
+  const credited = value ? creditOf(value[0].items, creature) : [];
   const lost = value?.[0].items.some(({ kept }) => !kept);
   return (
     <section class="card" aria-labelledby="family-title">
@@ -39,11 +43,14 @@ export function Family({ creature, query }: Props) {
       {tree && tree.kin.length === 1 && (
         <p class="quiet">
           {creature.provenance
-            ? "It has no parents, and no child of it has become an elite."
+            ? `It has no parents${share ? "" : ", and no child of it has become an elite"}.`
             : "It was brought here without its origin, and nothing has come of it yet."}
         </p>
       )}
       {tree && tree.kin.length > 1 && <FamilyTree {...{ tree, hrefOf }} self={sha} />}
+      {credited.length > 0 && (
+        <p class="quiet small">Its ancestors are by {credited.join(", ")}.</p>
+      )}
       {tree && (lost || tree.hidden > 0) && (
         <p class="quiet small">
           {lost && "Dashed: never an elite, so only the name was kept. "}
@@ -52,6 +59,15 @@ export function Family({ creature, query }: Props) {
       )}
     </section>
   );
+}
+
+/** Whom its ancestors' files ask to name, with their licences, beside its own credit. */
+function creditOf(ancestors: Relative[], { credit }: Creature): string[] {
+  const named = ancestors.flatMap(({ credit, licence }) =>
+    (credit ?? []).map((name) => [name, `${name} (${licence})`] as const),
+  );
+  const others = named.filter(([name]) => !credit?.includes(name));
+  return [...new Set(others.map(([, text]) => text))];
 }
 
 function selfOf({ sha256, measured, provenance }: Creature): Relative {
@@ -63,5 +79,7 @@ function selfOf({ sha256, measured, provenance }: Creature): Relative {
     operator: provenance?.operator ?? null,
     generation: provenance?.generation ?? null,
     fitness: measured?.fitness ?? null,
+    licence: null,
+    credit: [],
   };
 }

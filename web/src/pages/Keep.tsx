@@ -8,6 +8,7 @@ import {
   pictureUrl,
   proveRendering,
 } from "../api/client";
+import { share } from "../api/place";
 import { messageOf } from "../api/problem";
 import { poll } from "../live/polling";
 import { tell } from "../live/toasts";
@@ -23,17 +24,19 @@ export function Keep({ sha }: { sha: string }) {
   return (
     <p class="links pictures" role="group" aria-label="Keep it as">
       <span class="quiet small">Keep it as</span>
-      <button onClick={() => void copy(`${location.origin}/creatures/${sha}`)}>Copy link</button>
+      {!share && (
+        <button onClick={() => void copy(`${location.origin}/creatures/${sha}`)}>Copy link</button>
+      )}
       <a
         class="button"
         href={creatureFileUrl(sha)}
         download={`creature-${sha.slice(0, 12)}.json`}
-        title="The creature file, which others can bring to their own installation"
+        title="The creature file with its ancestors, which others can bring to their own installation"
       >
         JSON
       </a>
       <FileLink url={creatureH5Url(sha)} name="HDF5" />
-      {KINDS.map(([kind, title]) => (
+      {(share ? [] : KINDS).map(([kind, title]) => (
         <Download key={kind} url={pictureUrl(sha, kind)} title={title} />
       ))}
     </p>

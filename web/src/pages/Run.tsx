@@ -23,6 +23,7 @@ import { LearningRun } from "./LearningRun";
 import { LogCard } from "./LogCard";
 import { PopulationCards } from "./PopulationCards";
 import { ScalingRun } from "./ScalingRun";
+import { Publish } from "./Publish";
 import { SpecCard } from "./SpecCard";
 import { ON } from "./wishes";
 
@@ -61,6 +62,7 @@ export function RunPage({ id, query }: Props) {
         <Badge run={run} />
         {freedom !== "all" && <NotFree some={freedom === "some"} />}
         <span class="spring" />
+        {hasArchive(run) && run.generation > 0 && <Publish of={{ run: id }} title={run.name ?? ""} />}
         <Actions run={run} on={ON(title)} name={title} />
       </header>
       {error && <p class="banner wrong">{error}</p>}

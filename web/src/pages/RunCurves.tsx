@@ -1,6 +1,7 @@
 /** The curves of a search, as they are asked for, and beside them those of other runs. */
 
 import type { ComponentChildren } from "preact";
+import { share } from "../api/place";
 import type { Run } from "../api/types";
 import type { Curves as Columns } from "../live/curves";
 import { hasArchive, useCurvesOf, useExperiments } from "../live/fetching";
@@ -35,7 +36,7 @@ export function CurvesCard({ run, curves, query, beside: { ids, others, error } 
     <section class="card curves-card" id="curves" aria-labelledby="curves-title" tabIndex={-1}>
       <h2 id="curves-title">Curves</h2>
       {curves && <CurveChoices look={look} />}
-      {curves && <Beside {...{ run, ids, others }} />}
+      {curves && !share && <Beside {...{ run, ids, others }} />}
       {error && <p class="wrong-text small">{error}</p>}
       {curves ? (
         <Curves plots={dressed(scoresOf, curves, others, look)} x={placesOf(curves, look)} look={look} />

@@ -79,7 +79,7 @@ export function groupsOf(creature: Creature): Group[] {
   return [first, ...others.filter(({ rows }) => rows.length > 0)];
 }
 
-export function originOf({ identity, measured, provenance, licence }: Creature): Row[] {
+export function originOf({ identity, measured, provenance, licence, credit }: Creature): Row[] {
   return [
     ...gaitOf(identity.genome),
     ...encodingOf(identity.genome),
@@ -92,6 +92,7 @@ export function originOf({ identity, measured, provenance, licence }: Creature):
     ["Seed", String(provenance?.seed ?? UNKNOWN)],
     ["Device", measured?.device ?? UNKNOWN],
     ["Licence", licence],
+    ...(credit?.length ? [["Credit", credit.join(", ")] as Row] : []),
   ];
 }
 

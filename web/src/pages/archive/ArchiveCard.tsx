@@ -1,6 +1,7 @@
 /** The archive of a run: as a map or as a wall of creatures, now or in the past. */
 
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
+import { within } from "../../api/place";
 import type { Archive, Run } from "../../api/types";
 import type { Elites } from "../../live/elites";
 import { navigate, setQuery } from "../../router";
@@ -38,7 +39,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
     onMark: useCallback((marked: number) => setQuery({ cell: String(marked) }), []),
     onOpen: (chosen: number) => {
       setQuery({ cell: String(chosen) });
-      navigate(`/creatures/${view.elites.get(chosen)!.creature}?run=${run.id}`);
+      navigate(within(`/creatures/${view.elites.get(chosen)!.creature}?run=${run.id}`));
     },
   };
   const names: [string, string] = [view.axes[0].name, view.axes[1].name];

@@ -7,7 +7,8 @@ import { HIGH, type Kin, type Tree, WIDE } from "./tree";
 interface Props {
   tree: Tree;
   self: string;
-  hrefOf: (creature: string) => string;
+  /** Null where a page of its own cannot be seen. */
+  hrefOf: (creature: string) => string | null;
 }
 
 const HEAD = 26;
@@ -55,7 +56,7 @@ interface NameProps {
   relative: Relative;
   most: number;
   own: boolean;
-  href: string;
+  href: string | null;
 }
 
 function Name({ relative, most, own, href }: NameProps) {
@@ -71,6 +72,7 @@ function Name({ relative, most, own, href }: NameProps) {
   );
   if (own) return <span class="family-name own" title={title}>{inside}</span>;
   if (!kept) return <span class="family-name lost" title={title}>{inside}</span>;
+  if (href === null) return <span class="family-name" title={title}>{inside}</span>;
   return (
     <a class="family-name" href={href} title={title} aria-label={title}>
       {inside}

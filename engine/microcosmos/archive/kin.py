@@ -1,0 +1,56 @@
+"""A creature file that brings its ancestors: the same document, with theirs in `ancestors`."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from .creature import CreatureError, parse
+
+MOST = 200
+"""Ancestors in one document."""
+
+
+def document(file: Mapping[str, Any], ancestors: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """The document around a creature file and those of its ancestors, nearest first."""
+    return {**file, "ancestors": [dict(one) for one in ancestors]}
+
+
+def split(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """A creature file from anybody and those of its ancestors, each checked with its hash.
+
+    Raises `CreatureError` where one is not sound, or is nobody's parent in the document.
+    """
+    told = data.get("ancestors", [])
+    if not isinstance(told, list) or len(told) > MOST:
+        came = len(told) if isinstance(told, list) else told
+        raise CreatureError("ancestors", f"a list of at most {MOST} creature files", came)
+    file = parse({name: part for name, part in data.items() if name != "ancestors"})
+    ancestors = [_ancestor(one, place) for place, one in enumerate(told)]
+    _refuse_strangers(file, ancestors)
+    return file, ancestors
+
+
+def _ancestor(data: Any, place: int) -> dict[str, Any]:
+    try:
+        return parse(data)
+    except CreatureError as error:
+        field = f"ancestors.{place}.{error.field}"
+        raise CreatureError(field, error.needed, error.got) from error
+
+
+def parents(file: Mapping[str, Any]) -> list[str]:
+    """The names of a creature's parents, as far as its file knows them."""
+    return list((file["provenance"] or {}).get("parents", ()))
+
+
+def _refuse_strangers(file: Mapping[str, Any], ancestors: list[dict[str, Any]]) -> None:
+    """Everybody has to be a parent of the creature, or of another that is."""
+    by_name = {one["sha256"]: one for one in ancestors}
+    known, nearest = {file["sha256"]}, parents(file)
+    while nearest:
+        met = [name for name in nearest if name in by_name and name not in known]
+        known.update(met)
+        nearest = [parent for name in met for parent in parents(by_name[name])]
+    for place, one in enumerate(ancestors):
+        if one["sha256"] not in known or one["sha256"] == file["sha256"]:
+            needed = f"an ancestor of {file['sha256']}"
+            raise CreatureError(f"ancestors.{place}", needed, one["sha256"])

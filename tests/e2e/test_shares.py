@@ -1,0 +1,155 @@
+"""A creature and an archive are published, seen by strangers, and taken back."""
+
+import re
+from collections.abc import Iterator
+from urllib.parse import urlsplit
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+FAST, SLOW = 10_000, 300_000
+FIRST_S = 300
+
+
+@pytest.fixture
+def stranger(browser: Browser) -> Iterator[Page]:
+    """Somebody else's browser: no cookie, nothing stored."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    page = context.new_page()
+    page.set_default_timeout(SLOW)
+    yield page
+    context.close()
+
+
+@pytest.mark.e2e
+def test_a_creature_is_published_looked_at_and_taken_back(
+    shared, shared_page: Page, stranger: Page
+):
+    page, address = shared_page, shared.product.url
+    sha = best_of(page, address, shared.finished("voronoi"))
+    page.goto(f"{address}/creatures/{sha}")
+    link = publish(page, "An eel <b>&", listed=True)
+    asked = requests_of(stranger)
+    stranger.goto(link)
+    expect(stranger.get_by_role("heading", level=1)).to_contain_text("An eel <b>&")
+    expect(stranger.get_by_role("img", name=re.compile("The creature swimming"))).to_be_visible(
+        timeout=SLOW
+    )
+    expect(stranger.get_by_text("Ada, Bob").first).to_be_visible()
+    expect(stranger.get_by_role("button", name="Publish")).to_have_count(0)
+    stay_within(link, asked)
+    tell_other_sites(stranger, link)
+    import_it(stranger, address, sha)
+    meet_it_in_the_commons(stranger, address, link)
+    take_back(page, address, "An eel <b>&")
+    stranger.goto(link)
+    expect(stranger.get_by_text("Whoever shared this has taken it back.")).to_be_visible()
+
+
+@pytest.mark.e2e
+def test_an_archive_is_published_and_its_elites_are_opened(
+    shared, shared_page: Page, stranger: Page
+):
+    page, address = shared_page, shared.product.url
+    page.add_init_script("localStorage.setItem('microcosmos:guided', '1')")
+    stranger.add_init_script("localStorage.setItem('microcosmos:guided', '1')")
+    page.goto(f"{address}/runs/{shared.finished('voronoi')}")
+    link = publish(page, "Eels", listed=False)
+    asked = requests_of(stranger)
+    stranger.goto(link)
+    chart = stranger.get_by_role("application", name=re.compile("Archive"))
+    chart.focus()
+    stranger.keyboard.press("ArrowRight")
+    stranger.keyboard.press("Enter")
+    stranger.wait_for_url(re.compile("/s/.+/creatures/"))
+    expect(stranger.get_by_role("img", name=re.compile("The creature swimming"))).to_be_visible(
+        timeout=SLOW
+    )
+    stay_within(link, asked)
+    slug = link.rpartition("/")[2]
+    commons = stranger.request.get(f"{address}/api/v1/commons").json()["items"]
+    assert slug not in [share["slug"] for share in commons], "it is not listed"
+
+
+def best_of(page: Page, address: str, run: str) -> str:
+    archive = page.request.get(f"{address}/api/v1/runs/{run}/archive").json()
+    _, sha = max(zip(archive["fitness"], archive["creature"], strict=True))
+    return sha
+
+
+def publish(page: Page, title: str, *, listed: bool) -> str:
+    """By the dialog: the address that others are told."""
+    page.get_by_role("button", name="Publish").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("Title").fill(title)
+    dialog.get_by_label("Credit").fill("Ada, Bob")
+    dialog.get_by_label("Licence").select_option("CC-BY-SA-4.0")
+    dialog.get_by_label("Expires").select_option("7")
+    if listed:
+        dialog.get_by_label("List it in the commons").check()
+    dialog.get_by_role("button", name="Publish").click()
+    found = dialog.get_by_label("Its address")
+    expect(found).to_be_visible(timeout=FAST)
+    return found.input_value()
+
+
+def requests_of(page: Page) -> list[str]:
+    """The paths that a page asks for from now on."""
+    paths: list[str] = []
+    page.on("request", lambda request: paths.append(urlsplit(request.url).path))
+    return paths
+
+
+def stay_within(link: str, asked: list[str]) -> None:
+    """The page of a share asks for nothing but what was shared, and its own script."""
+    slug = link.rpartition("/")[2]
+    own = re.compile(rf"/s/{slug}(/.*)?|/assets/.+|/favicon.svg|/api/v1/shares/{slug}(/.*)?")
+    assert asked, "it was listened to"
+    assert [path for path in asked if not own.fullmatch(path)] == []
+
+
+def tell_other_sites(stranger: Page, link: str) -> None:
+    """What a site finds that is given the link: a title, and a picture that is there."""
+    text = stranger.request.get(link).text()
+    assert 'property="og:title" content="An eel &lt;b&gt;&amp;"' in text
+    found = re.search('property="og:image" content="([^"]+)"', text)
+    assert found
+    picture = stranger.request.get(found[1])
+    for _ in range(FIRST_S):
+        if picture.status == 200:
+            break
+        stranger.wait_for_timeout(1000)
+        picture = stranger.request.get(found[1])
+    assert picture.headers["content-type"] == "image/png"
+    width, height = (int.from_bytes(picture.body()[at : at + 4]) for at in (16, 20))
+    assert (width, height) == (1200, 630)
+
+
+def import_it(stranger: Page, address: str, sha: str) -> None:
+    """The file that is handed out is taken again: the same name, licence and credit."""
+    with stranger.expect_download() as event:
+        stranger.get_by_role("link", name="JSON").click()
+    text = event.value.path().read_text()
+    for word in ('"CC-BY-SA-4.0"', '"Ada"', '"ancestors"'):
+        assert word in text
+    answer = stranger.request.post(
+        f"{address}/api/v1/creatures",
+        data=text,
+        headers={"Content-Type": "application/json"},
+    )
+    assert (answer.status, answer.json()) == (200, {"creature": sha})
+
+
+def meet_it_in_the_commons(stranger: Page, address: str, link: str) -> None:
+    asked = requests_of(stranger)
+    stranger.goto(f"{address}/commons")
+    tile = stranger.get_by_role("link", name=re.compile("An eel <b>&"))
+    expect(tile).to_have_attribute("href", urlsplit(link).path)
+    public = re.compile("/commons|/assets/.+|/favicon.svg|/api/v1/(commons|shares/.+)")
+    assert [path for path in asked if not public.fullmatch(path)] == []
+
+
+def take_back(page: Page, address: str, title: str) -> None:
+    page.goto(f"{address}/shares")
+    page.get_by_role("button", name=f"Revoke {title}").click()
+    expect(page.get_by_text(f"{title} is not shared any more.")).to_be_visible(timeout=FAST)

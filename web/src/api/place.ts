@@ -1,0 +1,25 @@
+/** Where a page is at home: in the whole installation, or in one share, beyond which it asks nothing. */
+
+const ROOT = "/api/v1";
+const path = globalThis.location?.pathname ?? "";
+
+/** Whether strangers may see the page at an address. */
+export const isOpen = (path: string) => /^\/(s\/.|commons\/?$)/.test(path);
+
+/** The share that this page shows; null where it is a page of the installation itself. */
+export const share = /^\/s\/([\w-]+)/.exec(path)?.[1] ?? null;
+
+/** What every address of a file begins with. */
+export const BASE = share ? `${ROOT}/shares/${share}` : ROOT;
+
+/** The address of a request, moved below the share. */
+export function placed(url: string): string {
+  const asked = new URL(url);
+  if (share && !asked.pathname.startsWith(`${ROOT}/shares/`)) {
+    asked.pathname = asked.pathname.replace(ROOT, BASE);
+  }
+  return asked.href;
+}
+
+/** The path of a page, moved below the share. */
+export const within = (path: string) => (share ? `/s/${share}${path}` : path);

@@ -1,0 +1,105 @@
+/** What was published from here, and taking it back. */
+
+import { useEffect, useState } from "preact/hooks";
+import * as api from "../api/client";
+import { messageOf } from "../api/problem";
+import type { Share } from "../api/types";
+import { tell } from "../live/toasts";
+import { moment } from "../view/format";
+import { copyText } from "./copying";
+
+export function SharesPage() {
+  const [shares, setShares] = useState<Share[] | null>(null);
+  const [next, setNext] = useState<string | null>(null);
+  const [error, setError] = useState<string | null>(null);
+  const load = async (cursor?: string) => {
+    try {
+      const page = await api.readShares(cursor);
+      setShares((old) => [...(cursor ? (old ?? []) : []), ...page.items]);
+      setNext(page.next);
+    } catch (reason) {
+      setError(messageOf(reason));
+    }
+  };
+  useEffect(() => void load(), []);
+  const put = (changed: Share) =>
+    setShares((old) => old?.map((share) => (share.slug === changed.slug ? changed : share)) ?? null);
+  return (
+    <main>
+      <header class="page-head">
+        <h1>Shares</h1>
+      </header>
+      {error && <p class="banner wrong">{error}</p>}
+      {!shares && !error && <p class="quiet loading">Loading …</p>}
+      {shares?.length === 0 && (
+        <section class="empty card">
+          <h2>Nothing is shared</h2>
+          <p>Publish a creature from its page, or an archive from its run’s.</p>
+        </section>
+      )}
+      {shares && shares.length > 0 && (
+        <section class="card scroll" aria-label="What was published">
+          <table class="plain-table shares">
+            <thead>
+              <tr>
+                <th scope="col">Title</th>
+                <th scope="col">What</th>
+                <th scope="col">Licence</th>
+                <th scope="col">Published</th>
+                <th scope="col">Until</th>
+                <th scope="col">Seen by</th>
+                <th scope="col">
+                  <span class="unseen">Actions</span>
+                </th>
+              </tr>
+            </thead>
+            <tbody>
+              {shares.map((share) => (
+                <Row key={share.slug} share={share} onChange={put} />
+              ))}
+            </tbody>
+          </table>
+        </section>
+      )}
+      {next && <button onClick={() => void load(next)}>Show more</button>}
+    </main>
+  );
+}
+
+function Row({ share, onChange }: { share: Share; onChange: (share: Share) => void }) {
+  const { slug, title, licence, run, creature, generation, state } = share;
+  const live = state === "live";
+  return (
+    <tr class={live ? "" : "quiet"}>
+      <th scope="row">{live ? <a href={`/s/${slug}`} target="_blank">{title}</a> : title}</th>
+      <td>
+        {run ? <a href={`/runs/${run}`}>archive, generation {generation}</a> : <a href={`/creatures/${creature}`}>creature</a>}
+      </td>
+      <td>{licence.slice(0, 40)}</td>
+      <td>{moment(share.created_at)}</td>
+      <td>{share.expires_at ? moment(share.expires_at) : "taken back"}</td>
+      <td>{live ? (share.listed ? "everybody" : "who has the link") : state}</td>
+      <td class="actions">
+        {live && (
+          <>
+            <button class="slim" onClick={() => void copyText(share.url, "Link copied.")}>
+              Copy link
+            </button>
+            <button class="slim danger" aria-label={`Revoke ${title}`} onClick={() => void revoke(share, onChange)}>
+              Revoke
+            </button>
+          </>
+        )}
+      </td>
+    </tr>
+  );
+}
+
+async function revoke(share: Share, onChange: (share: Share) => void): Promise<void> {
+  try {
+    onChange(await api.revoke(share.slug));
+    tell({ kind: "note", text: `${share.title} is not shared any more.` });
+  } catch (error) {
+    tell({ kind: "wrong", text: messageOf(error) });
+  }
+}
