@@ -13,8 +13,9 @@ from . import migrations, problems
 from .description import describe
 from .guard import Guard
 from .hub import Hub
+from .metrics import Counting, Requests
 from .reconcile import reconciling
-from .routes import api, health, page
+from .routes import api, health, metrics, page
 from .services import Services, connect
 from .settings import Settings
 from .shutdown import told_to_stop
@@ -42,7 +43,9 @@ def create_app(services: Services) -> FastAPI:
     describe(app)
     token = services.settings.token
     app.add_middleware(Guard, token=token.get_secret_value() if token else None)
-    for router in (api, health.router, page.router):
+    app.state.requests = requests = Requests()
+    app.add_middleware(Counting, requests=requests)
+    for router in (api, health.router, metrics.router, page.router):
         app.include_router(router)
     return app
 
