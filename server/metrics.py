@@ -66,8 +66,10 @@ class Requests:
     def families(self) -> list[Family]:
         with self.lock:
             counts, within, seconds = dict(self.counts), dict(self.within), self.seconds
-        names = ("method", "route", "status")
-        by = [("", dict(zip(names, key, strict=True)), n) for key, n in sorted(counts.items())]
+        by: list[Sample] = [
+            ("", {"method": method, "route": route, "status": status}, count)
+            for (method, route, status), count in sorted(counts.items())
+        ]
         return [
             Family("requests_total", "counter", "Requests that were answered.", by),
             Family(
