@@ -73,8 +73,9 @@ bench: peers web
 	$(BIN)/python engine/benchmarks/generation.py
 	$(BIN)/python web/benchmarks/page.py
 
+# All of it, or some: make acceptance PARTS=databases
 acceptance: install web
-	$(BIN)/python tests/faults/acceptance.py
+	$(BIN)/python tests/faults/acceptance.py $(PARTS)
 
 # Every page into docs/pictures/page; DATA names a folder with finished runs.
 pictures: install web

@@ -14,9 +14,10 @@ from .description import describe
 from .discretion import Discretion
 from .guard import Guard
 from .hub import Hub
+from .metrics import Counting, Requests
 from .readers import quarantine
 from .reconcile import reconciling
-from .routes import api, health, page, share_page
+from .routes import api, health, metrics, page, share_page
 from .services import Services, connect
 from .settings import Settings
 from .shutdown import told_to_stop
@@ -43,7 +44,9 @@ def create_app(services: Services) -> FastAPI:
     describe(app)
     app.add_middleware(Discretion)
     app.add_middleware(Guard, services=services)
-    for router in (api, health.router, share_page.router, page.router):
+    app.state.requests = requests = Requests()
+    app.add_middleware(Counting, requests=requests)
+    for router in (api, health.router, metrics.router, share_page.router, page.router):
         app.include_router(router)
     return app
 

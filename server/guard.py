@@ -12,7 +12,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from . import access
 from .caller import CALLER, NOBODY, Caller
 from .cookies import COOKIE, remember
-from .needs import Unnamed, need_of
+from .needs import METRICS, Unnamed, need_of
 from .problems import Refused, answer, unavailable
 from .services import Services
 from .settings import LOOPBACK
@@ -53,7 +53,7 @@ class Guard:
         if not self.needs_token:
             _refuse_foreign_host(request.headers)
             _refuse_foreign_origin(request.headers)
-        if not request.url.path.startswith("/api/"):
+        if not request.url.path.startswith("/api/") and request.url.path != METRICS:
             return await self._page(request)
         bearer, cookie = _bearer(request.headers), request.cookies.get(COOKIE)
         if self.needs_token and bearer is None and request.scope["method"] not in SAFE:

@@ -14,8 +14,11 @@ PUBLIC, OWNER = "public", "owner"
 """Beside the scopes: no token at all, and `write` by whoever it belongs to."""
 
 ROOT = "/api/v1"
+METRICS = "/metrics"
+"""Stands at the root, yet tells what only those may know who may read."""
 
 NEEDS = {
+    f"GET {METRICS}": READ,
     "GET /openapi.json": READ,
     "GET /experiments": READ,
     "GET /runs": READ,
@@ -95,4 +98,4 @@ def need_of(method: str, path: str) -> Need:
 @cache
 def _patterns() -> list[tuple[str, re.Pattern[str], str]]:
     split = [(*key.split(" "), need) for key, need in NEEDS.items()]
-    return [(method, compile_path(ROOT + path)[0], need) for method, path, need in split]
+    return [(method, compile_path(path if path == METRICS else ROOT + path)[0], need) for method, path, need in split]

@@ -2,8 +2,9 @@
 
 Four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
-one; creatures that sense and collect energy; searches with derivatives and without; and a page
-that is left open for half an hour, or for as many minutes as `MINUTES` says.
+one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
+sense and collect energy; searches with derivatives and without; and a page that is left open
+for half an hour, or for as many minutes as `MINUTES` says. Names of parts choose some.
 """
 
 import os
@@ -16,6 +17,7 @@ from pathlib import Path
 from comparison import METHODS, SEEDS, compare, draw, sinusoidal, spec
 from drive import Installation, interrupt, kill_job, pause_and_resume, stop_worker
 from foraging import forage
+from grown_up import Missing, services
 from left_open import leave_open
 from rich.console import Console
 from slopes import compare_slopes
@@ -87,7 +89,40 @@ def page(place: Installation) -> bool:
     return leave_open(place, console, MINUTES)
 
 
-PARTS = {"searches": searches, "foraging": foraging, "slopes": slopes, "page": page}
+def databases(place: Installation) -> bool:
+    """Whether the same run ends with the same bytes on SQLite with the embedded Redis and,
+    with faults, on PostgreSQL with a Redis server."""
+    document = spec(SEEDS[0], "MAP-Elites, NEAT")
+    embedded = place.archive(carry_out(place, document, "SQLite, embedded Redis")["id"])
+    try:
+        with services() as settings:
+            return elsewhere(place.folder.parent / "elsewhere", settings, document, embedded)
+    except Missing as missing:
+        console.print(f"NOT SHOWN: {missing}")
+        return False
+
+
+def elsewhere(folder: Path, settings: dict[str, str], document: dict, embedded: bytes) -> bool:
+    """Whether an installation on other services comes to these bytes, kept from it or not."""
+    other = Installation(folder, SETTINGS | settings)
+    other.start()
+    try:
+        found = carry_out(other, document, "PostgreSQL, Redis server")
+        same = other.archive(found["id"]) == embedded
+        console.print(f"{len(embedded)} bytes: {'identical' if same else 'DIFFERENT'}")
+        return same and disturb(other, embedded)
+    finally:
+        other.end()
+        other.close()
+
+
+PARTS = {
+    "searches": searches,
+    "databases": databases,
+    "foraging": foraging,
+    "slopes": slopes,
+    "page": page,
+}
 
 
 def main(names: list[str]) -> None:

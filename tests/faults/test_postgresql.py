@@ -1,53 +1,32 @@
 """The same with PostgreSQL and a Redis that others use too."""
 
-import os
-from contextlib import suppress
+from contextlib import ExitStack
 
-import psycopg
 import pytest
-import redis
-from drive import interrupt, kill_job, kill_supervisor, stop_worker
-
-SERVER = "postgresql://127.0.0.1"
-NAME = f"microcosmos_faults_{os.getpid()}"
+from drive import REDIS, interrupt, kill_job, kill_supervisor, stop_worker
+from grown_up import Missing, services
 
 
 @pytest.fixture
-def database():
-    """The URL of a new database, gone afterwards."""
-    try:
-        connection = psycopg.connect(f"{SERVER}/postgres", autocommit=True, connect_timeout=2)
-    except psycopg.OperationalError as error:
-        pytest.skip(f"no PostgreSQL answers on this machine: {error}")
-    with connection:
-        connection.execute(f"CREATE DATABASE {NAME}")
-        yield f"{SERVER}/{NAME}"
-        connection.execute(f"DROP DATABASE {NAME} WITH (FORCE)")
-    connection.close()
+def elsewhere():
+    """The settings of an installation on this machine's PostgreSQL and Redis."""
+    with ExitStack() as stack:
+        try:
+            settings = stack.enter_context(services())
+        except Missing as missing:
+            pytest.skip(str(missing))
+        yield settings
 
 
-@pytest.fixture
-def messages():
-    """The URL of an unused database of the machine's Redis, emptied afterwards."""
-    for number in range(1, 16):
-        url = f"redis://127.0.0.1:6379/{number}"
-        with suppress(redis.RedisError), redis.Redis.from_url(url) as client:
-            if not client.dbsize():
-                yield url
-                client.flushdb()
-                return
-    pytest.skip("no Redis with an unused database answers on this machine")
-
-
-def test_faults_change_no_byte_on_postgresql_either(
-    installation, spec, undisturbed, database, messages
+def test_the_same_bytes_come_from_postgresql_and_a_redis_server_whatever_happens(
+    installation, spec, undisturbed, elsewhere
 ):
-    place = installation(
-        MICROCOSMOS_DATABASE_URL=database,
-        MICROCOSMOS_REDIS_URL=messages,
-        MICROCOSMOS_REDIS_PREFIX=f"{NAME}:",
-    )
+    """`undisturbed` is of SQLite and the embedded Redis."""
+    place = installation(**elsewhere)
     place.start()
+    assert "the one that MICROCOSMOS_REDIS_URL names" in place.output.read_text()
+    assert not place.named(REDIS)
+    assert not list(place.folder.glob("*.sqlite"))
     run = place.submit(spec)
     interrupt(place, run, [kill_job, kill_supervisor, stop_worker], [1, 4, 7])
     assert place.wait(run, "finished")["attempt"] == 4

@@ -1,0 +1,18 @@
+# A worker, a renderer or an auditor: `docker build -f docker/worker.Dockerfile .`
+# For NVIDIA GPUs: `--build-arg LOCK=requirements-cuda.lock`, whose packages bring CUDA with them;
+# the machine needs the driver and the NVIDIA container toolkit.
+
+FROM python:3.12-slim-bookworm
+ARG LOCK=requirements.lock
+ENV PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=/app/engine:/app
+WORKDIR /app
+COPY ${LOCK} ./
+RUN pip install --no-cache-dir --disable-pip-version-check --require-hashes -r ${LOCK}
+COPY engine/microcosmos engine/microcosmos
+COPY server server
+COPY worker worker
+RUN useradd --uid 10001 --no-create-home microcosmos && install -d -o microcosmos /data
+USER microcosmos
+ENV MICROCOSMOS_DATA=/data JAX_COMPILATION_CACHE_DIR=/data/jax-cache
+VOLUME /data
+CMD ["python", "-m", "worker.supervisor"]

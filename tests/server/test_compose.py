@@ -1,0 +1,176 @@
+"""What docker-compose.yml and the Dockerfiles name exists, and fits together.
+
+Images are not built here: this keeps the words in them from going stale.
+"""
+
+import importlib.util
+import re
+import tomllib
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+import yaml
+from packaging.specifiers import SpecifierSet
+
+from server.__main__ import GRACE
+from server.settings import Settings
+from worker.health import PARTS
+from worker.supervisor import PATIENCE
+
+ROOT = Path(__file__).parents[2]
+OURS = ("microcosmos-server", "microcosmos-worker", "microcosmos-worker-cuda")
+OTHERS = {"JAX_PLATFORMS", "JAX_COMPILATION_CACHE_DIR"}
+OF_PYTHON = {"PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE", "PYTHONPATH"}
+
+
+@pytest.fixture(scope="module")
+def compose():
+    return yaml.safe_load((ROOT / "docker-compose.yml").read_text())
+
+
+@pytest.fixture(scope="module")
+def services(compose):
+    return compose["services"]
+
+
+@pytest.fixture(scope="module")
+def ours(services):
+    return {name: one for name, one in services.items() if one["image"] in OURS}
+
+
+def dockerfiles():
+    return sorted((ROOT / "docker").glob("*.Dockerfile"))
+
+
+def instructions(path):
+    """Each as its word and the rest, comments and line ends taken out."""
+    text = re.sub(r"\\\n", " ", path.read_text())
+    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
+    return [tuple(line.split(maxsplit=1)) for line in lines]
+
+
+def settings():
+    """Every variable that `Settings` reads."""
+    names = {f"MICROCOSMOS_{name.upper()}" for name in Settings.model_fields}
+    for field in Settings.model_fields.values():
+        names |= set(getattr(field.validation_alias, "choices", ()))
+    return names
+
+
+def seconds(text):
+    number, unit = re.fullmatch(r"(\d+)(s|m)", text).groups()
+    return int(number) * {"s": 1, "m": 60}[unit]
+
+
+def started(service):
+    """The modules that its command and its health check start."""
+    words = [*service["command"], *service.get("healthcheck", {}).get("test", ())]
+    return {word for before, word in pairwise(words) if before == "-m"}
+
+
+def test_every_module_that_is_started_exists(ours):
+    modules = {module for one in ours.values() for module in started(one)}
+    assert {"server", "server.migrations", "worker.supervisor", "worker.health"} <= modules
+    for name in modules:
+        spec = importlib.util.find_spec(name)
+        assert spec, name
+        if spec.submodule_search_locations:
+            assert importlib.util.find_spec(f"{name}.__main__"), name
+
+
+def test_every_variable_is_one_that_is_read(ours):
+    for name, one in ours.items():
+        assert set(one["environment"]) <= settings() | OTHERS, name
+    for path in dockerfiles():
+        given = " ".join(rest for word, rest in instructions(path) if word == "ENV")
+        names = {pair.partition("=")[0] for pair in given.split()}
+        assert names <= settings() | OTHERS | OF_PYTHON, path
+
+
+def test_every_secret_has_a_place_in_the_example_and_no_default(compose):
+    text = (ROOT / "docker-compose.yml").read_text()
+    example = dict(
+        line.split("=", 1)
+        for line in (ROOT / "docker" / "example.env").read_text().splitlines()
+        if line and not line.startswith("#")
+    )
+    needed = set(re.findall(r"\$\{(\w+):\?", text))
+    assert needed == {name for name, value in example.items() if not value}
+    optional = set(re.findall(r"\$\{(\w+):-", text))
+    assert optional <= example.keys()
+    profiles = {p for one in compose["services"].values() for p in one.get("profiles", ())}
+    assert set(example["COMPOSE_PROFILES"].split(",")) <= profiles
+
+
+def test_everything_has_a_health_check_that_asks_for_its_own_part(services):
+    assert {name for name, one in services.items() if "healthcheck" not in one} == {"migrate"}
+    for name, one in services.items():
+        test = one.get("healthcheck", {}).get("test", ())
+        if "worker.health" in test:
+            assert test[-1] in PARTS
+            assert name.startswith(test[-1])
+
+
+def test_ours_may_do_little_and_wait_for_what_they_stand_on(ours):
+    for name, one in ours.items():
+        assert one["read_only"] is True, name
+        assert one["cap_drop"] == ["ALL"], name
+        waits = one["depends_on"]
+        conditions = {"migrate": "service_completed_successfully", "valkey": "service_healthy"}
+        if name == "migrate":
+            conditions = {"postgres": "service_healthy"}
+        assert {other: how["condition"] for other, how in waits.items()} == conditions, name
+
+
+def test_containers_have_longer_to_stop_than_what_is_in_them(ours):
+    for name, one in ours.items():
+        if "worker.supervisor" in one["command"]:
+            assert seconds(one["stop_grace_period"]) >= PATIENCE + 15, name
+    assert seconds(ours["server"]["stop_grace_period"]) > GRACE
+
+
+def test_only_this_machine_reaches_the_server_and_nobody_the_rest(services):
+    assert {name for name, one in services.items() if "ports" in one} == {"server"}
+    assert all(port.startswith("127.0.0.1:") for port in services["server"]["ports"])
+
+
+def test_every_gpu_worker_has_a_device_of_its_own(services):
+    gpus = [one for one in services.values() if one["image"] == "microcosmos-worker-cuda"]
+    devices = [one["deploy"]["resources"]["reservations"]["devices"] for one in gpus]
+    numbers = [number for (device,) in devices for number in device["device_ids"]]
+    assert len(gpus) == len(numbers) == len(set(numbers)) >= 2
+    assert [one["profiles"] for one in gpus] == [[f"gpu-{number}"] for number in numbers]
+
+
+def test_what_is_copied_into_images_is_there_and_not_kept_out(services):
+    kept = (ROOT / ".dockerignore").read_text().split("\n")
+    for path in dockerfiles():
+        for word, rest in instructions(path):
+            if word != "COPY" or "--from" in rest:
+                continue
+            for source in rest.split()[:-1]:
+                name = source.replace("${LOCK}", "requirements.lock").rstrip("/")
+                assert (ROOT / name).exists(), f"{path.name}: {name}"
+                assert any(f"!{part}" in kept for part in (name, name.split("/")[0])), name
+    for one in services.values():
+        if isinstance(built := one.get("build"), dict):
+            assert (ROOT / built["dockerfile"]).is_file()
+            assert (ROOT / built.get("args", {}).get("LOCK", "requirements.lock")).is_file()
+
+
+def test_images_run_as_nobody_special_with_what_the_locks_say():
+    python = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["requires-python"]
+    for path in dockerfiles():
+        words = instructions(path)
+        assert [rest for word, rest in words if word == "USER"] == ["microcosmos"]
+        installs = [rest for word, rest in words if word == "RUN" and "pip install" in rest]
+        assert len(installs) == 1
+        assert "--require-hashes" in installs[0]
+        versions = [
+            rest for word, rest in words if word == "FROM" and rest.startswith("python")
+        ]
+        assert re.match(r"python:([\d.]+)", versions[0])[1] in SpecifierSet(python)
+    server = (ROOT / "docker" / "server.Dockerfile").read_text()
+    assert "npm ci" in server
+    assert re.findall(r"requirements\S*\.lock", server)[0] == "requirements-server.lock"
