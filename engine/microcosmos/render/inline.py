@@ -9,6 +9,9 @@ import numpy as np
 from .movie import gif
 from .reading import Replay, read_replay
 
+SMALL = {"width": 280, "frames": 60}
+"""Of a film that is kept in a notebook: a few hundred kB."""
+
 
 class Film:
     """A GIF that a notebook plays."""
@@ -32,7 +35,7 @@ def show(creature: Mapping[str, Any] | bytes | Replay, **options: Any) -> Film:
 
         creature = record(creature)
     replay = read_replay(creature) if isinstance(creature, bytes) else creature
-    return Film(gif(replay, **options))
+    return Film(gif(replay, **SMALL | options))
 
 
 def filmed(positions: Any, edges: Any, vorticity: Any, *, every: int = 1) -> Replay:
