@@ -23,6 +23,7 @@ _HOME = {
     "refine": "local",
     "prepare": "device",
     "record": "render",
+    "show": "render",
     "audit": "render",
     "check": "render",
     "gradient": "render",

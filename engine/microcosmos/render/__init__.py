@@ -21,6 +21,8 @@ _HOME = {
     "gif": "movie",
     "mp4": "movie",
     "export": "files",
+    "show": "inline",
+    "filmed": "inline",
 }
 
 __all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]

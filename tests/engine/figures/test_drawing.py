@@ -14,10 +14,10 @@ from microcosmos.figures import drawing, gaits, reading
 
 TINY = {
     "experiment": "quality-diversity",
-    "world": {"width": 24, "height": 24},
-    "body": {"nodes": 8},
-    "control": {"period": 20},
-    "task": {"steps": 40},
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 12},
+    "control": {"period": 30},
+    "task": {"steps": 60},
     "archive": {
         "descriptors": [
             {"name": "bending_effort", "bins": 6},
@@ -25,8 +25,9 @@ TINY = {
             {"name": "straightness", "bins": 2},
         ]
     },
-    "search": {"generations": 3, "batch": 8, "block": 8},
+    "search": {"generations": 3, "batch": 16, "block": 8},
 }
+"""Evaluated by the program that tests of experiments have compiled."""
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +59,7 @@ def test_a_sheet_is_drawn_with_its_progress_told(archive, tmp_path):
     assert heard == [(k + 1, len(heard)) for k in range(len(heard))]
     told = (tmp_path / "sheet.caption.txt").read_text()
     assert f"each of {len(heard)} regions" in told
-    assert "at 3 moments of its 40 steps" in told
+    assert "at 3 moments of its 60 steps" in told
 
 
 def test_each_command_writes_its_figure_and_its_caption(archive, tmp_path):
@@ -71,7 +72,7 @@ def test_each_command_writes_its_figure_and_its_caption(archive, tmp_path):
         assert str(out) in invoked(name, archive, out, *options)
         assert out.read_bytes().startswith(b"%PDF")
         told = out.with_suffix(".caption.txt").read_text()
-        assert "3 generations of 8 (24 evaluations, seed 0)" in told
+        assert "3 generations of 16 (48 evaluations, seed 0)" in told
     assert (tmp_path / "archive.caption.tex").exists()
 
 
