@@ -11,6 +11,8 @@ import signal
 import socket
 import struct
 import sys
+import time
+from math import ceil
 from pathlib import Path
 
 from microcosmos.archive import creature, creature_h5
@@ -64,7 +66,7 @@ def restrict() -> None:
     room = pages * resource.getpagesize() + MEMORY
     for kind, most in (
         (resource.RLIMIT_AS, room),
-        (resource.RLIMIT_CPU, 1),
+        (resource.RLIMIT_CPU, ceil(time.process_time()) + 1),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
         (resource.RLIMIT_NOFILE, 0),
