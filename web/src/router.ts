@@ -7,6 +7,7 @@ export type Route =
   | { page: "new" }
   | { page: "compare" }
   | { page: "workers" }
+  | { page: "settings" }
   | { page: "run"; id: string }
   | { page: "creature"; sha: string }
   | { page: "unknown" };
@@ -16,7 +17,7 @@ export interface Place {
   query: URLSearchParams;
 }
 
-const PAGES = ["new", "compare", "workers"] as const;
+const PAGES = ["new", "compare", "workers", "settings"] as const;
 const isPage = (name: string): name is (typeof PAGES)[number] =>
   (PAGES as readonly string[]).includes(name);
 
