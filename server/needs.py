@@ -98,4 +98,7 @@ def need_of(method: str, path: str) -> Need:
 @cache
 def _patterns() -> list[tuple[str, re.Pattern[str], str]]:
     split = [(*key.split(" "), need) for key, need in NEEDS.items()]
-    return [(method, compile_path(path if path == METRICS else ROOT + path)[0], need) for method, path, need in split]
+    return [
+        (method, compile_path(path if path == METRICS else ROOT + path)[0], need)
+        for method, path, need in split
+    ]

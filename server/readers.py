@@ -6,6 +6,7 @@ import os
 import socket
 import subprocess
 import sys
+from contextlib import suppress
 from functools import cache
 from threading import Lock
 from typing import Any
@@ -16,8 +17,13 @@ from .schemas import Problem
 
 PATIENCE = 30.0
 """Seconds for the quarantine to begin, on a machine that is busy; a file has `SECONDS`."""
+ENDING = 0.2
+"""Seconds within which a process that was killed is known to be gone."""
 SINGLE = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "HDF5_PLUGIN_PRELOAD": "::"}
 """A process that forks must have one thread; and HDF5 none of its plugins."""
+SECRETS = [f"MICROCOSMOS_{name}_URL" for name in ("DATABASE", "REDIS", "ARTIFACTS")]
+SECRETS += ["MICROCOSMOS_TOKEN"]
+"""Nothing that is read there may get to know them."""
 
 
 class Quarantine:
@@ -55,10 +61,11 @@ class Quarantine:
 
     def _refuse_gone(self) -> None:
         """What does not run, or was ended by somebody, says nothing about a file."""
-        with self._lock:
-            if self._process is None or self._process.poll() is not None:
-                detail = "Files cannot be read just now; try again."
-                raise Refused(503, "Unavailable", detail, headers=RETRY)
+        with self._lock, suppress(subprocess.TimeoutExpired):
+            if self._process:
+                self._process.wait(ENDING)
+            detail = "Files cannot be read just now; try again."
+            raise Refused(503, "Unavailable", detail, headers=RETRY)
 
     def _connection(self) -> socket.socket:
         """To a child of its own for one file."""
@@ -79,11 +86,9 @@ class Quarantine:
     def _begun(self) -> socket.socket:
         if self._control is None:
             self._control, theirs = socket.socketpair()
-            secrets = "MICROCOSMOS_"  # Of the database, of tokens: not for there.
-            inherited = {k: v for k, v in os.environ.items() if not k.startswith(secrets)}
+            environment = {k: v for k, v in os.environ.items() if k not in SECRETS} | SINGLE
             with theirs:
                 command = [sys.executable, "-m", "server.quarantine"]
-                environment = inherited | SINGLE
                 self._process = subprocess.Popen(
                     command, stdin=theirs.fileno(), env=environment, process_group=0
                 )

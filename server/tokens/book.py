@@ -2,6 +2,7 @@
 
 import secrets
 from collections.abc import Collection, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from hashlib import sha256
@@ -9,7 +10,7 @@ from typing import cast
 from uuid import UUID
 
 from sqlalchemy import ColumnElement, func, or_, select, update
-from sqlalchemy.exc import IntegrityError
+from sqlalchemy.exc import IntegrityError, OperationalError
 from sqlalchemy.orm import Session
 
 from ..caller import ADMIN, Caller, Scope
@@ -94,11 +95,15 @@ def holder(services: Services, secret: str) -> Caller:
             f"The token `{token.name}` expired at {token.expires_at:%Y-%m-%d %H:%M} UTC."
         )
     if token.last_used_at is None or now - token.last_used_at > COARSE:
-        with services.sessions.write.begin() as session:
-            session.execute(
-                update(Token).where(Token.id == token.id).values(last_used_at=clock())
-            )
+        _note_use(services, token.id)
     return Caller(token.name, cast(Scope, token.scope), token.id, token.expires_at)
+
+
+def _note_use(services: Services, token: UUID) -> None:
+    """Nobody is refused because a busy database had no time for this."""
+    used = update(Token).where(Token.id == token).values(last_used_at=clock())
+    with suppress(OperationalError), services.sessions.write.begin() as session:
+        session.execute(used)
 
 
 def _unknown(detail: str) -> Refused:

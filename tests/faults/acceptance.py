@@ -3,8 +3,9 @@
 Four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
-sense and collect energy; searches with derivatives and without; and a page that is left open
-for half an hour, or for as many minutes as `MINUTES` says. Names of parts choose some.
+sense and collect energy; searches with derivatives and without; a page that is left open for
+half an hour, or for as many minutes as `MINUTES` says; and thousands of files that are none.
+Names of parts choose some.
 """
 
 import os
@@ -14,6 +15,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import malformed_hdf5
 from comparison import METHODS, SEEDS, compare, draw, sinusoidal, spec
 from drive import Installation, interrupt, kill_job, pause_and_resume, stop_worker
 from foraging import forage
@@ -21,6 +23,7 @@ from grown_up import Missing, services
 from left_open import leave_open
 from rich.console import Console
 from slopes import compare_slopes
+from strangers import all_cases, send, watched
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
@@ -116,12 +119,29 @@ def elsewhere(folder: Path, settings: dict[str, str], document: dict, embedded: 
         other.close()
 
 
+def uploads(place: Installation) -> bool:
+    """Whether thousands of malformed files are refused in time, and nothing else is read."""
+    canary = place.folder / "canary.h5"
+    canary.write_bytes(malformed_hdf5.whole())
+    with watched(canary) as told:
+        found = send(place, all_cases(canary))
+    console.print(
+        f"{found.refused} malformed files: {len(found.wrong)} not refused as they should be, "
+        f"the slowest in {found.slowest:.2f} s, {found.growth >> 20} MiB more memory at most, "
+        f"{len(told)} readings of other files"
+    )
+    console.print("\n".join(found.wrong))
+    in_time, little = found.slowest < 2, found.growth < 300 << 20
+    return found.refused >= 1000 and in_time and little and not found.wrong and not told
+
+
 PARTS = {
     "searches": searches,
     "databases": databases,
     "foraging": foraging,
     "slopes": slopes,
     "page": page,
+    "uploads": uploads,
 }
 
 

@@ -181,7 +181,6 @@ def others() -> Edits:
         "NaN": np.float32(np.nan),
         "nothing": h5py.Empty("f4"),
         "enumeration": np.array(1, h5py.enum_dtype({"a": 1})),
-        "references": np.zeros(2, h5py.ref_dtype),
     }
     for name in MEMBERS:
         for title, value in values.items():
@@ -215,7 +214,7 @@ def grouped(file: h5py.File, name: str) -> None:
 def negated(file: h5py.File, name: str) -> None:
     value = np.array(file[name][()])
     raw = bytearray(value.tobytes() or b"\0")
-    raw[0] ^= 1
+    raw[-1] ^= 0x40
     del file[name]
     turned = np.frombuffer(bytes(raw), value.dtype if value.size else "u1")
     file[name] = turned.reshape(value.shape if value.size else (1,))

@@ -65,6 +65,14 @@ def test_a_setting_that_cannot_work_is_named_with_the_reason(refused, name, valu
     assert re.search(reason, said)
 
 
+def test_a_server_whose_tokens_are_none_of_an_admin_does_not_listen(tmp_path, refused):
+    settings = {"MICROCOSMOS_DATA": str(tmp_path / "data")}
+    command = [sys.executable, "-m", "server.tokens", "create", "reader", "--scope", "read"]
+    subprocess.run(command, cwd=ROOT, env=os.environ | settings, check=True)
+    said = refused(MICROCOSMOS_AUTH="required", PORT=str(free_port()))
+    assert "none is live: make one with `python -m server.tokens create" in said
+
+
 def test_nothing_outlives_a_root_that_was_killed_and_the_next_start_goes_on(
     place, spec, undisturbed
 ):

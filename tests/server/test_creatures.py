@@ -46,6 +46,13 @@ def test_a_creature_is_downloaded_under_its_name_and_can_be_brought_back(api, kn
     assert (again.status_code, again.json()) == (200, {"creature": known})
 
 
+def test_a_creature_is_brought_back_as_hdf5_too(api, known):
+    file = api.get(f"creatures/{known}/creature.h5").content
+    sent = {"Content-Type": "application/x-hdf5"}
+    again = api.post("creatures", content=file, headers=sent)
+    assert (again.status_code, again.json()) == (200, {"creature": known})
+
+
 def test_who_has_a_creature_gets_it_once(api, known):
     etag = api.get(f"creatures/{known}").headers["etag"]
     answer = api.get(f"creatures/{known}", headers={"If-None-Match": etag})

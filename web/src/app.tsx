@@ -2,6 +2,7 @@
 
 import { useEffect } from "preact/hooks";
 import { later } from "./later";
+import { useUnknown } from "./live/caller";
 import { useLive } from "./live/live";
 import { type Toast, dismiss, useToasts } from "./live/toasts";
 import { DropTarget, OpenButton } from "./pages/DropTarget";
@@ -13,6 +14,8 @@ const CreaturePage = later(async () => (await import("./pages/Creature")).Creatu
 const NewRunPage = later(async () => (await import("./pages/NewRun")).NewRunPage);
 const RunPage = later(async () => (await import("./pages/Run")).RunPage);
 const SharesPage = later(async () => (await import("./pages/Shares")).SharesPage);
+const SettingsPage = later(async () => (await import("./pages/Settings")).SettingsPage);
+const SignInPage = later(async () => (await import("./pages/SignIn")).SignInPage);
 const WorkersPage = later(async () => (await import("./pages/Workers")).WorkersPage);
 
 const TITLES: Record<string, string> = {
@@ -21,12 +24,14 @@ const TITLES: Record<string, string> = {
   compare: "Compare",
   workers: "Workers",
   shares: "Shares",
+  settings: "Settings",
   unknown: "Not found",
 };
 
 export function App() {
   const place = usePlace();
   const { page } = place.route;
+  const unknown = useUnknown();
   useEffect(() => {
     if (TITLES[page]) document.title = `${TITLES[page]} · Microcosmos`;
   }, [page]);
@@ -55,12 +60,15 @@ export function App() {
           <a href="/commons" target="_self">
             Commons
           </a>
+          <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
+            Settings
+          </a>
         </nav>
         <span class="spring" />
         <OpenButton />
         <Connection />
       </header>
-      <Page {...place} />
+      {unknown ? <SignInPage /> : <Page {...place} />}
       <DropTarget />
       <Toasts />
     </>
@@ -77,6 +85,8 @@ function Page({ route, query }: Place) {
       return <ComparePage query={query} />;
     case "workers":
       return <WorkersPage />;
+    case "settings":
+      return <SettingsPage />;
     case "run":
       return <RunPage key={route.id} id={route.id} query={query} />;
     case "creature":

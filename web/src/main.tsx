@@ -19,6 +19,7 @@ import "./styles/guide.css";
 import "./styles/run-page.css";
 import "./styles/lists.css";
 import "./styles/shares.css";
+import "./styles/settings.css";
 
 const app = document.getElementById("app")!;
 if (isOpen(location.pathname)) {

@@ -10,6 +10,7 @@ export type Route =
   | { page: "shares" }
   | { page: "commons" }
   | { page: "share"; slug: string; sha: string | null }
+  | { page: "settings" }
   | { page: "run"; id: string }
   | { page: "creature"; sha: string }
   | { page: "unknown" };
@@ -19,7 +20,7 @@ export interface Place {
   query: URLSearchParams;
 }
 
-const PAGES = ["new", "compare", "workers", "shares", "commons"] as const;
+const PAGES = ["new", "compare", "workers", "shares", "commons", "settings"] as const;
 const isPage = (name: string): name is (typeof PAGES)[number] =>
   (PAGES as readonly string[]).includes(name);
 

@@ -19,7 +19,9 @@ import type {
   Share,
   ShareAsked,
   Spec,
+  TokenCreate,
 } from "./types";
+import { noteStatus } from "./unknown";
 
 const ROOT = "/api/v1";
 export const EVENTS_URL = `${ROOT}/events`;
@@ -37,6 +39,7 @@ interface Answer<T> {
 
 async function success<T>(asked: Promise<Answer<T>>): Promise<T> {
   const { data, error, response } = await asked;
+  noteStatus(response.status);
   if (!response.ok) throw problemOf(response.status, error);
   return data as T;
 }
@@ -57,6 +60,20 @@ export async function changeRun(id: string, change: RunChange): Promise<Run> {
   const asked = client.PATCH(`${ROOT}/runs/{run_id}`, { ...run(id), body: change });
   return (await success(asked)) as Run;
 }
+
+export const readCaller = () => success(client.GET(`${ROOT}/tokens/current`));
+export const readTokens = () => success(client.GET(`${ROOT}/tokens`));
+export const createToken = (body: TokenCreate) => success(client.POST(`${ROOT}/tokens`, { body }));
+
+export function revokeToken(id: string) {
+  const params = { path: { token_id: id } };
+  return success(client.DELETE(`${ROOT}/tokens/{token_id}`, { params }));
+}
+
+/** Whether the token is right; the browser keeps it where no script can read it. */
+export const signIn = (token: string) =>
+  success(client.POST(`${ROOT}/session`, { body: { token } }));
+export const signOut = () => success(client.DELETE(`${ROOT}/session`));
 
 export const readTags = () => success(client.GET(`${ROOT}/tags`));
 export const readWorkers = () => success(client.GET(`${ROOT}/workers`));
@@ -139,10 +156,10 @@ export function readFamily(sha: string, depth: number): Promise<[Ancestors, Chil
   return Promise.all([success(up), success(down)]);
 }
 
-/** Sends a creature file as it is, byte for byte; answers its name. */
-export function importCreature(text: string) {
-  const body = { body: text as never, bodySerializer: () => text };
-  const headers = { "Content-Type": "application/json" };
+/** Sends a creature file as it is, JSON or HDF5, byte for byte; answers its name. */
+export function importCreature(file: Blob) {
+  const body = { body: file as never, bodySerializer: () => file };
+  const headers = { "Content-Type": file.type || "application/octet-stream" };
   return success(client.POST(`${ROOT}/creatures`, { ...body, headers }));
 }
 
@@ -182,6 +199,7 @@ export async function proveFile(url: string): Promise<void> {
 async function proved(url: string): Promise<Response> {
   const stop = new AbortController();
   const response = await fetch(url, { signal: stop.signal });
+  noteStatus(response.status);
   if (!response.ok) throw problemOf(response.status, await response.json().catch(() => null));
   stop.abort();
   return response;

@@ -35,6 +35,11 @@ export type ArchiveColumns = Pick<
 export type Generations = Wire["Curves"];
 export type LogEntry = Wire["EntryRead"];
 export type SpeciesHistory = Wire["Species"];
+export type Caller = Wire["CallerRead"];
+export type Token = Wire["TokenRead"];
+export type TokenMade = Wire["TokenMade"];
+export type TokenCreate = Wire["TokenCreate"];
+export type TokenScope = Token["scope"];
 /** A picture that a filament folds into. */
 export type Target = Wire["Target"];
 

@@ -1,6 +1,6 @@
 /** The one stream of events that feeds a tab's store, while somebody looks at the tab. */
 
-import { EVENTS_URL } from "../api/client";
+import { EVENTS_URL, readCaller } from "../api/client";
 import { dispatch } from "./live";
 import type { Action } from "./store";
 
@@ -50,7 +50,9 @@ function open(): EventSource {
   };
   opened.onerror = () => {
     dispatch({ type: "connection", connection: "lost" });
-    if (opened.readyState === EventSource.CLOSED) reconnecting = setTimeout(open, RECONNECT_MS);
+    if (opened.readyState !== EventSource.CLOSED) return;
+    reconnecting = setTimeout(open, RECONNECT_MS);
+    readCaller().catch(() => {}); // A stream does not tell that a token was revoked.
   };
   listen(opened, "run", (run) => ({ type: "run", run }) as Action);
   listen(opened, "generation", (event) => ({ type: "generation", event }) as Action);

@@ -9,7 +9,7 @@ import { navigate } from "../router";
 
 async function open(file: File): Promise<void> {
   try {
-    const { creature } = await importCreature(await file.text());
+    const { creature } = await importCreature(file);
     navigate(`/creatures/${creature}`);
   } catch (error) {
     tell({ kind: "wrong", text: `${file.name}: ${messageOf(error)}` });
@@ -53,7 +53,7 @@ interface ButtonProps {
   children: ComponentChildren;
 }
 
-/** A button that asks for a JSON file. */
+/** A button that asks for a creature file, or another in JSON. */
 export function FileButton({ kind = "", name, take, children }: ButtonProps) {
   const input = useRef<HTMLInputElement>(null);
   return (
@@ -67,7 +67,7 @@ export function FileButton({ kind = "", name, take, children }: ButtonProps) {
         class="unseen"
         tabIndex={-1}
         aria-label={name}
-        accept="application/json,.json"
+        accept="application/json,.json,.h5"
         onChange={({ currentTarget }) => {
           const file = currentTarget.files?.[0];
           if (file) take(file);

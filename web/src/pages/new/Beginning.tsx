@@ -60,7 +60,7 @@ function BaseName({ base }: { base: Base }) {
 
 async function open(file: CreatureFile): Promise<void> {
   try {
-    const { creature } = await importCreature(file.text);
+    const { creature } = await importCreature(new Blob([file.text], { type: "application/json" }));
     navigate(`/creatures/${creature}`);
   } catch (error) {
     tell({ kind: "wrong", text: messageOf(error) });

@@ -1,0 +1,108 @@
+"""A server that asks for tokens: its first one, others, and what happens when they end."""
+
+import re
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from accessibility import violations
+from drive import Installation
+from playwright.sync_api import Browser, Page, expect
+
+SECRET = re.compile(r"mc_[\w-]{43}")
+
+
+@pytest.fixture
+def guarded(chromium: str, common: dict[str, str], tmp_path: Path) -> Iterator[Installation]:
+    """A product for which even this machine needs a token; nobody computes there."""
+    needed = {"MICROCOSMOS_AUTH": "required", "WORKERS": "0"}
+    place = Installation(tmp_path / "data", common | needed)
+    place.start(120)
+    yield place
+    place.end()
+    place.close()
+
+
+@pytest.fixture
+def alice(browser: Browser) -> Iterator[Page]:
+    """Somebody else, with a browser of her own."""
+    context = browser.new_context()
+    yield context.new_page()
+    context.close()
+
+
+@pytest.mark.e2e
+def test_an_admin_signs_in_with_the_first_token_and_makes_and_revokes_others(
+    guarded: Installation, browser: Browser, alice: Page
+):
+    first = told_at_the_start(guarded)
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    admin = context.new_page()
+    try:
+        sign_in(admin, guarded.url, first)
+        secret = make_a_token(admin, guarded.url)
+        use_it(alice, guarded.url, secret)
+        revoke_it(admin)
+        # The stream that she watches ends, and the page finds out why.
+        expect(alice.get_by_role("heading", name="Sign in")).to_be_visible(timeout=20_000)
+        admin.get_by_role("button", name="Sign out").click()
+        expect(admin.get_by_role("heading", name="Sign in")).to_be_visible()
+    finally:
+        context.close()
+
+
+def told_at_the_start(place: Installation) -> str:
+    """On the terminal once, and in a file that nobody else can read."""
+    (told,) = SECRET.findall(place.output.read_text())
+    file = place.folder / "admin-token"
+    assert file.read_text().strip() == told
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert told not in (place.folder / "logs" / "server.log").read_text()
+    return told
+
+
+def sign_in(page: Page, address: str, secret: str) -> None:
+    page.goto(address)
+    field = page.get_by_label("Token")
+    expect(field).to_be_visible()
+    assert violations(page) == []
+    field.fill("mc_wrong")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("alert")).to_contain_text("none of this server's")
+    field.fill(secret)
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("heading", name="Sign in")).to_be_hidden()
+    expect(page.get_by_role("status").filter(has_text="Live")).to_be_visible()
+
+
+def make_a_token(page: Page, address: str) -> str:
+    page.get_by_role("link", name="Settings").click()
+    expect(page.get_by_role("heading", name="admin")).to_be_visible()
+    page.get_by_label("Whose it is").fill("alice")
+    page.keyboard.press("Enter")
+    shown = page.locator(".secret code")
+    expect(shown).to_be_visible()
+    secret = shown.inner_text()
+    assert SECRET.fullmatch(secret)
+    expect(page.get_by_role("row", name=re.compile("^alice"))).to_contain_text(secret[:9])
+    assert violations(page) == []
+    page.reload()
+    expect(page.get_by_role("row", name=re.compile("^alice"))).to_be_visible()
+    assert secret not in page.content()
+    return secret
+
+
+def use_it(page: Page, address: str, secret: str) -> None:
+    """Whoever is no admin sees no tokens but knows who they are."""
+    sign_in(page, address, secret)
+    page.goto(f"{address}/settings")
+    expect(page.get_by_role("heading", name="alice")).to_be_visible()
+    expect(page.get_by_role("heading", name="Tokens")).to_be_hidden()
+    page.goto(address)
+
+
+def revoke_it(page: Page) -> None:
+    page.get_by_role("button", name="Revoke alice").click()
+    page.get_by_role("button", name="Revoke alice now").click()
+    expect(page.get_by_role("row", name=re.compile("^alice"))).to_contain_text("Revoked")

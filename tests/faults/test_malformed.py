@@ -1,0 +1,98 @@
+"""Files of strangers: refused with the reason, and nobody else's bytes are read for them."""
+
+import signal
+import subprocess
+import sys
+from itertools import islice
+
+import malformed
+import malformed_hdf5
+import pytest
+from drive import ROOT
+from strangers import LIES, all_cases, lie, send, watched
+
+EVERY = 8
+"""Of the files, about three thousand, `make acceptance` sends all."""
+
+
+@pytest.fixture
+def canary(tmp_path):
+    """Another file of this machine, which would do if it were read."""
+    path = tmp_path / "canary.h5"
+    path.write_bytes(malformed_hdf5.whole())
+    return path
+
+
+def test_the_files_they_are_made_of_are_sound(place):
+    for body in (malformed.written(malformed.good()), malformed_hdf5.whole()):
+        answer = place.http.post("/api/v1/creatures", content=body)
+        assert answer.status_code in (200, 201)
+        assert answer.json()["creature"] == malformed.good()["sha256"]
+
+
+def test_malformed_files_are_refused_with_the_reason_and_read_no_other(place, canary):
+    with watched(canary) as told:
+        found = send(place, islice(all_cases(canary), 0, None, EVERY))
+    assert found.wrong == []
+    assert found.refused > 300
+    assert found.growth < 100 << 20
+    assert told == []
+
+
+def test_the_watch_would_have_told(canary):
+    with watched(canary) as told:
+        canary.read_bytes()
+    assert told
+
+
+@pytest.mark.parametrize("name", LIES)
+def test_a_length_that_lies_harms_nobody(place, name):
+    sent, status = LIES[name]
+    answer = lie(place.port, sent)
+    assert not answer or status in answer
+    assert place.http.get("/healthz").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("deed", "outcome"),
+    [
+        ("open(canary)", "Too many open files"),
+        ("h5py.File(canary)", "Too many open files"),
+        ("h5py.File(stored)['a'][()]", "Too many open files|external"),
+        ("bytearray(1 << 30)", "MemoryError"),
+    ],
+)
+def test_the_kernel_keeps_readers_from_files_and_memory(canary, deed, outcome):
+    """Even where our own checks of a file fail."""
+    text = f"""
+import h5py, io, signal
+from server import quarantine
+canary, stored = {str(canary)!r}, io.BytesIO()
+with h5py.File(stored, "w") as file:
+    file.create_dataset("a", (8,), "u1", external=[(canary, 0, 8)])
+quarantine.restrict()
+signal.setitimer(signal.ITIMER_REAL, 0)  # A busy machine may take its time.
+try:
+    print({deed})
+except (OSError, MemoryError) as error:
+    print("refused", repr(error))
+"""
+    command = [sys.executable, "-c", text]
+    said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert said.startswith("refused")
+    assert any(word in said for word in outcome.split("|"))
+
+
+@pytest.mark.parametrize("deed", ["time.sleep(60)", "while True: pass"])
+def test_the_kernel_ends_readers_that_take_their_time(deed):
+    text = f"import time; from server import quarantine; quarantine.restrict()\n{deed}"
+    ended = subprocess.run([sys.executable, "-c", text], cwd=ROOT, check=False)
+    assert ended.returncode in (-signal.SIGALRM, -signal.SIGPROF)
+
+
+def test_a_reader_that_was_killed_is_replaced(place):
+    place.signal("server.quarantine", signal.SIGKILL)
+    body = malformed.written(malformed.good())
+    answers = [place.http.post("/api/v1/creatures", content=body) for _ in range(3)]
+    assert {answer.status_code for answer in answers} <= {200, 503}
+    assert answers[-1].status_code == 200

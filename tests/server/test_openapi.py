@@ -1,0 +1,137 @@
+"""The server does what its OpenAPI document says, whatever it is asked."""
+
+import json
+import os
+import struct
+from typing import Any
+
+import numpy as np
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
+from schemathesis import GenerationMode
+from schemathesis.checks import not_a_server_error
+from schemathesis.core.failures import FailureGroup
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from microcosmos.archive import creature, file
+from server import creatures, renderings, tokens
+from server.app import create_app
+from server.claims import claim
+from server.models import REPLAY
+
+EXAMPLES = int(os.environ.get("EXAMPLES", "8"))
+"""Requests to each operation, right ones and wrong ones; `EXAMPLES=500` looks longer."""
+CHECKS = [
+    not_a_server_error,
+    status_code_conformance,
+    content_type_conformance,
+    response_schema_conformance,
+]
+STREAMS = "/api/v1/events"
+HERE = settings(
+    max_examples=EXAMPLES,
+    deadline=None,
+    database=None,
+    derandomize=True,
+    phases=[Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
+
+
+@pytest.fixture
+def database_url(tmp_path) -> str:
+    return f"sqlite:///{tmp_path / 'test.sqlite'}"
+
+
+@pytest.fixture
+def known(services, spec, run_id, sweep_id, report, identity, table) -> dict[str, list[str]]:
+    """What paths may name so that there is something to answer: by the parameter."""
+    attempt = claim(services, run_id, "worker")
+    for generation in (1, 2):
+        attempt.record(report(generation, {generation: 1.0}), 1.0)
+    attempt.save(2, checkpoint(spec))
+    claim(services, sweep_id, "worker").record(table(1, {"number": 1, "speed": 0.5}), 1.0)
+    kept = creature.document(identity(3), None, None)
+    with services.sessions.write.begin() as session:
+        creatures.add(session, kept)
+    renderings.save(services, kept["sha256"], REPLAY, replay())
+    token = tokens.create(services, "somebody", "read").token
+    return {
+        "run_id": [str(run_id), str(sweep_id)],
+        "sha": [kept["sha256"], report(1, {1: 1.0}).elites[0].creature],
+        "token_id": [str(token.id)],
+    }
+
+
+def checkpoint(spec: dict[str, Any]) -> bytes:
+    """The file of an archive with one elite."""
+    archive = {
+        "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
+        "features": np.array([[0.01, 1.0]]),
+        "fitness": np.array([2.5]),
+        "generation": np.array([2]),
+        "creature": np.zeros((1, 32), np.uint8),
+        "cell": np.array([1]),
+    }
+    features = json.dumps(["bending_effort", "stretching_effort"])
+    told = {"format": file.FORMAT, "spec": json.dumps(spec), "features": features}
+    return file.dump({"archive": archive}, told)
+
+
+def replay() -> bytes:
+    """A recording of two nodes in one frame."""
+    header = {
+        "frames": 1,
+        "every": 5,
+        "steps": 0,
+        "nodes": 2,
+        "edges": [[0, 1]],
+        "size": [8, 4],
+    }
+    told = json.dumps(header).encode()
+    return struct.pack("<I", len(told)) + told + bytes(16)
+
+
+def test_no_request_breaks_the_server_or_its_promise(serve, services, known):
+    schema = schemathesis.openapi.from_dict(create_app(services).openapi())
+    wrong: list[str] = []
+    reached: set[str] = set()
+    with serve() as address:
+        for found in schema.exclude(path=STREAMS).get_all_operations():
+            wrong += broken(found.ok(), address, known, reached)
+    assert wrong == []
+    assert len(reached) > 30  # Most were answered with what they are there for.
+
+
+def broken(
+    operation: Any, address: str, known: dict[str, list[str]], reached: set[str]
+) -> list[str]:
+    """What the answers of an operation were that they should not have been."""
+    wrong: list[str] = []
+    modes = [operation.as_strategy(generation_mode=mode) for mode in GenerationMode]
+
+    @seed(1)
+    @HERE
+    @given(case=st.one_of(modes), draw=st.data())
+    def ask(case: Any, draw: Any) -> None:
+        for name in (case.path_parameters or {}).keys() & known.keys():
+            if draw.draw(st.integers(0, 3)):
+                case.path_parameters[name] = draw.draw(st.sampled_from(known[name]))
+        answer = case.call(base_url=address, timeout=20)
+        if answer.status_code < 300:
+            reached.add(operation.label)
+        try:
+            case.validate_response(answer, checks=CHECKS)
+        except FailureGroup as group:
+            wrong.extend(
+                f"{case.method} {case.formatted_path}: {one}" for one in group.exceptions
+            )
+
+    ask()
+    return wrong[:3]
