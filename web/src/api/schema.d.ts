@@ -331,7 +331,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** List Experiments */
+        /**
+         * List Experiments
+         * @description With what live workers have of users' own among the choices.
+         */
         get: operations["list_experiments_api_v1_experiments_get"];
         put?: never;
         post?: never;
@@ -1111,6 +1114,25 @@ export interface components {
             /** Width */
             width: number;
         };
+        /**
+         * PluginRead
+         * @description Something of users' own that a worker has.
+         */
+        PluginRead: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "fitness" | "descriptor" | "body" | "gait" | "encoding";
+            /** Name */
+            name: string;
+            /** Source */
+            source: string;
+            /** Title */
+            title: string;
+            /** Unit */
+            unit: string;
+        };
         /** PresetRead */
         PresetRead: {
             /** Name */
@@ -1329,6 +1351,16 @@ export interface components {
             /** Width */
             width: number;
         };
+        /**
+         * UnloadedRead
+         * @description A module of users' own that a worker could not load.
+         */
+        UnloadedRead: {
+            /** Module */
+            module: string;
+            /** Reason */
+            reason: string;
+        };
         /** Waiting */
         Waiting: {
             /** Attempt */
@@ -1388,6 +1420,8 @@ export interface components {
             memory_used_bytes: number | null;
             /** Name */
             name: string;
+            /** Plugins */
+            plugins: components["schemas"]["PluginRead"][];
             /** Run */
             run: string | null;
             /**
@@ -1400,6 +1434,8 @@ export interface components {
              * @enum {string}
              */
             status: "idle" | "busy";
+            /** Unloaded */
+            unloaded: components["schemas"]["UnloadedRead"][];
         };
     };
     responses: never;
