@@ -116,6 +116,8 @@ def test_a_run_says_which_version_it_needs_with_all_its_settings(api, have, mine
     assert (told["mine.sway"]["title"], told["mine.sway"]["unit"]) == ("Sway", "cells")
     again = api.post("runs", json=spec)
     assert again.json()["spec"] == spec, "what a run has is taken as it is"
+    usual = {**spec, "task": {**spec["task"], "fitness": "displacement"}}
+    assert "own" not in api.post("runs", json=usual).json()["spec"]["task"]
 
 
 def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, mine):
@@ -133,7 +135,7 @@ def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, min
         ("task", {"fitness": "mine.sway"}, "task.fitness", "mine.straight on worker"),
         ("body", {"builder": "your.body"}, "body.builder", "docs/plugins.md"),
         ("control", {"encoding": "your.code"}, "control.encoding", "no worker has"),
-        ("task", {"own": {"source": A, "title": "x"}}, "task.own", "must be left out"),
+        ("task", {"own": {"settings": {}}}, "task.own", "must be left out"),
         ("task", {"fitness": "mine.straight", "own": 3}, "task.own", "must be an object"),
         (
             "task",
