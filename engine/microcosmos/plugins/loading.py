@@ -64,9 +64,9 @@ def load_module(module: ModuleType, namespace: str) -> tuple[Declaration, ...]:
     found = [_plugin(*one, f"{namespace}.", source, file) for one in _declared(module)]
     if not found:
         raise ValueError(f"{file} declares nothing: it needs a @plugins.fitness or another")
-    names = [(one.declaration.kind, one.declaration.name) for one in found]
+    names = [one.declaration.name for one in found]
     if twice := [name for name in names if names.count(name) > 1]:
-        raise ValueError(f"{file} declares {twice[0][0]} {twice[0][1]!r} more than once")
+        raise ValueError(f"{file} declares {twice[0]!r} more than once")
     registry.replace(namespace, found)
     return tuple(one.declaration for one in found)
 
