@@ -3,6 +3,7 @@
 import { describe, expect, it } from "vitest";
 import type { Schema, Spec } from "../src/api/types";
 import { completed } from "../src/view/form/completing";
+import { changedPaths } from "../src/view/form/differences";
 import { complaints, valueAt, withChoice } from "../src/view/form/document";
 import { type Choice, type Section, formOf } from "../src/view/form/fields";
 
@@ -57,6 +58,8 @@ describe("a choice of users' own", () => {
     expect(valueAt(chosen, "task.own.settings.strictness")).toBe(1);
     const left = withChoice(chosen, task, fitness, "displacement");
     expect(valueAt(left, "task.own")).toBeNull();
+    expect(changedPaths(chosen, SPEC)).toEqual(["task.fitness", "task.own"]);
+    expect(changedPaths(left, SPEC)).toEqual([]);
   });
 
   it("has its settings checked where it is chosen, and only there", () => {

@@ -35,7 +35,8 @@ def load(path: Path | str) -> tuple[Declaration, ...]:
     """
     file = Path(path).resolve()
     if file.suffix != ".py" or not file.is_file():
-        raise ValueError(f"a module must be a Python file (.py), got {path}")
+        there = "" if file.exists() else ", which is not there"
+        raise ValueError(f"a module must be a Python file (.py), got {path}{there}")
     name = f"microcosmos_own_{file.stem}"
     found = importlib.util.spec_from_file_location(name, file)
     assert found is not None
