@@ -1,7 +1,9 @@
 """How a run is computed: the engine's experiment, driven from its last checkpoint."""
 
 import time
+from collections.abc import Mapping
 from contextlib import suppress
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -9,7 +11,7 @@ from microcosmos.build import build
 from microcosmos.device import device_kind, prepare
 from microcosmos.experiments import Experiment, OtherDevice, Stopped
 from microcosmos.plugins import Broken, Missing
-from microcosmos.spec import parse
+from microcosmos.spec import field_path, parse
 
 from .attempt import Attempt
 from .own import load
@@ -27,7 +29,13 @@ def carry_out(attempt: Attempt) -> None:
     except Broken as error:
         attempt.refuse(str(error))
     except ValidationError as error:  # What a server could not see: it has no modules.
-        attempt.refuse("; ".join(str(found["msg"]) for found in error.errors()))
+        attempt.refuse("; ".join(map(_said, error.errors())))
+
+
+def _said(error: Mapping[str, Any]) -> str:
+    """The field and what is wrong with it."""
+    words = str(error["msg"]).removeprefix("Value error, ")
+    return ": ".join(filter(None, (field_path(error["loc"]), words)))
 
 
 def compute(attempt: Attempt, experiment: Experiment) -> None:

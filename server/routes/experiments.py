@@ -20,15 +20,15 @@ def list_experiments(services: ServicesDep, session: SessionDep) -> list[Experim
     known = own.reported(services, session)
     offered = known.offered()
     if not offered:
-        return _all()
+        return built_in()
     return [
         one.model_copy(update={"schema_": with_own(one.schema_, offered, known.having)})
-        for one in _all()
+        for one in built_in()
     ]
 
 
 @cache
-def _all() -> list[ExperimentRead]:
+def built_in() -> list[ExperimentRead]:
     """Schemas take a tenth of a second to make, and do not change while a server runs."""
     return [_read(experiment) for experiment in EXPERIMENTS.values()]
 

@@ -116,6 +116,8 @@ def test_a_run_says_which_version_it_needs_with_all_its_settings(api, have, mine
     assert (told["mine.sway"]["title"], told["mine.sway"]["unit"]) == ("Sway", "cells")
     again = api.post("runs", json=spec)
     assert again.json()["spec"] == spec, "what a run has is taken as it is"
+    usual = {**spec, "task": {**spec["task"], "fitness": "displacement"}}
+    assert "own" not in api.post("runs", json=usual).json()["spec"]["task"]
 
 
 def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, mine):
@@ -133,7 +135,7 @@ def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, min
         ("task", {"fitness": "mine.sway"}, "task.fitness", "mine.straight on worker"),
         ("body", {"builder": "your.body"}, "body.builder", "docs/plugins.md"),
         ("control", {"encoding": "your.code"}, "control.encoding", "no worker has"),
-        ("task", {"own": {"source": A, "title": "x"}}, "task.own", "must be left out"),
+        ("task", {"own": {"settings": {}}}, "task.own", "must be left out"),
         ("task", {"fitness": "mine.straight", "own": 3}, "task.own", "must be an object"),
         (
             "task",
@@ -278,3 +280,31 @@ def test_a_run_of_modules_that_no_worker_has_together_says_so(services, have):
     body = {"builder": "mine.cross", "own": {"source": B, "title": "x"}}
     assert own.needs({"task": task, "body": body}) == [A, B]
     assert "none has them together" in own.missing(alive, {"task": task, "body": body})
+
+
+def test_gaits_encodings_and_folded_bodies_of_ones_own_are_queued(api, have, mine, sweep):
+    have(plugins=declared())
+    swim = {**sweep, "swimmers": ["worm", "mine.wiggler"]}
+    code = {
+        **{name: mine[name] for name in ("experiment", "world")},
+        "control": {"encoding": "mine.pulse", "period": 40},
+        "search": {"emitters": [{"operator": "iso+line"}]},
+    }
+    fold = {
+        "experiment": "folding",
+        "targets": [{"kind": "digit", "digit": 3}],
+        "body": {"builder": "mine.cross"},
+        "steps": 20,
+        "updates": 2,
+    }
+    for spec, part in ((swim, "own"), (code, "control"), (fold, "body")):
+        assert api.post("runs/estimate", json=spec).status_code == 200, part
+        answer = api.post("runs", json=spec)
+        assert answer.status_code == 202, answer.text
+        found = answer.json()["spec"][part]
+        version = found["mine.wiggler"] if part == "own" else found["own"]
+        assert version["source"] == A
+        assert (
+            api.get(f"runs/{answer.json()['id']}").json()["waiting"].startswith("A worker is")
+        )
+    assert "own" not in api.post("runs", json=sweep).json()["spec"]

@@ -2,11 +2,11 @@
 
 import json
 
-from server.routes.experiments import list_experiments
+from server.routes.experiments import built_in
 
 
 def main() -> None:
-    print(json.dumps([found.model_dump(mode="json") for found in list_experiments()]))
+    print(json.dumps([found.model_dump(mode="json") for found in built_in()]))
 
 
 if __name__ == "__main__":

@@ -8,9 +8,6 @@ from jaxtyping import Array
 
 from .. import creatures, genomes, plugins, search, spec
 
-MEASURES = ("fitness", "descriptor")
-"""Kinds of things of one's own that give a number."""
-
 
 def build_measures(scene: spec.Scene) -> tuple[search.Measure, ...]:
     """What is measured of a scene's creatures beside the usual features, by name."""

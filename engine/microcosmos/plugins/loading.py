@@ -35,7 +35,8 @@ def load(path: Path | str) -> tuple[Declaration, ...]:
     """
     file = Path(path).resolve()
     if file.suffix != ".py" or not file.is_file():
-        raise ValueError(f"a module must be a Python file (.py), got {path}")
+        there = "" if file.exists() else ", which is not there"
+        raise ValueError(f"a module must be a Python file (.py), got {path}{there}")
     name = f"microcosmos_own_{file.stem}"
     found = importlib.util.spec_from_file_location(name, file)
     assert found is not None
@@ -64,9 +65,9 @@ def load_module(module: ModuleType, namespace: str) -> tuple[Declaration, ...]:
     found = [_plugin(*one, f"{namespace}.", source, file) for one in _declared(module)]
     if not found:
         raise ValueError(f"{file} declares nothing: it needs a @plugins.fitness or another")
-    names = [(one.declaration.kind, one.declaration.name) for one in found]
+    names = [one.declaration.name for one in found]
     if twice := [name for name in names if names.count(name) > 1]:
-        raise ValueError(f"{file} declares {twice[0][0]} {twice[0][1]!r} more than once")
+        raise ValueError(f"{file} declares {twice[0]!r} more than once")
     registry.replace(namespace, found)
     return tuple(one.declaration for one in found)
 

@@ -223,7 +223,7 @@ def about(body: Body) -> bodies.Body:
     """The graph of a body, or where it is made elsewhere a chain with as many nodes at most."""
     if made_elsewhere(body):
         assert isinstance(body, OwnBody)
-        return bodies.chain(max(3, body.own.sizes.get("nodes", MOST)), 1.0)
+        return bodies.chain(min(MOST, max(3, body.own.sizes.get("nodes", MOST))), 1.0)
     return shape(body)
 
 

@@ -76,7 +76,7 @@ class Gaits(Part):
         """Gaits of one's own are told with their versions."""
         swimmers = given.get("swimmers") if isinstance(given, dict) else None
         names = [n for n in swimmers if is_own(n)] if isinstance(swimmers, list | tuple) else []
-        if not names:
+        if not names and (not isinstance(given, dict) or not given.get("own")):
             return given
         told = given.get("own") or {}
         if not isinstance(told, dict):

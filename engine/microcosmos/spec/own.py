@@ -96,6 +96,9 @@ def completed(
     if is_own(name):
         told, declared = version(kinds, field, str(name), own, info)
         return {**given, "own": told}, declared
+    if isinstance(own, Own) or (isinstance(own, Mapping) and "source" in own):
+        # A spec that was complete got another word: what belonged to the one before goes.
+        return {key: value for key, value in given.items() if key != "own"}, None
     if own is not None:
         raise ValueError(f"`own` must be left out where `{field}` is {name!r}, got some")
     return given, None

@@ -71,6 +71,8 @@ export interface Stroke {
   swimmer: string;
   period: number;
   ramp: number;
+  /** Which version it is, where it is of users' own. */
+  own?: Spec;
 }
 
 /** Genes that are numbers: a controller itself, a network's weights, or a rest shape. */

@@ -14,7 +14,8 @@ export interface Header {
   vorticity: { scale: number };
   velocity?: { scale: number };
   energy?: { scale: number; frames: number };
-  fitness: { recorded: number | null; replayed: number; difference: number | null };
+  /** Replayed is null where the fitness is of users' own and its module was not to be had. */
+  fitness: { recorded: number | null; replayed: number | null; difference: number | null };
   device: string;
 }
 

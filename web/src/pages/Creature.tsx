@@ -109,7 +109,9 @@ function Difference({ replay, task }: { replay: Replay; task: Spec }) {
   const swims = task.fitness === "displacement";
   return (
     <p class="quiet small">
-      In this replay {swims ? "it swims" : "its fitness is"} {number(replayed, 4)}
+      {replayed === null
+        ? "This replay was made without the module that its fitness is of"
+        : `In this replay ${swims ? "it swims" : "its fitness is"} ${number(replayed, 4)}`}
       {swims && " cells"}
       {recorded !== null && `; its recorded fitness is ${number(recorded, 4)}`}
       {difference !== null && difference !== 0 && ` (rounding: ${number(difference, 2)})`}.

@@ -61,6 +61,7 @@ function WorkerCard({ worker }: { worker: Worker }) {
         text={room}
       />
       <Doing worker={worker} />
+      <OwnThings worker={worker} />
       <p class="quiet small">
         {status === "busy" ? "Busy" : "Idle"} for {duration(secondsSince(since))}
       </p>
@@ -90,6 +91,32 @@ function Meter({ title, share, text }: { title: string; share: number | null; te
         </div>
       )}
     </div>
+  );
+}
+
+/** What it has of users' own, and what it could not load. */
+function OwnThings({ worker: { plugins, unloaded } }: { worker: Worker }) {
+  return (
+    <>
+      {plugins.length > 0 && (
+        <details class="own-things">
+          <summary>{count(plugins.length)} of users’ own</summary>
+          <ul>
+            {plugins.map(({ kind, name, title, source }) => (
+              <li key={`${kind} ${name}`}>
+                {title} <span class="quiet small">{kind}</span> <code>{name}</code>{" "}
+                <code class="quiet">{source.slice(0, 12)}</code>
+              </li>
+            ))}
+          </ul>
+        </details>
+      )}
+      {unloaded.map(({ module, reason }) => (
+        <p key={module} class="wrong-text small">
+          {module} is not loaded: {reason}
+        </p>
+      ))}
+    </>
   );
 }
 

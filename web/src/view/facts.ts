@@ -37,10 +37,37 @@ export function measurementsOf({ identity, measured }: Creature): Row[] {
   return [
     ...(gait ? [] : [["Fitness", number(measured.fitness, 6)] as Row]),
     ...figures.map(([name, value]): Row => {
-      const [title, write] = FEATURES[name] ?? [words(name), (x: number) => number(x, 6)];
-      return [title, write(value)];
+      const own = ownOf({ identity, measured })[name];
+      const [title, write] = FEATURES[name] ?? [own?.title ?? words(name), (x: number) => number(x, 6)];
+      return [title, own?.unit ? `${write(value)} ${own.unit}` : write(value)];
     }),
   ];
+}
+
+/** What a creature was measured with of users' own, by name. */
+function ownOf({ identity, measured }: Pick<Creature, "identity" | "measured">): Record<string, Own> {
+  const task = identity.task as { fitness?: string; own?: Own } | undefined;
+  const measures = (measured as { own?: Record<string, Own> } | null)?.own ?? {};
+  return task?.own ? { ...measures, [task.fitness!]: task.own } : measures;
+}
+
+interface Own {
+  title: string;
+  unit: string;
+  source: string;
+}
+
+/** Names, titles and versions of what a creature needs of users' own. */
+function needsOf(creature: Creature): Row[] {
+  const { genome } = creature.identity;
+  const control = "control" in genome ? genome.control : (genome as unknown as Spec);
+  const moved = control.own as unknown as Own | undefined;
+  const name = "swimmer" in genome ? genome.swimmer : genome.encoding;
+  const all = { ...ownOf(creature), ...(moved && { [name]: moved }) };
+  const told = Object.entries(all).map(
+    ([own, { title, source }]) => `${title} (${own}, version ${source.slice(0, 12)})`,
+  );
+  return told.length > 0 ? [["Of one's own", told.join("; ")]] : [];
 }
 
 interface Group {
@@ -83,6 +110,7 @@ export function originOf({ identity, measured, provenance, licence, credit }: Cr
   return [
     ...gaitOf(identity.genome),
     ...encodingOf(identity.genome),
+    ...needsOf({ identity, measured, provenance, licence } as Creature),
     ["Body", bodyOf(identity.body)],
     ["World", worldOf(identity.world)],
     ...(identity.genome.encoding === "gait"

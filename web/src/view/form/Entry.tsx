@@ -58,12 +58,18 @@ export function Entry({ field, state }: { field: Leaf; state: FormState }) {
       {field.kind === "text" && <TextInput {...common} />}
       <div id={`${common.id}-about`} class="about">
         <p class="help">
-          {field.help} <span class="range">{rangeOf(field, unit)}</span>
+          {field.help} {aboutOwn(field, value)} <span class="range">{rangeOf(field, unit)}</span>
         </p>
         <Sentences messages={messages} />
       </div>
     </div>
   );
+}
+
+/** Of a choice of users' own: what it is, and who has it. */
+function aboutOwn(field: Leaf, value: Json): string {
+  const own = field.kind === "choice" ? field.own?.[String(value)] : undefined;
+  return own ? `${String(value)}: ${own.about} Of one's own: on ${own.workers.join(", ")}.` : "";
 }
 
 /** The unit, unless the name says it already. */

@@ -4,7 +4,7 @@ import type { ComponentChildren } from "preact";
 import type { Json } from "../../api/types";
 import { words } from "../format";
 import { countWithin } from "./differences";
-import { isOff, partOf, valueAt, withChoice } from "./document";
+import { isOff, isThere, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
 import { Entry, type FormState, Messages, Reset } from "./Entry";
 
@@ -141,7 +141,8 @@ function Kinds({ union, state }: { union: Union; state: FormState }) {
 }
 
 function Fields({ section, state }: { section: Section; state: FormState }) {
-  return section.fields.map((field) => {
+  const there = section.fields.filter((field) => isThere(field, state.document));
+  return there.map((field) => {
     if (field.kind === "constant") return null;
     if (field.kind === "rows") return <RowList key={field.path} rows={field} state={state} />;
     if (field.kind === "section" || field.kind === "union") {

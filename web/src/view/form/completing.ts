@@ -6,7 +6,17 @@ import { isObject } from "./reading";
 import { defaultOf, notNull, resolve } from "./schema";
 
 export function completed(schema: Schema, spec: Spec): Spec {
-  return filled(schema, schema, spec) as Spec;
+  return filled(schema, schema, latest(spec)) as Spec;
+}
+
+/** Without the versions of what is of users' own: a new run takes those that there are now. */
+function latest(value: Json): Json {
+  if (Array.isArray(value)) return value.map(latest);
+  if (!isObject(value)) return value;
+  if (typeof value.source === "string" && isObject(value.settings)) return { settings: value.settings };
+  const parts = Object.entries(value);
+  // A creature is what it is.
+  return Object.fromEntries(parts.map(([key, part]) => [key, key === "creature" ? part : latest(part)]));
 }
 
 function filled(part: Schema, root: Schema, value: Json | undefined): Json {

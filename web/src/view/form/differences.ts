@@ -7,7 +7,7 @@ import { join } from "./schema";
 /** Paths of values that differ; of parts and lists that are made otherwise, their own. */
 export function changedPaths(a: Json, b: Json, path = ""): string[] {
   if (isObject(a) && isObject(b) && sameKeys(a, b)) {
-    return Object.keys(a).flatMap((key) => changedPaths(a[key]!, b[key]!, join(path, key)));
+    return keysOf(a, b).flatMap((key) => changedPaths(a[key] ?? null, b[key] ?? null, join(path, key)));
   }
   if (Array.isArray(a) && Array.isArray(b) && a.length === b.length && a.every(isObject)) {
     return a.flatMap((item, i) => changedPaths(item, b[i]!, join(path, String(i))));
@@ -15,9 +15,15 @@ export function changedPaths(a: Json, b: Json, path = ""): string[] {
   return JSON.stringify(a) === JSON.stringify(b) ? [] : [path];
 }
 
+/** What belongs to a word of users' own is there with that word alone. */
+const COMES_AND_GOES = "own";
+
+function keysOf(...parts: Spec[]): string[] {
+  return [...new Set(parts.flatMap(Object.keys))];
+}
+
 function sameKeys(a: Spec, b: Spec): boolean {
-  const keys = Object.keys(a);
-  return keys.length === Object.keys(b).length && keys.every((key) => key in b);
+  return keysOf(a, b).every((key) => key === COMES_AND_GOES || (key in a && key in b));
 }
 
 /** How many of the paths lie in a part of the spec. */

@@ -123,9 +123,23 @@ export function partOf(union: Union, document: Json): Section | null {
 /** The document with another value; what follows from a changed choice is left out again. */
 export function withChoice(document: Json, section: Section, field: Field, value: Json): Json {
   const next = withValue(document, field.path, value);
-  const own = section.following.map((name) => join(section.path, name));
-  if (field.kind !== "choice" || own.includes(field.path)) return next;
-  return own.reduce((changed, path) => withValue(changed, path, null), next);
+  const following = section.following.map((name) => join(section.path, name));
+  if (field.kind !== "choice" || following.includes(field.path)) return next;
+  const left = following.reduce((changed, path) => withValue(changed, path, null), next);
+  return withOwn(left, section, field, value);
+}
+
+/** The settings of something of users' own come and go with the word for it. */
+function withOwn(document: Json, { path, settings }: Section, field: Field, value: Json): Json {
+  const own = join(path, "own");
+  const fresh = settings?.path === field.path ? settings.fresh[String(value)] : undefined;
+  if (fresh === undefined && valueAt(document, own) === null) return document;
+  return withValue(document, own, fresh ?? null);
+}
+
+/** Whether a field belongs to what a document has chosen. */
+export function isThere({ when }: Field, document: Json): boolean {
+  return when === undefined || valueAt(document, when.path) === when.is;
 }
 
 /** Whether a section that can be switched off is. */
@@ -135,6 +149,10 @@ export function isOff(section: Section, document: Json): boolean {
 
 /** What a document has of a field: the fields of a part, of the one chosen, of each row. */
 function insideOf(field: Field, document: Json): Field[] {
+  return within(field, document).filter((each) => isThere(each, document));
+}
+
+function within(field: Field, document: Json): Field[] {
   if (field.kind === "union") return partOf(field, document)?.fields ?? [];
   if (field.kind === "section") return isOff(field, document) ? [] : field.fields;
   if (field.kind !== "rows") return [];

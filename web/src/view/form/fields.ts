@@ -11,6 +11,16 @@ interface Common {
   path: string;
   title: string;
   help: string;
+  /** The choice with which alone it is there: the settings of something of users' own. */
+  when?: { path: string; is: string };
+}
+
+/** What is told of a choice of users' own. */
+export interface Own {
+  title: string;
+  about: string;
+  /** Names of those who have it. */
+  workers: string[];
 }
 
 export interface Section extends Common {
@@ -18,6 +28,8 @@ export interface Section extends Common {
   fields: Field[];
   /** Names of fields that follow from the others where they are left out. */
   following: string[];
+  /** What belongs to a choice of users' own, by its path and word, when it is made. */
+  settings?: { path: string; fresh: Record<string, Json> };
   /** What it begins with when it is switched on; not there where it cannot be switched off. */
   fresh?: Json;
   /** Whether people seldom change what is in it. */
@@ -53,6 +65,7 @@ export interface Choice extends Common {
   kind: "choice";
   nullable: boolean;
   options: Json[];
+  own?: Record<string, Own>;
 }
 
 /** Several numbers in a row. */
@@ -97,12 +110,34 @@ export function formOf(schema: Schema): Section {
 function sectionOf(schema: Schema, root: Schema, common: Common): Section {
   const properties = (schema.properties ?? {}) as Record<string, Schema>;
   const following = followingOf(schema, root);
-  const fields = Object.entries(properties).map(([key, property]) =>
+  const fields = Object.entries(properties).flatMap(([key, property]) => {
+    const path = join(common.path, key);
+    if (property.parts) return settingsOf(property, root, common.path, path);
     // A part that has a unit has it for all that is in it.
-    fieldOf({ ...unitIn(schema), ...property }, root, key, join(common.path, key), following.includes(key)),
-  );
+    const field = fieldOf({ ...unitIn(schema), ...property }, root, key, path, following.includes(key));
+    return property.inline === true ? (field as Section).fields : [field];
+  });
   const seldom = schema.seldom === true && { seldom: true };
-  return { ...common, kind: "section", fields, following, ...seldom };
+  return { ...common, kind: "section", fields, following, ...seldom, ...freshSettings(schema, common.path) };
+}
+
+/** The settings that go with words of users' own for a choice, each shown with its word. */
+function settingsOf(property: Schema, root: Schema, beside: string, path: string): Field[] {
+  const choice = join(beside, String(property.settings_of));
+  return Object.entries(property.parts as Record<string, Schema>).flatMap(([is, part]) =>
+    sectionOf(part, root, { path, title: "", help: "" }).fields.map((field) => ({
+      ...field,
+      when: { path: choice, is },
+    })),
+  );
+}
+
+function freshSettings(schema: Schema, path: string): Pick<Section, "settings"> {
+  const own = (schema.properties as Record<string, Schema> | undefined)?.own;
+  if (!own?.parts) return {};
+  const parts = Object.entries(own.parts as Record<string, Schema>);
+  const fresh = Object.fromEntries(parts.map(([name, part]) => [name, part.default!]));
+  return { settings: { path: join(path, String(own.settings_of)), fresh } };
 }
 
 const unitIn = ({ unit }: Schema): Schema => (unit === undefined ? {} : { unit });
@@ -129,7 +164,10 @@ function fieldOf(
   const common = { path, title: words(key), help: text(schema.description) };
   if (Array.isArray(inner.oneOf)) return unionOf(inner, root, common);
   if ("const" in inner) return { ...common, kind: "constant" };
-  if (Array.isArray(inner.enum)) return { ...common, kind: "choice", nullable, options: inner.enum };
+  if (Array.isArray(inner.enum)) {
+    const own = inner.own && { own: inner.own as unknown as Record<string, Own> };
+    return { ...common, kind: "choice", nullable, options: inner.enum, ...own };
+  }
   switch (inner.type) {
     case "object": {
       const section = sectionOf({ ...inner, ...unitIn(schema) }, root, common);

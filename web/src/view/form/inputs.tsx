@@ -57,7 +57,7 @@ export function ChoiceInput({ id, value, invalid, onChange, field }: Common & { 
       {field.nullable && <option value="null">auto</option>}
       {field.options.map((option) => (
         <option key={String(option)} value={JSON.stringify(option)}>
-          {String(option).replaceAll("_", " ")}
+          {field.own?.[String(option)]?.title ?? String(option).replaceAll("_", " ")}
         </option>
       ))}
     </select>

@@ -1,6 +1,6 @@
 /** What a person pastes or drops: a spec, a run that has one, a creature that lived by one. */
 
-import type { Creature, Json, Spec } from "../../api/types";
+import type { Creature, Json, Spec, Stroke } from "../../api/types";
 
 export type Found =
   | { kind: "spec"; spec: Spec }
@@ -73,9 +73,12 @@ export function specOf(creature: Creature): Spec {
     control,
     ...(room && { genome: room }),
     task,
-    ...(NUMBERS.includes(genome.encoding) && { search: { emitters: [{ operator: "iso+line" }] } }),
+    ...((NUMBERS.includes(genome.encoding) || isOwn(genome.encoding)) && { search: { emitters: [{ operator: "iso+line" }] } }),
   };
 }
+
+/** Names of users' own have a dot. */
+const isOwn = (name: string) => name.includes(".");
 
 /** What networks had room for where the creature was evaluated. */
 function roomOf({ measured }: Creature): Spec | null {
@@ -83,10 +86,11 @@ function roomOf({ measured }: Creature): Spec | null {
   return room ? { max_nodes: room[0], max_connections: room[1] } : null;
 }
 
-function gaitSpec(stroke: { swimmer: string; period: number; ramp: number }, world: Spec): Spec {
+function gaitSpec(stroke: Stroke, world: Spec): Spec {
   return {
     experiment: "gaits",
     swimmers: [stroke.swimmer],
+    ...(stroke.own && { own: { [stroke.swimmer]: stroke.own } }),
     viscosities: [world.viscosity ?? null],
     width: world.width ?? null,
     height: world.height ?? null,
