@@ -12,6 +12,7 @@ const ComparePage = later(async () => (await import("./pages/Compare")).CompareP
 const CreaturePage = later(async () => (await import("./pages/Creature")).CreaturePage);
 const NewRunPage = later(async () => (await import("./pages/NewRun")).NewRunPage);
 const RunPage = later(async () => (await import("./pages/Run")).RunPage);
+const SweepPage = later(async () => (await import("./pages/Sweep")).SweepPage);
 const WorkersPage = later(async () => (await import("./pages/Workers")).WorkersPage);
 
 const TITLES: Record<string, string> = {
@@ -71,6 +72,8 @@ function Page({ route, query }: Place) {
       return <WorkersPage />;
     case "run":
       return <RunPage key={route.id} id={route.id} query={query} />;
+    case "sweep":
+      return <SweepPage key={route.id} id={route.id} query={query} />;
     case "creature":
       return <CreaturePage key={route.sha} sha={route.sha} query={query} />;
     case "unknown":

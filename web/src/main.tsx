@@ -17,6 +17,7 @@ import "./styles/archive.css";
 import "./styles/guide.css";
 import "./styles/run-page.css";
 import "./styles/lists.css";
+import "./styles/sweeps.css";
 
 await connect();
 render(<App />, document.getElementById("app")!);

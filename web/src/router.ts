@@ -8,6 +8,7 @@ export type Route =
   | { page: "compare" }
   | { page: "workers" }
   | { page: "run"; id: string }
+  | { page: "sweep"; id: string }
   | { page: "creature"; sha: string }
   | { page: "unknown" };
 
@@ -26,6 +27,7 @@ export function routeOf(path: string): Route {
   if (second === undefined && isPage(first)) return { page: first };
   const name = rest.length === 0 ? decoded(second) : null;
   if (name !== null && first === "runs") return { page: "run", id: name };
+  if (name !== null && first === "sweeps") return { page: "sweep", id: name };
   if (name !== null && first === "creatures") return { page: "creature", sha: name };
   return { page: "unknown" };
 }

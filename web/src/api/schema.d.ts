@@ -372,8 +372,8 @@ export interface paths {
          * List Runs
          * @description Runs of any of these states and experiments, with this tag and this text.
          *
-         *     `q` is looked for in names, tags and notes and at the beginning of ids. With `-`, the sort
-         *     is descending; runs without a value come last.
+         *     `q` is looked for in names, tags and notes and at the beginning of ids; `sweep` is one, or
+         *     `none`. With `-`, the sort is descending; runs without a value come last.
          */
         get: operations["list_runs_api_v1_runs_get"];
         put?: never;
@@ -709,6 +709,170 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sweeps": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Sweeps
+         * @description Newest first.
+         */
+        get: operations["list_sweeps_api_v1_sweeps_get"];
+        put?: never;
+        /**
+         * Create Sweep
+         * @description Queue all runs of a sweep, or none. The same key with the same request is the same.
+         */
+        post: operations["create_sweep_api_v1_sweeps_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/estimate": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Estimate Sweep
+         * @description What all runs of a sweep will need, without queueing them.
+         */
+        post: operations["estimate_sweep_api_v1_sweeps_estimate_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Read */
+        get: operations["read_api_v1_sweeps__sweep_id__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/cancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Cancel Sweep
+         * @description Cancel every run that has not ended; `left` tells of those that have.
+         */
+        post: operations["cancel_sweep_api_v1_sweeps__sweep_id__cancel_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/curves": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Curves
+         * @description The curves of every run by itself, over the same generations.
+         */
+        get: operations["read_curves_api_v1_sweeps__sweep_id__curves_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/pause": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Pause Sweep
+         * @description Pause every run that can be paused; `left` tells of those that cannot.
+         */
+        post: operations["pause_sweep_api_v1_sweeps__sweep_id__pause_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/resume": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Resume Sweep
+         * @description Resume every run that is paused; `left` tells of the others.
+         */
+        post: operations["resume_sweep_api_v1_sweeps__sweep_id__resume_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/summary": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Summary
+         * @description Median and spread of each case, by generation and at last.
+         *
+         *     Of all generations, or of about so many, evenly spaced; of fewer where there are very many
+         *     runs.
+         */
+        get: operations["read_summary_api_v1_sweeps__sweep_id__summary_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/tags": {
         parameters: {
             query?: never;
@@ -858,6 +1022,22 @@ export interface components {
             scale: "log10" | "linear";
         };
         /**
+         * Band
+         * @description A spread at each generation, as columns.
+         */
+        Band: {
+            /** High */
+            high: (number | null)[];
+            /** Low */
+            low: (number | null)[];
+            /** Max */
+            max: (number | null)[];
+            /** Median */
+            median: (number | null)[];
+            /** Min */
+            min: (number | null)[];
+        };
+        /**
          * BodyRead
          * @description A body at rest in its world; of one with many nodes some are left out.
          */
@@ -902,6 +1082,41 @@ export interface components {
              * @enum {string}
              */
             status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /**
+         * CaseRead
+         * @description One combination of the grid's values.
+         */
+        CaseRead: {
+            /** Runs */
+            runs: string[];
+            /** Values */
+            values: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * CaseSummary
+         * @description What the runs of one case say together; columns have one entry per generation.
+         */
+        CaseSummary: {
+            best: components["schemas"]["Band"];
+            coverage: components["schemas"]["Band"];
+            /** Finals */
+            finals: {
+                [key: string]: components["schemas"]["Final"];
+            };
+            /** Generation */
+            generation: number[];
+            /** Members */
+            members: components["schemas"]["Member"][];
+            qd_score: components["schemas"]["Band"];
+            /** Runs */
+            runs: number[];
+            /** Values */
+            values: {
+                [key: string]: unknown;
+            };
         };
         /**
          * CentroidsRead
@@ -1048,6 +1263,21 @@ export interface components {
             /** Needed */
             needed?: string | null;
         };
+        /** Final */
+        Final: {
+            /** High */
+            high: number | null;
+            /** Low */
+            low: number | null;
+            /** Max */
+            max: number | null;
+            /** Median */
+            median: number | null;
+            /** Min */
+            min: number | null;
+            /** Values */
+            values: (number | null)[];
+        };
         /** Health */
         Health: {
             /**
@@ -1079,10 +1309,67 @@ export interface components {
             /** Generation */
             generation: number;
         };
+        /**
+         * Left
+         * @description A run that was left as it is.
+         */
+        Left: {
+            /** Reason */
+            reason: string;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /**
+         * Line
+         * @description The curves of one run; None beyond the last generation that it has recorded.
+         */
+        Line: {
+            /** Best */
+            best: (number | null)[];
+            /** Coverage */
+            coverage: (number | null)[];
+            /** Qd Score */
+            qd_score: (number | null)[];
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+        };
         /** Log */
         Log: {
             /** Entries */
             entries: components["schemas"]["EntryRead"][];
+        };
+        /**
+         * Member
+         * @description A run as its sweep tells of it.
+         */
+        Member: {
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /** Seed */
+            seed: number | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
         };
         /**
          * PaceRead
@@ -1283,6 +1570,8 @@ export interface components {
             summary: {
                 [key: string]: unknown;
             } | null;
+            /** Sweep */
+            sweep: string | null;
             /** Tags */
             tags: string[];
             /** Version */
@@ -1305,6 +1594,127 @@ export interface components {
             members: number[][];
             /** Number */
             number: number[][];
+        };
+        /** SweepChanged */
+        SweepChanged: {
+            /** Cases */
+            cases: components["schemas"]["CaseRead"][];
+            /** Changed */
+            changed: string[];
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Experiment */
+            experiment: string;
+            /** Grid */
+            grid: {
+                [key: string]: unknown[];
+            };
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Left */
+            left: components["schemas"]["Left"][];
+            /** Name */
+            name: string | null;
+            /** Progress */
+            progress: number;
+            /** Seeds */
+            seeds: number[];
+            /** Spec */
+            spec: {
+                [key: string]: unknown;
+            };
+            /** Standing */
+            standing: {
+                [key: string]: number;
+            };
+            /** Total */
+            total: number;
+        };
+        /** SweepCurves */
+        SweepCurves: {
+            /** Generation */
+            generation: number[];
+            /** Lines */
+            lines: components["schemas"]["Line"][];
+        };
+        /** SweepEstimate */
+        SweepEstimate: {
+            /** Cases */
+            cases: number;
+            /** Cell Steps */
+            cell_steps: number;
+            /** Evaluations */
+            evaluations: number;
+            /** Memory Bytes */
+            memory_bytes: number;
+            /** Memory Limit Bytes */
+            memory_limit_bytes: number;
+            pace: components["schemas"]["PaceRead"] | null;
+            queue: components["schemas"]["AheadRead"];
+            /** Runs */
+            runs: number;
+            /** Seconds */
+            seconds: number | null;
+        };
+        /** SweepPage */
+        SweepPage: {
+            /** Items */
+            items: components["schemas"]["SweepRead"][];
+            /** Next */
+            next: string | null;
+        };
+        /** SweepRead */
+        SweepRead: {
+            /** Cases */
+            cases: components["schemas"]["CaseRead"][];
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Experiment */
+            experiment: string;
+            /** Grid */
+            grid: {
+                [key: string]: unknown[];
+            };
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Name */
+            name: string | null;
+            /** Progress */
+            progress: number;
+            /** Seeds */
+            seeds: number[];
+            /** Spec */
+            spec: {
+                [key: string]: unknown;
+            };
+            /** Standing */
+            standing: {
+                [key: string]: number;
+            };
+            /** Total */
+            total: number;
+        };
+        /** SweepSummary */
+        SweepSummary: {
+            /** Cases */
+            cases: components["schemas"]["CaseSummary"][];
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
         };
         /** TagRead */
         TagRead: {
@@ -2078,6 +2488,7 @@ export interface operations {
                 experiment?: string[];
                 tag?: string | null;
                 q?: string | null;
+                sweep?: string | "none" | null;
                 sort?: "created" | "-created" | "started" | "-started" | "finished" | "-finished" | "name" | "-name" | "experiment" | "-experiment" | "status" | "-status" | "progress" | "-progress" | "evaluations" | "-evaluations" | "qd_score" | "-qd_score" | "coverage" | "-coverage" | "best" | "-best";
             };
             header?: never;
@@ -2690,6 +3101,334 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Target"][];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_sweeps_api_v1_sweeps_get: {
+        parameters: {
+            query?: {
+                cursor?: string | null;
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepPage"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_sweep_api_v1_sweeps_post: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: string | null;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": {
+                    /**
+                     * Grid
+                     * @default {}
+                     */
+                    grid?: {
+                        [key: string]: unknown[];
+                    };
+                    /** Name */
+                    name?: string | null;
+                    /**
+                     * Seeds
+                     * @default 1
+                     */
+                    seeds?: number | number[];
+                    /** Spec */
+                    spec: {
+                        [key: string]: unknown;
+                    };
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    estimate_sweep_api_v1_sweeps_estimate_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": {
+                    /**
+                     * Grid
+                     * @default {}
+                     */
+                    grid?: {
+                        [key: string]: unknown[];
+                    };
+                    /** Name */
+                    name?: string | null;
+                    /**
+                     * Seeds
+                     * @default 1
+                     */
+                    seeds?: number | number[];
+                    /** Spec */
+                    spec: {
+                        [key: string]: unknown;
+                    };
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepEstimate"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_api_v1_sweeps__sweep_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    cancel_sweep_api_v1_sweeps__sweep_id__cancel_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepChanged"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_curves_api_v1_sweeps__sweep_id__curves_get: {
+        parameters: {
+            query?: {
+                points?: number | null;
+            };
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepCurves"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pause_sweep_api_v1_sweeps__sweep_id__pause_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepChanged"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    resume_sweep_api_v1_sweeps__sweep_id__resume_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepChanged"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_summary_api_v1_sweeps__sweep_id__summary_get: {
+        parameters: {
+            query?: {
+                points?: number | null;
+            };
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepSummary"];
                 };
             };
             /** @description A problem (RFC 9457) */

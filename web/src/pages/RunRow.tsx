@@ -38,6 +38,11 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
             {title} <code>{short(run.id)}</code>
           </a>
         </Name>
+        {run.sweep && (
+          <a class="badge of-sweep" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
+            sweep
+          </a>
+        )}
         {freedomOf(run.spec) === "none" && <NotFree />}
         {run.waiting && <span class="row-note why">{run.waiting}</span>}
         {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}

@@ -144,7 +144,7 @@ function insideOf(field: Field, document: Json): Field[] {
 
 const COMPOUND = ["union", "section", "rows"];
 
-function leavesOf(field: Field, document: Json): Field[] {
+export function leavesOf(field: Field, document: Json): Field[] {
   if (!COMPOUND.includes(field.kind)) return [field];
   return insideOf(field, document).flatMap((each) => leavesOf(each, document));
 }
