@@ -128,7 +128,7 @@ function Head({ sweep }: { sweep: Sweep }) {
         <span class="spring" />
         <Actions sweep={sweep} title={title} />
       </header>
-      <p class="quiet">
+      <p class="quiet sweep-about">
         {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)} ·{" "}
         <a href={`/?sweep=${sweep.id}`}>As a list of runs</a>
       </p>

@@ -14,7 +14,7 @@ import { JsonView } from "../../view/form/JsonView";
 import { SpecForm, partsOf } from "../../view/form/SpecForm";
 import { SLIPPED, useEstimate } from "./estimating";
 import { useSubmission } from "./submission";
-import { SweepCard } from "./SweepCard";
+import { SweepCard, goToSweep } from "./SweepCard";
 import { type Sweeping, begun, useSweepEstimate, useSweeping } from "./sweeping";
 import type { Desk } from "./work";
 
@@ -74,6 +74,9 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
           <div class="spec-bar">
             <Segments label="How the spec is shown" choices={VIEWS} value={view} onChoose={show} />
             {view === "form" && <Outline parts={parts} state={state} />}
+            <button type="button" class="plain wide-only" onClick={goToSweep}>
+              Several runs
+            </button>
           </div>
           {view === "form" && <SpecForm form={form} state={state} />}
           {view === "json" && (
@@ -105,7 +108,7 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
           <span class="submit-how">
             <kbd class="quiet wide-only">Ctrl + Enter</kbd>
             <button class="primary" type="submit" disabled={submission.busy}>
-              {submission.busy ? "Starting …" : startOf(sweeping.sent ? sweeping.total : 1)}
+              {submission.busy ? "Starting …" : startOf(begun(sweeping) ? sweeping.total : 1)}
             </button>
           </span>
         </div>
@@ -115,7 +118,7 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
 }
 
 const startOf = (runs: number) =>
-  runs === 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`;
+  runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`;
 
 /** What a refused sweep says of the spec itself stands beside its fields. */
 const ofSpec = (errors: readonly FieldError[]): FieldError[] =>

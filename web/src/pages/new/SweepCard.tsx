@@ -83,6 +83,12 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
   );
 }
 
+export function goToSweep(): void {
+  const card = document.querySelector(".sweep-card");
+  card?.scrollIntoView({ block: "center" });
+  card?.querySelector<HTMLElement>("input, button")?.focus({ preventScroll: true });
+}
+
 const textOf = (value: Json): string =>
   value === null || typeof value === "object" ? "" : typeof value === "number" ? plain(value) : String(value);
 
