@@ -1,12 +1,11 @@
 /** Seeds and a grid over fields: asked for in the form of a new run. */
 
-import type { FieldError } from "../../api/types";
+import type { FieldError, Json } from "../../api/types";
 import { number } from "../../view/format";
 import { valueAt } from "../../view/form/document";
 import type { Leaf } from "../../view/form/fields";
 import { nameOf } from "../../view/form/grid";
 import { type Sweeping, begun, complaintsOf } from "./sweeping";
-import type { Json } from "../../api/types";
 
 interface Props {
   sweeping: Sweeping;
