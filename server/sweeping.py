@@ -1,5 +1,6 @@
 """From a plan to a sweep and its queued runs, in one transaction."""
 
+import json
 import logging
 from datetime import timedelta
 from uuid import UUID
@@ -91,7 +92,10 @@ def _first_entry(run: Run, total: int) -> Entry:
 
 
 def _request(plan: Plan) -> dict[str, object]:
-    """What two requests under one key must have in common."""
+    """What two requests under one key must have in common.
+
+    As text: a spec may have whole numbers that canonical JSON has not.
+    """
     spec = plan.spec.model_dump(mode="json")
-    asked = {"name": plan.name, "spec": spec, "seeds": plan.seeds, "grid": plan.grid}
-    return {"sweep": asked}
+    asked = [plan.name, spec, plan.seeds, list(plan.grid.items())]
+    return {"sweep": json.dumps(asked, sort_keys=True)}

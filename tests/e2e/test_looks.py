@@ -42,6 +42,11 @@ def every_place(shared: Any, idle: Any) -> Iterator[tuple[str, Place]]:
     yield idle.product.url, Place("run-queued", f"/runs/{queued}")
     yield idle.product.url, Place("run-cancelled", f"/runs/{cancelled}")
     yield idle.product.url, Place("workers-none", "/workers")
+    asked = {"spec": TINY, "seeds": 2, "grid": {"world.viscosity": [0.05, 0.1]}}
+    sweep = idle.product.http.post("/api/v1/sweeps", json=asked).raise_for_status().json()
+    yield idle.product.url, Place("sweep", f"/sweeps/{sweep['id']}?each=1")
+    yield idle.product.url, Place("runs-of-sweep", f"/?sweep={sweep['id']}")
+    yield idle.product.url, Place("runs-queued", "/")
 
 
 def complaints_of(page: Page) -> Iterator[str]:

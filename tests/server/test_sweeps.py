@@ -117,6 +117,12 @@ def test_a_part_that_is_off_can_be_given_fields(api, post):
         ({"seeds": True}, "seeds", "whole numbers"),
         ({"seeds": 1001}, "seeds", "from 1 to 1,000"),
         ({"seeds": 501, "grid": VISCOSITIES}, "grid", "got 2 x 501 = 1,002"),
+        (
+            {"grid": {"world.viscosity": [10**20], "body.nodes": [512]}},
+            "grid.world.viscosity[0]",
+            "",
+        ),
+        ({"grid": {"world.width": [10**20, "x"]}}, "grid.world.width[1]", "valid integer"),
         ({"surprise": 1}, "surprise", "no field of this name"),
         ({"name": "x" * 201}, "name", "200"),
     ],
@@ -177,6 +183,14 @@ def test_the_same_key_at_once_gives_one_sweep(api, services, spec):
         refused = api.post(path, json=other, headers=headers)
         assert (refused.status_code, refused.json()["title"]) == (422, "Idempotency key reused")
         assert f"sweep {answers[0].json()['id']}" in refused.json()["detail"]
+
+
+def test_whole_numbers_that_canonical_json_has_not_are_no_hindrance(api, spec):
+    asked = {"spec": spec, "grid": {"search.stop.evaluations": [10**20, 10**21]}}
+    answer = api.post("sweeps", json=asked, headers={"Idempotency-Key": "large"})
+    assert answer.status_code == 202
+    run = api.get(f"runs/{answer.json()['cases'][0]['runs'][0]}").json()
+    assert run["spec"]["search"]["stop"]["evaluations"] == 10**20
 
 
 def test_single_runs_are_taken_before_those_of_a_sweep(api, services, six, spec):

@@ -16,6 +16,7 @@ const RunPage = later(async () => (await import("./pages/Run")).RunPage);
 const SharesPage = later(async () => (await import("./pages/Shares")).SharesPage);
 const SettingsPage = later(async () => (await import("./pages/Settings")).SettingsPage);
 const SignInPage = later(async () => (await import("./pages/SignIn")).SignInPage);
+const SweepPage = later(async () => (await import("./pages/Sweep")).SweepPage);
 const WorkersPage = later(async () => (await import("./pages/Workers")).WorkersPage);
 
 const TITLES: Record<string, string> = {
@@ -89,6 +90,8 @@ function Page({ route, query }: Place) {
       return <SettingsPage />;
     case "run":
       return <RunPage key={route.id} id={route.id} query={query} />;
+    case "sweep":
+      return <SweepPage key={route.id} id={route.id} query={query} />;
     case "creature":
       return <CreaturePage key={route.sha} sha={route.sha} query={query} />;
     case "shares":

@@ -20,6 +20,7 @@ import "./styles/run-page.css";
 import "./styles/lists.css";
 import "./styles/shares.css";
 import "./styles/settings.css";
+import "./styles/sweeps.css";
 
 const app = document.getElementById("app")!;
 if (isOpen(location.pathname)) {

@@ -12,6 +12,7 @@ export type Route =
   | { page: "share"; slug: string; sha: string | null }
   | { page: "settings" }
   | { page: "run"; id: string }
+  | { page: "sweep"; id: string }
   | { page: "creature"; sha: string }
   | { page: "unknown" };
 
@@ -30,6 +31,7 @@ export function routeOf(path: string): Route {
   if (second === undefined && isPage(first)) return { page: first };
   const name = rest.length === 0 ? decoded(second) : null;
   if (name !== null && first === "runs") return { page: "run", id: name };
+  if (name !== null && first === "sweeps") return { page: "sweep", id: name };
   if (name !== null && first === "creatures") return { page: "creature", sha: name };
   if (first === "s" && second !== undefined) return shared(second, rest);
   return { page: "unknown" };

@@ -19,6 +19,11 @@ import type {
   Share,
   ShareAsked,
   Spec,
+  Sweep,
+  SweepChanged,
+  SweepPage,
+  SweepSent,
+  SweepSummary,
   TokenCreate,
 } from "./types";
 import { noteStatus } from "./unknown";
@@ -138,6 +143,43 @@ export async function createRun(spec: Spec, key: string): Promise<Run> {
 
 export async function wish(id: string, verb: Wish): Promise<Run> {
   return (await success(client.POST(`${ROOT}/runs/{run_id}/${verb}`, run(id)))) as Run;
+}
+
+const sweep = (id: string) => ({ params: { path: { sweep_id: id } } });
+
+export async function readSweeps(limit: number): Promise<SweepPage> {
+  const asked = client.GET(`${ROOT}/sweeps`, { params: { query: { limit } } });
+  return (await success(asked)) as SweepPage;
+}
+
+export async function readSweep(id: string): Promise<Sweep> {
+  return (await success(client.GET(`${ROOT}/sweeps/{sweep_id}`, sweep(id)))) as Sweep;
+}
+
+/** What the runs of each case say together, at about so many generations. */
+export async function readSweepSummary(id: string, points: number): Promise<SweepSummary> {
+  const params = { path: { sweep_id: id }, query: { points } };
+  return (await success(client.GET(`${ROOT}/sweeps/{sweep_id}/summary`, { params }))) as SweepSummary;
+}
+
+/** The curves of each run by itself. */
+export function readSweepCurves(id: string, points: number) {
+  const params = { path: { sweep_id: id }, query: { points } };
+  return success(client.GET(`${ROOT}/sweeps/{sweep_id}/curves`, { params }));
+}
+
+export function estimateSweep(sent: SweepSent) {
+  return success(client.POST(`${ROOT}/sweeps/estimate`, { body: sent as never }));
+}
+
+export async function createSweep(sent: SweepSent, key: string): Promise<Sweep> {
+  const params = { header: { "Idempotency-Key": key } };
+  return (await success(client.POST(`${ROOT}/sweeps`, { params, body: sent as never }))) as Sweep;
+}
+
+export async function steerSweep(id: string, verb: Wish): Promise<SweepChanged> {
+  const asked = client.POST(`${ROOT}/sweeps/{sweep_id}/${verb}`, sweep(id));
+  return (await success(asked)) as SweepChanged;
 }
 
 export async function readCreature(sha: string): Promise<Creature> {

@@ -17,6 +17,26 @@ export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
 /** What people may say of a run. */
 export type RunChange = Partial<Pick<Run, "name" | "tags" | "note">>;
 export type RunQuery = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
+export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }>;
+export type SweepPage = With<Wire["SweepPage"], { items: Sweep[] }>;
+export type SweepChanged = Sweep & Pick<Wire["SweepChanged"], "changed" | "left">;
+export type SweepCase = { values: CaseValues; runs: string[] };
+export type SweepSummary = With<Wire["SweepSummary"], { cases: CaseSummary[] }>;
+export type CaseSummary = With<Wire["CaseSummary"], { values: CaseValues }>;
+export type SweepCurves = Wire["SweepCurves"];
+export type SweepEstimate = Wire["SweepEstimate"];
+export type Member = Wire["Member"];
+export type Spread = Omit<Wire["Final"], "values">;
+/** What a case has at the fields of the grid, by their paths. */
+export type CaseValues = { [path: string]: Json };
+export type Grid = { [path: string]: Json[] };
+/** What is asked for: each case of the grid with each seed. */
+export interface SweepSent {
+  spec: Spec;
+  seeds: number | number[];
+  grid: Grid;
+  name: string | null;
+}
 export type Worker = Wire["WorkerRead"];
 export type Queue = Wire["QueueRead"];
 export type Preset = With<Wire["PresetRead"], { spec: Spec }>;

@@ -42,6 +42,8 @@ export interface State {
   watching: Watching;
   /** How often the table of a run has grown since the page was opened. */
   tables: ReadonlyMap<string, number>;
+  /** How often something was heard of a sweep or of one of its runs. */
+  swept: ReadonlyMap<string, number>;
   /** Which runs were asked for; their ids in their order, and where the list goes on. */
   asked: string;
   listed: readonly string[];
@@ -82,6 +84,7 @@ export type Action =
   | { type: "elites"; event: ElitesEvent }
   | { type: "results"; event: ResultsEvent }
   | { type: "rewind"; event: RewindEvent }
+  | { type: "sweep"; sweep: string }
   | { type: "reset" };
 
 /** A list from its beginning, asked for when so many runs of it were known. */
@@ -107,6 +110,7 @@ export const EMPTY: State = {
   details: new Map(),
   watching: new Map(),
   tables: new Map(),
+  swept: new Map(),
   asked: "",
   listed: [],
   next: null,
@@ -124,7 +128,7 @@ export function reduce(state: State, action: Action): State {
     case "connection":
       return { ...state, connection: action.connection };
     case "run":
-      return told(state, action.run);
+      return told(sweptOf(state, action.run.sweep), action.run);
     case "answer":
       return answered(state, [action.run], action.sent);
     case "done":
@@ -151,9 +155,17 @@ export function reduce(state: State, action: Action): State {
       return grown(state, action.event);
     case "rewind":
       return rewound(state, action.event);
+    case "sweep":
+      return { ...sweptOf(state, action.sweep), news: state.news + 1 };
     case "reset":
       return reset(state);
   }
+}
+
+/** A sweep is summed up by the server: it is asked for anew when there is news of it. */
+function sweptOf(state: State, sweep?: string | null): State {
+  if (!sweep) return state;
+  return { ...state, swept: new Map(state.swept).set(sweep, (state.swept.get(sweep) ?? 0) + 1) };
 }
 
 /** Which fetch of a run's detail still counts: it grows with every reset and rewind. */

@@ -59,6 +59,7 @@ function open(): EventSource {
   listen(opened, "elites", (event) => ({ type: "elites", event }) as Action);
   listen(opened, "results", (event) => ({ type: "results", event }) as Action);
   listen(opened, "rewind", (event) => ({ type: "rewind", event }) as Action);
+  listen(opened, "sweep", (data) => ({ type: "sweep", ...(data as object) }) as Action);
   listen(opened, "reset", () => ({ type: "reset" }));
   return opened;
 }

@@ -52,6 +52,7 @@ export function RunPage({ id, query }: Props) {
     <main>
       <nav class="crumbs" aria-label="Where you are">
         <a href="/">Runs</a>
+        {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
       </nav>
       <header class="page-head">
         <Name run={run} title={title} onName={(name) => void say(id, { name })}>

@@ -38,6 +38,11 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
             {title} <code>{short(run.id)}</code>
           </a>
         </Name>
+        {run.sweep && (
+          <a class="badge of-sweep" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
+            sweep
+          </a>
+        )}
         {freedomOf(run.spec) === "none" && <NotFree />}
         {run.status === "running" && run.generation === 0 && (
           <span class="row-note quiet">compiling and computing its first generation</span>

@@ -6,15 +6,20 @@ import type { Experiment, RunQuery } from "../api/types";
 import { useExperiments } from "../live/fetching";
 import { moreRuns, useRunList, useTags } from "../live/listing";
 import { useLive } from "../live/live";
+import { useSweeps } from "../live/sweeps";
 import { tell } from "../live/toasts";
 import { setQuery } from "../router";
 import { Filters } from "../view/runs/Filters";
-import { ariaSort, isFiltered, nextSort, queryOf } from "../view/runs/filters";
+import { ALL, ALONE, ariaSort, grouped, isFiltered, nextSort, queryOf } from "../view/runs/filters";
 import { RunRow } from "./RunRow";
+import { SweepRows } from "./SweepRows";
 import { Welcome } from "./Welcome";
 
 /** As many curves as can be told apart. */
 export const COMPARED = 8;
+/** Sweeps that stand above the list, at first and when more are asked for. */
+const FEW = 5;
+const MANY = 100;
 const TAGS_ID = "known-tags";
 
 const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
@@ -28,7 +33,11 @@ const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
 
 export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const query = queryOf(address);
-  const { value: fetched, error } = useRunList(query);
+  const together = grouped(query);
+  const listedQuery: RunQuery = together ? { sweep: ALONE } : query;
+  const { value: fetched, error } = useRunList(listedQuery);
+  const [most, setMost] = useState(FEW);
+  const sweeps = useSweeps(most, together).value;
   const listed = useLive((state) => state.listed);
   const next = useLive((state) => state.next);
   const experiments = useExperiments().value ?? [];
@@ -36,7 +45,8 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const [chosen, setChosen] = useState<string[]>([]);
   const choose = (id: string) =>
     setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
-  const empty = fetched && listed.length === 0;
+  const swept = together && (sweeps?.items.length ?? 0) > 0;
+  const empty = fetched && listed.length === 0 && !swept;
   return (
     <main>
       <header class="page-head">
@@ -48,11 +58,13 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       <Welcome />
       {error && <p class="banner wrong">{error}</p>}
       {!fetched && !error && listed.length === 0 && <p class="quiet loading">Loading runs …</p>}
-      {(listed.length > 0 || isFiltered(query)) && (
+      {(listed.length > 0 || swept || isFiltered(query)) && (
         <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
       )}
       {chosen.length > 0 && <Chosen ids={chosen} onClear={() => setChosen([])} />}
       {empty && (isFiltered(query) ? <NoneFound /> : <Empty />)}
+      {query.sweep && <OfSweep sweep={query.sweep} />}
+      {swept && <SweepRows page={sweeps!} onMore={most < MANY ? () => setMost(MANY) : null} />}
       {listed.length > 0 && (
         <Table {...{ query, listed, experiments, chosen }} onChoose={choose} />
       )}
@@ -61,7 +73,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
           <option key={tag} value={tag} />
         ))}
       </datalist>
-      {next && <More query={query} />}
+      {next && <More query={listedQuery} />}
     </main>
   );
 }
@@ -136,12 +148,23 @@ function Chosen({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   );
 }
 
+/** Which sweep the list is of, and the way to it. */
+function OfSweep({ sweep }: { sweep: string }) {
+  if (sweep === ALONE) return null;
+  return (
+    <p class="banner why">
+      Runs of <a href={`/sweeps/${sweep}`}>one sweep</a>: its page has their curves and figures
+      together.
+    </p>
+  );
+}
+
 function NoneFound() {
   return (
     <section class="empty card">
       <h2>No run is like that</h2>
       <p>Change what is asked for above, or look at all of them.</p>
-      <button onClick={() => setQuery({ q: null, status: null, experiment: null, tag: null })}>
+      <button onClick={() => setQuery(ALL)}>
         Show all runs
       </button>
     </section>

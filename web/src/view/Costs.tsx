@@ -1,16 +1,18 @@
 /** What a run will need: time, memory, evaluations, work. */
 
-import type { Estimate } from "../api/types";
-import { about, basis, wait } from "./costs";
+import type { Estimate, SweepEstimate } from "../api/types";
+import { about, basis, rough, wait } from "./costs";
 import { bytes, count, number, words } from "./format";
 
 interface Props {
-  estimate: Estimate | null;
+  estimate: Estimate | SweepEstimate | null;
+  /** How many runs it is for. */
+  runs?: number;
   problem: string | null;
 }
 
 /** In short, beside the button that starts the run. */
-export function Costs({ estimate, problem }: Props) {
+export function Costs({ estimate, runs = 1, problem }: Props) {
   if (problem) {
     return (
       <p class="costs wrong-text" role="status">
@@ -29,11 +31,14 @@ export function Costs({ estimate, problem }: Props) {
   return (
     <dl class="costs" aria-label="Estimate">
       <div>
-        <dt>Time</dt>
-        <dd>{about(estimate) ?? "unknown yet"}</dd>
+        <dt>{runs > 1 ? `Time of ${count(runs)} runs` : "Time"}</dt>
+        <dd>
+          {about(estimate) ?? "unknown yet"}
+          {runs > 1 && estimate.seconds !== null && <Shared estimate={estimate} />}
+        </dd>
       </div>
       <div class={memory_bytes > memory_limit_bytes ? "wrong-text" : ""}>
-        <dt>Memory</dt>
+        <dt>{runs > 1 ? "Memory of each" : "Memory"}</dt>
         <dd>
           {bytes(memory_bytes)} <span class="quiet">of {bytes(memory_limit_bytes)}</span>
         </dd>
@@ -43,6 +48,16 @@ export function Costs({ estimate, problem }: Props) {
         <dd>{count(evaluations)}</dd>
       </div>
     </dl>
+  );
+}
+
+/** Several workers share the runs. */
+function Shared({ estimate: { seconds, queue } }: { estimate: Estimate | SweepEstimate }) {
+  if (queue.workers < 2) return null;
+  return (
+    <span class="quiet">
+      , on {queue.workers} workers {rough(seconds! / queue.workers)}
+    </span>
   );
 }
 

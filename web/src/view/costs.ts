@@ -12,7 +12,7 @@ export function rough(seconds: number): string {
 }
 
 /** How long, in short; null where nothing is known. */
-export function about({ seconds }: Estimate): string | null {
+export function about({ seconds }: Pick<Estimate, "seconds">): string | null {
   if (seconds === null) return null;
   return seconds < 10 ? "a few seconds" : `about ${rough(seconds)}`;
 }

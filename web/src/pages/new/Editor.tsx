@@ -1,7 +1,7 @@
 /** The spec at hand: as a form or as JSON, with what it is about and what it will cost. */
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import type { Experiment, Json, Spec } from "../../api/types";
+import type { Experiment, FieldError, Json, Spec } from "../../api/types";
 import type { Work } from "../../live/draft";
 import { BodyDrawing } from "../../view/BodyDrawing";
 import { CostDetails, Costs } from "../../view/Costs";
@@ -12,8 +12,10 @@ import type { FormState } from "../../view/form/Entry";
 import { type Section, formOf } from "../../view/form/fields";
 import { JsonView } from "../../view/form/JsonView";
 import { SpecForm, partsOf } from "../../view/form/SpecForm";
-import { useEstimate } from "./estimating";
+import { SLIPPED, useEstimate } from "./estimating";
 import { useSubmission } from "./submission";
+import { SweepCard, goToSweep } from "./SweepCard";
+import { type Sweeping, begun, useSweepEstimate, useSweeping } from "./sweeping";
 import type { Desk } from "./work";
 
 interface EditorProps {
@@ -33,8 +35,12 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
   const slips = useMemo(() => complaints(form, spec), [form, spec]);
   const check = useEstimate(spec, slips);
   const [illegible, setIllegible] = useState<string | null>(null);
-  const submission = useSubmission(spec);
-  const errors = [...slips, ...(submission.refusal?.errors ?? []), ...check.errors];
+  const sweeping = useSweeping(form, spec, experiment);
+  const all = useSweepEstimate(slips.length === 0 ? sweeping.sent : null);
+  const submission = useSubmission(spec, sweeping.sent);
+  const refused = submission.refusal?.errors ?? [];
+  const errors = [...slips, ...(sweeping.sent ? ofSpec(refused) : refused), ...check.errors];
+  const slipped = begun(sweeping) && !sweeping.sent && wrong(sweeping);
   const [closed, close] = useClosed(form);
   const state: FormState = {
     document: spec as Json,
@@ -54,7 +60,7 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
       ref={element}
       onSubmit={(event) => {
         event.preventDefault();
-        if (!illegible) void submission.start();
+        if (!illegible && !slipped) void submission.start();
       }}
     >
       <div class="new-columns">
@@ -68,6 +74,9 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
           <div class="spec-bar">
             <Segments label="How the spec is shown" choices={VIEWS} value={view} onChoose={show} />
             {view === "form" && <Outline parts={parts} state={state} />}
+            <button type="button" class="plain wide-only" onClick={goToSweep}>
+              Several runs
+            </button>
           </div>
           {view === "form" && <SpecForm form={form} state={state} />}
           {view === "json" && (
@@ -80,22 +89,26 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
               replace={replacing}
             />
           )}
+          <SweepCard sweeping={sweeping} errors={[...refused, ...all.errors]} spec={spec as Json} />
         </div>
       </div>
       <div class="submit-bar">
         <div class="submit-inner">
           <Costs
-            estimate={check.estimate}
+            estimate={sweeping.sent ? all.estimate : check.estimate}
+            runs={sweeping.sent ? sweeping.total : 1}
             problem={
               illegible
                 ? "What is written as JSON cannot be used."
-                : (submission.refusal?.message ?? check.problem)
+                : (submission.refusal?.message ??
+                  check.problem ??
+                  (slipped || all.errors.length > 0 ? SLIPPED : all.problem))
             }
           />
           <span class="submit-how">
             <kbd class="quiet wide-only">Ctrl + Enter</kbd>
             <button class="primary" type="submit" disabled={submission.busy}>
-              {submission.busy ? "Starting …" : "Start the run"}
+              {submission.busy ? "Starting …" : startOf(begun(sweeping) ? sweeping.total : 1)}
             </button>
           </span>
         </div>
@@ -103,6 +116,18 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
     </form>
   );
 }
+
+const startOf = (runs: number) =>
+  runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`;
+
+/** What a refused sweep says of the spec itself stands beside its fields. */
+const ofSpec = (errors: readonly FieldError[]): FieldError[] =>
+  errors
+    .filter(({ field }) => field.startsWith("spec."))
+    .map((error) => ({ ...error, field: error.field.slice("spec.".length) }));
+
+const wrong = ({ problems: { seeds, axes, total } }: Sweeping) =>
+  [seeds, total, ...axes].some((problem) => problem !== null);
 
 const VIEWS = [
   ["form", "Form"],

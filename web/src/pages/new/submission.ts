@@ -1,9 +1,9 @@
-/** Starting a run. */
+/** Starting a run, or a sweep of runs. */
 
 import { useRef, useState } from "preact/hooks";
 import * as api from "../../api/client";
 import { Problem, messageOf } from "../../api/problem";
-import type { FieldError, Spec } from "../../api/types";
+import type { FieldError, Spec, SweepSent } from "../../api/types";
 import { discard } from "../../live/draft";
 import { answer } from "../../live/live";
 import { navigate } from "../../router";
@@ -11,32 +11,39 @@ import { newKey } from "../key";
 import { SLIPPED } from "./estimating";
 
 interface Refusal {
-  spec: Spec;
+  asked: Spec | SweepSent;
   message: string;
   errors: FieldError[];
 }
 
-/** Sends the spec; the same spec sent again, after a lost answer, is the same submission. */
-export function useSubmission(spec: Spec | null) {
+/** Sends the spec or the sweep; the same sent again, after a lost answer, is the same submission. */
+export function useSubmission(spec: Spec | null, sweep: SweepSent | null) {
+  const asked = sweep ?? spec;
   const [busy, setBusy] = useState(false);
   const [refusal, setRefusal] = useState<Refusal | null>(null);
-  const sent = useRef<{ spec: Spec; key: string } | null>(null);
+  const sent = useRef<{ asked: Spec | SweepSent; key: string } | null>(null);
   const start = async () => {
-    if (!spec || busy) return;
-    if (sent.current?.spec !== spec) sent.current = { spec, key: newKey() };
+    if (!spec || !asked || busy) return;
+    if (sent.current?.asked !== asked) sent.current = { asked, key: newKey() };
     setBusy(true);
     try {
-      const run = await answer("done", api.createRun(spec, sent.current.key));
+      const page = await submit(spec, sweep, sent.current.key);
       discard();
-      navigate(`/runs/${run.id}`);
+      navigate(page);
     } catch (error) {
       const errors = error instanceof Problem ? error.errors : [];
-      setRefusal({ spec, message: errors.length ? SLIPPED : messageOf(error), errors });
+      setRefusal({ asked, message: errors.length ? SLIPPED : messageOf(error), errors });
       setBusy(false);
       requestAnimationFrame(showFirstError);
     }
   };
-  return { start, busy, refusal: refusal?.spec === spec ? refusal : null };
+  return { start, busy, refusal: refusal?.asked === asked ? refusal : null };
+}
+
+/** Where what was started can be seen. */
+async function submit(spec: Spec, sweep: SweepSent | null, key: string): Promise<string> {
+  if (sweep) return `/sweeps/${(await api.createSweep(sweep, key)).id}`;
+  return `/runs/${(await answer("done", api.createRun(spec, key))).id}`;
 }
 
 function showFirstError(): void {

@@ -6,7 +6,7 @@ import { useSize } from "../canvas";
 import { useTheme } from "../theme";
 import { type Look, OVER, tableOf } from "./look";
 import { optionsOf } from "./options";
-import { type Plot, type Series, newest } from "./plots";
+import { type Band, type Plot, type Series, newest } from "./plots";
 
 interface Props {
   plots: Plot[];
@@ -24,11 +24,13 @@ export function Curves({ plots, x, look }: Props) {
   );
 }
 
+const NONE: readonly Band[] = [];
+
 interface CurveProps extends Omit<Props, "plots"> {
   plot: Plot;
 }
 
-function Curve({ plot: { title, write, series }, x, look }: CurveProps) {
+function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveProps) {
   const host = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
   const { width, height } = useSize(host);
@@ -36,7 +38,9 @@ function Curve({ plot: { title, write, series }, x, look }: CurveProps) {
   const drawn = width > 0;
   const { over, log } = look;
   const form = series
-    .map(({ name, colour, dots, dash, faint }) => `${name} ${colour} ${dots} ${dash} ${faint}`)
+    .map(({ name, colour, dots, dash, faint, edge }) =>
+      [name, colour, dots, dash, faint, edge].join(" "),
+    )
     .join();
   const table = useMemo(() => tableOf(series, x, log), [x, log, ...series.flatMap(partsOf)]);
   const changed = [drawn, theme, form, over, log, write];
@@ -45,7 +49,7 @@ function Curve({ plot: { title, write, series }, x, look }: CurveProps) {
     if (!drawn) return;
     const style = getComputedStyle(host.current!);
     const ink = (name: string) => style.getPropertyValue(name).trim();
-    const options = optionsOf({ series, write, over, log, ink });
+    const options = optionsOf({ series, bands, write, over, log, ink });
     plot.current = new uPlot(options, [[], ...series.map(() => [])], host.current!);
     return () => plot.current?.destroy();
   }, changed);
@@ -58,7 +62,7 @@ function Curve({ plot: { title, write, series }, x, look }: CurveProps) {
     plot.current?.setData(table);
   }, [table, ...changed]);
 
-  const told = series.filter(({ faint }) => !faint);
+  const told = series.filter(({ faint, edge }) => !faint && !edge);
   const now = told.map(({ name, y }) => [...(told.length > 1 ? [name] : []), write(newest(y))]);
   const label = `${title} over ${OVER[over]}: now ${now.map((each) => each.join(" ")).join(", ")}`;
   return (

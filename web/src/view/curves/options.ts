@@ -4,7 +4,7 @@ import uPlot from "uplot";
 import { count, number } from "../format";
 import { ticksOf } from "../plot/scale";
 import type { Axis } from "./look";
-import { type Plot, type Series, valueAt } from "./plots";
+import { type Band, type Plot, type Series, valueAt } from "./plots";
 
 /** Steps between ticks of what is whole. */
 const WHOLE = Array.from({ length: 13 }, (_, power) => [1, 2, 5].map((k) => k * 10 ** power)).flat();
@@ -12,13 +12,14 @@ const SYNC = "generations";
 
 interface Drawing {
   series: Series[];
+  bands: readonly Band[];
   write: Plot["write"];
   over: Axis;
   log: boolean;
   ink: (name: string) => string;
 }
 
-export function optionsOf({ series, write, over, log, ink }: Drawing): uPlot.Options {
+export function optionsOf({ series, bands, write, over, log, ink }: Drawing): uPlot.Options {
   const axis: uPlot.Axis = {
     stroke: ink("--quiet"),
     grid: { stroke: ink("--line"), width: 1 },
@@ -40,6 +41,10 @@ export function optionsOf({ series, write, over, log, ink }: Drawing): uPlot.Opt
       { ...axis, size: 52, gap: 6, values: mapped(write), ...(log && LOG_TICKS) },
     ],
     series: [{}, ...series.map((each) => lookOf(each, ink, series.length === 1 && !log))],
+    bands: bands.map(({ high, low, colour }) => ({
+      series: [high + 1, low + 1],
+      fill: `${ink(colour)}2b`,
+    })),
     plugins: [tooltip(series, write, over)],
   };
 }
@@ -56,10 +61,11 @@ const LOG_TICKS: Pick<uPlot.Axis, "splits" | "filter"> = {
 };
 
 function lookOf(series: Series, ink: (name: string) => string, alone: boolean): uPlot.Series {
-  const { name, colour, dots, dash, faint } = series;
+  const { name, colour, dots, dash, faint, edge } = series;
   const stroke = ink(colour);
   const look: uPlot.Series = { label: name, stroke, width: 1.75 };
   if (dots) return { ...look, paths: () => null, points: { show: true, size: 7, fill: stroke } };
+  if (edge) return { ...look, stroke: `${stroke}66`, width: 0.75, points: { show: false } };
   if (faint) return { ...look, width: 1, alpha: 0.35, points: { show: false } };
   const lonely = (plot: uPlot) => plot.data[0].length === 1;
   const fill = alone && { fill: `${stroke}1f` };
@@ -100,9 +106,9 @@ function tooltip(series: Series[], write: Plot["write"], over: Axis): uPlot.Plug
 }
 
 function readingOf(plot: uPlot, series: Series[], write: Plot["write"], idx: number): string[] {
-  return series.flatMap(({ name, faint, dots }, i) => {
+  return series.flatMap(({ name, faint, dots, edge }, i) => {
     const column = plot.data[i + 1] as (number | null | undefined)[];
-    if (faint || column[idx] === null) return [];
+    if (faint || edge || column[idx] === null) return [];
     // Between two of its own places a line has the value of the one before.
     const value = dots ? column[idx] : valueAt(plot.data[0] as number[], told(column), idx);
     if (value == null) return [];

@@ -17,12 +17,22 @@ export interface Series {
   faint?: boolean;
   /** Of another run. */
   other?: boolean;
+  /** Nothing but the edge of a band. */
+  edge?: boolean;
+}
+
+/** What lies between two of the series, by their places. */
+export interface Band {
+  high: number;
+  low: number;
+  colour: string;
 }
 
 export interface Plot {
   title: string;
   write: (value: number | null) => string;
   series: Series[];
+  bands?: readonly Band[];
 }
 
 const again = (curves: Curves, name: string): Series[] => {

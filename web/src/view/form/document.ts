@@ -162,7 +162,7 @@ function within(field: Field, document: Json): Field[] {
 
 const COMPOUND = ["union", "section", "rows"];
 
-function leavesOf(field: Field, document: Json): Field[] {
+export function leavesOf(field: Field, document: Json): Field[] {
   if (!COMPOUND.includes(field.kind)) return [field];
   return insideOf(field, document).flatMap((each) => leavesOf(each, document));
 }

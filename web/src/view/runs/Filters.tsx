@@ -5,7 +5,7 @@ import type { Experiment, RunQuery } from "../../api/types";
 import { useSettled } from "../../live/pacing";
 import { Choice } from "../Choice";
 import { words } from "../format";
-import { NEWEST, ORDERS, STATES, isFiltered } from "./filters";
+import { ALL, NEWEST, ORDERS, STATES, isFiltered } from "./filters";
 
 type Pair = [value: string, title: string];
 const ANY: Pair = ["", "any"];
@@ -77,7 +77,7 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
           class="plain"
           onClick={() => {
             setTyped(null);
-            onChange({ q: null, status: null, experiment: null, tag: null });
+            onChange(ALL);
           }}
         >
           Show all

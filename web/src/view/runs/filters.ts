@@ -28,22 +28,33 @@ export const ORDERS: [sort: NonNullable<RunQuery["sort"]>, title: string][] = [
 export function queryOf(address: URLSearchParams): RunQuery {
   const status = STATES.filter((state) => listOf(address, "status").includes(state));
   const experiment = listOf(address, "experiment");
-  const [q, tag] = [address.get("q"), address.get("tag")];
+  const [q, tag, sweep] = ["q", "tag", "sweep"].map((key) => address.get(key));
   const sort = ORDERS.find(([each]) => each === address.get("sort"))?.[0];
   return {
     ...(status.length > 0 && { status }),
     ...(experiment.length > 0 && { experiment }),
     ...(q && { q }),
     ...(tag && { tag }),
+    ...(sweep && (sweep === ALONE || UUID.test(sweep)) && { sweep }),
     ...(sort && sort !== NEWEST && { sort }),
   };
 }
+
+/** What shows everything again. */
+export const ALL = { q: null, status: null, experiment: null, tag: null, sweep: null };
+
+/** Instead of a sweep: runs that belong to none. */
+export const ALONE = "none";
+const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
 
 const listOf = (address: URLSearchParams, key: string) =>
   (address.get(key) ?? "").split(",").filter(Boolean);
 
 /** Whether anything is left out. */
 export const isFiltered = ({ sort: _, ...filters }: RunQuery) => Object.keys(filters).length > 0;
+
+/** What to ask the server for: as long as nothing is asked of them, runs of sweeps stand as one. */
+export const grouped = (query: RunQuery) => Object.keys(query).length === 0;
 
 /** The order after one more click on a column: its own first, then reversed, then the usual. */
 export function nextSort(sort: string | undefined, key: string, falling: boolean): string | null {

@@ -1,0 +1,75 @@
+"""A sweep in the browser: asked for in the form, watched on its page, one row in the list."""
+
+import json
+from typing import Any
+from uuid import UUID
+
+import pytest
+from playwright.sync_api import Page, expect
+from small import TINY
+from sqlalchemy import insert
+
+from server import sweeps
+from server.models import FINISHED, Generation, Run
+
+FAST = 10_000
+
+
+def compute(services: Any, run: str, qd_scores: list[float]) -> None:
+    """Write down what a worker would have, and end the run."""
+    with services.sessions.write.begin() as session:
+        row = session.get_one(Run, UUID(run))
+        for generation, value in enumerate(qd_scores, 1):
+            known = {"qd_score": value, "coverage": value / 100, "best": value / 10}
+            told = {"generation": generation, "evaluations": 8 * generation, "diverged": 0}
+            others = {"run_id": row.id, "seconds": 1.0 * generation, "mean": None}
+            session.execute(insert(Generation), [{**known, **told, **others, "summary": None}])
+            for name, figure in (known | told).items():
+                setattr(row, name, figure)
+        row.status = FINISHED
+    sweeps.announce_runs(services, [UUID(run)])
+
+
+@pytest.mark.e2e
+def test_seeds_and_a_grid_make_a_sweep_that_is_summed_up_while_it_is_computed(
+    idle_page: Page, idle: Any, complaints: list[str]
+):
+    page, address = idle_page, idle.product.url
+    page.goto(f"{address}/new?view=json")
+    page.get_by_label("The spec as JSON").fill(json.dumps(TINY))
+    card = page.get_by_role("region", name="Seeds and sweep")
+    card.get_by_label("How many seeds").fill("3")
+    card.get_by_role("button", name="Sweep over a field").click()
+    values = card.get_by_label("Values of world.viscosity")
+    values.fill("0.05, thick")
+    expect(card.get_by_role("alert")).to_have_text("Needs a number, got “thick”.")
+    values.fill("0.05, 0.1")
+    expect(card.get_by_role("status")).to_have_text("6 runs in all")
+    card.get_by_label("Name of the sweep").fill("Thick and thin")
+    expect(page.get_by_label("Estimate")).to_contain_text("Time of 6 runs", timeout=FAST)
+    page.get_by_role("button", name="Start 6 runs").click()
+
+    expect(page.get_by_role("heading", name="Thick and thin")).to_be_visible(timeout=FAST)
+    sweep = idle.product.http.get(f"/api/v1{page.url.removeprefix(address)}").json()
+    expect(page.locator(".sweep-states")).to_have_text("6 queued")
+    thin = sweep["cases"][0]["runs"]
+    for run, level in zip(thin, (10.0, 20.0, 40.0), strict=True):
+        compute(idle.services, run, [level / 4, level / 2, level])
+    row = page.get_by_role("region", name="Figures of the cases").get_by_role("row").nth(1)
+    expect(row).to_contain_text("viscosity 0.05", timeout=FAST)
+    expect(row).to_contain_text("15 to 30")
+    curve = page.get_by_role("img", name="QD score over generations: now viscosity 0.05 20")
+    expect(curve).to_be_visible()
+    page.get_by_label("Each run").check()
+    expect(page).to_have_url(f"{address}/sweeps/{sweep['id']}?each=1")
+    page.get_by_role("button", name="Pause all").click()
+    expect(page.locator(".sweep-states")).to_contain_text("3 paused", timeout=FAST)
+    expect(page.get_by_text("3 runs asked to pause; 3 runs left as they were.")).to_be_visible()
+
+    page.goto(address)
+    standing = page.get_by_role("region", name="Sweeps").get_by_role("listitem")
+    expect(standing.first).to_contain_text("Thick and thin")
+    expect(standing.first).to_contain_text("3 paused")
+    page.get_by_role("link", name="Runs of Thick and thin").click()
+    expect(page.locator(".runs tbody tr")).to_have_count(6)
+    complaints[:] = [said for said in complaints if "status of 422" not in said]

@@ -1,0 +1,152 @@
+/** A sweep: what its runs say together, and how each of them stands. */
+
+import { useEffect } from "preact/hooks";
+import type { CaseSummary, Sweep } from "../api/types";
+import { useExperiments } from "../live/fetching";
+import { type Whole, cancelSweepSoon, steer, useSweep } from "../live/sweeps";
+import { setQuery } from "../router";
+import { Curves } from "../view/curves/Curves";
+import { SHOWN, type Shown, bandsOf, caseName } from "../view/sweeps/bands";
+import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../view/sweeps/Standing";
+import { moment } from "../view/format";
+import { colourOf, dashOf } from "./compare/Legend";
+import { Cases, Finals, Members } from "./sweep/Tables";
+
+interface Props {
+  id: string;
+  query: URLSearchParams;
+}
+
+export function SweepPage({ id, query }: Props) {
+  const each = query.get("each") === "1";
+  const { value, error } = useSweep(id, each);
+  const title = value ? sweepTitle(value.sweep) : "Sweep";
+  useEffect(() => {
+    document.title = `${title} · Microcosmos`;
+  }, [title]);
+  return (
+    <main>
+      <nav class="crumbs" aria-label="Where you are">
+        <a href="/">Runs</a>
+      </nav>
+      {error && <p class="banner wrong">{error}</p>}
+      {!value && !error && <p class="quiet loading">Loading sweep …</p>}
+      {value && <Loaded {...{ value, query, each }} />}
+    </main>
+  );
+}
+
+function Loaded({ value, query, each }: { value: Whole; query: URLSearchParams; each: boolean }) {
+  const { sweep, summary, curves } = value;
+  const chosen = chosenOf(query, summary.cases.length);
+  const shown = chosen.map((place) => shownOf(summary.cases[place]!, place));
+  const choose = (places: number[]) => setQuery({ cases: places.length > 0 ? places.join() : "-" });
+  return (
+    <>
+      <Head sweep={sweep} />
+      <section class="standing" aria-label="How the sweep is doing">
+        <SweepProgress sweep={sweep} />
+        <SweepStates sweep={sweep} />
+      </section>
+      <section class="card sweep-curves" aria-labelledby="bands">
+        <div class="card-head">
+          <h2 id="bands">Curves</h2>
+          <span class="quiet small">the median of each case, between its quartiles</span>
+        </div>
+        <Choices query={query} each={each} />
+        {summary.cases.length > 1 && (
+          <Cases cases={summary.cases.map(shownOf)} chosen={chosen} onChoose={choose} />
+        )}
+        <Bands {...{ shown, query }} curves={each ? curves : null} />
+      </section>
+      <Finals cases={summary.cases.map(shownOf)} />
+      <Members cases={summary.cases.map(shownOf)} />
+    </>
+  );
+}
+
+const shownOf = (summary: CaseSummary, place: number): Shown => ({
+  summary,
+  place,
+  name: caseName(summary.values),
+  colour: colourOf(place),
+  dash: dashOf(place),
+});
+
+/** The cases that the address asks for, else the first ones. */
+function chosenOf(query: URLSearchParams, count: number): number[] {
+  const all = [...Array(count).keys()];
+  const asked = query.get("cases");
+  if (asked === null) return all.slice(0, SHOWN);
+  const named = asked.split(",").map(Number);
+  return all.filter((place) => named.includes(place));
+}
+
+function Bands({ shown, query, curves }: { shown: Shown[]; query: URLSearchParams; curves: Whole["curves"] }) {
+  const log = query.get("log") === "1";
+  const plots = bandsOf(shown, curves);
+  if (shown.length === 0) return <p class="quiet">Choose a case to see its curves.</p>;
+  if (plots.length === 0) return <p class="quiet waiting">They begin with the first generation.</p>;
+  return <Curves plots={plots} x={NOWHERE} look={{ over: "generation", log, smooth: 1 }} />;
+}
+
+/** Each case has its own places. */
+const NOWHERE: readonly number[] = [];
+
+function Choices({ query, each }: { query: URLSearchParams; each: boolean }) {
+  const log = query.get("log") === "1";
+  return (
+    <div class="curve-choices" role="group" aria-label="How curves are drawn">
+      <label class="compact">
+        <input
+          type="checkbox"
+          checked={each}
+          onChange={(event) => setQuery({ each: event.currentTarget.checked ? "1" : null })}
+        />
+        Each run
+      </label>
+      <label class="compact">
+        <input
+          type="checkbox"
+          checked={log}
+          onChange={(event) => setQuery({ log: event.currentTarget.checked ? "1" : null })}
+        />
+        Log scale
+      </label>
+    </div>
+  );
+}
+
+function Head({ sweep }: { sweep: Sweep }) {
+  const experiments = useExperiments().value ?? [];
+  const title = sweepTitle(sweep);
+  const kind = experiments.find(({ experiment }) => experiment === sweep.experiment)?.title;
+  return (
+    <>
+      <header class="page-head">
+        <h1>{title}</h1>
+        <span class="spring" />
+        <Actions sweep={sweep} title={title} />
+      </header>
+      <p class="quiet sweep-about">
+        {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)} ·{" "}
+        <a href={`/?sweep=${sweep.id}`}>As a list of runs</a>
+      </p>
+    </>
+  );
+}
+
+/** Only what the state of any run allows. */
+function Actions({ sweep: { id, standing }, title }: { sweep: Sweep; title: string }) {
+  const { queued = 0, running = 0, paused = 0 } = standing;
+  if (queued + running + paused === 0) return null;
+  return (
+    <span class="actions" role="group" aria-label="All runs">
+      {paused > 0 && <button onClick={() => void steer(id, "resume")}>Resume all</button>}
+      {queued + running > 0 && <button onClick={() => void steer(id, "pause")}>Pause all</button>}
+      <button class="danger" onClick={() => cancelSweepSoon(id, title)}>
+        Cancel all
+      </button>
+    </span>
+  );
+}
