@@ -140,6 +140,13 @@ def test_columns_are_arrays_with_gaps_as_nan():
     assert array([]).dtype == float
 
 
+def test_columns_are_a_data_frame_where_pandas_is_there():
+    pytest.importorskip("pandas")
+    found = Columns({"a": [1, 2], "b": [None, 0.5]}).to_pandas()
+    assert list(found.columns) == ["a", "b"]
+    assert found["a"].tolist() == [1, 2]
+
+
 def test_without_pandas_it_is_said_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(ImportError, match="pip install pandas"):
