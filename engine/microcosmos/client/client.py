@@ -9,7 +9,6 @@ from uuid import uuid4
 
 import httpx
 
-from ..archive import creature_h5
 from . import specs
 from .connection import Connection
 from .creature import Creature
@@ -236,6 +235,8 @@ def several(values: str | Sequence[str]) -> list[str]:
 
 def creature_file(path: Path) -> dict[str, Any]:
     """What is in a file. Raises `ValueError` where it is no creature's."""
+    from ..archive import creature_h5  # It loads all that a spec can be.
+
     data = path.read_bytes()
     try:
         return creature_h5.load(data) if data[:4] == HDF5 else json.loads(data)
