@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
@@ -16,6 +15,7 @@ from typer.testing import CliRunner
 
 from microcosmos.archive import creature, creature_h5
 from microcosmos.cli import app
+from microcosmos.client import views
 from server.claims import claim
 
 
@@ -101,15 +101,21 @@ def test_creatures_are_brought_with_their_hashes(command, client, identity, tmp_
     assert client.creature(file["sha256"]).identity == file["identity"]
 
 
-def test_watching_ends_as_the_run_does(command, services, run_id, report):
+def test_watching_ends_as_the_run_does(command, services, run_id, report, monkeypatch):
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1), 1.0)
-    later = threading.Timer(0.3, attempt.finish)
-    later.start()
-    watched = command("watch", str(run_id)[:8]).stdout
-    later.join()
-    assert "running" in watched
-    assert watched.splitlines()[-1].count("finished") == 1
+    left = [attempt.finish]
+    show = views.Lines.show
+
+    def finish_once_seen(view: views.Lines, standing: Any) -> None:
+        show(view, standing)
+        if left:
+            left.pop()()
+
+    monkeypatch.setattr(views.Lines, "show", finish_once_seen)
+    first, *_, last = command("watch", str(run_id)[:8]).stdout.splitlines()
+    assert "running" in first
+    assert "finished" in last
 
 
 @pytest.mark.parametrize("terminal", [False, True])
