@@ -8,7 +8,7 @@ import typer
 from . import overrides
 from .app import app
 from .following import ended
-from .remote import RUNS, Id, Ids, Json, Token, Url, found, reaching, say, show, told
+from .remote import RUNS, Id, Ids, Json, Token, Url, found, named, reaching, say, show
 from .submit import Name, Set, Watch, tell
 
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")]
@@ -99,14 +99,14 @@ def delete(ids: Ids, yes: Yes = False, url: Url = None, token: Token = None) -> 
         found = [client.run(id) for id in ids]
         for run in found:
             question = (
-                f"Delete {told(run.record)}, {run.status} at {run.generation} generations?"
+                f"Delete run {named(run.record)}, {run.status} at generation {run.generation}?"
             )
             if not yes and not typer.confirm(question, err=True):
-                say(f"{told(run.record).capitalize()} stays.")
+                say(f"Run {named(run.record)} stays.")
                 continue
             run.delete()
             undo = f"microcosmos restore {run.id[:8]}"
-            say(f"{told(run.record).capitalize()} is in the bin; to take it back: {undo}")
+            say(f"Run {named(run.record)} is in the bin; to take it back: {undo}")
 
 
 @app.command(rich_help_panel=RUNS)
@@ -114,7 +114,7 @@ def restore(ids: Ids, url: Url = None, token: Token = None) -> None:
     """Take runs back from the bin."""
     with reaching(url, token) as client:
         for run in [client.run(id, deleted=True) for id in ids]:
-            say(f"{told(run.restore().record).capitalize()} is back.")
+            say(f"Run {named(run.restore().record)} is back.")
 
 
 @app.command(rich_help_panel=RUNS)
@@ -145,10 +145,10 @@ def _each(ids: list[str], url: str | None, token: str | None, do: Callable[[Any]
             record = do(one).record
             if "cases" in record:
                 standing = record["standing"].items()
-                say(f"sweep {one.id[:8]}: " + ", ".join(f"{n} {s}" for s, n in standing if n))
+                say(f"Sweep {one.id[:8]}: " + ", ".join(f"{n} {s}" for s, n in standing if n))
                 continue
             wish = f", asked to {record['wish']}" if record.get("wish") else ""
-            say(f"{told(record)}: {record['status']}{wish}")
+            say(f"Run {named(record)}: {record['status']}{wish}")
 
 
 def _numbers(text: str | None) -> list[int] | None:

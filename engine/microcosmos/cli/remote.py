@@ -82,7 +82,6 @@ def found(client: "Client", id: str) -> "Run | Sweep":
             raise error from None
 
 
-def told(run: Mapping[str, Any]) -> str:
-    """A run in a few words."""
-    name = f" “{run['name']}”" if run.get("name") else ""
-    return f"run {run['id'][:8]}{name}"
+def named(run: Mapping[str, Any]) -> str:
+    """Which run it is, for people."""
+    return run["id"][:8] + (f" “{run['name']}”" if run.get("name") else "")

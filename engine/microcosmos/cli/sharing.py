@@ -76,9 +76,10 @@ def shares(json: Json = False, url: Url = None, token: Token = None) -> None:
     if json:
         show([one.record for one in found])
         return
-    table = Table("link", "title", "expires", box=None, pad_edge=False)
+    names = ("title", "state", "expires_at")
+    table = Table("link", *(n.removesuffix("_at") for n in names), box=None, pad_edge=False)
     for one in found:
-        table.add_row(one.url, one.record.get("title"), one.record.get("expires_at"))
+        table.add_row(one.url, *(one.record.get(name) for name in names))
     stdout().print(table)
 
 

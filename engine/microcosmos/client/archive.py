@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..archive.export import scaled, unit
-from . import columns
+from . import columns, maps
 from .connection import Connection
 from .creature import Creature
 
@@ -45,6 +44,12 @@ class Archive:
         where = f"{len(self)} of {self.cells} cells filled at generation {self.generation}"
         return f"<Archive of run {self.run[:8]}: {where}{best}>"
 
+    def _repr_html_(self) -> str | None:
+        """A map, of a grid of two axes; of others a notebook shows the words."""
+        if self.kind != "grid" or len(self.axes) != 2:
+            return None
+        return maps.svg(self.axes, self.cell, self.fitness, repr(self)[1:-1])
+
     @property
     def coverage(self) -> float:
         return len(self) / self.cells
@@ -72,6 +77,8 @@ class Archive:
 
     def columns(self) -> dict[str, Any]:
         """The columns of the data frame."""
+        from ..archive.export import scaled, unit  # It loads h5py.
+
         place = unit if self.kind == "cvt" else scaled
         measures = {
             f"measures_{i}": place(self.descriptors[:, i], axis)

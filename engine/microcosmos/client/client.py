@@ -20,6 +20,7 @@ from .sharing import Share, expiry, publish
 from .streaming import Event, events
 from .sweep import Sweep
 
+HDF5 = b"\x89HDF"
 HERE = "http://127.0.0.1:8000"
 
 
@@ -172,8 +173,8 @@ class Client:
         return found
 
     def import_creature(self, file: Mapping[str, Any] | str | Path) -> Creature:
-        """Bring a creature file, or where it is; its hash is verified."""
-        document = dict(file) if isinstance(file, Mapping) else json.loads(_text(file))
+        """Bring a creature file, or where it is, as JSON or HDF5; its hash is verified."""
+        document = dict(file) if isinstance(file, Mapping) else creature_file(Path(file))
         told = self.connection.send("POST", "creatures", document, key=str(uuid4()))
         return Creature(self.connection, told["creature"])
 
@@ -232,5 +233,12 @@ def several(values: str | Sequence[str]) -> list[str]:
     return [values] if isinstance(values, str) else list(values)
 
 
-def _text(file: str | Path) -> str:
-    return Path(file).read_text("utf-8")
+def creature_file(path: Path) -> dict[str, Any]:
+    """What is in a file. Raises `ValueError` where it is no creature's."""
+    from ..archive import creature_h5  # It loads all that a spec can be.
+
+    data = path.read_bytes()
+    try:
+        return creature_h5.load(data) if data[:4] == HDF5 else json.loads(data)
+    except ValueError as error:
+        raise ValueError(f"{path} needs a creature, as JSON or HDF5: {error}") from error

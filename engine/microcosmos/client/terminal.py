@@ -62,6 +62,12 @@ def _bar(standing: Standing) -> RenderableType:
     return table
 
 
+def ends(values: list[float | None]) -> str:
+    """What the lowest and the highest dots stand for."""
+    known = [value for value in values if value is not None]
+    return f"{min(known):.3g} to {max(known):.3g}"
+
+
 def _curves(standing: Standing, width: int) -> list[RenderableType]:
     """Side by side, as many as there is room and something to tell."""
     known = [
@@ -73,7 +79,7 @@ def _curves(standing: Standing, width: int) -> list[RenderableType]:
         return []
     table = Table.grid(padding=(0, 2))
     each = max(8, min(36, (width - 2 * len(known)) // len(known)))
-    table.add_row(*(Text(title, "dim") for title, _ in known))
+    table.add_row(*(Text(f"{title}  {ends(values)}", "dim") for title, values in known))
     pictures = (drawing.braille(values, each, HEIGHT) for _, values in known)
     table.add_row(*(Text("\n".join(lines), "cyan", no_wrap=True) for lines in pictures))
     return [table]

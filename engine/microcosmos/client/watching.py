@@ -51,7 +51,10 @@ def as_run(sweep: Mapping[str, Any]) -> dict[str, Any]:
     """A sweep as the views know runs: what is counted are runs that have ended."""
     standing = {status: count for status, count in sweep["standing"].items() if count}
     over = sum(count for status, count in standing.items() if status in ENDED)
-    status = "running" if over < sweep["total"] else "finished"
+    ended = next(
+        (status for status in ("failed", "cancelled") if status in standing), "finished"
+    )
+    status = "running" if over < sweep["total"] else ended
     return {
         "id": sweep["id"],
         "experiment": "sweep",

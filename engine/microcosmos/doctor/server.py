@@ -7,7 +7,7 @@ from typing import Any
 
 import httpx
 
-from ..client import Client, NoAnswer, NotAllowed, ServerError
+from ..client import Client, NoAnswer, NotAllowed, NotFound, ServerError
 from ..version import VERSION
 from .finding import Finding, ok, problem, warning
 
@@ -42,6 +42,7 @@ def _asked(client: Client) -> Iterator[Finding]:
             "install the same version on both, or creatures may not check bit for bit",
         )
     yield from _ready(connection.http.get("/readyz"))
+    yield from _caller(client)
     answer = connection.ask("GET", "workers")
     yield from workers(answer.json(), _now(answer))
 
@@ -55,6 +56,16 @@ def _ready(answer: httpx.Response) -> Iterator[Finding]:
         if standing.get(name) != "ok":
             told = f"it does not reach its {name.replace('redis', 'Redis')}"
             yield problem("server", told, f"start the {name}; the server's log says more")
+
+
+def _caller(client: Client) -> Iterator[Finding]:
+    """Who one is there, and what one may."""
+    try:
+        told = client.connection.read("tokens/current")
+    except NotFound:  # An earlier version, in which everybody may everything.
+        return
+    until = f", until {told['expires_at']}" if told["expires_at"] else ""
+    yield ok("server", f"you are “{told['name']}” there, with the scope {told['scope']}{until}")
 
 
 def workers(found: list[dict[str, Any]], now: datetime) -> Iterator[Finding]:

@@ -26,7 +26,11 @@ def told(fake, record, monkeypatch):
     """Carries a command out: what it said, and asked a server that knows one of each."""
     monkeypatch.setenv("COLUMNS", "200")
     run = f"runs/{record['id']}"
-    gone = record | {"status": "finished", "deleted_at": "2026-01-01T00:00:00Z"}
+    gone = record | {
+        "status": "finished",
+        "name": "Big Eel",
+        "deleted_at": "2026-01-01T00:00:00Z",
+    }
     preset = {
         "name": "demo",
         "spec": {"experiment": "quality-diversity", "world": {"width": 9}},
@@ -105,6 +109,7 @@ def test_deleting_asks_first(told, record):
     assert "stays" in kept.stderr
     gone, asked = told("delete", "0f3c", input="y\n")
     assert asked[-1][:2] == ("DELETE", f"runs/{record['id']}")
+    assert "Run 0f3c1a2b “Big Eel” is in the bin" in gone.stderr
     assert "microcosmos restore 0f3c1a2b" in gone.stderr
     _, asked = told("delete", "0f3c", "--yes")
     assert asked[-1].method == "DELETE"
@@ -141,7 +146,7 @@ def test_an_id_may_be_a_sweeps(told, record):
     assert told("pause", "0f3c")[1][-1].path == f"runs/{record['id']}/pause"
     paused, asked = told("pause", "5eed")
     assert asked[-2][:2] == ("POST", f"sweeps/{SWEEP['id']}/pause")
-    assert "sweep 5eed0000: 6 queued" in paused.stderr
+    assert "Sweep 5eed0000: 6 queued" in paused.stderr
     missing, _ = told("pause", "ffff", code=1)
     assert "No run at http://fake has an id that begins with ffff" in missing.stderr
 

@@ -1,5 +1,6 @@
 """How a run looks where it is watched."""
 
+import re
 import sys
 from types import SimpleNamespace
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from microcosmos.client import drawing, notebook, terminal, views, words
+from microcosmos.client import drawing, maps, notebook, terminal, views, words
 from microcosmos.client.columns import Columns, array
 from microcosmos.client.following import Standing
 
@@ -138,6 +139,26 @@ def test_columns_are_arrays_with_gaps_as_nan():
     assert found["d"][0] == [1]
     assert dict(found).keys() == {"a", "b", "c", "d"}
     assert array([]).dtype == float
+
+
+def test_a_map_has_its_cells_where_they_are():
+    axes = [{"name": "turning", "bins": 4}, {"name": "<b>", "bins": 2}]
+    picture = maps.svg(axes, np.array([0, 3, 6]), np.array([1.0, 2.0, 3.0]), "a caption")
+    squares = re.findall(r'x="([\d.]+)" y="([\d.]+)" .*? fill="(#\w+)"', picture)
+    assert squares == [
+        ("0.00", "160.00", "#440154"),
+        ("80.00", "0.00", "#21918c"),
+        ("240.00", "160.00", "#fde725"),
+    ]
+    assert "<b>" not in picture
+    assert "<rect" not in maps.svg(axes, np.array([]), np.array([]), "")
+
+
+def test_columns_are_a_data_frame_where_pandas_is_there():
+    pytest.importorskip("pandas")
+    found = Columns({"a": [1, 2], "b": [None, 0.5]}).to_pandas()
+    assert list(found.columns) == ["a", "b"]
+    assert found["a"].tolist() == [1, 2]
 
 
 def test_without_pandas_it_is_said_what_to_install(monkeypatch):

@@ -210,7 +210,11 @@ def test_the_command_says_what_to_do_and_ends_with_1(tmp_path):
         "try: cli.app(sys.argv[1:])\n"
         "except SystemExit as end: print(end.code, 'jax' in sys.modules, file=sys.stderr)"
     )
-    environment = os.environ | {"MICROCOSMOS_DATA": str(tmp_path), "JAX_PLATFORMS": "cpu"}
+    environment = os.environ | {
+        "MICROCOSMOS_DATA": str(tmp_path),
+        "JAX_COMPILATION_CACHE_DIR": str(tmp_path),
+        "JAX_PLATFORMS": "cpu",
+    }
     command = [sys.executable, "-c", code, "doctor", "--json", "--url", "http://127.0.0.1:9"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert done.stderr.splitlines()[-1] == "1 False"

@@ -2,21 +2,20 @@
 
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
-import threading
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from microcosmos.archive import creature
+from microcosmos.archive import creature, creature_h5
 from microcosmos.cli import app
-from microcosmos.client import Client
+from microcosmos.client import views
 from server.claims import claim
 
 
@@ -93,39 +92,54 @@ def test_creatures_are_brought_with_their_hashes(command, client, identity, tmp_
     file = creature.document(identity(3), None, None)
     (tmp_path / "one.json").write_text(json.dumps(file))
     assert command("import", str(tmp_path / "one.json")).stdout.strip() == file["sha256"]
+    (tmp_path / "one.h5").write_bytes(creature_h5.dump(file))
+    assert command("import", str(tmp_path / "one.h5")).stdout.strip() == file["sha256"]
     (tmp_path / "two.json").write_text(json.dumps(file | {"sha256": "ab" * 32}))
     assert "sha256" in command("import", str(tmp_path / "two.json"), code=1).stderr
     (tmp_path / "three.json").write_text("{")
-    command("import", str(tmp_path / "three.json"), code=1)
+    assert "three.json" in command("import", str(tmp_path / "three.json"), code=1).stderr
     assert client.creature(file["sha256"]).identity == file["identity"]
 
 
-def test_watching_ends_as_the_run_does(command, services, run_id, report):
+def test_watching_ends_as_the_run_does(command, services, run_id, report, monkeypatch):
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1), 1.0)
-    later = threading.Timer(0.3, attempt.finish)
-    later.start()
-    watched = command("watch", str(run_id)[:8]).stdout
-    later.join()
-    assert "running" in watched
-    assert watched.splitlines()[-1].count("finished") == 1
+    left = [attempt.finish]
+    show = views.Lines.show
+
+    def finish_once_seen(view: views.Lines, standing: Any) -> None:
+        show(view, standing)
+        if left:
+            left.pop()()
+
+    monkeypatch.setattr(views.Lines, "show", finish_once_seen)
+    first, *_, last = command("watch", str(run_id)[:8]).stdout.splitlines()
+    assert "running" in first
+    assert "finished" in last
 
 
-def test_ctrl_c_leaves_the_run_going(address, client, run):
+@pytest.mark.parametrize("terminal", [False, True])
+def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
     """In a process of its own, as a person would."""
+    ours, theirs = os.openpty() if terminal else os.pipe()
     watching = subprocess.Popen(
         [sys.executable, "-m", "microcosmos.cli", "watch", run.id[:8]],
-        env=os.environ | {"MICROCOSMOS_URL": address},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
+        env=os.environ | {"MICROCOSMOS_URL": address, "TERM": "xterm", "COLUMNS": "120"},
+        stdout=theirs,
+        stderr=theirs,
     )
-    assert watching.stdout is not None
-    first = watching.stdout.readline()
-    assert re.search(f"{run.id[:8]}.*queued", first)
+    os.close(theirs)
+    text = ""
+    while "queued" not in text or (terminal and "━" not in text):
+        text += os.read(ours, 4096).decode(errors="replace")
+    assert run.id[:8] in text
     watching.send_signal(signal.SIGINT)
-    rest = watching.communicate(timeout=60)[0]
-    assert watching.returncode == 130
-    assert "goes on without being watched" in rest
-    assert "Traceback" not in rest
-    assert Client(address).run(run.id).status == "queued"
+    with suppress(OSError):  # How a terminal ends.
+        while more := os.read(ours, 4096):
+            text += more.decode(errors="replace")
+    os.close(ours)
+    assert watching.wait(timeout=60) == 130
+    assert "goes on without being watched" in text
+    assert "Traceback" not in text
+    assert ("━" in text) == terminal
+    assert client.run(run.id).status == "queued"

@@ -111,6 +111,7 @@ def test_an_archive_is_columns_and_creatures(run, services, run_id, report):
     assert archive.features["turning"].tolist() == [0.25, 0.5]
     assert archive.best().fitness == 3.0
     assert archive.elite(3) == archive.elite((0, 3))
+    assert archive._repr_html_().count("<rect") == 2
     assert archive.coverage == 2 / archive.cells
     assert run.archive(generation=1).fitness.tolist() == [2.0, 1.0]
     with pytest.raises(KeyError, match="cell 4 is empty"):
