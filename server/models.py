@@ -247,7 +247,7 @@ class Share(Base):
     credit: Mapped[list[str]]
     licence: Mapped[str] = mapped_column(Text)
     listed: Mapped[bool]
-    owner: Mapped[str | None] = mapped_column(String(200))
+    owner: Mapped[UUID | None]
     created_at: Mapped[datetime] = mapped_column(default=clock())
     expires_at: Mapped[datetime | None]
     revoked_at: Mapped[datetime | None]

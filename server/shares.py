@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from secrets import token_urlsafe
 from typing import Any
+from uuid import UUID
 
 from sqlalchemy import Select, func, or_, select
 from sqlalchemy.orm import Session
@@ -74,7 +75,7 @@ def _best(session: Session, run: Run, generation: int) -> str:
 
 
 def publish(
-    session: Session, asked: ShareAsked, owner: str | None = None
+    session: Session, asked: ShareAsked, owner: UUID | None = None
 ) -> tuple[Share, bool]:
     """The share, and whether it is new: one that says the same and is live is taken again."""
     _refuse_past(session, asked.expires_at)

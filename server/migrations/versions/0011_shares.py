@@ -27,7 +27,7 @@ def upgrade() -> None:
         sa.Column("credit", sa.JSON(), nullable=False),
         sa.Column("licence", sa.Text(), nullable=False),
         sa.Column("listed", sa.Boolean(), nullable=False),
-        sa.Column("owner", sa.String(length=200), nullable=True),
+        sa.Column("owner", sa.Uuid(), nullable=True),
         sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
         sa.Column("expires_at", sa.DateTime(timezone=True), nullable=True),
         sa.Column("revoked_at", sa.DateTime(timezone=True), nullable=True),
