@@ -43,6 +43,7 @@ NEEDS = {
     "POST /sweeps/{sweep_id}/resume": OWNER,
     "POST /sweeps/{sweep_id}/cancel": OWNER,
     "POST /creatures": WRITE,
+    "POST /creatures/{sha}/measure": WRITE,
     "GET /creatures/{sha}": READ,
     "GET /creatures/{sha}/{rest:path}": READ,
     "GET /shares": READ,

@@ -46,7 +46,7 @@ export function SharesPage() {
                 <th scope="col">What</th>
                 <th scope="col">Licence</th>
                 <th scope="col">Published</th>
-                <th scope="col">Until</th>
+                <th scope="col">Expires</th>
                 <th scope="col">Seen by</th>
                 <th scope="col">
                   <span class="unseen">Actions</span>
@@ -77,18 +77,18 @@ function Row({ share, onChange }: { share: Share; onChange: (share: Share) => vo
       </td>
       <td>{licence.slice(0, 40)}</td>
       <td>{moment(share.created_at)}</td>
-      <td>{share.expires_at ? moment(share.expires_at) : "taken back"}</td>
+      <td>{share.expires_at ? moment(share.expires_at) : "never"}</td>
       <td>{live ? (share.listed ? "everybody" : "who has the link") : state}</td>
-      <td class="actions">
+      <td>
         {live && (
-          <>
+          <span class="actions">
             <button class="slim" onClick={() => void copyText(share.url, "Link copied.")}>
               Copy link
             </button>
             <button class="slim danger" aria-label={`Revoke ${title}`} onClick={() => void revoke(share, onChange)}>
               Revoke
             </button>
-          </>
+          </span>
         )}
       </td>
     </tr>
