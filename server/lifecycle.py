@@ -62,7 +62,7 @@ def pause(session: Session, run: Run) -> Run:
             wish=PAUSE,
             wished_at=clock(),
         )
-        or _refuse(session, "pause", run, "queued or running, not asked to cancel")
+        or refuse(session, "pause", run, "queued or running, not asked to cancel")
     )
     note(session, changed, "Paused." if changed.status == PAUSED else "Asked to pause.")
     return changed
@@ -85,7 +85,7 @@ def cancel(session: Session, run: Run) -> Run:
             wish=CANCEL,
             wished_at=case((Run.wish == CANCEL, Run.wished_at), else_=clock()),
         )
-        or _refuse(session, "cancel", run, "queued, running or paused")
+        or refuse(session, "cancel", run, "queued, running or paused")
     )
     note(session, changed, "Cancelled." if changed.status == CANCELLED else "Asked to cancel.")
     return changed
@@ -98,7 +98,7 @@ def resume(session: Session, run: Run) -> Run:
     values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_leave": leave}
     values |= {"queued_at": clock()}
     waited = run.device_leave == NEEDED
-    changed = change(session, run.id, Run.status == PAUSED, **values) or _refuse(
+    changed = change(session, run.id, Run.status == PAUSED, **values) or refuse(
         session, "resume", run, "paused"
     )
     leave = " Another kind of device is allowed." if waited else ""
@@ -106,7 +106,8 @@ def resume(session: Session, run: Run) -> Run:
     return changed
 
 
-def _refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
+def refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
+    """Raise `Conflict`, which says how the run stands now."""
     current = session.get_one(Run, run.id, populate_existing=True)
     raise Conflict(action, current, needed)
 

@@ -1,4 +1,4 @@
-"""Runs: estimate, submit, list, read, name, pause, resume, cancel."""
+"""Runs: estimate, submit, list, read, name, pause, resume, cancel, extend."""
 
 from collections.abc import Callable
 from typing import Annotated, Any
@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate, parse
 
-from .. import lifecycle, listing, waiting
+from .. import extending, lifecycle, listing, waiting
 from ..deps import RunDep, ServicesDep, SessionDep, find_run
 from ..drawings import drawing_read
 from ..models import Run
@@ -18,7 +18,7 @@ from ..pace import pace_of
 from ..problems import Refused
 from ..progress import read_run, read_runs
 from ..reconcile import requeue
-from ..schemas import EstimateRead, FieldError, RunChange, RunPage, RunRead, Status
+from ..schemas import EstimateRead, Extension, FieldError, RunChange, RunPage, RunRead, Status
 from ..services import Services
 from ..submission import memory_limit, refuse_too_large, submit
 from ..uploads import json_object
@@ -151,6 +151,32 @@ def resume_run(run_id: UUID, services: ServicesDep) -> RunRead:
 @router.post("/{run_id}/cancel", status_code=202)
 def cancel_run(run_id: UUID, services: ServicesDep) -> RunRead:
     return _changed(services, run_id, lifecycle.cancel)
+
+
+def extension_sent(
+    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
+) -> Extension:
+    return Extension.model_validate(document)
+
+
+@router.post(
+    "/{run_id}/extend",
+    status_code=202,
+    openapi_extra=described(Extension.model_json_schema()),
+)
+def extend_run(
+    run_id: UUID, services: ServicesDep, sent: Annotated[Extension, Depends(extension_sent)]
+) -> RunRead:
+    """More generations for a finished run, which ends as if it had had them from the start."""
+    with services.sessions.read() as session:
+        run = find_run(session, run_id)
+    spec = extending.longer(run, sent.generations)
+    refuse_too_large(services, spec)
+    changed = _changed(
+        services, run_id, lambda session, _: extending.extend(session, run, spec)
+    )
+    requeue(services, run_id)
+    return changed
 
 
 def _changed(

@@ -42,6 +42,12 @@ class RunChange(Wire):
         }
 
 
+class Extension(Wire):
+    """How many generations more."""
+
+    generations: int = Field(ge=1, le=1_000_000)
+
+
 class RunRead(Wire):
     id: UUID
     experiment: str

@@ -17,14 +17,13 @@ from .. import neat, search
 from ..archive import file
 from ..genomes import Genotype
 from ..version import VERSION
-from .state import CURVES, ENDS, FATES, Diverged, Lineage, Plan, State, start
+from .agreement import OtherDevice, devices_of
+from .state import CURVES, ENDS, FATES, Diverged, Lineage, Plan, State, prolonged, start
+
+__all__ = ["OtherDevice", "restore", "save"]
 
 ROWS = ("fitness", "features", "generation", "slot")
 """Columns of elites that are written as they are."""
-
-
-class OtherDevice(ValueError):
-    """The file was computed on another kind of device, where bits may differ."""
 
 
 def save(plan: Plan, state: State) -> bytes:
@@ -58,6 +57,7 @@ def save(plan: Plan, state: State) -> bytes:
             "counters": _columns(state.counters),
             "kin": state.kin,
             "emitters": leaves(state.emitters),
+            **_unrepeated(state, cells),
         },
     }
     return file.dump(tree, _attributes(plan, state))
@@ -84,9 +84,11 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
     creatures, operators, origins = state.creatures, state.operators, state.origins
     creatures[cells], operators[cells] = archive["creature"], archive["operator"]
     origins[cells] = archive["device"]
+    repeats = _placed(state.repeats, cells, archive["repeats"])
+    before = "unrepeated" in loop and _placed(state.repeats, cells, loop["unrepeated"])
     diverged = tree["diverged"]
     genotypes = jax.device_get(_genotypes(state, diverged.pop("genotypes")))
-    return State(
+    taken = State(
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
         diverged=int(loop["diverged"]),
@@ -95,7 +97,7 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         emitters=filled(state.emitters, loop["emitters"]),
         kin=loop["kin"],
-        repeats=_placed(state.repeats, cells, archive["repeats"]),
+        repeats=repeats,
         creatures=creatures,
         operators=operators,
         origins=origins,
@@ -106,7 +108,9 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         lineage=Lineage(**tree["lineage"]),
         quarantine=Diverged(**diverged, genotypes=genotypes),
         devices=devices,
+        unrepeated=before or None,
     )
+    return prolonged(taken) if taken.generation < plan.generations else taken
 
 
 def _attributes(plan: Plan, state: State) -> dict[str, str]:
@@ -121,25 +125,6 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
         "statuses": json.dumps(search.STATUSES),
         "ended": json.dumps(_end(plan, state)),
     }
-
-
-def devices_of(
-    spec: str, device: str, attributes: dict[str, str], other_device: bool
-) -> tuple[str, ...]:
-    """The kinds of device of a file and, last, the present one.
-
-    Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
-    `other_device` allows it.
-    """
-    if json.loads(attributes["spec"]) != json.loads(spec):
-        raise ValueError("`spec` in the file must be the run's own, got another")
-    devices = json.loads(attributes["device"])
-    if devices[-1] != device and not other_device:
-        raise OtherDevice(
-            f"`device` must be {devices[-1]!r}, on which the run was computed, for the same "
-            f"bits; got {device!r}."
-        )
-    return tuple(devices if devices[-1] == device else [*devices, device])
 
 
 def _centroids(niches: search.Cells) -> dict[str, Any]:
@@ -158,6 +143,13 @@ def _clock(plan: Plan, state: State) -> dict[str, Any]:
     """What evaluation took, where that decides when the run ends; else no clock is kept."""
     timed = np.isfinite(plan.limits.device_hours)
     return {"device_seconds": np.float64(state.device_seconds)} if timed else {}
+
+
+def _unrepeated(state: State, cells: np.ndarray) -> dict[str, Any]:
+    """Where elites were evaluated again only because the run ends: what was known before."""
+    if state.unrepeated is None:
+        return {}
+    return {"unrepeated": _columns(jax.tree.map(lambda x: x[cells], state.unrepeated))}
 
 
 def _end(plan: Plan, state: State) -> dict[str, Any] | None:

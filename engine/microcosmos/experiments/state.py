@@ -1,7 +1,7 @@
 """What a search is: its plan, which never changes, and its state."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
 
@@ -27,6 +27,9 @@ CURVES = (
 )
 """Columns of the record of generations, in this order; the last three are NaN until elites
 are evaluated again."""
+
+AGAIN = 3
+"""So many of them."""
 
 FATES = ("children", "inserted", "improved")
 """What becomes of an emitter's children: how many there were, entered an empty cell, and
@@ -168,6 +171,17 @@ class State(eqx.Module):
     quarantine: Diverged
     devices: tuple[str, ...] = eqx.field(static=True)
     """Kinds of device that computed the run, the present one last."""
+    unrepeated: search.reevaluation.Repeats | None = None
+    """Where elites were evaluated again only because the run ends: `repeats` before that."""
+
+
+def prolonged(state: State) -> State:
+    """The last state of a run as it would be in one of more generations."""
+    if state.unrepeated is None:
+        return state
+    curves = state.curves.copy()
+    curves[-1, -AGAIN:] = np.nan
+    return replace(state, curves=curves, repeats=state.unrepeated, unrepeated=None)
 
 
 def start(plan: Plan) -> State:

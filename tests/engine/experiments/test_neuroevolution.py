@@ -45,6 +45,19 @@ def test_a_run_taken_up_from_any_generation_ends_the_same(experiment, course, fi
         assert finish(experiment, experiment.restore(experiment.save(state))) == whole
 
 
+@pytest.mark.parametrize("generations", [3, 4])
+def test_an_extended_run_ends_like_a_longer_one(
+    experiment, course, finish, lasting, generations
+):
+    """Whether or not elites were evaluated again only because the shorter one ended."""
+    shorter = lasting(experiment, generations)
+    ended = finish(shorter, shorter.init())
+    assert shorter.save(shorter.restore(ended)) == ended
+    whole = experiment.save(course[0][-1])
+    assert ended != whole
+    assert finish(experiment, experiment.restore(ended)) == whole
+
+
 def test_every_forebear_that_is_named_was_recorded_before(course):
     born, related = {}, 0
     for report in course[1]:
