@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+from sqlalchemy import update
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import creature
@@ -29,7 +30,8 @@ def document(row: Creature) -> dict[str, Any]:
 
 def add(session: Session, file: dict[str, Any]) -> bool:
     """Keep a creature file that was checked: whether it is new. What is known stays."""
-    if session.get(Creature, file["sha256"]):
+    mine = update(Creature).where(Creature.sha256 == file["sha256"]).values(imported=True)
+    if session.scalars(mine.returning(Creature.sha256)).one_or_none():
         return False
     row = creature_columns(
         file["sha256"],
@@ -38,6 +40,6 @@ def add(session: Session, file: dict[str, Any]) -> bool:
         file["provenance"],
         file["licence"],
     )
-    insert_missing(session, Creature, [row])
+    insert_missing(session, Creature, [{**row, "imported": True}])
     link(session, [file["sha256"]])
     return True

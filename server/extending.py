@@ -8,7 +8,7 @@ from microcosmos.spec import Evolution, Spec, parse
 
 from .db import clock
 from .journal import note
-from .lifecycle import change, refuse
+from .lifecycle import KEPT, change, refuse
 from .models import FINISHED, QUEUED, Run
 from .problems import FieldError, Refused
 
@@ -32,7 +32,7 @@ def extend(session: Session, run: Run, spec: Spec) -> Run:
     """Back into the queue, to go on from its last checkpoint."""
     more = spec.generations - run.generations
     # Of two that extend it at once, one would not know how long it is.
-    same = (Run.status == FINISHED, Run.generations == run.generations)
+    same = (KEPT, Run.status == FINISHED, Run.generations == run.generations)
     changed = change(session, run.id, *same, **_again(spec))
     if changed is None:
         refuse(session, "extend", run, "finished")

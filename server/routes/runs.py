@@ -1,4 +1,6 @@
-"""Runs: estimate, submit, list, read, name, pause, resume, cancel, extend."""
+"""Runs: estimate, submit, list, read, name, pause, resume, cancel, extend,
+delete, restore.
+"""
 
 from collections.abc import Callable
 from typing import Annotated, Any
@@ -10,8 +12,8 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate, parse
 
-from .. import extending, lifecycle, listing, waiting
-from ..deps import RunDep, ServicesDep, SessionDep, find_run
+from .. import binned, extending, lifecycle, listing, waiting
+from ..deps import AnyRunDep, ServicesDep, SessionDep, find_run
 from ..drawings import drawing_read
 from ..models import Run
 from ..pace import pace_of
@@ -90,14 +92,15 @@ def list_runs(
     tag: Text | None = None,
     q: Text | None = None,
     sort: listing.Sort = "-created",
+    deleted: bool = False,
 ) -> RunPage:
     """Runs of any of these states and experiments, with this tag and this text.
 
     `q` is looked for in names, tags and notes and at the beginning of ids. With `-`, the sort
-    is descending; runs without a value come last.
+    is descending; runs without a value come last. `deleted` ones lie in the bin.
     """
     _refuse_unknown(experiment)
-    statement = listing.matching(select(Run), status, experiment, tag, q)
+    statement = listing.matching(select(Run), status, experiment, tag, q, deleted)
     rows = listing.page(session, statement, sort, cursor, limit)
     items = read_runs(services, session, [run for run, _ in rows[:limit]])
     return RunPage(items=items, next=listing.cursor(sort, rows, limit))
@@ -113,7 +116,7 @@ def _refuse_unknown(experiments: list[str]) -> None:
 
 
 @router.get("/{run_id}")
-def read(run: RunDep, services: ServicesDep, session: SessionDep) -> RunRead:
+def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     return read_run(services, session, run)
 
 
@@ -153,6 +156,19 @@ def cancel_run(run_id: UUID, services: ServicesDep) -> RunRead:
     return _changed(services, run_id, lifecycle.cancel)
 
 
+@router.delete("/{run_id}")
+def delete_run(run_id: UUID, services: ServicesDep) -> RunRead:
+    """Into the bin, from which it can be restored until `purge_at`."""
+    keep = services.settings.bin_seconds
+    return _changed(services, run_id, lambda session, run: binned.put(session, run, keep))
+
+
+@router.post("/{run_id}/restore")
+def restore_run(run_id: UUID, services: ServicesDep) -> RunRead:
+    """Out of the bin, as it was."""
+    return _changed(services, run_id, binned.restore, deleted=True)
+
+
 def extension_sent(
     document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
 ) -> Extension:
@@ -180,11 +196,14 @@ def extend_run(
 
 
 def _changed(
-    services: Services, run_id: UUID, change: Callable[[Session, Run], Run]
+    services: Services,
+    run_id: UUID,
+    change: Callable[[Session, Run], Run],
+    deleted: bool = False,
 ) -> RunRead:
     """With one connection at a time: requests that held two could wait for each other."""
     with services.sessions.write.begin() as session:
-        change(session, find_run(session, run_id))
+        change(session, find_run(session, run_id, deleted))
     lifecycle.announce(services, run_id)
     return _current(services, run_id)
 

@@ -48,6 +48,15 @@ class Extension(Wire):
     generations: int = Field(ge=1, le=1_000_000)
 
 
+class Forked(Wire):
+    """Where a fork began."""
+
+    run: UUID | None
+    """None where that run is gone."""
+    creatures: int
+    """How many of its creatures."""
+
+
 class RunRead(Wire):
     id: UUID
     experiment: str
@@ -84,6 +93,11 @@ class RunRead(Wire):
     device: str | None
     version: str
     demonstration: bool
+    deleted_at: datetime | None
+    """Since when it lies in the bin."""
+    purge_at: datetime | None
+    """When it goes for good."""
+    forked_from: Forked | None
 
 
 class RunPage(Wire):
