@@ -15,8 +15,11 @@ def carry_out(attempt: Attempt) -> None:
     """Compute, generation by generation, until it is done or somebody wants it to stop."""
     prepare()
     attempt.use(device_kind())
-    experiment = build(parse(attempt.spec))
     data = attempt.restore()
+    # A file has what its run began from.
+    origin = [] if data else attempt.origin()
+    spec = parse(attempt.spec)
+    experiment = build(spec, origin) if origin else build(spec)
     try:
         state = (
             experiment.restore(data, other_device=attempt.other_device)

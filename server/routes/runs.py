@@ -1,5 +1,5 @@
 """Runs: estimate, submit, list, read, name, pause, resume, cancel, extend,
-delete, restore.
+fork, delete, restore.
 """
 
 from collections.abc import Callable
@@ -12,15 +12,26 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate, parse
 
-from .. import binned, extending, lifecycle, listing, waiting
+from .. import binned, extending, forking, lifecycle, listing, waiting
 from ..deps import AnyRunDep, ServicesDep, SessionDep, find_run
 from ..drawings import drawing_read
 from ..models import Run
+from ..origins import named
 from ..pace import pace_of
 from ..problems import Refused
 from ..progress import read_run, read_runs
 from ..reconcile import requeue
-from ..schemas import EstimateRead, Extension, FieldError, RunChange, RunPage, RunRead, Status
+from ..schemas import (
+    EstimateRead,
+    Extension,
+    FieldError,
+    Fork,
+    RunChange,
+    RunPage,
+    RunRead,
+    Status,
+    Wire,
+)
 from ..services import Services
 from ..submission import memory_limit, refuse_too_large, submit
 from ..uploads import json_object
@@ -35,6 +46,14 @@ def described(schema: dict[str, Any]) -> dict[str, Any]:
     """What OpenAPI says of a body that is read by `json_object`."""
     content = {"application/json": {"schema": schema}}
     return {"requestBody": {"required": True, "content": content}}
+
+
+def inlined(model: type[Wire]) -> dict[str, Any]:
+    """A model's schema whose fields are written out: references would lead out of the body."""
+    schema = model.model_json_schema()
+    parts = {f"#/$defs/{name}": part for name, part in schema.pop("$defs", {}).items()}
+    fields = schema["properties"].items()
+    return {**schema, "properties": {n: parts.get(f.get("$ref"), f) for n, f in fields}}
 
 
 body = described({"type": "object"})
@@ -54,10 +73,7 @@ def create_run(
 ) -> RunRead:
     """Queue a run. The same key with the same spec is the same run, answered with 200."""
     refuse_too_large(services, spec)
-    run, new = submit(services, spec, idempotency_key)
-    response.status_code = 202 if new else 200
-    response.headers["Location"] = f"/api/v1/runs/{run.id}"
-    return _current(services, run.id)
+    return _submitted(services, response, *submit(services, spec, idempotency_key))
 
 
 @router.post("/estimate", openapi_extra=body)
@@ -193,6 +209,32 @@ def extend_run(
     )
     requeue(services, run_id)
     return changed
+
+
+def fork_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))]) -> Fork:
+    return Fork.model_validate(document)
+
+
+@router.post("/{run_id}/fork", status_code=202, openapi_extra=described(inlined(Fork)))
+def fork_run(
+    run_id: UUID,
+    services: ServicesDep,
+    response: Response,
+    sent: Annotated[Fork, Depends(fork_sent)],
+    idempotency_key: Key = None,
+) -> RunRead:
+    """A new run that begins from creatures of this one, its spec changed by a merge patch."""
+    with services.sessions.read() as session:
+        spec = forking.spec_of(session, find_run(session, run_id), sent)
+    refuse_too_large(services, spec)
+    said = {"name": sent.name or None, "forked_from": run_id, "forked": len(named(spec))}
+    return _submitted(services, response, *submit(services, spec, idempotency_key, **said))
+
+
+def _submitted(services: Services, response: Response, run: Run, new: bool) -> RunRead:
+    response.status_code = 202 if new else 200
+    response.headers["Location"] = f"/api/v1/runs/{run.id}"
+    return _current(services, run.id)
 
 
 def _changed(

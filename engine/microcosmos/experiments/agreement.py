@@ -44,4 +44,5 @@ def _length(spec: dict[str, Any]) -> int:
 def _without_length(spec: dict[str, Any]) -> dict[str, Any]:
     if "search" not in spec:
         return spec
-    return {**spec, "search": {**spec["search"], "generations": 0}}
+    # Files of before there were origins do not name them.
+    return {**spec, "search": {"origin": [], **spec["search"], "generations": 0}}

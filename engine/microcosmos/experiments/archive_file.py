@@ -18,7 +18,7 @@ from ..archive import file
 from ..genomes import Genotype
 from ..version import VERSION
 from .agreement import OtherDevice, devices_of
-from .state import CURVES, ENDS, FATES, Diverged, Lineage, Plan, State, prolonged, start
+from .state import CURVES, ENDS, FATES, Diverged, Lineage, Origin, Plan, State, prolonged, start
 
 __all__ = ["OtherDevice", "restore", "save"]
 
@@ -60,6 +60,9 @@ def save(plan: Plan, state: State) -> bytes:
             **_unrepeated(state, cells),
         },
     }
+    if state.origin is not None:
+        genes = _columns(state.origin.genotypes)
+        tree["origin"] = {"creature": state.origin.creature, "genomes": genes}
     return file.dump(tree, _attributes(plan, state))
 
 
@@ -109,6 +112,7 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         quarantine=Diverged(**diverged, genotypes=genotypes),
         devices=devices,
         unrepeated=before or None,
+        origin=_origin(state, tree.get("origin")),
     )
     return prolonged(taken) if taken.generation < plan.generations else taken
 
@@ -164,6 +168,13 @@ def _placed(module: eqx.Module, cells: np.ndarray, columns: dict[str, np.ndarray
     """The module with the rows of some cells as columns have them."""
     new = type(module)(**{name: jnp.asarray(x) for name, x in columns.items()})
     return jax.tree.map(lambda none, x: none.at[cells].set(x), module, new)
+
+
+def _origin(state: State, group: file.Tree | None) -> Origin | None:
+    if group is None:
+        return None
+    genotypes = jax.device_get(_genotypes(state, group["genomes"]))
+    return Origin(group["creature"], genotypes)
 
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:

@@ -7,11 +7,13 @@ from typing import Any
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 
 from .. import neat, search
 from ..genomes import Encoding, Genotype
+from ..search.emitters.population import Neat as PopulationEmitter
 
 CURVES = (
     "qd_score",
@@ -65,6 +67,14 @@ class Again:
     """Of the world, in cells."""
 
 
+class Origin(eqx.Module):
+    """Creatures that a search begins from, in the order of their names."""
+
+    creature: UInt8[np.ndarray, "row 32"]
+    genotypes: Genotype
+    """Rows of NumPy arrays."""
+
+
 @dataclass(frozen=True)
 class Plan:
     """The numbers and names of a run, as its spec has them, and where it is computed."""
@@ -90,6 +100,8 @@ class Plan:
 
     names: tuple[str, ...] = ()
     """What the emitters are called, each by a name of its own."""
+    origin: Origin | None = None
+    """What it begins from; a file of the run has it too."""
 
     @property
     def axes(self) -> tuple[search.Axis, ...]:
@@ -173,6 +185,8 @@ class State(eqx.Module):
     """Kinds of device that computed the run, the present one last."""
     unrepeated: search.reevaluation.Repeats | None = None
     """Where elites were evaluated again only because the run ends: `repeats` before that."""
+    origin: Origin | None = None
+    """The plan's; creatures that it has room for in each generation are evaluated first."""
 
 
 def prolonged(state: State) -> State:
@@ -190,6 +204,8 @@ def start(plan: Plan) -> State:
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
     nobody = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
     keys = jax.random.split(jax.random.fold_in(plan.key, BEFORE), len(plan.emitters))
+    pairs = zip(plan.emitters, keys, strict=True)
+    emitters = tuple(_founded(plan, e, e.init(key=key)) for e, key in pairs)
     return State(
         generation=0,
         evaluations=0,
@@ -197,7 +213,7 @@ def start(plan: Plan) -> State:
         niches=plan.niches,
         elites=search.no_elites(plan.cells, len(search.FEATURES), plan.genotype),
         counters=plan.counters,
-        emitters=tuple(e.init(key=key) for e, key in zip(plan.emitters, keys, strict=True)),
+        emitters=emitters,
         kin=np.zeros((plan.batch, 2, 32), np.uint8),
         repeats=search.reevaluation.no_repeats(plan.cells, len(search.FEATURES)),
         creatures=np.zeros((plan.cells, 32), np.uint8),
@@ -218,4 +234,13 @@ def start(plan: Plan) -> State:
         ),
         quarantine=Diverged(none, none, none, nobody),
         devices=(plan.device,),
+        origin=plan.origin,
     )
+
+
+def _founded(plan: Plan, emitter: search.Emitter, kept: PyTree[Array]) -> PyTree[Array]:
+    """What an emitter keeps; a population begins with what the search begins from."""
+    if plan.origin is None or not isinstance(emitter, PopulationEmitter):
+        return kept
+    networks = jax.tree.map(jnp.asarray, plan.origin.genotypes)
+    return emitter.founded(kept, networks)

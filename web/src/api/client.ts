@@ -49,6 +49,21 @@ export async function changeRun(id: string, change: RunChange): Promise<Run> {
   return (await success(asked)) as Run;
 }
 
+export async function extendRun(id: string, generations: number): Promise<Run> {
+  const asked = client.POST(`${ROOT}/runs/{run_id}/extend`, { ...run(id), body: { generations } });
+  return (await success(asked)) as Run;
+}
+
+/** Into the bin. */
+export async function deleteRun(id: string): Promise<Run> {
+  return (await success(client.DELETE(`${ROOT}/runs/{run_id}`, run(id)))) as Run;
+}
+
+/** Out of the bin. */
+export async function restoreRun(id: string): Promise<Run> {
+  return (await success(client.POST(`${ROOT}/runs/{run_id}/restore`, run(id)))) as Run;
+}
+
 export const readTags = () => success(client.GET(`${ROOT}/tags`));
 export const readWorkers = () => success(client.GET(`${ROOT}/workers`));
 export const readQueue = () => success(client.GET(`${ROOT}/queue`));

@@ -35,6 +35,7 @@ export function queryOf(address: URLSearchParams): RunQuery {
     ...(experiment.length > 0 && { experiment }),
     ...(q && { q }),
     ...(tag && { tag }),
+    ...(address.get("deleted") === "true" && { deleted: true }),
     ...(sort && sort !== NEWEST && { sort }),
   };
 }
@@ -43,7 +44,7 @@ const listOf = (address: URLSearchParams, key: string) =>
   (address.get(key) ?? "").split(",").filter(Boolean);
 
 /** Whether anything is left out. */
-export const isFiltered = ({ sort: _, ...filters }: RunQuery) => Object.keys(filters).length > 0;
+export const isFiltered = ({ sort: _, deleted: __, ...filters }: RunQuery) => Object.keys(filters).length > 0;
 
 /** The order after one more click on a column: its own first, then reversed, then the usual. */
 export function nextSort(sort: string | undefined, key: string, falling: boolean): string | null {
