@@ -75,6 +75,11 @@ class Artifacts:
         with suppress(FileNotFoundError):
             self.files.rm_file(self._full(path))
 
+    def delete_folder(self, path: str) -> None:
+        """Remove a folder and whatever is in it; one that is gone already is no error."""
+        with suppress(FileNotFoundError):
+            self.files.rm(self._full(path), recursive=True)
+
     def _rename(self, beside: str, target: str) -> None:
         if not self._local:
             self.files.mv(beside, target)
@@ -97,7 +102,12 @@ class Artifacts:
 def checkpoint_path(run_id: UUID, generation: int, data: bytes) -> str:
     """Named by content too, so that two attempts never write to one file."""
     name = hashlib.sha256(data).hexdigest()[:16]
-    return f"runs/{run_id}/{generation:08d}-{name}.h5"
+    return f"{run_folder(run_id)}{generation:08d}-{name}.h5"
+
+
+def run_folder(run_id: UUID) -> str:
+    """Where all files of a run lie, with a slash at its end."""
+    return f"runs/{run_id}/"
 
 
 def rendering_path(creature: str, kind: str) -> str:

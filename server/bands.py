@@ -9,6 +9,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from .curves import numbers
+from .lifecycle import KEPT
 from .models import Generation, Run, Sweep
 from .progress import evenly
 from .schemas import Band, CaseSummary, Final, Line, Member, SweepCurves, SweepSummary
@@ -41,7 +42,7 @@ class Recorded:
 def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
     """All generations, or about so many, and fewer where all would be too much."""
     columns = [getattr(Run, name) for name in (*OF_RUNS, *FIGURES, "summary")]
-    mine = select(*columns).where(Run.sweep == sweep.id).order_by(Run.place)
+    mine = select(*columns).where(Run.sweep == sweep.id, KEPT).order_by(Run.place)
     runs = session.execute(mine).all()
     last = max((run.generation for run in runs), default=0)
     most = max(2, POINTS // max(1, len(runs)))
@@ -62,7 +63,7 @@ def _table(
         Run, Run.id == Generation.run_id
     )
     # Runs may have gone on since they were read.
-    asked = asked.where(Run.sweep == sweep.id, Generation.generation <= last)
+    asked = asked.where(Run.sweep == sweep.id, KEPT, Generation.generation <= last)
     if len(generation) < last:
         asked = asked.where(Generation.generation.in_(generation))
     found = session.execute(asked).all()

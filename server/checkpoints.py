@@ -7,6 +7,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from .artifacts import Stored, superfluous
+from .leftovers import leave_behind, named
 from .models import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 
 
@@ -59,6 +60,7 @@ def rewind(session: Session, run: Run) -> bool:
     last = run.checkpoint_generation
     if run.generation <= last:
         return False
+    leave_behind(session, run.id, *(named(run.id, table, last) for table in (Elite, Result)))
     for table in (Elite, Result, Generation):
         session.execute(delete(table).where(table.run_id == run.id, table.generation > last))
     kept = session.get(Generation, (run.id, last))

@@ -13,7 +13,7 @@ from uuid import UUID
 from sqlalchemy import case, func, or_
 from sqlalchemy.orm import Session
 
-from . import journal, own, records
+from . import journal, origins, own, records
 from .artifacts import Stored, checkpoint_path
 from .checkpoints import fall_back, last_checkpoint, point_at, rewind
 from .db import clock
@@ -142,6 +142,12 @@ class Claim:
     def use(self, device: str) -> None:
         """Say which kind of device computes."""
         self._end(f"Computing on {device}.", device=device)
+
+    def origin(self) -> list[dict[str, Any]]:
+        """The files of the creatures that the run begins from."""
+        names = self.spec.get("search", {}).get("origin", [])
+        with self.services.sessions.read() as session:
+            return origins.files(session, names)
 
     def restore(self) -> bytes | None:
         """The content of the newest checkpoint whose file is sound, if there is one.

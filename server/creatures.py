@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from operator import itemgetter
 from typing import Any
 
-from sqlalchemy import select
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import creature, kin
@@ -60,7 +60,8 @@ def add_all(session: Session, files: Sequence[dict[str, Any]]) -> None:
 
 def add(session: Session, file: dict[str, Any]) -> bool:
     """Keep a creature file that was checked: whether it is new. What is known stays."""
-    if session.get(Creature, file["sha256"]):
+    mine = update(Creature).where(Creature.sha256 == file["sha256"]).values(imported=True)
+    if session.scalars(mine.returning(Creature.sha256)).one_or_none():
         return False
     row = creature_columns(
         file["sha256"],
@@ -70,6 +71,6 @@ def add(session: Session, file: dict[str, Any]) -> bool:
         file["licence"],
         file["credit"],
     )
-    insert_missing(session, Creature, [row])
+    insert_missing(session, Creature, [{**row, "imported": True}])
     link(session, [file["sha256"]])
     return True

@@ -1,6 +1,7 @@
 """What routes ask for: the services, a session to read with, and the row that a path names."""
 
 from collections.abc import Iterator
+from datetime import datetime
 from typing import Annotated
 from uuid import UUID
 
@@ -28,11 +29,19 @@ def session(services: ServicesDep) -> Iterator[Session]:
 SessionDep = Annotated[Session, Depends(session, scope="function")]
 
 
-def find_run(session: Session, run_id: UUID) -> Run:
+def find_run(session: Session, run_id: UUID, deleted: bool = False) -> Run:
+    """The row; one in the bin only where `deleted` ones will do."""
     found = session.get(Run, run_id)
     if found is None:
         raise Refused(404, "Not found", f"No run has the id {run_id}.")
+    if found.purge_at and not deleted:
+        raise Refused(404, "In the bin", in_the_bin(found.id, found.purge_at))
     return found
+
+
+def in_the_bin(run_id: UUID, until: datetime) -> str:
+    moment = f"{until:%Y-%m-%d %H:%M} UTC"
+    return f"Run {run_id} is in the bin until {moment}; restore it to use it again."
 
 
 def run(run_id: UUID, session: SessionDep) -> Run:
@@ -60,6 +69,12 @@ def sweep(sweep_id: UUID, session: SessionDep) -> Sweep:
     return find_sweep(session, sweep_id)
 
 
+def any_run(run_id: UUID, session: SessionDep) -> Run:
+    return find_run(session, run_id, deleted=True)
+
+
 RunDep = Annotated[Run, Depends(run)]
+AnyRunDep = Annotated[Run, Depends(any_run)]
+"""One in the bin too."""
 SweepDep = Annotated[Sweep, Depends(sweep)]
 CreatureDep = Annotated[Creature, Depends(creature)]

@@ -31,6 +31,9 @@ from .services import Services
 
 log = logging.getLogger(__name__)
 
+KEPT = Run.deleted_at.is_(None)
+"""The condition that a run does not lie in the bin."""
+
 ATTEMPTS = 3
 """So many attempts without a new checkpoint end a run."""
 
@@ -40,7 +43,9 @@ class Conflict(Exception):
 
     def __init__(self, action: str, run: Run, needed: str):
         wish = f", asked to {run.wish}" if run.wish else ""
-        super().__init__(f"to {action} a run it must be {needed}; it is {run.status}{wish}")
+        place = " and in the bin" if run.deleted_at else ""
+        standing = f"{run.status}{wish}{place}"
+        super().__init__(f"to {action} a run it must be {needed}; it is {standing}")
 
 
 def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | None:
@@ -53,7 +58,7 @@ def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | 
 def pause(session: Session, run: Run) -> Run:
     """At once where it waits; where it runs, its worker is asked to."""
     changed = (
-        change(session, run.id, Run.status == QUEUED, status=PAUSED)
+        change(session, run.id, KEPT, Run.status == QUEUED, status=PAUSED)
         or change(
             session,
             run.id,
@@ -62,7 +67,7 @@ def pause(session: Session, run: Run) -> Run:
             wish=PAUSE,
             wished_at=clock(),
         )
-        or _refuse(session, "pause", run, "queued or running, not asked to cancel")
+        or refuse(session, "pause", run, "queued or running, not asked to cancel")
     )
     note(session, changed, "Paused." if changed.status == PAUSED else "Asked to pause.")
     return changed
@@ -74,6 +79,7 @@ def cancel(session: Session, run: Run) -> Run:
         change(
             session,
             run.id,
+            KEPT,
             Run.status.in_((QUEUED, PAUSED)),
             status=CANCELLED,
             finished_at=clock(),
@@ -85,7 +91,7 @@ def cancel(session: Session, run: Run) -> Run:
             wish=CANCEL,
             wished_at=case((Run.wish == CANCEL, Run.wished_at), else_=clock()),
         )
-        or _refuse(session, "cancel", run, "queued, running or paused")
+        or refuse(session, "cancel", run, "queued, running or paused")
     )
     note(session, changed, "Cancelled." if changed.status == CANCELLED else "Asked to cancel.")
     return changed
@@ -98,7 +104,7 @@ def resume(session: Session, run: Run) -> Run:
     values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_leave": leave}
     values |= {"queued_at": clock()}
     waited = run.device_leave == NEEDED
-    changed = change(session, run.id, Run.status == PAUSED, **values) or _refuse(
+    changed = change(session, run.id, KEPT, Run.status == PAUSED, **values) or refuse(
         session, "resume", run, "paused"
     )
     leave = " Another kind of device is allowed." if waited else ""
@@ -106,7 +112,8 @@ def resume(session: Session, run: Run) -> Run:
     return changed
 
 
-def _refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
+def refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
+    """Raise `Conflict`, which says how the run stands now."""
     current = session.get_one(Run, run.id, populate_existing=True)
     raise Conflict(action, current, needed)
 

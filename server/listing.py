@@ -26,6 +26,7 @@ from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session
 from sqlalchemy.sql.functions import GenericFunction
 
+from .lifecycle import KEPT
 from .models import FINISHED, STATUSES, Run
 from .problems import Refused, brief
 from .schemas import FieldError
@@ -81,8 +82,12 @@ def matching(
     tag: str | None,
     text: str | None,
     sweep: UUID | Literal["none"] | None = None,
+    deleted: bool = False,
 ) -> Select[Run]:
-    """The runs of any of the states and experiments, with the tag and the text, of a sweep."""
+    """The runs of any of the states and experiments, with the tag and the text, of a sweep;
+    those in the bin, or those that are not.
+    """
+    statement = statement.where(Run.deleted_at.is_not(None) if deleted else KEPT)
     if statuses:
         statement = statement.where(Run.status.in_(statuses))
     if experiments:
@@ -197,4 +202,5 @@ def tags(session: Session) -> Sequence[Row[str, int]]:
     """All tags with the number of runs that have them, by name."""
     value = members(Run.tags).table_valued("value").c.value
     counted = select(value, func.count()).select_from(Run).join(value.table, true())
+    counted = counted.where(KEPT)
     return session.execute(counted.group_by(value).order_by(value)).all()

@@ -134,6 +134,7 @@ class Run(Owned, Base):
         Index(None, "created_at", "id"),
         Index(None, "status", "heartbeat_at"),
         Index(None, "sweep", "place"),
+        Index(None, "purge_at"),
     )
 
     id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
@@ -183,6 +184,14 @@ class Run(Owned, Base):
     sweep: Mapped[UUID | None]
     place: Mapped[int | None]
     """Its place in the sweep, from 0: every case with the first seed, then with the next."""
+    deleted_at: Mapped[datetime | None]
+    """Since when it lies in the bin."""
+    purge_at: Mapped[datetime | None]
+    """When it goes for good: until then it can be restored, from then on it cannot."""
+    forked: Mapped[int | None]
+    """How many creatures of another run it began from, where it is a fork."""
+    forked_from: Mapped[UUID | None]
+    """That run, while it is there."""
 
 
 class Generation(Base):
@@ -217,7 +226,9 @@ class Result(Base):
     """Its place in the whole table, from 0."""
     generation: Mapped[int]
     values: Mapped[dict[str, Any]]
-    creature: Mapped[str | None] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
+    creature: Mapped[str | None] = mapped_column(
+        Sha256, ForeignKey("creatures.sha256"), index=True
+    )
 
 
 class Elite(Base):
@@ -233,7 +244,7 @@ class Elite(Base):
     fitness: Mapped[float]
     descriptors: Mapped[list[float]]
     """In raw units, in the order of the archive's axes."""
-    creature: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
+    creature: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), index=True)
 
 
 class Creature(Base):
@@ -253,6 +264,40 @@ class Creature(Base):
     credit: Mapped[list[str]] = mapped_column(default=list)
     """Who is to be named wherever it is shown."""
     created_at: Mapped[datetime] = mapped_column(default=clock())
+    imported: Mapped[bool] = mapped_column(default=False)
+    """Whether somebody brought it, so that it stays without any run."""
+
+
+class Origin(Base):
+    """A creature that a run begins from, as its spec says."""
+
+    __tablename__ = "origins"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    creature: Mapped[str] = mapped_column(
+        Sha256, ForeignKey("creatures.sha256"), primary_key=True, index=True
+    )
+
+
+class Leftover(Base):
+    """A creature that goes with a run that is gone, unless something else uses it."""
+
+    __tablename__ = "leftovers"
+
+    run_id: Mapped[UUID] = mapped_column(primary_key=True)
+    """Nothing happens while that run is there."""
+    creature: Mapped[str] = mapped_column(Sha256, primary_key=True)
+
+
+class Discarded(Base):
+    """A file that nothing needs any more and that has still to be removed."""
+
+    __tablename__ = "discarded"
+
+    path: Mapped[str] = mapped_column(String(255), primary_key=True)
+    """Of a whole folder where it ends with a slash."""
 
 
 class Parent(Base):

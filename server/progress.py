@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from . import owners, waiting
 from .models import FAILED, FINISHED, RUNNING, Generation, Run
-from .schemas import Carried, RunRead
+from .schemas import Carried, Forked, RunRead
 from .services import Services
 
 POINTS = 32
@@ -58,6 +58,7 @@ def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | No
     left = max(0, run.generations - run.generation)
     columns = {column.key: getattr(run, column.key) for column in Run.__table__.columns}
     columns |= {"error": run.error if run.status == FAILED else None, "owner": owner}
+    columns["forked_from"] = forked(run)
     return RunRead(
         **{name: columns[name] for name in RunRead.model_fields if name in columns},
         waiting=reason,
@@ -66,6 +67,11 @@ def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | No
         evaluations_per_second=evaluations,
         sparkline=[row.qd_score for row in curve if row.qd_score is not None],
     )
+
+
+def forked(run: Run) -> Forked | None:
+    """Where it began, if it is a fork."""
+    return None if run.forked is None else Forked(run=run.forked_from, creatures=run.forked)
 
 
 def carried(run: Run) -> Carried:

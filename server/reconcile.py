@@ -17,6 +17,7 @@ from .db import ago
 from .journal import note
 from .lifecycle import announce, hand_back, lost, release, yield_up
 from .models import CANCEL, QUEUED, RUNNING, Run, Sweep, Worker
+from .purging import purge
 from .services import Services
 from .waiting import in_line
 
@@ -58,6 +59,7 @@ def reconcile(services: Services) -> None:
     services.jobs.clean()
     enqueue_missing(services)
     forget_workers(services)
+    purge(services)
     forget_empty_sweeps(services)
 
 

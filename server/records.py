@@ -127,10 +127,24 @@ def creature_columns(
 
 def insert_missing(session: Session, table: type[Base], rows: Sequence[dict[str, Any]]) -> None:
     """Insert rows, leaving those alone whose key is there already."""
-    postgres = session.get_bind().dialect.name == "postgresql"
-    dialect = postgresql if postgres else sqlite
     if rows:
-        session.execute(dialect.insert(table).on_conflict_do_nothing(), rows)
+        session.execute(_insert(session, table).on_conflict_do_nothing(), rows)
+
+
+def hold(session: Session, rows: Sequence[dict[str, Any]]) -> None:
+    """Insert creatures; those that are there already cannot go before the transaction ends."""
+    if rows:
+        # A change that changes nothing, for the sake of its lock.
+        same = {"licence": Creature.__table__.c.licence}
+        keyed = _insert(session, Creature).on_conflict_do_update(
+            index_elements=["sha256"], set_=same
+        )
+        session.execute(keyed, rows)
+
+
+def _insert(session: Session, table: type[Base]) -> Any:
+    postgres = session.get_bind().dialect.name == "postgresql"
+    return (postgresql if postgres else sqlite).insert(table)
 
 
 def link(session: Session, names: Sequence[str]) -> None:
@@ -153,7 +167,7 @@ def write(session: Session, run_id: UUID, rows: Rows) -> None:
     )
     # In one order, so that two runs with the same creatures cannot wait for each other.
     found = sorted(rows.creatures, key=itemgetter("sha256"))
-    insert_missing(session, Creature, found)
+    hold(session, found)
     link(session, [row["sha256"] for row in found])
     if rows.elites:
         session.execute(insert(Elite), [{"run_id": run_id, **row} for row in rows.elites])

@@ -5,6 +5,7 @@ from typing import Any
 
 from rq.job import JobStatus
 from sqlalchemy import delete, select
+from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from microcosmos.archive.naming import REPLAY_VERSION
@@ -84,10 +85,14 @@ def save(services: Services, creature: str, kind: str, data: bytes) -> None:
         "size": stored.size,
         "sha256": stored.sha256,
     }
-    with services.sessions.write.begin() as session:
-        mine = (Artifact.creature == creature) & (Artifact.kind == kind)
-        session.execute(delete(Artifact).where(mine))
-        insert_missing(session, Artifact, [row])
+    try:
+        with services.sessions.write.begin() as session:
+            mine = (Artifact.creature == creature) & (Artifact.kind == kind)
+            session.execute(delete(Artifact).where(mine))
+            insert_missing(session, Artifact, [row])
+    except IntegrityError:  # The creature has gone with its run meanwhile.
+        services.artifacts.delete(stored.path)
+        raise
 
 
 def kept(services: Services, creature: str, kind: str) -> bytes | None:

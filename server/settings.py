@@ -52,6 +52,8 @@ class Settings(BaseSettings):
     """Seconds without a heartbeat after which a worker counts as dead."""
     grace: float = Field(default=15.0, ge=0.0)
     """Seconds that a worker has to obey a cancellation before its job is killed."""
+    bin_seconds: float = Field(default=86_400.0, ge=0.0)
+    """How long a deleted run can be restored, before it goes for good."""
     reconcile_interval: float = Field(default=5.0, gt=0.0)
 
     @property

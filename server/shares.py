@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 from . import features
 from .caller import owner
 from .db import clock
+from .deps import find_run
 from .models import FINISHED, Creature, Elite, Generation, Run, Share
 from .problems import Refused
 from .schemas import FieldError, ShareAsked, ShareState
@@ -42,9 +43,8 @@ def subject(session: Session, asked: ShareAsked) -> Subject:
             raise Refused(404, "Not found", f"No creature has the name {asked.creature}.")
         title = f"Creature {row.sha256[:8]}"
         return Subject(row.sha256, title, row.licence, row.credit, creature=row.sha256)
-    run = session.get(Run, asked.run)
-    if run is None:
-        raise Refused(404, "Not found", f"No run has the id {asked.run}.")
+    assert asked.run is not None
+    run = find_run(session, asked.run)
     if not features.searched(run):
         detail = f"A run of `{run.experiment}` fills no archive that could be published."
         raise Refused(422, "No archive", detail)
@@ -133,6 +133,8 @@ def opened(session: Session, slug: str) -> Share:
     if standing == "expired":
         detail = f"This was shared until {share.expires_at:%d %B %Y, %H:%M} UTC."
         raise Refused(410, "Gone", detail)
+    if share.run_id and session.get_one(Run, share.run_id).deleted_at:
+        raise Refused(410, "Gone", "The run that was shared has been deleted.")
     return share
 
 

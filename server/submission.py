@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import Spec, estimate
 from microcosmos.version import VERSION
 
-from . import own, workers
+from . import origins, own, workers
 from .journal import note
 from .lifecycle import announce
 from .models import Idempotency, Run
@@ -88,9 +88,12 @@ def _least(spec: Any, field: str) -> Spec:
 
 
 def submit(
-    services: Services, spec: Spec, key: str | None = None, demonstration: bool = False
+    services: Services, spec: Spec, key: str | None = None, **said: Any
 ) -> tuple[Run, bool]:
-    """The run of a spec and whether it is new; the same key with the same spec is one run."""
+    """The run of a spec and whether it is new; the same key with the same spec is one run.
+
+    What else is `said` of a new run are columns of its row.
+    """
     document = spec.model_dump(mode="json")
     run = Run(
         experiment=spec.experiment,
@@ -98,13 +101,14 @@ def submit(
         sources=own.needs(document),
         generations=spec.generations,
         version=VERSION,
-        demonstration=demonstration,
+        **said,
     )
     try:
         with services.sessions.write.begin() as session:
             session.add(run)
             session.flush()
             note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
+            origins.keep(session, run, spec)
             if key is not None:
                 session.add(Idempotency(key=key, body_sha256=digest(run.spec), run_id=run.id))
     except IntegrityError:

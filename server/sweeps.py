@@ -12,7 +12,7 @@ from sqlalchemy import select
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from .lifecycle import Conflict
+from .lifecycle import KEPT, Conflict
 from .models import STATUSES, Run, Sweep
 from .progress import progress, read_runs
 from .schemas import CaseRead, Left, SweepRead
@@ -29,7 +29,9 @@ def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
     of_sweeps: dict[UUID, list[Any]] = defaultdict(list)
     columns = (Run.id, Run.sweep, Run.place, Run.status, Run.generation, Run.generations)
     mine = Run.sweep.in_([sweep.id for sweep in sweeps])
-    for row in session.execute(select(*columns).where(mine).order_by(Run.sweep, Run.place)):
+    for row in session.execute(
+        select(*columns).where(mine, KEPT).order_by(Run.sweep, Run.place)
+    ):
         of_sweeps[row.sweep].append(row)
     return [_read(sweep, of_sweeps[sweep.id]) for sweep in sweeps]
 
@@ -64,7 +66,7 @@ def steer(
 ) -> tuple[list[UUID], list[Left]]:
     """Change each run by itself: those that did, and those that could not."""
     with services.sessions.read() as session:
-        mine = select(Run.id).where(Run.sweep == sweep_id).order_by(Run.place)
+        mine = select(Run.id).where(Run.sweep == sweep_id, KEPT).order_by(Run.place)
         ids = list(session.scalars(mine))
     changed: list[UUID] = []
     left: list[Left] = []

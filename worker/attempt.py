@@ -71,6 +71,10 @@ class Attempt:
     def restore(self) -> bytes | None:
         return persist(self._claim.restore)
 
+    def origin(self) -> list[dict[str, Any]]:
+        """The files of the creatures that the run begins from."""
+        return persist(self._claim.origin)
+
     @property
     def other_device(self) -> bool:
         return self._claim.other_device

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from microcosmos.build import build
 from microcosmos.device import device_kind, prepare
-from microcosmos.experiments import Experiment, OtherDevice, Stopped
+from microcosmos.experiments import OtherDevice, Stopped
 from microcosmos.plugins import Broken, Missing
 from microcosmos.spec import field_path, parse
 
@@ -23,7 +23,7 @@ def carry_out(attempt: Attempt) -> None:
     load(attempt.settings)
     attempt.use(device_kind())
     try:
-        compute(attempt, build(parse(attempt.spec)))
+        compute(attempt)
     except Missing as error:
         attempt.set_aside(str(error))
     except Broken as error:
@@ -38,9 +38,13 @@ def _said(error: Mapping[str, Any]) -> str:
     return ": ".join(filter(None, (field_path(error["loc"]), words)))
 
 
-def compute(attempt: Attempt, experiment: Experiment) -> None:
+def compute(attempt: Attempt) -> None:
     """Go on from the last checkpoint to the end, or to where it is to stop."""
     data = attempt.restore()
+    # A file has what its run began from.
+    origin = [] if data else attempt.origin()
+    spec = parse(attempt.spec)
+    experiment = build(spec, origin) if origin else build(spec)
     try:
         state = (
             experiment.restore(data, other_device=attempt.other_device)

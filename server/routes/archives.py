@@ -5,16 +5,16 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
-from sqlalchemy import ColumnElement, Select, and_, func, select
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
 
+from .. import elites, ranges
 from .. import features as of_elites
-from .. import ranges
 from ..checkpoints import last_checkpoint
 from ..deps import RunDep, ServicesDep, SessionDep
-from ..models import Artifact, Creature, Elite, Run
+from ..models import Artifact, Elite, Run
 from ..problems import Refused
 from ..schemas import ArchiveRead, CentroidsRead, Feature, HistoryRead
 
@@ -26,13 +26,6 @@ binary: dict[int | str, dict[str, Any]] = {
 
 HISTORY_ENTRIES = 400_000
 """About 50 MB."""
-COLUMNS = (
-    Elite.cell,
-    Elite.generation,
-    Elite.fitness,
-    Elite.descriptors,
-    Elite.creature,
-)
 
 
 @router.get("/archive")
@@ -58,7 +51,7 @@ def read_archive(
         cells=cells,
         axes=of_elites.axes(run),
         recorded=recorded,
-        **_columns(session.execute(_now(run, as_of, names)).all(), names),
+        **_columns(session.execute(elites.at(run, as_of, names)).all(), names),
     )
 
 
@@ -68,7 +61,7 @@ def read_history(run: RunDep, session: SessionDep, features: str = "") -> Histor
     _refuse_without(run)
     names = _asked(features, of_elites.recorded(session, run))
     _refuse_too_long(session, run)
-    ordered = _all(run, names).order_by(Elite.generation, Elite.cell)
+    ordered = elites.ever(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
     return HistoryRead(generation=run.generation, **columns)
 
@@ -86,7 +79,7 @@ def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> C
 
 def _refuse_too_long(session: Session, run: Run) -> None:
     """A history is sent whole, and has to find room in a page."""
-    mine = select(func.count()).select_from(Elite).where(_until_now(run))
+    mine = select(func.count()).select_from(Elite).where(elites.until_now(run))
     entries = session.execute(mine).scalar_one()
     if entries > HISTORY_ENTRIES:
         detail = (
@@ -104,15 +97,16 @@ def _asked(features: str, recorded: Sequence[Feature]) -> list[str]:
     return names
 
 
-def _columns(elites: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
+def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
+    first = len(elites.COLUMNS)
     return {
-        "cell": [elite.cell for elite in elites],
-        "fitness": [elite.fitness for elite in elites],
-        "descriptors": [elite.descriptors for elite in elites],
-        "elite_generation": [elite.generation for elite in elites],
-        "creature": [elite.creature for elite in elites],
+        "cell": [elite.cell for elite in found],
+        "fitness": [elite.fitness for elite in found],
+        "descriptors": [elite.descriptors for elite in found],
+        "elite_generation": [elite.generation for elite in found],
+        "creature": [elite.creature for elite in found],
         "features": {
-            name: [elite[len(COLUMNS) + i] for elite in elites] for i, name in enumerate(names)
+            name: [elite[first + i] for elite in found] for i, name in enumerate(names)
         },
     }
 
@@ -124,30 +118,6 @@ def _refuse_without(run: Run) -> None:
             f"/api/v1/runs/{run.id}/results."
         )
         raise Refused(404, "No archive", detail)
-
-
-def _all(run: Run, names: Sequence[str]) -> Select[*tuple[Any, ...]]:
-    """A run's elites up to its generation, past ones too, and their features by name."""
-    features = [of_elites.column(name) for name in names]
-    statement = select(*COLUMNS, *features).where(_until_now(run))
-    return statement.join(Creature, Creature.sha256 == Elite.creature) if names else statement
-
-
-def _until_now(run: Run) -> ColumnElement[bool]:
-    """One that was shared is seen as it was, though it may have gone on."""
-    return and_(Elite.run_id == run.id, Elite.generation <= run.generation)
-
-
-def _now(run: Run, as_of: int, names: Sequence[str]) -> Select[*tuple[Any, ...]]:
-    """The last of each cell that is not after a generation."""
-    last = (
-        select(Elite.cell, func.max(Elite.generation).label("generation"))
-        .where(Elite.run_id == run.id, Elite.generation <= as_of)
-        .group_by(Elite.cell)
-        .subquery()
-    )
-    same = (Elite.cell == last.c.cell) & (Elite.generation == last.c.generation)
-    return _all(run, names).join(last, same).order_by(Elite.cell)
 
 
 @router.get("/archive.h5", response_class=Response, responses=binary)

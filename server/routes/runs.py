@@ -1,4 +1,6 @@
-"""Runs: estimate, submit, list, read, name, pause, resume, cancel."""
+"""Runs: estimate, submit, list, read, name, pause, resume, cancel, extend,
+fork, delete, restore.
+"""
 
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
@@ -10,15 +12,26 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
-from .. import lifecycle, listing, own_specs, waiting
-from ..deps import RunDep, ServicesDep, SessionDep, find_run
+from .. import binned, extending, forking, lifecycle, listing, own_specs, waiting
+from ..deps import AnyRunDep, ServicesDep, SessionDep, find_run
 from ..drawings import drawing_read
 from ..models import Run
+from ..origins import named
 from ..pace import pace_of
 from ..problems import Refused
 from ..progress import read_run, read_runs
 from ..reconcile import requeue
-from ..schemas import EstimateRead, FieldError, RunChange, RunPage, RunRead, Status
+from ..schemas import (
+    EstimateRead,
+    Extension,
+    FieldError,
+    Fork,
+    RunChange,
+    RunPage,
+    RunRead,
+    Status,
+    Wire,
+)
 from ..services import Services
 from ..submission import memory_limit, refuse_too_large, submit
 from ..uploads import json_object
@@ -33,6 +46,14 @@ def described(schema: dict[str, Any]) -> dict[str, Any]:
     """What OpenAPI says of a body that is read by `json_object`."""
     content = {"application/json": {"schema": schema}}
     return {"requestBody": {"required": True, "content": content}}
+
+
+def inlined(model: type[Wire]) -> dict[str, Any]:
+    """A model's schema whose fields are written out: references would lead out of the body."""
+    schema = model.model_json_schema()
+    parts = {f"#/$defs/{name}": part for name, part in schema.pop("$defs", {}).items()}
+    fields = schema["properties"].items()
+    return {**schema, "properties": {n: parts.get(f.get("$ref"), f) for n, f in fields}}
 
 
 body = described({"type": "object"})
@@ -55,10 +76,7 @@ def create_run(
 ) -> RunRead:
     """Queue a run. The same key with the same spec is the same run, answered with 200."""
     refuse_too_large(services, spec)
-    run, new = submit(services, spec, idempotency_key)
-    response.status_code = 202 if new else 200
-    response.headers["Location"] = f"/api/v1/runs/{run.id}"
-    return _current(services, run.id)
+    return _submitted(services, response, *submit(services, spec, idempotency_key))
 
 
 @router.post("/estimate", openapi_extra=body)
@@ -94,14 +112,16 @@ def list_runs(
     q: Text | None = None,
     sweep: UUID | Literal["none"] | None = None,
     sort: listing.Sort = "-created",
+    deleted: bool = False,
 ) -> RunPage:
     """Runs of any of these states and experiments, with this tag and this text.
 
     `q` is looked for in names, tags and notes and at the beginning of ids; `sweep` is one, or
-    `none`. With `-`, the sort is descending; runs without a value come last.
+    `none`. With `-`, the sort is descending; runs without a value come last. `deleted` ones
+    lie in the bin.
     """
     _refuse_unknown(experiment)
-    statement = listing.matching(select(Run), status, experiment, tag, q, sweep)
+    statement = listing.matching(select(Run), status, experiment, tag, q, sweep, deleted)
     rows = listing.page(session, statement, sort, cursor, limit)
     items = read_runs(services, session, [run for run, _ in rows[:limit]])
     return RunPage(items=items, next=listing.cursor(sort, rows, limit))
@@ -117,7 +137,7 @@ def _refuse_unknown(experiments: list[str]) -> None:
 
 
 @router.get("/{run_id}")
-def read(run: RunDep, services: ServicesDep, session: SessionDep) -> RunRead:
+def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     return read_run(services, session, run)
 
 
@@ -157,12 +177,80 @@ def cancel_run(run_id: UUID, services: ServicesDep) -> RunRead:
     return _changed(services, run_id, lifecycle.cancel)
 
 
+@router.delete("/{run_id}")
+def delete_run(run_id: UUID, services: ServicesDep) -> RunRead:
+    """Into the bin, from which it can be restored until `purge_at`."""
+    keep = services.settings.bin_seconds
+    return _changed(services, run_id, lambda session, run: binned.put(session, run, keep))
+
+
+@router.post("/{run_id}/restore")
+def restore_run(run_id: UUID, services: ServicesDep) -> RunRead:
+    """Out of the bin, as it was."""
+    return _changed(services, run_id, binned.restore, deleted=True)
+
+
+def extension_sent(
+    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
+) -> Extension:
+    return Extension.model_validate(document)
+
+
+@router.post(
+    "/{run_id}/extend",
+    status_code=202,
+    openapi_extra=described(Extension.model_json_schema()),
+)
+def extend_run(
+    run_id: UUID, services: ServicesDep, sent: Annotated[Extension, Depends(extension_sent)]
+) -> RunRead:
+    """More generations for a finished run, which ends as if it had had them from the start."""
+    with services.sessions.read() as session:
+        run = find_run(session, run_id)
+    spec = extending.longer(run, sent.generations)
+    refuse_too_large(services, spec)
+    changed = _changed(
+        services, run_id, lambda session, _: extending.extend(session, run, spec)
+    )
+    requeue(services, run_id)
+    return changed
+
+
+def fork_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))]) -> Fork:
+    return Fork.model_validate(document)
+
+
+@router.post("/{run_id}/fork", status_code=202, openapi_extra=described(inlined(Fork)))
+def fork_run(
+    run_id: UUID,
+    services: ServicesDep,
+    response: Response,
+    sent: Annotated[Fork, Depends(fork_sent)],
+    idempotency_key: Key = None,
+) -> RunRead:
+    """A new run that begins from creatures of this one, its spec changed by a merge patch."""
+    with services.sessions.read() as session, own_specs.parsing(services) as parse:
+        spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
+    refuse_too_large(services, spec)
+    said = {"name": sent.name or None, "forked_from": run_id, "forked": len(named(spec))}
+    return _submitted(services, response, *submit(services, spec, idempotency_key, **said))
+
+
+def _submitted(services: Services, response: Response, run: Run, new: bool) -> RunRead:
+    response.status_code = 202 if new else 200
+    response.headers["Location"] = f"/api/v1/runs/{run.id}"
+    return _current(services, run.id)
+
+
 def _changed(
-    services: Services, run_id: UUID, change: Callable[[Session, Run], Run]
+    services: Services,
+    run_id: UUID,
+    change: Callable[[Session, Run], Run],
+    deleted: bool = False,
 ) -> RunRead:
     """With one connection at a time: requests that held two could wait for each other."""
     with services.sessions.write.begin() as session:
-        change(session, find_run(session, run_id))
+        change(session, find_run(session, run_id, deleted))
     lifecycle.announce(services, run_id)
     return _current(services, run_id)
 

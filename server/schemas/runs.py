@@ -1,10 +1,10 @@
 """Runs, what people say of them, and their curves."""
 
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 from uuid import UUID
 
-from pydantic import AfterValidator, Field, StringConstraints
+from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from .base import Wire
 
@@ -40,6 +40,60 @@ class RunChange(Wire):
         return {
             field: value if field == "tags" else value or None for field, value in said.items()
         }
+
+
+class Extension(Wire):
+    """How many generations more."""
+
+    generations: int = Field(ge=1, le=1_000_000)
+
+
+Digest = Annotated[str, StringConstraints(pattern="^[0-9a-f]{64}$")]
+
+Range = tuple[float, float]
+
+
+class Beginning(Wire):
+    """The creatures that a fork begins from: one of these."""
+
+    creatures: Annotated[list[Digest], Field(min_length=1, max_length=4096)] | None = None
+    """By name, from anywhere."""
+    cells: Annotated[list[int], Field(min_length=1, max_length=1 << 20)] | None = None
+    """The elites of these cells."""
+    region: Annotated[dict[str, Range], Field(min_length=1)] | None = None
+    """The elites whose descriptors, by axis, lie within these ends."""
+    archive: Literal[True] | None = None
+    """All elites."""
+
+    @model_validator(mode="after")
+    def refuse_many(self) -> Self:
+        given = [name for name, value in self.model_dump().items() if value is not None]
+        if len(given) != 1:
+            names = ", ".join(type(self).model_fields)
+            raise ValueError(f"needs one of {names}; got {', '.join(given) or 'none'}")
+        return self
+
+
+class Fork(Wire):
+    """What a new run takes of another, and what is different."""
+
+    start: Beginning = Field(alias="from")
+    generation: Annotated[int, Field(ge=0)] | None = None
+    """Elites as they were after it; None: as they are."""
+    spec: dict[str, Any] = Field(default={})
+    """A merge patch (RFC 7396) over the other run's spec."""
+    name: Annotated[str, StringConstraints(strip_whitespace=True, max_length=NAME)] | None = (
+        None
+    )
+
+
+class Forked(Wire):
+    """Where a fork began."""
+
+    run: UUID | None
+    """None where that run is gone."""
+    creatures: int
+    """How many of its creatures."""
 
 
 class RunRead(Wire):
@@ -82,6 +136,11 @@ class RunRead(Wire):
     """The name of the token it was made with."""
     sweep: UUID | None
     """The sweep that it was asked for with."""
+    deleted_at: datetime | None
+    """Since when it lies in the bin."""
+    purge_at: datetime | None
+    """When it goes for good."""
+    forked_from: Forked | None
 
 
 class RunPage(Wire):

@@ -60,6 +60,11 @@ def test_a_run_stopped_by_a_signal_goes_on_and_ends_with_the_same_bytes(run, tmp
     assert archive.read_bytes() != (tmp_path / "whole.h5").read_bytes()
     assert "Done" in finished(run("evolve", "spec.json"))
     assert archive.read_bytes() == (tmp_path / "whole.h5").read_bytes()
+    finished(run("evolve", "spec.json", "--generations", "13"))
+    finished(run("evolve", "spec.json", "--generations", "13", "--out", "fresh.h5"))
+    assert archive.read_bytes() == (tmp_path / "fresh.h5").read_bytes()
+    text = " ".join(finished(run("evolve", "spec.json"), code=2).split())
+    assert "must be at least the file's 13, got 12" in text
     text = finished(run("replay", "spec.best.json", "--check"))
     assert "The same, bit for bit." in text
     text = finished(run("refine", "spec.best.json", "--out", "none/x.h5"), code=2)

@@ -1,15 +1,21 @@
 """From a spec to the experiment that carries it out."""
 
 import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import singledispatch
+from typing import Any
 
 import jax
+import jax.numpy as jnp
+import numpy as np
 
 from .. import device, neat, search, spec
+from ..archive.origin import counters, genes_of
 from ..experiments import Experiment, again
 from ..experiments.evolution import Evolution, Programs
 from ..experiments.learning import Lessons
-from ..experiments.state import Again, Limits, Plan
+from ..experiments.state import Again, Limits, Origin, Plan
 from ..search.emitters.tensorneat import TensorNeat
 from .creatures import build_block, build_disturbed_block, frame
 from .emitters import build_emitters
@@ -22,8 +28,12 @@ from .tables import build_gaits, build_scaling
 
 
 @singledispatch
-def build(chosen: spec.Spec) -> Experiment:
-    """The experiment that a spec describes, its programs ready to be compiled."""
+def build(chosen: spec.Spec, origin: Sequence[Mapping[str, Any]] = ()) -> Experiment:
+    """The experiment that a spec describes, its programs ready to be compiled.
+
+    `origin` are the creature files that `search.origin` names; a run that is taken up from its
+    file does without.
+    """
     raise TypeError(f"`spec` must be an experiment's, got {type(chosen).__name__}")
 
 
@@ -34,9 +44,11 @@ build.register(build_scaling)
 
 
 @build.register
-def build_evolution(chosen: spec.Evolution) -> Evolution:
+def build_evolution(
+    chosen: spec.Evolution, origin: Sequence[Mapping[str, Any]] = ()
+) -> Evolution:
     """A search with an archive."""
-    plan = build_plan(chosen)
+    plan = begun(build_plan(chosen), chosen, origin)
     emitters, key = plan.emitters, plan.key
     hosted = any(isinstance(emitter, TensorNeat) for emitter in emitters)
     compiled = (lambda program: program) if hosted else jax.jit
@@ -110,6 +122,37 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         force_free=chosen.coupling.force_free,
         features=features_of(scene),
         own=own_of(scene),
+    )
+
+
+def begun(plan: Plan, chosen: spec.Evolution, files: Sequence[Mapping[str, Any]]) -> Plan:
+    """The plan of a search that begins from creatures; those of the spec, if any are given."""
+    if not files:
+        return plan
+    given = {file["sha256"]: file for file in files}
+    if lacking := [name for name in chosen.search.origin if name not in given]:
+        raise ValueError(
+            f"`search.origin` needs the file of each creature; got none of {lacking[0]}"
+        )
+    genomes = genes_of(chosen, [given[name] for name in chosen.search.origin])
+    genotypes = [plan.encoding.read(genome) for genome in genomes]
+    names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.origin]
+    rows = jax.tree.map(lambda *parts: np.stack(parts), *genotypes)
+    return replace(
+        plan,
+        origin=Origin(np.stack(names), rows),
+        counters=_counters(plan, genomes),
+    )
+
+
+def _counters(plan: Plan, genomes: list[dict[str, Any]]) -> neat.Counters:
+    """Numbers after all genes that the search begins with."""
+    if plan.encoding.room is None:
+        return plan.counters
+    connections, nodes = counters(genomes)
+    return neat.Counters(
+        jnp.maximum(plan.counters.innovation, connections),
+        jnp.maximum(plan.counters.node, nodes),
     )
 
 

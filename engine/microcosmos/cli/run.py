@@ -19,7 +19,7 @@ from rich.progress import (
 from ..spec import Spec, estimate
 from .app import CACHE, app, console, fail
 from .modules import Modules, load_modules
-from .specs import presets, read_spec
+from .specs import lasting, presets, read_spec
 
 
 @app.command()
@@ -27,6 +27,10 @@ def evolve(
     spec: Annotated[str, typer.Argument(help="A spec file, or the name of a preset.")],
     archive: Annotated[
         Path | None, typer.Option("--out", help="Archive file; default: beside the spec.")
+    ] = None,
+    generations: Annotated[
+        int | None,
+        typer.Option(help="In place of the spec's; a finished archive goes on to so many."),
     ] = None,
     checkpoint_seconds: Annotated[float, typer.Option(min=0.0)] = 60.0,
     other_device: Annotated[
@@ -37,6 +41,8 @@ def evolve(
     """Carry out a run; called again, it goes on from the archive file."""
     load_modules(module)
     chosen = read_spec(spec)
+    if generations is not None:
+        chosen = lasting(chosen, generations)
     path = archive or Path(spec.replace("/", "-") if spec in presets() else spec).with_suffix(
         ".h5"
     )

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ..spec import EXPERIMENTS, Spec, field_path, parse
+from ..spec import EXPERIMENTS, Evolution, Spec, field_path, parse
 from .app import fail
 
 
@@ -19,6 +19,17 @@ def read_spec(name: str) -> Spec:
     if found is None:
         fail(f"SPEC needs a file, or one of the presets {', '.join(presets())}; got {name}")
     return found
+
+
+def lasting(spec: Spec, generations: int) -> Spec:
+    """A search with another number of generations."""
+    if not isinstance(spec, Evolution):
+        fail(f"--generations needs a search's spec, got {spec.experiment}")
+    try:
+        search = {**spec.search.model_dump(), "generations": generations}
+        return parse({**spec.model_dump(mode="json"), "search": search})
+    except ValidationError as error:
+        fail("\n".join(f"--generations: {said(found)}" for found in error.errors()))
 
 
 def presets() -> dict[str, Spec]:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from ..search import Stopped
-from .archive_file import OtherDevice
+from .agreement import OtherDevice
 from .report import Elite, Report, Row
 
 __all__ = ["Elite", "Experiment", "OtherDevice", "Report", "Row", "Stopped"]

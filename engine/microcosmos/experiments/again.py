@@ -43,6 +43,12 @@ def due(plan: Plan, state: State) -> bool:
     return plan.again is not None and (last or state.generation % plan.again.every == 0)
 
 
+def early(plan: Plan, state: State) -> bool:
+    """Whether it would not be due yet if the run had more generations."""
+    assert plan.again is not None
+    return not state.ended and state.generation % plan.again.every != 0
+
+
 def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> State:
     """The state with every elite evaluated again; raises `Stopped` as `advance` does."""
     assert plan.again is not None
@@ -59,7 +65,9 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
         everywhere = jax.tree.map(lambda x: _spread(x, cells, plan.cells), found)
         repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.niches)
     seconds = (time.monotonic() - began) * jax.local_device_count()
-    return replace(state, repeats=repeats, device_seconds=state.device_seconds + seconds)
+    before = state.repeats if early(plan, state) else None
+    spent = state.device_seconds + seconds
+    return replace(state, repeats=repeats, unrepeated=before, device_seconds=spent)
 
 
 def figures(programs: Programs, state: State) -> tuple[float, float, float]:

@@ -17,14 +17,13 @@ from .. import neat, search
 from ..archive import file
 from ..genomes import Genotype
 from ..version import VERSION
-from .state import CURVES, ENDS, FATES, Diverged, Lineage, Plan, State, start
+from .agreement import OtherDevice, devices_of
+from .state import CURVES, ENDS, FATES, Diverged, Lineage, Origin, Plan, State, prolonged, start
+
+__all__ = ["OtherDevice", "restore", "save"]
 
 ROWS = ("fitness", "features", "generation", "slot")
 """Columns of elites that are written as they are."""
-
-
-class OtherDevice(ValueError):
-    """The file was computed on another kind of device, where bits may differ."""
 
 
 def save(plan: Plan, state: State) -> bytes:
@@ -58,8 +57,12 @@ def save(plan: Plan, state: State) -> bytes:
             "counters": _columns(state.counters),
             "kin": state.kin,
             "emitters": leaves(state.emitters),
+            **_unrepeated(state, cells),
         },
     }
+    if state.origin is not None:
+        genes = _columns(state.origin.genotypes)
+        tree["origin"] = {"creature": state.origin.creature, "genomes": genes}
     return file.dump(tree, _attributes(plan, state))
 
 
@@ -84,9 +87,11 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
     creatures, operators, origins = state.creatures, state.operators, state.origins
     creatures[cells], operators[cells] = archive["creature"], archive["operator"]
     origins[cells] = archive["device"]
+    repeats = _placed(state.repeats, cells, archive["repeats"])
+    before = "unrepeated" in loop and _placed(state.repeats, cells, loop["unrepeated"])
     diverged = tree["diverged"]
     genotypes = jax.device_get(_genotypes(state, diverged.pop("genotypes")))
-    return State(
+    taken = State(
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
         diverged=int(loop["diverged"]),
@@ -95,7 +100,7 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         emitters=filled(state.emitters, loop["emitters"]),
         kin=loop["kin"],
-        repeats=_placed(state.repeats, cells, archive["repeats"]),
+        repeats=repeats,
         creatures=creatures,
         operators=operators,
         origins=origins,
@@ -106,7 +111,10 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         lineage=Lineage(**tree["lineage"]),
         quarantine=Diverged(**diverged, genotypes=genotypes),
         devices=devices,
+        unrepeated=before or None,
+        origin=_origin(state, tree.get("origin")),
     )
+    return prolonged(taken) if taken.generation < plan.generations else taken
 
 
 def _attributes(plan: Plan, state: State) -> dict[str, str]:
@@ -121,38 +129,6 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
         "statuses": json.dumps(search.STATUSES),
         "ended": json.dumps(_end(plan, state)),
     }
-
-
-def devices_of(
-    spec: str, device: str, attributes: dict[str, str], other_device: bool
-) -> tuple[str, ...]:
-    """The kinds of device of a file and, last, the present one.
-
-    Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
-    `other_device` allows it.
-    """
-    kept, own = json.loads(attributes["spec"]), json.loads(spec)
-    if kept != own:
-        if _unversioned(kept) == _unversioned(own):
-            raise ValueError(
-                "the file was computed with another version of a module of one's own: go on "
-                "with that one, or begin anew"
-            )
-        raise ValueError("`spec` in the file must be the run's own, got another")
-    devices = json.loads(attributes["device"])
-    if devices[-1] != device and not other_device:
-        raise OtherDevice(
-            f"`device` must be {devices[-1]!r}, on which the run was computed, for the same "
-            f"bits; got {device!r}."
-        )
-    return tuple(devices if devices[-1] == device else [*devices, device])
-
-
-def _unversioned(spec: Any) -> Any:
-    """A spec without the versions of what is of one's own."""
-    if isinstance(spec, dict):
-        return {name: _unversioned(part) for name, part in spec.items() if name != "source"}
-    return [_unversioned(part) for part in spec] if isinstance(spec, list) else spec
 
 
 def _centroids(niches: search.Cells) -> dict[str, Any]:
@@ -173,6 +149,13 @@ def _clock(plan: Plan, state: State) -> dict[str, Any]:
     return {"device_seconds": np.float64(state.device_seconds)} if timed else {}
 
 
+def _unrepeated(state: State, cells: np.ndarray) -> dict[str, Any]:
+    """Where elites were evaluated again only because the run ends: what was known before."""
+    if state.unrepeated is None:
+        return {}
+    return {"unrepeated": _columns(jax.tree.map(lambda x: x[cells], state.unrepeated))}
+
+
 def _end(plan: Plan, state: State) -> dict[str, Any] | None:
     """Why and after which generation the run ended, None while it goes on."""
     if not state.ended and state.generation < plan.generations:
@@ -185,6 +168,13 @@ def _placed(module: eqx.Module, cells: np.ndarray, columns: dict[str, np.ndarray
     """The module with the rows of some cells as columns have them."""
     new = type(module)(**{name: jnp.asarray(x) for name, x in columns.items()})
     return jax.tree.map(lambda none, x: none.at[cells].set(x), module, new)
+
+
+def _origin(state: State, group: file.Tree | None) -> Origin | None:
+    if group is None:
+        return None
+    genotypes = jax.device_get(_genotypes(state, group["genomes"]))
+    return Origin(group["creature"], genotypes)
 
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:

@@ -13,26 +13,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .. import neat, search
+from .. import search
 from ..genomes import Genotype
-from . import again, archive_file, lineage
-from .learning import Lessons, teach
+from . import again, archive_file, lineage, origin
+from .origin import Programs
 from .report import Report
 from .state import CURVES, ENDS, KEPT, Diverged, Plan, State, start
 from .telling import told
-
-
-@dataclass(frozen=True)
-class Programs:
-    """The compiled parts of a generation."""
-
-    emit: Callable[..., tuple[search.Children, tuple, neat.Counters]]
-    evaluate_block: Callable[[Genotype], search.Evaluation]
-    insert: Callable[..., tuple[search.Elites, search.Inserted]]
-    tell: Callable[[tuple, search.Outcome], tuple]
-    forget: Callable[..., search.reevaluation.Repeats]
-    lessons: tuple[Lessons | None, ...]
-    """Of each emitter, where its children learn before they live."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +32,8 @@ class Evolution:
     """What evaluates elites again, if they are."""
 
     def init(self) -> State:
-        """Before the first generation."""
+        """Before the first generation; raises `ValueError` where origins are lacking."""
+        origin.refuse_lacking(self.plan)
         return start(self.plan)
 
     def done(self, state: State) -> bool:
@@ -64,30 +52,20 @@ class Evolution:
         Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
         """
         programs, spent = self.programs, state.device_seconds
-        children, emitters, counters = programs.emit(
-            state.emitters, state.elites, state.counters, jnp.asarray(state.generation)
-        )
-        children, began = jax.device_get(children), time.monotonic()
-        children, emitters, taught = teach(
-            programs.lessons,
-            tuple(emitter.slots for emitter in self.plan.emitters),
-            children,
-            emitters,
-            block=self.plan.block,
-            stop=stop,
-        )
+        brood = origin.born(self.plan, programs, state, stop)
+        children, taught, began = brood.children, brood.taught, brood.began
         evaluation = search.evaluate_blocks(
             programs.evaluate_block, children.genotypes, block=self.plan.block, stop=stop
         )
         seconds = (time.monotonic() - began) * jax.local_device_count()
         candidates = _candidates(state.generation + 1, children, evaluation)
         elites, inserted = programs.insert(state.elites, candidates, state.niches)
-        emitters = programs.tell(emitters, _outcome(candidates, inserted))
+        emitters = brood.kept(programs.tell(brood.emitters, _outcome(candidates, inserted)))
         inserted = jax.device_get(inserted)
         clipped = search.clipped(candidates, state.niches)
         slots = np.flatnonzero(inserted.entered)
         news = lineage.record(
-            self.plan, state, children, evaluation, inserted.cell[slots], slots
+            self.plan, state, children, evaluation, inserted.cell[slots], slots, brood.names
         )
         state = replace(
             state,
@@ -95,7 +73,7 @@ class Evolution:
             evaluations=state.evaluations + taught.simulated + len(evaluation.fitness),
             diverged=state.diverged + int(np.count_nonzero(evaluation.status)),
             elites=elites,
-            counters=counters,
+            counters=brood.counters,
             emitters=emitters,
             repeats=programs.forget(state.repeats, inserted.cell, inserted.entered),
             fates=np.concatenate([state.fates, self._fates(inserted)[None]]),

@@ -38,11 +38,15 @@ def record(
     evaluation: search.Evaluation,
     cells: np.ndarray,
     slots: np.ndarray,
+    names: np.ndarray,
 ) -> News:
-    """The elites of the slots that entered, and the records with them added."""
+    """The elites of the slots that entered, and the records with them added.
+
+    `names` are those of the creatures that parents are drawn from, by cell.
+    """
     generation = state.generation + 1
     operator = np.asarray(children.operator)[slots]
-    forebears = _forebears(state, np.asarray(children.parents))
+    forebears = _forebears(names, state.kin, np.asarray(children.parents))
     parents = forebears[slots]
     fitness, features = np.asarray(evaluation.fitness)[slots], np.asarray(evaluation.features)
     features = features[slots]
@@ -60,12 +64,13 @@ def record(
         )
         for i, slot in enumerate(slots.tolist())
     )
-    names = [np.frombuffer(bytes.fromhex(elite.creature), np.uint8) for elite in elites]
+    parents[[not elite.parents for elite in elites]] = 0
+    own = [np.frombuffer(bytes.fromhex(elite.creature), np.uint8) for elite in elites]
     creatures, operators = state.creatures.copy(), state.operators.copy()
     origins = state.origins.copy()
     operators[cells], origins[cells] = operator, len(state.devices) - 1
     new = Lineage(
-        creature=np.array(names, np.uint8).reshape(-1, 32),
+        creature=np.array(own, np.uint8).reshape(-1, 32),
         parents=parents,
         operator=operator.astype(np.int32),
         generation=np.full(len(slots), generation, np.int32),
@@ -112,17 +117,17 @@ def identity(
     return {**frame, "genome": {**frame["genome"], **encoding.write(genotype)}}
 
 
-def _forebears(state: State, parents: np.ndarray) -> np.ndarray:
+def _forebears(names: np.ndarray, kin: np.ndarray, parents: np.ndarray) -> np.ndarray:
     """Recorded creatures (slot, 2, 32) that the children of parents (slot, 2) descend from.
 
     A parent in the archive is recorded itself; one of the last generation may not be: then
     it is the nearest of its own forebears that is.
     """
-    nearest = np.concatenate([state.creatures, state.kin[:, 0], NOBODY[None]])
+    nearest = np.concatenate([names, kin[:, 0], NOBODY[None]])
     found = nearest[parents]  # −1, for no parent, finds nobody.
-    alone = (parents[:, 1] == search.NO_PARENT) & (parents[:, 0] >= len(state.creatures))
+    alone = (parents[:, 1] == search.NO_PARENT) & (parents[:, 0] >= len(names))
     # An only parent that was not recorded passes both of its own forebears on.
-    found[alone] = state.kin[parents[alone, 0] - len(state.creatures)]
+    found[alone] = kin[parents[alone, 0] - len(names)]
     same = (found[:, 0] == found[:, 1]).all(-1)
     found[same, 1] = 0
     return found
@@ -143,7 +148,10 @@ def _elite(
     whole = identity(plan.frame, plan.encoding, genotype)
     features: dict[str, float] = dict(zip(plan.features, values.tolist(), strict=True))
     descriptors = {name: features[name] for name in plan.descriptors}
+    creature = naming.name(whole)
     named = tuple(bytes(parent).hex() for parent in parents if parent.any())
+    if search.OPERATORS[operator] == "fork":  # In its own world it is itself, not its child.
+        named = tuple(name for name in named if name != creature)
     measured = {
         "fitness": fitness,
         "descriptors": descriptors,
@@ -165,7 +173,7 @@ def _elite(
         fitness=fitness,
         descriptors=tuple(descriptors.values()),
         features=features,
-        creature=naming.name(whole),
+        creature=creature,
         identity=naming.canonical(whole),
         parents=named,
         operator=search.OPERATORS[operator],

@@ -1,17 +1,19 @@
 """What a search is: its plan, which never changes, and its state."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
 from typing import Any
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 
 from .. import neat, search
 from ..genomes import Encoding, Genotype
+from ..search.emitters.population import Neat as PopulationEmitter
 
 CURVES = (
     "qd_score",
@@ -27,6 +29,9 @@ CURVES = (
 )
 """Columns of the record of generations, in this order; the last three are NaN until elites
 are evaluated again."""
+
+AGAIN = 3
+"""So many of them."""
 
 FATES = ("children", "inserted", "improved")
 """What becomes of an emitter's children: how many there were, entered an empty cell, and
@@ -62,6 +67,14 @@ class Again:
     """Of the world, in cells."""
 
 
+class Origin(eqx.Module):
+    """Creatures that a search begins from, in the order of their names."""
+
+    creature: UInt8[np.ndarray, "row 32"]
+    genotypes: Genotype
+    """Rows of NumPy arrays."""
+
+
 @dataclass(frozen=True)
 class Plan:
     """The numbers and names of a run, as its spec has them, and where it is computed."""
@@ -91,6 +104,8 @@ class Plan:
     """Versions of the measures of one's own among them."""
     names: tuple[str, ...] = ()
     """What the emitters are called, each by a name of its own."""
+    origin: Origin | None = None
+    """What it begins from; a file of the run has it too."""
 
     @property
     def axes(self) -> tuple[search.Axis, ...]:
@@ -172,6 +187,19 @@ class State(eqx.Module):
     quarantine: Diverged
     devices: tuple[str, ...] = eqx.field(static=True)
     """Kinds of device that computed the run, the present one last."""
+    unrepeated: search.reevaluation.Repeats | None = None
+    """Where elites were evaluated again only because the run ends: `repeats` before that."""
+    origin: Origin | None = None
+    """The plan's; creatures that it has room for in each generation are evaluated first."""
+
+
+def prolonged(state: State) -> State:
+    """The last state of a run as it would be in one of more generations."""
+    if state.unrepeated is None:
+        return state
+    curves = state.curves.copy()
+    curves[-1, -AGAIN:] = np.nan
+    return replace(state, curves=curves, repeats=state.unrepeated, unrepeated=None)
 
 
 def start(plan: Plan) -> State:
@@ -180,6 +208,8 @@ def start(plan: Plan) -> State:
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
     nobody = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
     keys = jax.random.split(jax.random.fold_in(plan.key, BEFORE), len(plan.emitters))
+    pairs = zip(plan.emitters, keys, strict=True)
+    emitters = tuple(_founded(plan, e, e.init(key=key)) for e, key in pairs)
     return State(
         generation=0,
         evaluations=0,
@@ -187,7 +217,7 @@ def start(plan: Plan) -> State:
         niches=plan.niches,
         elites=search.no_elites(plan.cells, len(plan.features), plan.genotype),
         counters=plan.counters,
-        emitters=tuple(e.init(key=key) for e, key in zip(plan.emitters, keys, strict=True)),
+        emitters=emitters,
         kin=np.zeros((plan.batch, 2, 32), np.uint8),
         repeats=search.reevaluation.no_repeats(plan.cells, len(plan.features)),
         creatures=np.zeros((plan.cells, 32), np.uint8),
@@ -208,4 +238,13 @@ def start(plan: Plan) -> State:
         ),
         quarantine=Diverged(none, none, none, nobody),
         devices=(plan.device,),
+        origin=plan.origin,
     )
+
+
+def _founded(plan: Plan, emitter: search.Emitter, kept: PyTree[Array]) -> PyTree[Array]:
+    """What an emitter keeps; a population begins with what the search begins from."""
+    if plan.origin is None or not isinstance(emitter, PopulationEmitter):
+        return kept
+    networks = jax.tree.map(jnp.asarray, plan.origin.genotypes)
+    return emitter.founded(kept, networks)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..archive import file
 from ..version import VERSION
-from .archive_file import devices_of
+from .agreement import devices_of
 from .report import Row
 
 

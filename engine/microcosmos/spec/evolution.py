@@ -19,6 +19,25 @@ Name = TypeVar("Name", bound=str)
 How = TypeVar("How", bound=Generations)
 
 
+def refuse_crowd(
+    emitters: tuple[Emitter | PopulationEmitter, ...], search: Generations
+) -> None:
+    """A population of its own must be able to hold all that the search begins from."""
+    populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
+    if not search.origin or not populations:
+        return
+    if len(emitters) > 1 or populations[0].backend != "microcosmos":
+        raise ValueError(
+            "`search.origin` must be empty for a population beside other emitters or with "
+            f"another program's backend, got {len(search.origin)} creatures"
+        )
+    if len(search.origin) > search.batch:
+        raise ValueError(
+            f"`search.origin` must have at most `search.batch` ({search.batch}) creatures of a "
+            f"population, got {len(search.origin)}"
+        )
+
+
 class Evolution(Part, Generic[Name, How]):
     """Generations of creatures that live in one scene, and an archive of the best."""
 
@@ -43,6 +62,11 @@ class Evolution(Part, Generic[Name, How]):
         refuse_cramped(self.control, self.genome)
         refuse_senseless(self.world, self.control, self.task)
         refuse_unfit_emitters(self.emitters, self.control.encoding)
+        return self
+
+    @model_validator(mode="after")
+    def check_origin(self) -> Self:
+        refuse_crowd(self.emitters, self.search)
         return self
 
     @property

@@ -3,7 +3,7 @@
 from math import prod
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationInfo, model_validator
+from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from . import features
 from .base import LATER, Part, unit
@@ -189,6 +189,20 @@ class Reevaluation(Part):
     """Whether the packets of energy are moved, where there are any."""
 
 
+ORIGINS = 4096
+"""The most creatures that a search may begin from."""
+
+
+def _in_order(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Each once, in one order, so that the order in which they were named changes nothing."""
+    return tuple(sorted(set(names)))
+
+
+Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+
+Origins = Annotated[tuple[Digest, ...], Field(max_length=ORIGINS), AfterValidator(_in_order)]
+
+
 class Generations(Part):
     """Generations of equal size, and when they end."""
 
@@ -204,6 +218,8 @@ class Generations(Part):
     """When to end before the generations are through."""
     reevaluation: Reevaluation | None = None
     """How elites are evaluated again; none: they are not."""
+    origin: Origins = ()
+    """Names (SHA-256) of creatures that the search begins from, in place of random ones."""
 
 
 class Search(Generations):

@@ -1,5 +1,8 @@
 """A run small enough to be carried out many times."""
 
+import json
+from dataclasses import replace
+
 import pytest
 
 from microcosmos.build import build
@@ -56,6 +59,21 @@ def finish():
         return experiment.save(state)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def lasting():
+    """A function that gives an experiment another number of generations, and its programs."""
+
+    def change(experiment, generations):
+        spec = json.loads(experiment.plan.spec)
+        spec["search"]["generations"] = generations
+        text = json.dumps(spec, sort_keys=True)
+        return replace(
+            experiment, plan=replace(experiment.plan, generations=generations, spec=text)
+        )
+
+    return change
 
 
 @pytest.fixture(scope="session")

@@ -99,6 +99,30 @@ def test_another_spec_is_refused(small, experiment, course):
         other.restore(experiment.save(course[0][1]))
 
 
+def test_an_extended_run_ends_like_a_longer_one(experiment, course, finish, lasting):
+    shorter = lasting(experiment, 2)
+    ended = finish(shorter, shorter.init())
+    whole = experiment.save(course[0][-1])
+    assert ended != experiment.save(course[0][2]), "the file says that it is done"
+    assert finish(experiment, experiment.restore(ended)) == whole
+
+
+def test_a_run_cannot_be_shortened(experiment, course, lasting):
+    whole = experiment.save(course[0][-1])
+    with pytest.raises(ValueError, match=r"`search.generations` must be at least .* 4, got 3"):
+        lasting(experiment, 3).restore(whole)
+
+
+def test_a_run_that_reached_its_goal_ends_there_however_many_generations_follow(
+    experiment, course, finish, lasting
+):
+    goal = replace(experiment.plan.limits, evaluations=30)
+    stopping = replace(experiment, plan=replace(experiment.plan, limits=goal))
+    ended = finish(stopping, stopping.init())
+    more = lasting(stopping, 9)
+    assert finish(more, more.restore(ended)) == finish(more, more.init())
+
+
 def test_another_device_needs_leave_and_is_marked(experiment, course):
     data = experiment.save(replace(course[0][1], devices=("abacus",)))
     with pytest.raises(OtherDevice, match="abacus"):

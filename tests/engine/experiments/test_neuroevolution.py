@@ -1,12 +1,14 @@
 """A NEAT run repeats bit for bit, keeps whole lineages, and ends when it was asked to."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from microcosmos.archive import creature, file
 from microcosmos.build import build
+from microcosmos.build.experiments import begun
 from microcosmos.experiments import Stopped
 from microcosmos.spec import parse
 
@@ -43,6 +45,19 @@ def test_a_run_taken_up_from_any_generation_ends_the_same(experiment, course, fi
     whole = experiment.save(states[-1])
     for state in states[:-1]:
         assert finish(experiment, experiment.restore(experiment.save(state))) == whole
+
+
+@pytest.mark.parametrize("generations", [3, 4])
+def test_an_extended_run_ends_like_a_longer_one(
+    experiment, course, finish, lasting, generations
+):
+    """Whether or not elites were evaluated again only because the shorter one ended."""
+    shorter = lasting(experiment, generations)
+    ended = finish(shorter, shorter.init())
+    assert shorter.save(shorter.restore(ended)) == ended
+    whole = experiment.save(course[0][-1])
+    assert ended != whole
+    assert finish(experiment, experiment.restore(ended)) == whole
 
 
 def test_every_forebear_that_is_named_was_recorded_before(course):
@@ -125,3 +140,22 @@ def test_no_clock_is_in_a_file_unless_it_decides(experiment, course):
     assert report.summary["ended"].startswith("device_hours")
     again = timed.restore(timed.save(state))
     assert again.device_seconds == state.device_seconds > 0
+
+
+def test_a_population_begins_with_creatures_of_before(experiment, course, finish):
+    state = course[0][-1]
+    cells = np.flatnonzero(state.elites.occupied).tolist()[:5]
+    files = [creature.parse(experiment.creature(state, cell)) for cell in cells]
+    names = sorted(file["sha256"] for file in files)
+    chosen = parse({**SMALL, "search": {**SMALL["search"], "origin": names, "generations": 3}})
+    text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
+    plan = begun(replace(experiment.plan, spec=text, generations=3), chosen, files)
+    fork = replace(experiment, plan=plan)
+    after, report = fork.advance(fork.init())
+    mine = {elite.creature: elite for elite in report.elites}
+    assert set(names) <= set(mine)
+    assert all((mine[n].operator, mine[n].parents) == ("fork", ()) for n in names)
+    assert {e.operator for e in report.elites} == {"fork", "random"}
+    later, second = fork.advance(after)
+    assert any(set(elite.parents) & set(names) for elite in second.elites)
+    assert finish(fork, fork.restore(fork.save(after))) == finish(fork, later)

@@ -79,6 +79,20 @@ export function revokeToken(id: string) {
 export const signIn = (token: string) =>
   success(client.POST(`${ROOT}/session`, { body: { token } }));
 export const signOut = () => success(client.DELETE(`${ROOT}/session`));
+export async function extendRun(id: string, generations: number): Promise<Run> {
+  const asked = client.POST(`${ROOT}/runs/{run_id}/extend`, { ...run(id), body: { generations } });
+  return (await success(asked)) as Run;
+}
+
+/** Into the bin. */
+export async function deleteRun(id: string): Promise<Run> {
+  return (await success(client.DELETE(`${ROOT}/runs/{run_id}`, run(id)))) as Run;
+}
+
+/** Out of the bin. */
+export async function restoreRun(id: string): Promise<Run> {
+  return (await success(client.POST(`${ROOT}/runs/{run_id}/restore`, run(id)))) as Run;
+}
 
 export const readTags = () => success(client.GET(`${ROOT}/tags`));
 export const readWorkers = () => success(client.GET(`${ROOT}/workers`));

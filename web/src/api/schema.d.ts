@@ -458,7 +458,8 @@ export interface paths {
          * @description Runs of any of these states and experiments, with this tag and this text.
          *
          *     `q` is looked for in names, tags and notes and at the beginning of ids; `sweep` is one, or
-         *     `none`. With `-`, the sort is descending; runs without a value come last.
+         *     `none`. With `-`, the sort is descending; runs without a value come last. `deleted` ones
+         *     lie in the bin.
          */
         get: operations["list_runs_api_v1_runs_get"];
         put?: never;
@@ -504,7 +505,11 @@ export interface paths {
         get: operations["read_api_v1_runs__run_id__get"];
         put?: never;
         post?: never;
-        delete?: never;
+        /**
+         * Delete Run
+         * @description Into the bin, from which it can be restored until `purge_at`.
+         */
+        delete: operations["delete_run_api_v1_runs__run_id__delete"];
         options?: never;
         head?: never;
         /**
@@ -634,6 +639,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/extend": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Extend Run
+         * @description More generations for a finished run, which ends as if it had had them from the start.
+         */
+        post: operations["extend_run_api_v1_runs__run_id__extend_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/fork": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Fork Run
+         * @description A new run that begins from creatures of this one, its spec changed by a merge patch.
+         */
+        post: operations["fork_run_api_v1_runs__run_id__fork_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/runs/{run_id}/generations": {
         parameters: {
             query?: never;
@@ -689,6 +734,26 @@ export interface paths {
         put?: never;
         /** Pause Run */
         post: operations["pause_run_api_v1_runs__run_id__pause_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore Run
+         * @description Out of the bin, as it was.
+         */
+        post: operations["restore_run_api_v1_runs__run_id__restore_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1805,6 +1870,16 @@ export interface components {
             /** Values */
             values: (number | null)[];
         };
+        /**
+         * Forked
+         * @description Where a fork began.
+         */
+        Forked: {
+            /** Creatures */
+            creatures: number;
+            /** Run */
+            run: string | null;
+        };
         /** Health */
         Health: {
             /**
@@ -2083,6 +2158,8 @@ export interface components {
              * Format: date-time
              */
             created_at: string;
+            /** Deleted At */
+            deleted_at: string | null;
             /** Demonstration */
             demonstration: boolean;
             /** Device */
@@ -2101,6 +2178,7 @@ export interface components {
             experiment: string;
             /** Finished At */
             finished_at: string | null;
+            forked_from: components["schemas"]["Forked"] | null;
             /** Generation */
             generation: number;
             /** Generations */
@@ -2118,6 +2196,8 @@ export interface components {
             owner: string | null;
             /** Progress */
             progress: number;
+            /** Purge At */
+            purge_at: string | null;
             /** Qd Score */
             qd_score: number | null;
             /**
@@ -3356,6 +3436,7 @@ export interface operations {
                 q?: string | null;
                 sweep?: string | "none" | null;
                 sort?: "created" | "-created" | "started" | "-started" | "finished" | "-finished" | "name" | "-name" | "experiment" | "-experiment" | "status" | "-status" | "progress" | "-progress" | "evaluations" | "-evaluations" | "qd_score" | "-qd_score" | "coverage" | "-coverage" | "best" | "-best";
+                deleted?: boolean;
             };
             header?: never;
             path?: never;
@@ -3452,6 +3533,37 @@ export interface operations {
         };
     };
     read_api_v1_runs__run_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    delete_run_api_v1_runs__run_id__delete: {
         parameters: {
             query?: never;
             header?: never;
@@ -3725,6 +3837,112 @@ export interface operations {
             };
         };
     };
+    extend_run_api_v1_runs__run_id__extend_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": {
+                    /** Generations */
+                    generations: number;
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    fork_run_api_v1_runs__run_id__fork_post: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: string | null;
+            };
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": {
+                    /**
+                     * Beginning
+                     * @description The creatures that a fork begins from: one of these.
+                     */
+                    from: {
+                        /** Archive */
+                        archive?: true | null;
+                        /** Cells */
+                        cells?: number[] | null;
+                        /** Creatures */
+                        creatures?: string[] | null;
+                        /** Region */
+                        region?: {
+                            [key: string]: [
+                                number,
+                                number
+                            ];
+                        } | null;
+                    };
+                    /** Generation */
+                    generation?: number | null;
+                    /** Name */
+                    name?: string | null;
+                    /**
+                     * Spec
+                     * @default {}
+                     */
+                    spec?: {
+                        [key: string]: unknown;
+                    };
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_generations_api_v1_runs__run_id__generations_get: {
         parameters: {
             query?: {
@@ -3805,6 +4023,37 @@ export interface operations {
         responses: {
             /** @description Successful Response */
             202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    restore_run_api_v1_runs__run_id__restore_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };

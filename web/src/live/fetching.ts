@@ -52,16 +52,18 @@ export function useExperiments(): Loaded<Experiment[]> {
 /** Keeps one run, its archive and its curves fetched, after every rewind and reset anew. */
 export function useRunDetail(id: string): Loaded<true> {
   const epoch = useLive((state) => epochOf(state, id));
+  const binned = useLive((state) => Boolean(state.runs.get(id)?.deleted_at));
   useEffect(() => look("open", [id]), [id]);
   return useFetched(async () => {
     const run = await answer("answer", api.readRun(id));
+    if (run.deleted_at) return true as const;
     const [archive, generations] = await Promise.all([
       hasArchive(run) ? api.readArchive(id) : null,
       api.readGenerations(id, POINTS),
     ]);
     dispatch({ type: "snapshot", run: id, epoch, archive, generations });
     return true as const;
-  }, [id, epoch]);
+  }, [id, epoch, binned]);
 }
 
 /** Curves of several runs by their ids, fetched and alive while somebody looks at them. */

@@ -2,6 +2,7 @@
 
 import { useEffect } from "preact/hooks";
 import type { Run } from "../api/types";
+import type { Detail } from "../live/detail";
 import type { Elites } from "../live/elites";
 import { hasArchive, useExperiments, useRunDetail } from "../live/fetching";
 import { useFresh } from "../live/repeating";
@@ -19,6 +20,7 @@ import { Name } from "../view/runs/Said";
 import { ArchiveRun } from "./ArchiveRun";
 import { Files } from "./Files";
 import { GaitsRun } from "./GaitsRun";
+import { ForkedFrom, InBin, Life } from "./Life";
 import { LearningRun } from "./LearningRun";
 import { LogCard } from "./LogCard";
 import { PopulationCards } from "./PopulationCards";
@@ -63,11 +65,30 @@ export function RunPage({ id, query }: Props) {
         <Badge run={run} />
         {freedom !== "all" && <NotFree some={freedom === "some"} />}
         <span class="spring" />
-        {hasArchive(run) && run.generation > 0 && <Publish of={{ run: id }} title={run.name ?? ""} />}
-        <Actions run={run} on={ON(title)} name={title} />
+        {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
+          <Publish of={{ run: run.id }} title={run.name ?? ""} />
+        )}
+        {!run.deleted_at && <Actions run={run} on={ON(title)} name={title} />}
+        <Life run={run} title={title} />
       </header>
+      {run.deleted_at ? <InBin run={run} /> : <Whole {...{ run, query, error, detail }} />}
+    </main>
+  );
+}
+
+interface WholeProps {
+  run: Run;
+  query: URLSearchParams;
+  error: string | null;
+  detail: Detail | undefined;
+}
+
+function Whole({ run, query, error, detail }: WholeProps) {
+  return (
+    <>
       {error && <p class="banner wrong">{error}</p>}
       <Banners run={run} />
+      <ForkedFrom run={run} />
       <Standing run={run} />
       <Now run={run} />
       <Sections run={run} />
@@ -86,7 +107,7 @@ export function RunPage({ id, query }: Props) {
         </div>
         <SpecCard run={run} query={query} />
       </div>
-    </main>
+    </>
   );
 }
 

@@ -1,6 +1,7 @@
 /** A run in the list: how it is doing, what people say of it, what can be done. */
 
 import type { Experiment } from "../api/types";
+import { restore } from "../live/life";
 import { useLive } from "../live/live";
 import { addTag, removeNote, removeTag, say } from "../live/saying";
 import { setQuery } from "../router";
@@ -91,7 +92,13 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
       </td>
       <td class="row-actions">
         <span class="actions">
-          <Actions run={run} on={ON(title)} name={name} />
+          {run.deleted_at ? (
+            <button onClick={() => void restore(run.id)} aria-label={`Restore ${name}`}>
+              Restore
+            </button>
+          ) : (
+            <Actions run={run} on={ON(title)} name={name} />
+          )}
           <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
             Clone
           </a>

@@ -50,7 +50,11 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   return (
     <main>
       <header class="page-head">
-        <h1>Runs</h1>
+        <h1>{query.deleted ? "Bin" : "Runs"}</h1>
+        <span class="spring" />
+        <a class="button" href={query.deleted ? "/" : "/?deleted=true"}>
+          {query.deleted ? "Runs" : "Bin"}
+        </a>
         <a class="button primary" href="/new">
           New run
         </a>
@@ -62,7 +66,8 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
         <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
       )}
       {chosen.length > 0 && <Chosen ids={chosen} onClear={() => setChosen([])} />}
-      {empty && (isFiltered(query) ? <NoneFound /> : <Empty />)}
+      {empty && query.deleted && !isFiltered(query) && <p class="quiet">The bin is empty.</p>}
+      {empty && (isFiltered(query) ? <NoneFound /> : !query.deleted && <Empty />)}
       {query.sweep && <OfSweep sweep={query.sweep} />}
       {swept && <SweepRows page={sweeps!} onMore={most < MANY ? () => setMost(MANY) : null} />}
       {listed.length > 0 && (

@@ -43,13 +43,13 @@ class CmaMae:
     threshold: float
 
     def init(self, *, key: PRNGKeyArray) -> Climb:
-        """In the middle of all genes."""
+        """In the middle of all genes, or at an elite if there is one already."""
         mean = jnp.zeros_like(self.newcomer(key=key).values)
         return Climb(
             distribution=es.start(mean, self.step),
             z=jnp.zeros((self.slots, mean.shape[0]), mean.dtype),
             thresholds=jnp.full(self.cells, self.threshold, mean.dtype),
-            restart=jnp.zeros((), bool),
+            restart=jnp.ones((), bool),
         )
 
     def emit(

@@ -24,6 +24,7 @@ OPERATORS = (
     "tensorneat",
     "lamarckian",
     "cma-mega",
+    "fork",
 )
 """How a child arose, by operator code."""
 

@@ -51,6 +51,13 @@ class Neat:
             age=jnp.zeros((), jnp.int32),
         )
 
+    def founded(self, state: Population, networks: CPPN) -> Population:
+        """With other networks in the place of the first newcomers."""
+        count = networks.weight.shape[0]
+        networks = jax.tree.map(lambda a, b: a.at[:count].set(b), state.networks, networks)
+        species = neat.first_species(networks, self.settings)
+        return replace(state, networks=networks, species=species)
+
     def emit(
         self,
         state: Population,

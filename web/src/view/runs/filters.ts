@@ -36,6 +36,7 @@ export function queryOf(address: URLSearchParams): RunQuery {
     ...(q && { q }),
     ...(tag && { tag }),
     ...(sweep && (sweep === ALONE || UUID.test(sweep)) && { sweep }),
+    ...(address.get("deleted") === "true" && { deleted: true }),
     ...(sort && sort !== NEWEST && { sort }),
   };
 }
@@ -51,7 +52,7 @@ const listOf = (address: URLSearchParams, key: string) =>
   (address.get(key) ?? "").split(",").filter(Boolean);
 
 /** Whether anything is left out. */
-export const isFiltered = ({ sort: _, ...filters }: RunQuery) => Object.keys(filters).length > 0;
+export const isFiltered = ({ sort: _, deleted: __, ...filters }: RunQuery) => Object.keys(filters).length > 0;
 
 /** What to ask the server for: as long as nothing is asked of them, runs of sweeps stand as one. */
 export const grouped = (query: RunQuery) => Object.keys(query).length === 0;

@@ -1,0 +1,166 @@
+"""Creatures that a search begins from: whether they fit its spec, and which genes they bring.
+
+Only genes are taken over; world, body and task are the new spec's.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import count
+from typing import Any
+
+from ..spec import Direct, Evolution, Grown, Weights, shape
+from ..spec.control import Control
+from .cppn_genes import Connections, Nodes, check_genes
+from .creature import CreatureError
+from .encoding import decode, encode
+from .identity import Identity
+
+Genes = dict[str, Any]
+"""The genome of a creature's identity."""
+
+MOST = 2**30
+"""Numbers of genes stay below it, so that a search never runs out of them."""
+
+
+def genes_of(chosen: Evolution, files: Iterable[Mapping[str, Any]]) -> list[Genes]:
+    """The genes of creature files, in their order, as the spec's encoding reads them.
+
+    Raises `CreatureError`, which names the field of the spec that a creature does not fit.
+    """
+    genomes = [fitting(chosen, file) for file in files]
+    if isinstance(chosen.control, Control | Grown):
+        return renumbered(genomes, len(chosen.control.inputs), len(chosen.control.outputs))
+    return genomes
+
+
+def fitting(chosen: Evolution, file: Mapping[str, Any]) -> Genes:
+    """The genome of a creature file, if it means something in the spec."""
+    genome, who = file["identity"]["genome"], f"creature {file['sha256'][:12]}"
+    control = chosen.control
+    _compare("control.encoding", control.encoding, genome["encoding"], who)
+    for name in ("inputs", "outputs"):
+        found = list(genome.get(name, ()))
+        _compare(f"control: {name}", list(getattr(control, name)), found, who)
+    if isinstance(control, Control | Grown):
+        _refuse_large(chosen, genome, who)
+        _refuse_cycles(control, genome, who)
+    else:
+        before = Identity.model_validate(file["identity"]).scene
+        _refuse_other_parts(chosen, before, who)
+    return genome
+
+
+def _compare(field: str, got: Any, needed: Any, who: str) -> None:
+    if got != needed:
+        raise CreatureError(field, f"{needed!r} to begin from {who}", got)
+
+
+def _refuse_large(chosen: Evolution, genome: Genes, who: str) -> None:
+    sizes = {
+        "max_nodes": len(genome["nodes"]["id"]),
+        "max_connections": len(genome["connections"]["innovation"]),
+    }
+    for name, needed in sizes.items():
+        room = getattr(chosen.genome, name)
+        if room < needed:
+            raise CreatureError(f"genome.{name}", f"at least {needed}, which {who} has", room)
+
+
+def _refuse_cycles(control: Control | Grown, genome: Genes, who: str) -> None:
+    if getattr(control, "recurrent", False):
+        return
+    fixed = len(control.inputs), len(control.outputs)
+    nodes, connections = Nodes(**genome["nodes"]), Connections(**genome["connections"])
+    try:
+        check_genes(*fixed, nodes, connections)
+    except ValueError as error:
+        needed = f"true to begin from {who}, whose network has cycles"
+        raise CreatureError("control.recurrent", needed, False) from error
+
+
+def _refuse_other_parts(chosen: Evolution, before: Any, who: str) -> None:
+    """Each number must stand for the same thing: the same joints, edges, layers."""
+    control, old = chosen.control, before.control
+    if isinstance(control, Weights):
+        _compare("control: layers", list(control.sizes), list(old.sizes), who)
+    if isinstance(control, Direct):
+        _compare("control.waveform", control.waveform, old.waveform, who)
+        _compare("control.terms", control.terms, old.terms, who)
+        _compare("control: free measures", sorted(control.free), sorted(old.free), who)
+        now, then = shape(chosen.body), shape(before.body)
+        for name in ("joints", "edges"):
+            needed, found = len(getattr(then, name)), len(getattr(now, name))
+            _compare(f"body: number of {name}", found, needed, who)
+
+
+def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Genes]:
+    """Genomes in which a number stands for one connection only.
+
+    Numbers of one run agree and stay as they are. Genomes in which a number stands for other
+    ends than in those before make a family with numbers of its own.
+    """
+    fixed = inputs + outputs
+    last = [max(_numbers(genome), default=0) for genome in genomes]
+    step = max([fixed, inputs * outputs, *last], default=0) + 1
+    # What newcomers have: see `genomes.cppn.minimal`.
+    plain = {i: (i % inputs, inputs + i // inputs) for i in range(inputs * outputs)}
+    families: list[dict[int, tuple[int, int]]] = [dict(plain)]
+    found = []
+    for genome in genomes:
+        for family in count():
+            moved = _moved(genome, family * step, fixed, plain)
+            ends = _ends(moved)
+            if family == len(families):
+                families.append(dict(plain))
+            known = families[family]
+            if all(known.get(number, pair) == pair for number, pair in ends.items()):
+                known.update(ends)
+                found.append(moved)
+                break
+    if step * max(1, len(families)) >= MOST:
+        needed = f"creatures whose genes have numbers below {MOST // max(1, len(families)):,}"
+        raise CreatureError("search.origin", needed, step - 1)
+    return found
+
+
+def counters(genomes: Sequence[Genes]) -> tuple[int, int]:
+    """The numbers after all connections and after all nodes; 0 where there are none."""
+    connections = [n for genome in genomes for n in genome["connections"]["innovation"]]
+    nodes = [n for genome in genomes for n in genome["nodes"]["id"]]
+    return max(connections, default=-1) + 1, max(nodes, default=-1) + 1
+
+
+def _numbers(genome: Genes) -> list[int]:
+    return [*genome["connections"]["innovation"], *genome["nodes"]["id"]]
+
+
+def _ends(genome: Genes) -> dict[int, tuple[int, int]]:
+    genes = genome["connections"]
+    pairs = zip(genes["source"], genes["target"], strict=True)
+    return dict(zip(genes["innovation"], pairs, strict=True))
+
+
+def _moved(genome: Genes, by: int, fixed: int, plain: dict[int, tuple[int, int]]) -> Genes:
+    """The genome with its own nodes and connections numbered so much higher."""
+    ends = _ends(genome)
+
+    def node(number: int) -> int:
+        return number + by if number >= fixed else number
+
+    def connection(number: int) -> int:
+        # Where a newcomer's gene is itself, it keeps its number.
+        return number if plain.get(number) == ends[number] else number + by
+
+    nodes, genes = genome["nodes"], genome["connections"]
+    numbers = [connection(number) for number in genes["innovation"]]
+    order = sorted(range(len(numbers)), key=numbers.__getitem__)
+    return {
+        **genome,
+        "nodes": {**nodes, "id": [node(number) for number in nodes["id"]]},
+        "connections": {
+            "innovation": sorted(numbers),
+            "source": [node(genes["source"][i]) for i in order],
+            "target": [node(genes["target"][i]) for i in order],
+            "enabled": [genes["enabled"][i] for i in order],
+            "weight": encode(decode(genes["weight"])[order]),
+        },
+    }

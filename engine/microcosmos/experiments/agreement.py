@@ -1,0 +1,60 @@
+"""Whether a file can be gone on from: the same spec, on the same kind of device."""
+
+import json
+from typing import Any
+
+
+class OtherDevice(ValueError):
+    """The file was computed on another kind of device, where bits may differ."""
+
+
+def devices_of(
+    spec: str, device: str, attributes: dict[str, str], other_device: bool
+) -> tuple[str, ...]:
+    """The kinds of device of a file and, last, the present one.
+
+    Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
+    `other_device` allows it.
+    """
+    _refuse_other(json.loads(attributes["spec"]), json.loads(spec))
+    devices = json.loads(attributes["device"])
+    if devices[-1] != device and not other_device:
+        raise OtherDevice(
+            f"`device` must be {devices[-1]!r}, on which the run was computed, for the same "
+            f"bits; got {device!r}."
+        )
+    return tuple(devices if devices[-1] == device else [*devices, device])
+
+
+def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
+    """A search may have more generations than the file's: each follows from those before."""
+    if _without_length(held) != _without_length(wanted):
+        if _unversioned(_without_length(held)) == _unversioned(_without_length(wanted)):
+            raise ValueError(
+                "the file was computed with another version of a module of one's own: go on "
+                "with that one, or begin anew"
+            )
+        raise ValueError("`spec` in the file must be the run's own, got another")
+    before, now = _length(held), _length(wanted)
+    if now < before:
+        raise ValueError(
+            f"`search.generations` must be at least the file's {before}, got {now}"
+        )
+
+
+def _unversioned(spec: Any) -> Any:
+    """A spec without the versions of what is of one's own."""
+    if isinstance(spec, dict):
+        return {name: _unversioned(part) for name, part in spec.items() if name != "source"}
+    return [_unversioned(part) for part in spec] if isinstance(spec, list) else spec
+
+
+def _length(spec: dict[str, Any]) -> int:
+    return spec.get("search", {}).get("generations", 0)
+
+
+def _without_length(spec: dict[str, Any]) -> dict[str, Any]:
+    if "search" not in spec:
+        return spec
+    # Files of before there were origins do not name them.
+    return {**spec, "search": {"origin": [], **spec["search"], "generations": 0}}

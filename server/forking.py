@@ -1,0 +1,87 @@
+"""A new run that begins from creatures of another: which ones, and what is to be different."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from microcosmos.spec import EXPERIMENTS, Evolution, Spec
+from microcosmos.spec.search import ORIGINS
+
+from . import elites, features
+from .models import Run
+from .own_specs import Parse
+from .problems import FieldError, Refused, brief
+from .schemas import Beginning, Fork
+
+SEARCHES = tuple(name for name, one in EXPERIMENTS.items() if issubclass(one.spec, Evolution))
+"""Experiments that can begin from creatures."""
+
+
+def spec_of(session: Session, run: Run, sent: Fork, parse: Parse) -> Spec:
+    """The spec of the new run; raises `ValidationError`, which names each field at fault."""
+    document = patched(run.spec, sent.spec)
+    search = document.get("search")
+    if document.get("experiment") not in SEARCHES or not isinstance(search, dict):
+        needed = f"one of {', '.join(SEARCHES)}"
+        raise refused("experiment", needed, document.get("experiment"))
+    names = chosen(session, run, sent.start, sent.generation)
+    return parse({**document, "search": {**search, "origin": names}})
+
+
+def patched(document: Any, patch: Any) -> Any:
+    """A document with a merge patch applied (RFC 7396): null takes a member away."""
+    if not isinstance(patch, Mapping):
+        return patch
+    whole = dict(document) if isinstance(document, Mapping) else {}
+    for name, value in patch.items():
+        if value is None:
+            whole.pop(name, None)
+        else:
+            whole[name] = patched(whole.get(name), value)
+    return whole
+
+
+def chosen(session: Session, run: Run, start: Beginning, generation: int | None) -> list[str]:
+    """Names of the creatures that a fork begins from, each once."""
+    if start.creatures is not None:
+        return sorted(set(start.creatures))
+    if not features.searched(run):
+        raise refused("from", "`creatures`, since this run fills no archive", run.experiment)
+    as_of = run.generation if generation is None else min(generation, run.generation)
+    living = session.execute(elites.at(run, as_of)).all()
+    names = sorted({elite.creature for elite in living if _within(run, start, elite)})
+    _refuse_empty(start, {elite.cell for elite in living}, names)
+    if len(names) > ORIGINS:
+        needed = f"at most {ORIGINS:,} creatures (a `region`, or some `cells`)"
+        raise refused("from", needed, len(names))
+    return names
+
+
+def _within(run: Run, start: Beginning, elite: Any) -> bool:
+    if start.cells is not None:
+        return elite.cell in start.cells
+    if start.region is None:
+        return True
+    axes = [axis.name for axis in features.axes(run)]
+    if unknown := set(start.region) - set(axes):
+        name = min(unknown)
+        raise refused(
+            f"from.region.{name}", f"one of the archive's axes {', '.join(axes)}", name
+        )
+    values = dict(zip(axes, elite.descriptors, strict=True))
+    return all(low <= values[name] <= high for name, (low, high) in start.region.items())
+
+
+def _refuse_empty(start: Beginning, occupied: set[int], names: list[str]) -> None:
+    if start.cells is not None and (empty := sorted(set(start.cells) - occupied)):
+        raise refused("from.cells", "cells in which somebody lives", empty[:10])
+    if not names:
+        place = "from.region" if start.region is not None else "from"
+        raise refused(place, "somebody to begin from; nobody lives there", None)
+
+
+def refused(field: str, needed: str, got: Any) -> Refused:
+    message = f"needs {needed}; got {brief(got)!r}"
+    error = FieldError(field=field, message=message, needed=needed, got=brief(got))
+    return Refused(422, "Invalid input", f"{field}: {message}", [error])
