@@ -20,6 +20,7 @@ from .services import Services
 
 BUCKETS = (0.005, 0.02, 0.05, 0.1, 0.25, 1.0, 5.0)
 """Seconds of requests, the last bucket aside, which is for the longest."""
+QUEUES = ("runs", "sweeps", "renderings", "audits")
 ESCAPES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
 
 Labels = Mapping[str, str]
@@ -164,9 +165,12 @@ def _workers(session: Session, lease: float) -> Family:
 
 def _queues(services: Services) -> Iterator[Family]:
     jobs = services.jobs
-    queues = {"runs": jobs.runs, "renderings": jobs.renderings, "audits": jobs.audits}
+    lengths = dict.fromkeys(QUEUES, 0)
     try:
-        by = [("", {"queue": name}, len(queue)) for name, queue in queues.items()]
+        for queue in (*jobs.evolving_anywhere(), jobs.renderings, jobs.audits):
+            kind = next(one for one in QUEUES if queue.name.startswith(getattr(jobs, one).name))
+            lengths[kind] += len(queue)
+        by = [("", {"queue": name}, length) for name, length in lengths.items()]
     except RedisError:
         by = []
     yield Family("redis_up", "gauge", "Whether Redis answers.", [("", {}, bool(by))])

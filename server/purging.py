@@ -140,7 +140,9 @@ def _end(session: Session, run_id: UUID) -> None:
     """The run itself, and what there are few of."""
     leave_behind(session, run_id, select(Origin.creature).where(Origin.run_id == run_id))
     files = delete(Artifact).where(Artifact.run_id == run_id).returning(Artifact.path)
-    discard(session, [run_folder(run_id), *session.scalars(files)])
+    folder = run_folder(run_id)
+    elsewhere = [path for path in session.scalars(files) if not path.startswith(folder)]
+    discard(session, [folder, *elsewhere])
     for table in (Origin, Idempotency, Share):
         session.execute(delete(table).where(table.run_id == run_id))
     session.execute(update(Run).where(Run.forked_from == run_id).values(forked_from=None))

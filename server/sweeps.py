@@ -93,7 +93,7 @@ def requeue(services: Services, run_ids: Sequence[UUID]) -> None:
     """Enqueue runs that wait again; where Redis does not answer, the next pass does it."""
     with services.sessions.read() as session:
         rows = session.execute(select(Run.id, Run.sources).where(Run.id.in_(run_ids)))
-        sources = dict(rows.tuples().all())
+        sources = {run_id: needed for run_id, needed in rows}
     try:
         for run_id in run_ids:
             services.jobs.evolve(run_id, True, sources.get(run_id))

@@ -1,5 +1,6 @@
 """Every route of the application × everybody who may come: who is let in."""
 
+import re
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from uuid import uuid4
@@ -10,20 +11,23 @@ from fastapi.routing import iter_route_contexts
 
 from microcosmos.archive import creature
 from microcosmos.spec import parse
-from server import creatures, tokens
+from server import creatures, shares, tokens
 from server.app import create_app
 from server.caller import ADMIN, CALLER, READ, WRITE
 from server.models import Token
-from server.needs import OWNED, OWNER, PUBLIC, ROOT, need_of
+from server.needs import METRICS, OWNED, OWNER, PUBLIC, ROOT, need_of
+from server.planning import plan
+from server.schemas import ShareAsked, SweepSent
 from server.services import connect
 from server.settings import Settings
 from server.submission import submit
+from server.sweeping import submit_sweep
 
 OPEN = {
     "GET /healthz",
     "GET /readyz",
-    "GET /metrics",
     "GET /s/{slug}",
+    "GET /s/{slug}/{rest:path}",
     "GET /{path:path}",
 }
 """Outside of the API: for everybody."""
@@ -34,7 +38,7 @@ STRANGERS = {
     "DELETE /session",
 }
 """In the API, what is for everybody; and all that lies below a share."""
-HARMLESS = {"POST /runs/estimate", "POST /session", "DELETE /session"}
+HARMLESS = {"POST /runs/estimate", "POST /sweeps/estimate", "POST /session", "DELETE /session"}
 """What is no GET and yet changes nothing."""
 
 IN, UNKNOWN, FORBIDDEN = "let in", 401, 403
@@ -59,7 +63,9 @@ def routes() -> list[str]:
 
 
 ROUTES = routes()
-API = [route for route in ROUTES if f" {ROOT}/" in route]
+API = [route for route in ROUTES if f" {ROOT}/" in route or route.endswith(METRICS)]
+SHAPES = {"form": "svg", "kind": "replay"}
+"""What else paths name."""
 
 
 def example(path: str) -> str:
@@ -77,7 +83,7 @@ def test_every_route_says_what_it_needs(route):
 @pytest.mark.parametrize("route", API)
 def test_only_harmless_routes_go_without_leave_to_write(route):
     method, path = route.replace(ROOT, "").split()
-    need = need_of(method, ROOT + example(path)).need
+    need = need_of(method, example(route.split()[1])).need
     shared = path.startswith("/shares/{slug}/")
     assert (need == PUBLIC) == (f"{method} {path}" in STRANGERS or shared)
     if method != "GET" and f"{method} {path}" not in HARMLESS:
@@ -132,14 +138,26 @@ def parameters(services, secrets, spec, identity):
         with being(services, secrets["owner"]):
             return str(submit(services, parse(spec))[0].id)
 
+    def sweep() -> str:
+        with being(services, secrets["owner"]):
+            return str(submit_sweep(services, plan(SweepSent(spec=spec), parse))[0])
+
+    def share() -> str:
+        asked = ShareAsked(creature=file["sha256"], title=uuid4().hex)
+        with being(services, secrets["owner"]), services.sessions.write.begin() as session:
+            return shares.publish(session, asked)[0].slug
+
     examples = {
+        **{name: lambda shape=shape: shape for name, shape in SHAPES.items()},
         "run_id": run,
+        "sweep_id": sweep,
+        "slug": share,
         "sha": lambda: file["sha256"],
         "token_id": lambda: str(tokens.create(services, uuid4().hex, READ).token.id),
     }
 
     def make(path: str) -> str:
-        names = [part[1:-1] for part in path.replace(":path", "").split("/") if "{" in part]
+        names = re.findall(r"{(\w+)}", path.replace(":path", ""))
         assert set(names) <= examples.keys(), f"{path}: say above how an example is made"
         return path.format(**{name: examples[name]() for name in names})
 

@@ -13,6 +13,7 @@ from worker.supervisor import PATIENCE
 
 TEXT = (Path(__file__).parents[2] / "docs" / "operation.md").read_text()
 ELSEWHERE = {"database_url", "redis_url", "artifacts_url", "token", "max_bytes", "data"}
+ELSEWHERE |= {"public_url", "modules"}
 """Whose defaults are said in words."""
 
 

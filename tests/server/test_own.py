@@ -216,9 +216,12 @@ def test_its_job_is_where_only_those_who_have_it_look(api, services, have, mine,
     assert services.jobs.runs.get_job_ids() == [second]
     assert services.jobs.runs_at_hand() == {first, second}
     jobs = [queue.get_job_ids() for queue in own_queues(services, {A})]
-    assert jobs == [[first], [second]], "who came first is taken first"
+    assert jobs == [[first], [second], []], "who came first is taken first, sweeps last"
     for sources in (set(), {B}):
-        assert [queue.get_job_ids() for queue in own_queues(services, sources)] == [[second]]
+        assert [queue.get_job_ids() for queue in own_queues(services, sources)] == [
+            [second],
+            [],
+        ]
 
 
 def test_a_run_whose_worker_is_away_waits_and_says_for_what(api, services, have, mine):

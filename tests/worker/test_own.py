@@ -90,6 +90,8 @@ attempt = SimpleNamespace(
     spec=json.loads(sys.argv[1]),
     settings=Settings(),
     use=lambda device: None,
+    restore=lambda: None,
+    origin=lambda: [],
     set_aside=lambda text: said.update(aside=text),
     refuse=lambda text: said.update(refused=text),
 )

@@ -1,0 +1,211 @@
+"""A researcher's first day, from installing to deleting, as a script.
+
+The client and its commands are those of the wheel, installed into a folder of its own and
+run from another one; servers, workers, and the browser are real.
+"""
+
+import json
+import os
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from drive import ROOT, Installation, wait_until
+from playwright.sync_api import Browser, expect
+from small import TINY
+
+from microcosmos.client import Client, Run
+
+SEEDS, MORE = 3, 2
+GENERATIONS = TINY["search"]["generations"]
+
+
+class Laptop:
+    """An empty folder, and the command that was installed from the wheel."""
+
+    def __init__(self, folder: Path, environment: Mapping[str, str]):
+        self.folder = folder
+        self.environment = {**os.environ, **environment}
+
+    def run(self, *arguments: str) -> str:
+        """What the command prints; it has to end well."""
+        done = subprocess.run(
+            [sys.executable, "-P", "-m", "microcosmos.cli", *arguments],
+            cwd=self.folder,
+            env=self.environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=180,
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+
+@pytest.fixture
+def laptop(tmp_path: Path, product: Installation) -> Laptop:
+    """The wheel, built and installed as `pip install` does, without what it depends on."""
+    folder, packages = tmp_path / "laptop", tmp_path / "packages"
+    folder.mkdir()
+    options = ["-q", "--disable-pip-version-check", "--no-deps", "--no-build-isolation"]
+    subprocess.run(
+        [sys.executable, "-m", "pip", "install", *options, "--target", packages, ROOT],
+        check=True,
+        timeout=120,
+    )
+    environment = {
+        "PYTHONPATH": str(packages),
+        "MICROCOSMOS_URL": product.url,
+        "JAX_COMPILATION_CACHE_DIR": product.environment["JAX_COMPILATION_CACHE_DIR"],
+    }
+    return Laptop(folder, environment)
+
+
+@pytest.fixture
+def elsewhere(common: dict[str, str], tmp_path: Path) -> Iterator[Client]:
+    """A colleague's server, where nothing has been run."""
+    place = Installation(tmp_path / "elsewhere", common | {"WORKERS": "0"})
+    place.start(120)
+    with Client(place.url) as client:
+        yield client
+    place.end()
+    place.close()
+
+
+@pytest.mark.e2e
+def test_a_first_day(
+    laptop: Laptop, product: Installation, elsewhere: Client, browser: Browser, tmp_path: Path
+):
+    client = Client(product.url)
+    first, *others = sweep(client, laptop)
+    extend(laptop, first)
+    fork = swim_in_another_viscosity(client, first)
+    best = fork.archive().best()
+    share = best.share(title="A first swimmer", credit="A. Founder", days=1)
+    open_as_a_stranger(browser, share.url, best.sha)
+    travel(laptop, elsewhere, client, best.sha)
+    draw_the_contact_sheet(laptop, fork)
+    kept = {run.id: product.archive(run.id) for run in (fork, *others)}
+    delete_for_good(client, laptop, product, first)
+    assert {run.id: product.archive(run.id) for run in (fork, *others)} == kept
+    nothing_is_lost(client, best.sha)
+    nothing_is_left_behind(product, first)
+    client.close()
+
+
+def sweep(client: Client, laptop: Laptop) -> list[Run]:
+    """Three seeds in one request, watched from a terminal to their end."""
+    made = client.submit(TINY, seeds=SEEDS, name="first day")
+    laptop.run("watch", made.id)
+    assert made.refresh().standing == {"finished": SEEDS}
+    (case,) = made.summary().cases
+    assert case["generation"][-1] == GENERATIONS
+    assert case["runs"][-1] == SEEDS
+    return list(made.runs())
+
+
+def extend(laptop: Laptop, run: Run) -> None:
+    """Without a server, as many generations from the start come to the same bytes."""
+    laptop.run("extend", run.id, str(MORE))
+    laptop.run("watch", run.id)
+    assert run.refresh().generation == GENERATIONS + MORE
+    longer = {**run.spec, "search": {**run.spec["search"], "generations": GENERATIONS + MORE}}
+    (laptop.folder / "longer.json").write_text(json.dumps(longer))
+    laptop.run("evolve", "longer.json")
+    pulled = run.pull(laptop.folder / "pulled.h5", quiet=True)
+    assert pulled.read_bytes() == (laptop.folder / "longer.h5").read_bytes()
+
+
+def swim_in_another_viscosity(client: Client, run: Run) -> Run:
+    """The best elite begins a run of its own, in whose archive it is found as an ancestor."""
+    best = run.archive().best()
+    viscosity = 2 * run.spec["world"]["viscosity"]
+    fork = run.fork(creatures=[best], spec={"world": {"viscosity": viscosity}}, name="honey")
+    assert fork.wait(300) == "finished"
+    assert fork.spec["world"]["viscosity"] == viscosity
+    assert client.run(fork.id).record["forked_from"]["run"] == run.id
+    return fork
+
+
+def open_as_a_stranger(browser: Browser, link: str, sha: str) -> None:
+    """The link shows the creature to a browser that has never been here."""
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(link)
+    expect(page.get_by_role("heading", name="A first swimmer")).to_be_visible()
+    expect(page.get_by_text("A. Founder").first).to_be_visible()
+    expect(page.locator("canvas").first).to_be_visible(timeout=120_000)
+    assert page.locator('meta[property="og:image"]').get_attribute("content")
+    assert sha[:8] in page.content()
+    context.close()
+
+
+def travel(laptop: Laptop, elsewhere: Client, client: Client, sha: str) -> None:
+    """The file brings its name and its ancestors to another server."""
+    whole = client.connection.read(f"creatures/{sha}", ancestors=True)
+    assert whole["ancestors"]
+    (laptop.folder / "swimmer.json").write_text(json.dumps(whole))
+    laptop.run("import", "swimmer.json", "--url", elsewhere.url)
+    there = elsewhere.creature(sha)
+    assert there.identity == client.creature(sha).identity
+    kept = {one["creature"] for one in there.ancestors(32)["items"] if one["kept"]}
+    assert {one["sha256"] for one in whole["ancestors"]} <= kept
+
+
+def draw_the_contact_sheet(laptop: Laptop, run: Run) -> None:
+    laptop.run("pull", run.id, "--out", "honey.h5")
+    laptop.run("figure", "sheet", "honey.h5", "sheet.pdf", "--columns", "2", "--rows", "1")
+    assert (laptop.folder / "sheet.pdf").read_bytes().startswith(b"%PDF")
+    caption = (laptop.folder / "sheet.pdf.caption.txt").read_text()
+    assert f"{run.spec['world']['viscosity']:g}" in caption
+
+
+def delete_for_good(client: Client, laptop: Laptop, product: Installation, run: Run) -> None:
+    """Undone once; then a day passes."""
+    laptop.run("delete", run.id, "--yes")
+    assert run.id not in {one.id for one in client.runs()}
+    laptop.run("restore", run.id)
+    assert run.id in {one.id for one in client.runs()}
+    run.delete()
+    with closing(sqlite3.connect(product.folder / "microcosmos.sqlite")) as database, database:
+        database.execute("UPDATE runs SET purge_at = deleted_at WHERE deleted_at IS NOT NULL")
+    wait_until(
+        lambda: (
+            not rows(product, "leftovers")
+            and not rows(product, "discarded")
+            and not any(one.id == run.id for one in client.runs(deleted=True))
+        ),
+        60,
+        "the run is gone",
+    )
+
+
+def nothing_is_lost(client: Client, sha: str) -> None:
+    """Whom the fork came from is still there, though their run is not."""
+    kept = [one for one in client.creature(sha).ancestors(32)["items"] if one["kept"]]
+    assert kept
+    for one in kept:
+        assert client.creature(one["creature"]).identity
+
+
+def nothing_is_left_behind(product: Installation, run: Run) -> None:
+    """No row of the run, no file without a row, and no creature that nobody knows."""
+    own = bytes.fromhex(run.id.replace("-", ""))
+    for table in ("generations", "elites", "results", "artifacts", "journal", "origins"):
+        assert not rows(product, f"{table} WHERE run_id = ?", run.id.replace("-", "")), own
+    folder = product.folder / "artifacts"
+    files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+    assert files == {row[0] for row in rows(product, "artifacts", column="path")}
+    used = "SELECT creature FROM elites UNION SELECT creature FROM origins "
+    used += "UNION SELECT parent FROM parents"
+    assert not rows(product, f"creatures WHERE sha256 NOT IN ({used})")
+
+
+def rows(product: Installation, which: str, *values: Any, column: str = "*") -> list[Any]:
+    with closing(sqlite3.connect(product.folder / "microcosmos.sqlite")) as database:
+        return database.execute(f"SELECT {column} FROM {which}", values).fetchall()
