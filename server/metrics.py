@@ -165,7 +165,7 @@ def _workers(session: Session, lease: float) -> Family:
 
 def _queues(services: Services) -> Iterator[Family]:
     jobs = services.jobs
-    lengths = dict.fromkeys(QUEUES, 0)
+    lengths: dict[str, int] = dict.fromkeys(QUEUES, 0)
     try:
         for queue in (*jobs.evolving_anywhere(), jobs.renderings, jobs.audits):
             kind = next(one for one in QUEUES if queue.name.startswith(getattr(jobs, one).name))

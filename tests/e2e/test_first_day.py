@@ -58,10 +58,9 @@ def laptop(tmp_path: Path, product: Installation) -> Laptop:
         check=True,
         timeout=120,
     )
-    environment = {
+    environment = product.environment | {
         "PYTHONPATH": str(packages),
         "MICROCOSMOS_URL": product.url,
-        "JAX_COMPILATION_CACHE_DIR": product.environment["JAX_COMPILATION_CACHE_DIR"],
     }
     return Laptop(folder, environment)
 
@@ -161,7 +160,7 @@ def draw_the_contact_sheet(laptop: Laptop, run: Run) -> None:
     laptop.run("pull", run.id, "--out", "honey.h5")
     laptop.run("figure", "sheet", "honey.h5", "sheet.pdf", "--columns", "2", "--rows", "1")
     assert (laptop.folder / "sheet.pdf").read_bytes().startswith(b"%PDF")
-    caption = (laptop.folder / "sheet.pdf.caption.txt").read_text()
+    caption = (laptop.folder / "sheet.caption.txt").read_text()
     assert f"{run.spec['world']['viscosity']:g}" in caption
 
 
