@@ -79,9 +79,8 @@ def test_null_takes_a_choice_back_to_its_default(fork):
 
 def test_null_is_none_where_there_can_be_none():
     """As the form says that lengths are not driven: their default would drive them."""
-    emitters = [{"operator": "gaussian"}]
-    search = {"experiment": "quality-diversity", "search": {"emitters": emitters}}
-    before = parse({**search, "control": {"encoding": "direct"}}).model_dump(mode="json")
+    grown = {"experiment": "quality-diversity", "control": {"encoding": "cppn-body"}}
+    before = parse(grown).model_dump(mode="json")
     patch = {
         "control": {"rest_length": None, "period": None, "nobody": None},
         "search": {"stop": None},

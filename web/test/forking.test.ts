@@ -6,7 +6,9 @@ import { addressOf } from "../src/live/draft";
 import { isAboutOrigin } from "../src/pages/new/ForkCard";
 import { forkOf } from "../src/pages/new/forking";
 import { addressed, load } from "../src/pages/new/sources";
-import { mergePatch, withOrigin } from "../src/view/form/forking";
+import { formOf } from "../src/view/form/fields";
+import { placesOf } from "../src/view/form/document";
+import { mergePatch, withOrigin, withoutOrigin } from "../src/view/form/forking";
 
 const EXPERIMENTS = inject("experiments");
 const SEARCH = EXPERIMENTS.find(({ experiment }) => experiment === "quality-diversity")!;
@@ -86,6 +88,16 @@ describe("a fork", () => {
     expect(forkOf({ base: one, spec: base.spec }, "")).toEqual({
       fork: { run: RUN, from: { creatures: [SHA] }, spec: {}, name: null },
     });
+  });
+
+  it("takes no other names of creatures, typed as JSON or into a field", () => {
+    const fork = { run: RUN, creature: null, creatures: 7 };
+    const sent = forkOf({ base: { ...base, fork }, spec: withOrigin(spec, [SHA]) }, "");
+    expect(sent).toMatchObject({ fork: { spec: { world: { viscosity: 0.3 } } } });
+    const form = formOf(SEARCH.schema);
+    const places = placesOf(form, spec).filter((path) => path !== "search.origin");
+    expect(placesOf(form, spec)).toContain("search.origin");
+    expect(placesOf(withoutOrigin(form), spec)).toEqual(places);
   });
 
   it("is a run as any other where no run is known, or nobody to begin from", () => {

@@ -11,6 +11,7 @@ import { complaints, messagesByPath, withValue } from "../../view/form/document"
 import type { FormState } from "../../view/form/Entry";
 import { type Section, formOf } from "../../view/form/fields";
 import { JsonView } from "../../view/form/JsonView";
+import { withoutOrigin } from "../../view/form/forking";
 import { SpecForm, partsOf } from "../../view/form/SpecForm";
 import { SLIPPED, useEstimate } from "./estimating";
 import { ForkCard, isAboutOrigin } from "./ForkCard";
@@ -32,14 +33,17 @@ interface EditorProps {
 
 export function Editor({ desk, work, experiment, view, show, take, replacing }: EditorProps) {
   const { spec, base } = work;
-  const form = useMemo(() => formOf(experiment.schema), [experiment]);
+  const forking = base.fork !== undefined;
+  const form = useMemo(() => {
+    const whole = formOf(experiment.schema);
+    return forking ? withoutOrigin(whole) : whole;
+  }, [experiment, forking]);
   const parts = useMemo(() => partsOf(form), [form]);
   const slips = useMemo(() => complaints(form, spec), [form, spec]);
   const check = useEstimate(spec, slips);
   const [illegible, setIllegible] = useState<string | null>(null);
   const sweeping = useSweeping(form, spec, experiment);
   const fork = useFork(work);
-  const forking = base.fork !== undefined;
   const many = forking ? null : sweeping.sent;
   const all = useSweepEstimate(slips.length === 0 ? many : null);
   const sweep = useMemo(() => many && { sweep: many }, [many]);

@@ -2,7 +2,7 @@
 
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Work } from "../../live/draft";
-import { mergePatch } from "../../view/form/forking";
+import { mergePatch, withOrigin } from "../../view/form/forking";
 import type { Instead } from "./submission";
 
 export interface Fork {
@@ -25,5 +25,7 @@ export function forkOf({ base, spec }: Work, name: string): Instead | null {
   const { run = null, creature = null } = base.fork ?? {};
   if (run === null) return null;
   const from = creature === null ? { archive: true as const } : { creatures: [creature] };
-  return { fork: { run, from, spec: mergePatch(base.spec, spec), name: name.trim() || null } };
+  // Typed as JSON the names would be passed over.
+  const patch = mergePatch(withOrigin(base.spec, []), withOrigin(spec, []));
+  return { fork: { run, from, spec: patch, name: name.trim() || null } };
 }

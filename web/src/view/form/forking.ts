@@ -1,6 +1,7 @@
 /** A run that begins from creatures: what its spec names, and how it differs from another's. */
 
 import type { Json, Spec } from "../../api/types";
+import type { Section } from "./fields";
 import { isObject } from "./reading";
 
 /** Whether runs of a spec fill an archive, and can begin from creatures. */
@@ -10,6 +11,14 @@ export const isSearch = (spec: Spec): boolean => isObject(spec.search);
 export const withOrigin = (spec: Spec, names: string[]): Spec => ({
   ...spec,
   search: { ...(spec.search as Spec), origin: names },
+});
+
+/** The form without the names of creatures, which are chosen elsewhere. */
+export const withoutOrigin = (form: Section): Section => ({
+  ...form,
+  fields: form.fields
+    .filter(({ path }) => path !== "search.origin")
+    .map((field) => (field.kind === "section" ? withoutOrigin(field) : field)),
 });
 
 /** The merge patch (RFC 7396) that makes one document of another: null takes a member away. */
