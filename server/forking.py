@@ -1,8 +1,9 @@
 """A new run that begins from creatures of another: which ones, and what is to be different."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Evolution, Spec
@@ -26,7 +27,8 @@ def spec_of(session: Session, run: Run, sent: Fork, parse: Parse) -> Spec:
         needed = f"one of {', '.join(SEARCHES)}"
         raise refused("experiment", needed, document.get("experiment"))
     names = chosen(session, run, sent.start, sent.generation)
-    return parse({**document, "search": {**search, "origin": names}})
+    document = {**document, "search": {**search, "origin": names}}
+    return parse(emptied(document, run.spec, sent.spec, parse))
 
 
 def patched(document: Any, patch: Any) -> Any:
@@ -40,6 +42,36 @@ def patched(document: Any, patch: Any) -> Any:
         else:
             whole[name] = patched(whole.get(name), value)
     return whole
+
+
+def emptied(document: Any, before: Any, patch: Any, parse: Parse) -> Any:
+    """The document with none where the patch took a value away and none can stand in its place.
+
+    A merge patch has no other word for none, and a default would bring back what was taken.
+    """
+    for path in _taken(before, patch):
+        other = patched(document, {})
+        place = other
+        for name in path[:-1]:
+            place[name] = dict(place[name])
+            place = place[name]
+        place[path[-1]] = None
+        try:
+            parse(other)
+        except (ValidationError, Refused):
+            continue
+        document = other
+    return document
+
+
+def _taken(before: Any, patch: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    """Where a patch takes away what a document has."""
+    if not isinstance(before, Mapping) or not isinstance(patch, Mapping):
+        return
+    for name in before.keys() & patch.keys():
+        if patch[name] is None and before[name] is not None:
+            yield (*path, name)
+        yield from _taken(before[name], patch[name], (*path, name))
 
 
 def chosen(session: Session, run: Run, start: Beginning, generation: int | None) -> list[str]:

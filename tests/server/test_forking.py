@@ -6,6 +6,8 @@ import pytest
 from sqlalchemy import select, update
 
 from microcosmos.archive import creature
+from microcosmos.spec import parse
+from server import forking
 from server.claims import claim
 from server.models import Origin, Run
 from server.purging import purge
@@ -73,6 +75,21 @@ def test_the_rest_of_the_spec_is_the_other_runs_but_for_the_patch(
 def test_null_takes_a_choice_back_to_its_default(fork):
     run = fork({"archive": True}, spec={"control": {"period": None}}).json()
     assert run["spec"]["control"]["period"] != 50
+
+
+def test_null_is_none_where_there_can_be_none():
+    """As the form says that lengths are not driven: their default would drive them."""
+    grown = {"experiment": "quality-diversity", "control": {"encoding": "cppn-body"}}
+    before = parse(grown).model_dump(mode="json")
+    patch = {
+        "control": {"rest_length": None, "period": None, "nobody": None},
+        "search": {"stop": None},
+    }
+    document = forking.emptied(forking.patched(before, patch), before, patch, parse)
+    spec = parse(document).model_dump(mode="json")
+    assert before["control"]["rest_length"] is not None
+    assert spec == {**before, "control": {**before["control"], "rest_length": None}}
+    assert "period" not in document["control"]
 
 
 @pytest.mark.parametrize(

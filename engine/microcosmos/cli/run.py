@@ -2,7 +2,7 @@
 
 import os
 import signal
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,6 +18,7 @@ from rich.progress import (
 
 from ..spec import Spec, estimate
 from .app import CACHE, app, console, fail
+from .beginning import From, begun, refuse_without_files
 from .modules import Modules, load_modules
 from .specs import lasting, presets, read_spec
 
@@ -36,6 +37,7 @@ def evolve(
     other_device: Annotated[
         bool, typer.Option(help="Go on although another kind of device began the run.")
     ] = False,
+    begin_from: From = None,
     module: Modules = None,
 ) -> None:
     """Carry out a run; called again, it goes on from the archive file."""
@@ -50,8 +52,10 @@ def evolve(
 
     evaluations = evaluations_of(chosen, path)
     prepare(cache=CACHE)
+    chosen, origin = begun(chosen, begin_from or ())
+    refuse_without_files(chosen, origin, path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
-    if not carry_on(chosen, path, checkpoint_seconds, other_device):
+    if not carry_on(chosen, path, checkpoint_seconds, other_device, origin):
         console.print(f"Stopped. The same command goes on from {path}.")
         raise typer.Exit(130)
     best = path.with_suffix(".best.json")
@@ -69,7 +73,13 @@ def evaluations_of(spec: Spec, path: Path) -> int:
     return need.evaluations
 
 
-def carry_on(spec: Spec, archive: Path, checkpoint_seconds: float, other_device: bool) -> bool:
+def carry_on(
+    spec: Spec,
+    archive: Path,
+    checkpoint_seconds: float,
+    other_device: bool,
+    origin: Sequence[Mapping[str, Any]] = (),
+) -> bool:
     """Carry the run on behind a progress bar; the first Ctrl-C asks it to stop."""
     from .. import experiments, local
 
@@ -102,6 +112,7 @@ def carry_on(spec: Spec, archive: Path, checkpoint_seconds: float, other_device:
                 tell=tell,
                 checkpoint_seconds=checkpoint_seconds,
                 other_device=other_device,
+                origin=origin,
             )
         except experiments.OtherDevice as error:
             progress.stop()

@@ -10,6 +10,7 @@ import type {
   Children,
   Creature,
   Experiment,
+  ForkSent,
   Measurement,
   Results,
   Run,
@@ -153,6 +154,12 @@ export function estimateRun(spec: Spec) {
 export async function createRun(spec: Spec, key: string): Promise<Run> {
   const params = { header: { "Idempotency-Key": key } };
   return (await success(client.POST(`${ROOT}/runs`, { params, body: spec as never }))) as Run;
+}
+
+export async function forkRun({ run: id, ...body }: ForkSent, key: string): Promise<Run> {
+  const params = { ...run(id).params, header: { "Idempotency-Key": key } };
+  const asked = client.POST(`${ROOT}/runs/{run_id}/fork`, { params, body: body as never });
+  return (await success(asked)) as Run;
 }
 
 export async function wish(id: string, verb: Wish): Promise<Run> {

@@ -37,6 +37,13 @@ export interface SweepSent {
   grid: Grid;
   name: string | null;
 }
+/** A run that begins from another's creatures, its spec changed by a merge patch. */
+export interface ForkSent {
+  run: string;
+  from: { creatures: string[] } | { archive: true };
+  spec: Spec;
+  name: string | null;
+}
 export type Worker = Wire["WorkerRead"];
 export type Queue = Wire["QueueRead"];
 export type Preset = With<Wire["PresetRead"], { spec: Spec }>;

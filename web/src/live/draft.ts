@@ -10,7 +10,20 @@ export interface Base {
   spec: Spec;
   /** Whether it came as a file, so that this server need not know the name. */
   foreign?: boolean;
+  /** Which creatures the run begins from, in place of random ones. */
+  fork?: Forking;
 }
+
+export interface Forking {
+  /** Whose creatures they are; null where no run is known. */
+  run: string | null;
+  /** The only one; null for all elites of the run. */
+  creature: string | null;
+  creatures: number;
+}
+
+/** A word of the address with a name; of a fork also the creature, where it is one. */
+export type Address = [word: string, name: string, creature?: string];
 
 export interface Work {
   base: Base;
@@ -21,9 +34,15 @@ const KEY = "microcosmos:draft";
 const QUERIES = { preset: "preset", run: "from", creature: "creature", pasted: null };
 
 /** How the address names what a spec was begun from; null where it cannot. */
-export function addressOf({ kind, name, foreign }: Omit<Base, "spec">): [string, string] | null {
+export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Address | null {
+  if (fork) return addressOfFork(fork);
   const word = QUERIES[kind];
   return word && !foreign ? [word, name] : null;
+}
+
+function addressOfFork({ run, creature }: Forking): Address {
+  if (run === null) return ["begin", creature!];
+  return creature === null ? ["fork", run] : ["fork", run, creature];
 }
 
 export function keep(work: Work): void {
@@ -39,7 +58,7 @@ export function discard(): void {
 }
 
 /** The draft, where it was begun from what the address names, or the address names nothing. */
-export function draftFor(wanted: [string, string] | null): Work | null {
+export function draftFor(wanted: Address | null): Work | null {
   const work = kept();
   if (!work || !wanted) return work;
   return String(addressOf(work.base)) === String(wanted) ? work : null;

@@ -16,6 +16,7 @@ import { newMoment } from "../view/replay/moment";
 import { AuditCard } from "./Audit";
 import { Facts } from "./Facts";
 import { Family } from "./Family";
+import { ForkLink } from "./ForkLink";
 import { Genome } from "./Genome";
 import { Keep } from "./Keep";
 import { MeasuredCard } from "./Measured";
@@ -51,6 +52,9 @@ export function CreaturePage({ sha, query }: Props) {
         {creature && !isFree(creature.identity.world.coupling) && <NotFree />}
         <span class="spring" />
         {creature && <Publish of={{ creature: sha }} file={creature} title="" />}
+        {creature && searched(creature) && (
+          <ForkLink run={run} creature={sha} title="A new run that begins from this creature" />
+        )}
         {creature && searched(creature) && <Refine creature={creature} run={run} />}
       </header>
       {error && <p class="banner wrong">{error}</p>}

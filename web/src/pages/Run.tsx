@@ -19,6 +19,7 @@ import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
 import { Name } from "../view/runs/Said";
 import { ArchiveRun } from "./ArchiveRun";
 import { Files } from "./Files";
+import { ForkLink } from "./ForkLink";
 import { GaitsRun } from "./GaitsRun";
 import { ForkedFrom, InBin, Life } from "./Life";
 import { LearningRun } from "./LearningRun";
@@ -67,6 +68,9 @@ export function RunPage({ id, query }: Props) {
         <span class="spring" />
         {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
           <Publish of={{ run: run.id }} title={run.name ?? ""} />
+        )}
+        {hasArchive(run) && !!run.coverage && !run.deleted_at && (
+          <ForkLink run={run.id} title="A new run that begins from the creatures of this one" />
         )}
         {!run.deleted_at && <Actions run={run} on={ON(title)} name={title} />}
         <Life run={run} title={title} />

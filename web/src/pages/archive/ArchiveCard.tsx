@@ -3,7 +3,7 @@
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import { within } from "../../api/place";
 import type { Archive, Run } from "../../api/types";
-import type { Elites } from "../../live/elites";
+import type { Elite, Elites } from "../../live/elites";
 import { navigate, setQuery } from "../../router";
 import { ArchiveMap, type Looking } from "../../view/archive/ArchiveMap";
 import { AxisChoice } from "../../view/archive/AxisChoice";
@@ -12,6 +12,7 @@ import { Slices } from "../../view/archive/Slices";
 import { TimeSlider } from "../../view/archive/TimeSlider";
 import { count } from "../../view/format";
 import { Guide } from "../../view/Guide";
+import { ForkLink } from "../ForkLink";
 import { bestOf, stepsOf, useGuide } from "./guide";
 import { LookedAt } from "./LookedAt";
 import { setSlice, useArchiveView } from "./view";
@@ -37,6 +38,9 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
     colouring: view.colouring,
     marked: cell === null ? null : Number(cell),
     onMark: useCallback((marked: number) => setQuery({ cell: String(marked) }), []),
+    actions: ({ creature }: Elite) => (
+      <ForkLink run={run.id} creature={creature} title="A new run that begins from this creature" inline />
+    ),
     onOpen: (chosen: number) => {
       setQuery({ cell: String(chosen) });
       navigate(within(`/creatures/${view.elites.get(chosen)!.creature}?run=${run.id}`));

@@ -1,6 +1,8 @@
 /** The gallery, with the motions of what it shows. */
 
+import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
+import type { Elite } from "../../live/elites";
 import { useMotions } from "../../live/motions";
 import { setQuery } from "../../router";
 import type { MapAxis } from "../../view/archive/axes";
@@ -15,6 +17,7 @@ interface Props {
   marked: number | null;
   onMark: (cell: number) => void;
   onOpen: (cell: number) => void;
+  actions: (elite: Elite) => ComponentChildren;
   query: URLSearchParams;
 }
 

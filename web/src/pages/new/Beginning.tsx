@@ -3,10 +3,11 @@
 import { importCreature } from "../../api/client";
 import { messageOf } from "../../api/problem";
 import type { Experiment } from "../../api/types";
-import type { Base, Work } from "../../live/draft";
+import type { Base, Forking, Work } from "../../live/draft";
 import { tell } from "../../live/toasts";
 import { navigate } from "../../router";
 import { equalPreset } from "../../view/form/differences";
+import { count, short } from "../../view/format";
 import { titleOfBase } from "./sources";
 import type { Desk } from "./work";
 
@@ -36,6 +37,14 @@ export function Beginning({ desk, work, experiments, file }: Props) {
         {base.kind === "creature" && " with its world, body, coupling, controller and task"}
         {equal && `, the same as preset “${equal.name}”`}.
       </span>
+      {base.fork && (
+        <span class="beginning-fork">
+          <Begins fork={base.fork} />
+          <button type="button" class="plain" onClick={desk.release}>
+            Begin from random ones instead
+          </button>
+        </span>
+      )}
       {size > 0 && (
         <button type="button" class="plain" onClick={desk.reset}>
           {desk.restored ? "Discard draft" : "Undo all changes"}
@@ -47,6 +56,28 @@ export function Beginning({ desk, work, experiments, file }: Props) {
         </button>
       )}
     </p>
+  );
+}
+
+/** Whom the run begins from, with a way to them. */
+function Begins({ fork: { run, creature, creatures } }: { fork: Forking }) {
+  const place = creature ? `/creatures/${creature}${run ? `?run=${run}` : ""}` : `/runs/${run}`;
+  const which = creature ? ` ${short(creature)}` : "";
+  return (
+    <span>
+      Begins from{" "}
+      <a href={place}>
+        {creatures === 1 ? "1 creature" : `${count(creatures)} creatures`}
+        {which}
+      </a>
+      {run && (
+        <>
+          {" "}
+          of <a href={`/runs/${run}`}>run {short(run)}</a>
+        </>
+      )}
+      .
+    </span>
   );
 }
 

@@ -11,8 +11,11 @@ import { complaints, messagesByPath, withValue } from "../../view/form/document"
 import type { FormState } from "../../view/form/Entry";
 import { type Section, formOf } from "../../view/form/fields";
 import { JsonView } from "../../view/form/JsonView";
+import { withoutOrigin } from "../../view/form/forking";
 import { SpecForm, partsOf } from "../../view/form/SpecForm";
 import { SLIPPED, useEstimate } from "./estimating";
+import { ForkCard, isAboutOrigin } from "./ForkCard";
+import { useFork } from "./forking";
 import { useSubmission } from "./submission";
 import { SweepCard, goToSweep } from "./SweepCard";
 import { type Sweeping, begun, useSweepEstimate, useSweeping } from "./sweeping";
@@ -30,17 +33,26 @@ interface EditorProps {
 
 export function Editor({ desk, work, experiment, view, show, take, replacing }: EditorProps) {
   const { spec, base } = work;
-  const form = useMemo(() => formOf(experiment.schema), [experiment]);
+  const forking = base.fork !== undefined;
+  const form = useMemo(() => {
+    const whole = formOf(experiment.schema);
+    return forking ? withoutOrigin(whole) : whole;
+  }, [experiment, forking]);
   const parts = useMemo(() => partsOf(form), [form]);
   const slips = useMemo(() => complaints(form, spec), [form, spec]);
   const check = useEstimate(spec, slips);
   const [illegible, setIllegible] = useState<string | null>(null);
   const sweeping = useSweeping(form, spec, experiment);
-  const all = useSweepEstimate(slips.length === 0 ? sweeping.sent : null);
-  const submission = useSubmission(spec, sweeping.sent);
-  const refused = submission.refusal?.errors ?? [];
-  const errors = [...slips, ...(sweeping.sent ? ofSpec(refused) : refused), ...check.errors];
-  const slipped = begun(sweeping) && !sweeping.sent && wrong(sweeping);
+  const fork = useFork(work);
+  const many = forking ? null : sweeping.sent;
+  const all = useSweepEstimate(slips.length === 0 ? many : null);
+  const sweep = useMemo(() => many && { sweep: many }, [many]);
+  const submission = useSubmission(spec, fork.sent ?? sweep);
+  const refused = (submission.refusal?.errors ?? []).map(inForm);
+  const errors = [...slips, ...(many ? ofSpec(refused) : refused), ...check.errors].filter(
+    ({ field }) => !forking || !isAboutOrigin(field),
+  );
+  const slipped = !forking && begun(sweeping) && !many && wrong(sweeping);
   const [closed, close] = useClosed(form);
   const state: FormState = {
     document: spec as Json,
@@ -74,9 +86,11 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
           <div class="spec-bar">
             <Segments label="How the spec is shown" choices={VIEWS} value={view} onChoose={show} />
             {view === "form" && <Outline parts={parts} state={state} />}
-            <button type="button" class="plain wide-only" onClick={goToSweep}>
-              Several runs
-            </button>
+            {!forking && (
+              <button type="button" class="plain wide-only" onClick={goToSweep}>
+                Several runs
+              </button>
+            )}
           </div>
           {view === "form" && <SpecForm form={form} state={state} />}
           {view === "json" && (
@@ -89,14 +103,18 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
               replace={replacing}
             />
           )}
-          <SweepCard sweeping={sweeping} errors={[...refused, ...all.errors]} spec={spec as Json} />
+          {forking ? (
+            <ForkCard {...fork} errors={[...refused, ...check.errors]} />
+          ) : (
+            <SweepCard sweeping={sweeping} errors={[...refused, ...all.errors]} spec={spec as Json} />
+          )}
         </div>
       </div>
       <div class="submit-bar">
         <div class="submit-inner">
           <Costs
-            estimate={sweeping.sent ? all.estimate : check.estimate}
-            runs={sweeping.sent ? sweeping.total : 1}
+            estimate={many ? all.estimate : check.estimate}
+            runs={many ? sweeping.total : 1}
             problem={
               illegible
                 ? "What is written as JSON cannot be used."
@@ -108,7 +126,7 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
           <span class="submit-how">
             <kbd class="quiet wide-only">Ctrl + Enter</kbd>
             <button class="primary" type="submit" disabled={submission.busy}>
-              {submission.busy ? "Starting …" : startOf(begun(sweeping) ? sweeping.total : 1)}
+              {submission.busy ? "Starting …" : startOf(!forking && begun(sweeping) ? sweeping.total : 1)}
             </button>
           </span>
         </div>
@@ -125,6 +143,9 @@ const ofSpec = (errors: readonly FieldError[]): FieldError[] =>
   errors
     .filter(({ field }) => field.startsWith("spec."))
     .map((error) => ({ ...error, field: error.field.slice("spec.".length) }));
+
+/** What a creature does not fit may be told of a part of the spec: `control: inputs`. */
+const inForm = (error: FieldError): FieldError => ({ ...error, field: error.field.replace(/: .*/, "") });
 
 const wrong = ({ problems: { seeds, axes, total } }: Sweeping) =>
   [seeds, total, ...axes].some((problem) => problem !== null);

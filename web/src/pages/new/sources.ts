@@ -3,14 +3,17 @@
 import * as api from "../../api/client";
 import { messageOf } from "../../api/problem";
 import type { Experiment, Preset, Spec } from "../../api/types";
-import type { Base } from "../../live/draft";
+import type { Address, Base } from "../../live/draft";
 import { completed } from "../../view/form/completing";
+import { isSearch, withOrigin } from "../../view/form/forking";
 import { type Found, specOf } from "../../view/form/reading";
 import { short } from "../../view/format";
 
-export function addressed(query: URLSearchParams): [string, string] | null {
-  const word = ["from", "creature", "preset"].find((name) => query.get(name));
-  return word ? [word, query.get(word)!] : null;
+export function addressed(query: URLSearchParams): Address | null {
+  const word = ["fork", "begin", "from", "creature", "preset"].find((name) => query.get(name));
+  if (!word) return null;
+  const creature = word === "fork" ? query.get("creature") : null;
+  return creature ? [word, query.get(word)!, creature] : [word, query.get(word)!];
 }
 
 export function ofPreset(preset: Preset, { experiment }: Experiment): Base {
@@ -19,11 +22,13 @@ export function ofPreset(preset: Preset, { experiment }: Experiment): Base {
 
 /** What the address names; throws what a person can read where there is no such thing. */
 export async function load(
-  [word, name]: [string, string],
+  [word, name, creature]: Address,
   experiments: Experiment[],
 ): Promise<Base> {
   if (word === "preset") return named(name, experiments);
   try {
+    if (word === "begin") return await begunFrom(name, experiments);
+    if (word === "fork") return await forkOf(name, creature ?? null, experiments);
     if (word === "creature") {
       const spec = specOf(await api.readCreature(name));
       return { kind: "creature", name, spec: whole(spec, experiments) };
@@ -33,6 +38,26 @@ export async function load(
   } catch (error) {
     throw new Error(`“${word}” in the address names ${name}: ${messageOf(error)}`);
   }
+}
+
+/** A search that begins from one creature, in its world. */
+async function begunFrom(sha: string, experiments: Experiment[]): Promise<Base> {
+  const spec = whole(specOf(await api.readCreature(sha)), experiments);
+  if (!isSearch(spec)) throw new Error("no search can begin from it.");
+  const fork = { run: null, creature: sha, creatures: 1 };
+  return { kind: "creature", name: sha, spec: withOrigin(spec, [sha]), fork };
+}
+
+/** A run's spec, to begin from one creature or from all its elites. */
+async function forkOf(id: string, creature: string | null, experiments: Experiment[]): Promise<Base> {
+  const run = await api.readRun(id);
+  if (!isSearch(run.spec)) {
+    if (creature) return begunFrom(creature, experiments);
+    throw new Error("it fills no archive to begin from.");
+  }
+  const creatures = creature ? 1 : (await api.readArchive(id)).creature.length;
+  const spec = withOrigin(whole(run.spec, experiments), []);
+  return { kind: "run", name: id, spec, fork: { run: id, creature, creatures } };
 }
 
 function named(name: string, experiments: Experiment[]): Base {

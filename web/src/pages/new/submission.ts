@@ -1,33 +1,36 @@
-/** Starting a run, or a sweep of runs. */
+/** Starting a run, a fork of one, or a sweep of runs. */
 
 import { useRef, useState } from "preact/hooks";
 import * as api from "../../api/client";
 import { Problem, messageOf } from "../../api/problem";
-import type { FieldError, Spec, SweepSent } from "../../api/types";
+import type { FieldError, ForkSent, Spec, SweepSent } from "../../api/types";
 import { discard } from "../../live/draft";
 import { answer } from "../../live/live";
 import { navigate } from "../../router";
 import { newKey } from "../key";
 import { SLIPPED } from "./estimating";
 
+/** What is sent in place of a spec alone. */
+export type Instead = { sweep: SweepSent } | { fork: ForkSent };
+
 interface Refusal {
-  asked: Spec | SweepSent;
+  asked: Spec | Instead;
   message: string;
   errors: FieldError[];
 }
 
-/** Sends the spec or the sweep; the same sent again, after a lost answer, is the same submission. */
-export function useSubmission(spec: Spec | null, sweep: SweepSent | null) {
-  const asked = sweep ?? spec;
+/** Sends the spec, or what is wanted instead; the same sent again, after a lost answer, is the same submission. */
+export function useSubmission(spec: Spec, instead: Instead | null) {
+  const asked = instead ?? spec;
   const [busy, setBusy] = useState(false);
   const [refusal, setRefusal] = useState<Refusal | null>(null);
-  const sent = useRef<{ asked: Spec | SweepSent; key: string } | null>(null);
+  const sent = useRef<{ asked: Spec | Instead; key: string } | null>(null);
   const start = async () => {
-    if (!spec || !asked || busy) return;
+    if (busy) return;
     if (sent.current?.asked !== asked) sent.current = { asked, key: newKey() };
     setBusy(true);
     try {
-      const page = await submit(spec, sweep, sent.current.key);
+      const page = await submit(spec, instead, sent.current.key);
       discard();
       navigate(page);
     } catch (error) {
@@ -41,9 +44,10 @@ export function useSubmission(spec: Spec | null, sweep: SweepSent | null) {
 }
 
 /** Where what was started can be seen. */
-async function submit(spec: Spec, sweep: SweepSent | null, key: string): Promise<string> {
-  if (sweep) return `/sweeps/${(await api.createSweep(sweep, key)).id}`;
-  return `/runs/${(await answer("done", api.createRun(spec, key))).id}`;
+async function submit(spec: Spec, instead: Instead | null, key: string): Promise<string> {
+  if (instead && "sweep" in instead) return `/sweeps/${(await api.createSweep(instead.sweep, key)).id}`;
+  const made = instead ? api.forkRun(instead.fork, key) : api.createRun(spec, key);
+  return `/runs/${(await answer("done", made)).id}`;
 }
 
 function showFirstError(): void {

@@ -3,10 +3,11 @@
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { messageOf } from "../../api/problem";
 import type { Experiment, Spec } from "../../api/types";
-import { type Base, type Work, addressOf, discard, draftFor, keep } from "../../live/draft";
+import { type Address, type Base, type Work, addressOf, discard, draftFor, keep } from "../../live/draft";
 import { dismiss, tell } from "../../live/toasts";
 import { setQuery } from "../../router";
 import { changedPaths } from "../../view/form/differences";
+import { withOrigin } from "../../view/form/forking";
 import { addressed, load, ofPreset } from "./sources";
 
 export interface Desk {
@@ -21,9 +22,13 @@ export interface Desk {
   change: (next: (spec: Spec) => Spec) => void;
   begin: (base: Base) => void;
   reset: () => void;
+  /** Begins from random creatures after all; what was changed stays. */
+  release: () => void;
 }
 
-const UNNAMED = { preset: null, from: null, creature: null };
+const UNNAMED = { preset: null, from: null, creature: null, fork: null, begin: null };
+
+const named = ([word, name, creature]: Address) => ({ [word]: name, ...(creature && { creature }) });
 const NONE: ReadonlySet<string> = new Set();
 
 export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk {
@@ -40,15 +45,20 @@ export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk
   const put = (next: Work) => {
     const address = addressOf(next.base);
     shown.current = String(address);
-    setQuery({ ...UNNAMED, ...(address && { [address[0]]: address[1] }) });
+    setQuery({ ...UNNAMED, ...(address && named(address)) });
     setWork(next);
     setRestored(false);
     setRevision((count) => count + 1);
     setProblem(null);
   };
   const replace = (next: Work, text: string) => {
-    if (work && changed.size > 0) offerBack(text, () => put(work));
+    if (work && (changed.size > 0 || work.base.fork)) offerBack(text, () => put(work));
     put(next);
+  };
+  const release = () => {
+    if (!work?.base.fork) return;
+    const { fork: _, ...base } = { ...work.base, spec: withOrigin(work.base.spec, []) };
+    replace({ base, spec: withOrigin(work.spec, []) }, "It begins from random creatures.");
   };
   // A way back from here leads nowhere from another page.
   useEffect(() => () => dismiss(offered), []);
@@ -85,6 +95,7 @@ export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk
     change: (next) => setWork((now) => now && { ...now, spec: next(now.spec) }),
     begin,
     reset: () => work && replace({ ...work, spec: work.base.spec }, "Changes taken back."),
+    release,
   };
 }
 

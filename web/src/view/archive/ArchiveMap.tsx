@@ -27,6 +27,8 @@ interface Props {
   marked: number | null;
   onMark: (cell: number) => void;
   onOpen: (cell: number) => void;
+  /** What else can be done with an elite. */
+  actions: (elite: Elite) => ComponentChildren;
   /** The elite that is pointed at, else the marked one. */
   onLook: (looking: Looking | null) => void;
   /** What stands beside the cell that is looked at. */
@@ -85,7 +87,7 @@ export function ArchiveMap(props: Props) {
       </div>
       <Horizontal axis={axes[0]} />
       <Legend colouring={colouring} />
-      <Reading tile={tile} axes={axes} colour={colouring.measure} onOpen={onOpen} />
+      <Reading tile={tile} axes={axes} colour={colouring.measure} onOpen={onOpen} actions={props.actions} />
     </div>
   );
 }

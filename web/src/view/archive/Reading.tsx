@@ -1,5 +1,7 @@
 /** The elite that is looked at, in words and numbers. */
 
+import type { ComponentChildren } from "preact";
+import type { Elite } from "../../live/elites";
 import { count, number, short } from "../format";
 import { FITNESS, type MapAxis, type Measure } from "./axes";
 import { AGE } from "./colouring";
@@ -10,13 +12,15 @@ interface Props {
   axes: readonly MapAxis[];
   colour: Measure;
   onOpen: (cell: number) => void;
+  /** What else can be done with an elite. */
+  actions: (elite: Elite) => ComponentChildren;
 }
 
-export function Reading({ tile, axes, colour, onOpen }: Props) {
+export function Reading({ tile, axes, colour, onOpen, actions }: Props) {
   return (
     <p id="map-reading" class="map-reading" aria-live="polite">
       {tile ? (
-        <Words {...{ tile, onOpen, measures: [...axes, colour] }} />
+        <Words {...{ tile, onOpen, actions, measures: [...axes, colour] }} />
       ) : (
         <span class="quiet">Point at a cell to see its creature swim; click it to open it.</span>
       )}
@@ -28,9 +32,10 @@ interface WordsProps {
   tile: Tile;
   measures: readonly Measure[];
   onOpen: (cell: number) => void;
+  actions: Props["actions"];
 }
 
-function Words({ tile: { elite, cell, behind }, measures, onOpen }: WordsProps) {
+function Words({ tile: { elite, cell, behind }, measures, onOpen, actions }: WordsProps) {
   const told = new Map(measures.map((measure) => [measure.name, measure]));
   for (const name of [FITNESS, AGE]) told.delete(name);
   return (
@@ -54,6 +59,7 @@ function Words({ tile: { elite, cell, behind }, measures, onOpen }: WordsProps) 
       <button class="link" onClick={() => onOpen(cell)}>
         Open <code>{short(elite.creature)}</code>
       </button>
+      {actions(elite)}
     </>
   );
 }

@@ -168,7 +168,7 @@ export function leavesOf(field: Field, document: Json): Field[] {
 }
 
 /** Every path at which a form can show a message; the whole form's is empty. */
-function placesOf(field: Field, document: Json): string[] {
+export function placesOf(field: Field, document: Json): string[] {
   if (field.kind === "constant") return [];
   const inside = insideOf(field, document).flatMap((each) => placesOf(each, document));
   return [field.path, ...inside];

@@ -3,6 +3,7 @@
 import type { ComponentChildren, RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Motion } from "../../frames/motion";
+import type { Elite } from "../../live/elites";
 import { Horizontal, Vertical } from "../archive/Axes";
 import { binByKey } from "../archive/ArchiveMap";
 import type { MapAxis } from "../archive/axes";
@@ -33,6 +34,8 @@ interface Props {
   onSettle: (side: number) => void;
   onMark: (cell: number) => void;
   onOpen: (cell: number) => void;
+  /** What else can be done with an elite. */
+  actions: (elite: Elite) => ComponentChildren;
 }
 
 const [SMALLEST, LARGEST] = [36, 180];
@@ -130,6 +133,7 @@ export function Gallery(props: Props) {
         axes={axes}
         colour={colouring.measure}
         onOpen={onOpen}
+        actions={props.actions}
       />
     </div>
   );
