@@ -5,10 +5,12 @@ import runpy
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 WEB = Path(__file__).parents[3] / "web"
 
 
+@pytest.mark.optimised
 def test_the_fixture_of_the_page_is_what_the_engine_computes_now():
     kept = json.loads((WEB / "test" / "fixtures" / "networks.json").read_text())
     made = json.loads(

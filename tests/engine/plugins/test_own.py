@@ -16,6 +16,7 @@ from microcosmos.render.reading import read_replay
 from microcosmos.spec import estimate, parse, used
 
 MODULE = """
+from dataclasses import replace
 import jax.numpy as jnp
 import numpy as np
 from pydantic import Field
