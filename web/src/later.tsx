@@ -1,9 +1,13 @@
-/** Pages whose script comes when they are first opened. */
+/** Pages, and parts of them, whose script comes when they are first opened. */
 
 import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 
-export function later<P extends object>(load: () => Promise<ComponentType<P>>): ComponentType<P> {
+/** A part of a page is a `section` until it is there. */
+export function later<P extends object>(
+  load: () => Promise<ComponentType<P>>,
+  Around: "main" | "section" = "main",
+): ComponentType<P> {
   let Found: ComponentType<P> | null = null;
   return function Later(props: P) {
     const [, redraw] = useState(0);
@@ -19,7 +23,7 @@ export function later<P extends object>(load: () => Promise<ComponentType<P>>): 
       );
     }, []);
     if (Found) return <Found {...props} />;
-    return <main>{failed ? <Gone /> : <p class="quiet loading">Loading …</p>}</main>;
+    return <Around>{failed ? <Gone /> : <p class="quiet loading">Loading …</p>}</Around>;
   };
 }
 

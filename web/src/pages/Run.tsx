@@ -6,6 +6,7 @@ import type { Detail } from "../live/detail";
 import type { Elites } from "../live/elites";
 import { hasArchive, useExperiments, useRunDetail } from "../live/fetching";
 import { useFresh } from "../live/repeating";
+import { later } from "../later";
 import { useLive } from "../live/live";
 import { useNow } from "../live/runpage";
 import { say } from "../live/saying";
@@ -20,15 +21,19 @@ import { Name } from "../view/runs/Said";
 import { ArchiveRun } from "./ArchiveRun";
 import { Files } from "./Files";
 import { ForkLink } from "./ForkLink";
-import { GaitsRun } from "./GaitsRun";
 import { ForkedFrom, InBin, Life } from "./Life";
-import { LearningRun } from "./LearningRun";
 import { LogCard } from "./LogCard";
-import { PopulationCards } from "./PopulationCards";
-import { ScalingRun } from "./ScalingRun";
 import { Publish } from "./Publish";
 import { SpecCard } from "./SpecCard";
 import { ON } from "./wishes";
+
+const GaitsRun = later(async () => (await import("./GaitsRun")).GaitsRun, "section");
+const LearningRun = later(async () => (await import("./LearningRun")).LearningRun, "section");
+const PopulationCards = later(
+  async () => (await import("./PopulationCards")).PopulationCards,
+  "section",
+);
+const ScalingRun = later(async () => (await import("./ScalingRun")).ScalingRun, "section");
 
 interface Props {
   id: string;
