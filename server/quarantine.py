@@ -69,7 +69,7 @@ def restrict() -> None:
     room = pages * resource.getpagesize() + MEMORY
     for kind, most in (
         (resource.RLIMIT_AS, room),
-        (resource.RLIMIT_CPU, ceil(time.process_time()) + 1),
+        (resource.RLIMIT_CPU, ceil(time.process_time() + SECONDS) + 1),  # If all else fails.
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
         (resource.RLIMIT_NOFILE, 0),
