@@ -117,6 +117,8 @@ def changed(document: dict[str, Any]) -> Iterator[Case]:
         for name, value in replacements(here):
             if path == ("licence",) and isinstance(value, str):
                 continue  # People may say there what they like.
+            if path == ("credit",) and value == []:
+                continue  # Nobody is to be named.
             # What is left out has its default, and true is 1 to some: that may be as before.
             same = value in (True, {})
             yield Case(f"{place}: {name}", changed_at(document, path, value), harmless=same)

@@ -203,7 +203,12 @@ def others() -> Edits:
             b"0" * 64,
         ):
             yield f"@{name}: {text[:9]!r}", lambda file, n=name, t=text: said(file, n, t), ""
-        yield f"@{name} missing", lambda file, n=name: file.attrs.pop(n), "attributes must be"
+        if name not in creature_h5.LATER:
+            yield (
+                f"@{name} missing",
+                lambda file, n=name: file.attrs.pop(n),
+                "attributes must be",
+            )
 
 
 def grouped(file: h5py.File, name: str) -> None:
