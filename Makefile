@@ -9,7 +9,7 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
 
-.PHONY: run install web test test-server test-product check peers bench acceptance validate pictures lock
+.PHONY: run install web test check peers bench acceptance validate pictures lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -41,23 +41,16 @@ check: install web
 	$(STYLE)
 	$(BIN)/pytest -m fast tests/engine
 
-# The tests of the server fork, which a process with JAX in it must not: they have their own.
 # What is about bits is compiled as the product is; the rest without optimising, see conftest.
-# Beside them, which mostly wait, goes the product whole: real processes, and a browser.
+# The tests of the server fork, which a process with JAX in it must not: the last call has
+# them, and the product whole in groups, real processes and a browser, which mostly wait.
 test: install web
 	$(STYLE)
-	$(SHARED) -m "not optimised" tests/engine tests/examples
-	MICROCOSMOS_TEST_OPTIMISED=1 $(SHARED) -m optimised tests/engine
-	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target test-server test-product
+	$(SHARED) --dist loadfile -m "not optimised" tests/engine tests/examples
+	MICROCOSMOS_TEST_OPTIMISED=1 $(SHARED) --dist loadfile -m optimised tests/engine
+	$(BIN)/pytest -n 3 --dist loadgroup --ignore=tests/engine --ignore=tests/examples
 
-SHARED = $(BIN)/pytest -n auto --maxprocesses 4 --dist loadfile
-BESIDE_ENGINE = --ignore=tests/engine --ignore=tests/examples
-
-test-server:
-	$(BIN)/pytest $(BESIDE_ENGINE) --ignore=tests/faults --ignore=tests/e2e
-
-test-product:
-	$(BIN)/pytest tests/faults tests/e2e
+SHARED = $(BIN)/pytest -n auto --maxprocesses 4
 
 # What benchmarks compare with; not needed for anything else.
 peers: install

@@ -3,9 +3,11 @@
 Starting a product and compiling its programs take longer than most tests. So tests share:
 `shared_address` has small runs of each kind, and computes what else is submitted there;
 at `idle.product` nobody computes. A test that needs a list of runs of its own, or ends the
-server, has an `address` of its own; it comes last, when all programs are compiled.
+server, has an `address` of its own. Those that share are one group and the others another,
+which two processes may take (`--dist loadgroup`).
 """
 
+import os
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -34,6 +36,8 @@ SETTINGS = {
 }
 WINDOW = {"width": 1280, "height": 900}
 PATIENCE_S = 120
+ALONE = 3
+"""The turn of tests that have a product of their own."""
 
 
 class Shared(NamedTuple):
@@ -55,15 +59,20 @@ class Idle(NamedTuple):
     services: Services
 
 
+@pytest.hookimpl(tryfirst=True)  # Before groups are read.
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """What needs no worker first: the runs that all share are computed meanwhile."""
+    for item in items:
+        if item.path.parent == HERE:
+            group = "products of their own" if turn(item) == ALONE else "shared products"
+            item.add_marker(pytest.mark.xdist_group(group))
     items.sort(key=turn)
 
 
 def turn(item: pytest.Item) -> int:
     if item.path.parent != HERE:
         return 0
-    return 2 if needs(item, "shared") else 1 if needs(item, "idle") else 3
+    return 2 if needs(item, "shared") else 1 if needs(item, "idle") else ALONE
 
 
 def needs(item: pytest.Item, fixture: str) -> bool:
@@ -89,8 +98,10 @@ def common(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """What every product of the session finds in its environment: programs compiled once."""
     if not (ROOT / "web" / "dist" / "index.html").exists():
         pytest.fail("web/dist is missing: build the page first")
-    compiled = tmp_path_factory.mktemp("compiled")
-    return SETTINGS | {"JAX_COMPILATION_CACHE_DIR": str(compiled)}
+    of_all = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:  # Each process has a folder in that of all.
+        of_all = of_all.parent
+    return SETTINGS | {"JAX_COMPILATION_CACHE_DIR": str(of_all / "compiled")}
 
 
 @pytest.fixture
