@@ -1,6 +1,5 @@
 """From a plan to a sweep and its queued runs, in one transaction."""
 
-import json
 import logging
 from datetime import timedelta
 from uuid import UUID
@@ -12,12 +11,11 @@ from sqlalchemy.orm import Session
 
 from microcosmos.version import VERSION
 
-from . import own
+from . import own, requests
 from .db import clock
-from .models import Entry, Idempotency, Run, Sweep
+from .models import Entry, Run, Sweep
 from .planning import Plan
 from .services import Services
-from .submission import digest, same_request
 from .sweeps import announce
 
 log = logging.getLogger(__name__)
@@ -30,10 +28,10 @@ def submit_sweep(services: Services, plan: Plan, key: str | None = None) -> tupl
             sweep = _write(session, plan, key)
             runs = _write_runs(session, plan, sweep)
     except IntegrityError:
-        if key is None:
+        known = earlier_sweep(services, plan, key)
+        if known is None:
             raise
-        with services.sessions.read() as session:
-            return UUID(str(same_request(session, key, _request(plan)).sweep)), False
+        return known, False
     # Committed before they are enqueued: workers must find the rows.
     try:
         services.jobs.evolve_new(runs)
@@ -41,6 +39,12 @@ def submit_sweep(services: Services, plan: Plan, key: str | None = None) -> tupl
         log.warning("runs of sweep %s stay queued until Redis answers: %s", sweep.id, error)
     announce(services, sweep.id)
     return sweep.id, True
+
+
+def earlier_sweep(services: Services, plan: Plan, key: str | None) -> UUID | None:
+    """The sweep that a key stands for already; `Refused` where another request did."""
+    known = requests.earlier(services, key, _request(plan))
+    return known.sweep if known else None
 
 
 def _write(session: Session, plan: Plan, key: str | None) -> Sweep:
@@ -53,10 +57,7 @@ def _write(session: Session, plan: Plan, key: str | None) -> Sweep:
     )
     session.add(sweep)
     session.flush()
-    if key is not None:
-        body = digest(_request(plan))
-        session.add(Idempotency(key=key, body_sha256=body, sweep=sweep.id))
-        session.flush()
+    requests.remember(session, key, _request(plan), sweep=sweep.id)
     return sweep
 
 
@@ -92,10 +93,6 @@ def _first_entry(run: Run, total: int) -> Entry:
 
 
 def _request(plan: Plan) -> dict[str, object]:
-    """What two requests under one key must have in common.
-
-    As text: a spec may have whole numbers that canonical JSON has not.
-    """
+    """What two requests under one key must have in common; grids with their order."""
     spec = plan.spec.model_dump(mode="json")
-    asked = [plan.name, spec, plan.seeds, list(plan.grid.items())]
-    return {"sweep": json.dumps(asked, sort_keys=True)}
+    return {"sweep": [plan.name, spec, plan.seeds, list(plan.grid.items())]}

@@ -29,7 +29,7 @@ from ..schemas import (
 )
 from ..services import Services
 from ..submission import memory_limit
-from ..sweeping import submit_sweep
+from ..sweeping import earlier_sweep, submit_sweep
 from ..sweeps import read_sweep, read_sweeps, requeue, steer
 from ..uploads import json_object
 from .runs import SPEC_BYTES, Key, described
@@ -56,10 +56,12 @@ def create_sweep(
     plan: PlanDep, services: ServicesDep, response: Response, idempotency_key: Key = None
 ) -> SweepRead:
     """Queue all runs of a sweep, or none. The same key with the same request is the same."""
-    with services.sessions.read() as session:
-        limit = memory_limit(services, session)
-    refuse_too_large(plan, limit)
-    sweep_id, new = submit_sweep(services, plan, idempotency_key)
+    sweep_id, new = earlier_sweep(services, plan, idempotency_key), False
+    if sweep_id is None:
+        with services.sessions.read() as session:
+            limit = memory_limit(services, session)
+        refuse_too_large(plan, limit)
+        sweep_id, new = submit_sweep(services, plan, idempotency_key)
     response.status_code = 202 if new else 200
     response.headers["Location"] = f"/api/v1/sweeps/{sweep_id}"
     with services.sessions.read() as session:

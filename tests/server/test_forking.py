@@ -121,6 +121,22 @@ def test_the_same_key_is_the_same_fork(fork):
     assert fork({"cells": [2]}, headers=headers).status_code == 422
 
 
+def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {0: 1.0}), 1.0)
+    asked = {"json": {"from": {"archive": True}}, "headers": {"Idempotency-Key": "a key"}}
+    first = api.post(f"runs/{run_id}/fork", **asked)
+    attempt.record(report(2, {1: 2.0}), 1.0)
+    attempt.finish()
+    second = api.post(f"runs/{run_id}/fork", **asked)
+    assert (first.status_code, second.status_code) == (202, 200)
+    api.delete(f"runs/{run_id}")
+    third = api.post(f"runs/{run_id}/fork", **asked)
+    assert first.json()["id"] == second.json()["id"] == third.json()["id"]
+    other = first.json()["id"]
+    assert api.post(f"runs/{other}/fork", **asked).status_code == 422
+
+
 def test_a_spec_with_an_origin_can_be_submitted_as_it_is(api, ended, spec, identity):
     origin = names(identity, 2000)
     search = {**spec["search"], "origin": origin}
