@@ -103,12 +103,14 @@ def submit(
         version=VERSION,
         **said,
     )
+    with services.sessions.read() as session:
+        origins.check(session, spec)
     try:
         with services.sessions.write.begin() as session:
             session.add(run)
             session.flush()
             note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
-            origins.keep(session, run, spec)
+            origins.keep(session, [(spec, [run.id])])
             requests.remember(session, key, request, run_id=run.id)
     except IntegrityError:
         known = requests.earlier(services, key, request)

@@ -11,10 +11,10 @@ from sqlalchemy.orm import Session
 
 from microcosmos.version import VERSION
 
-from . import own, requests
+from . import origins, own, requests
 from .db import clock
 from .models import Entry, Run, Sweep
-from .planning import Plan
+from .planning import Plan, refuse_origins
 from .services import Services
 from .sweeps import announce
 
@@ -23,6 +23,8 @@ log = logging.getLogger(__name__)
 
 def submit_sweep(services: Services, plan: Plan, key: str | None = None) -> tuple[UUID, bool]:
     """The sweep of a plan and whether it is new; the same key with the same plan is one."""
+    with services.sessions.read() as session:
+        refuse_origins(session, plan)
     try:
         with services.sessions.write.begin() as session:
             sweep = _write(session, plan, key)
@@ -83,6 +85,9 @@ def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[Run]:
     session.add_all(runs)
     session.flush()
     session.add_all(_first_entry(run, len(runs)) for run in runs)
+    ids = [run.id for run in runs]
+    several = len(plan.cases)
+    origins.keep(session, [(case.spec, ids[i::several]) for i, case in enumerate(plan.cases)])
     return runs
 
 

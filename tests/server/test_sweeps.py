@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from sqlalchemy import delete, event, insert, select
 
+from microcosmos.archive import creature
 from server import sweeping
 from server.bands import summary
 from server.claims import Claim, claim
@@ -191,6 +192,46 @@ def test_whole_numbers_that_canonical_json_has_not_are_no_hindrance(api, spec):
     assert answer.status_code == 202
     run = api.get(f"runs/{answer.json()['cases'][0]['runs'][0]}").json()
     assert run["spec"]["search"]["stop"]["evaluations"] == 10**20
+
+
+@pytest.fixture
+def elite(services, run_id, report, identity):
+    """The name of a creature that lives in a finished run."""
+    attempt = claimed(services, run_id)
+    attempt.record(report(1, {0: 1.0}), 1.0)
+    attempt.finish()
+    return creature.name(identity(1000))
+
+
+def test_what_a_sweep_begins_from_stays_as_long_as_its_runs(
+    api, services, post, spec, run_id, elite
+):
+    spec["search"]["origin"] = [elite]
+    sweep = post(seeds=2, grid=VISCOSITIES).json()
+    api.delete(f"runs/{run_id}")
+    with services.sessions.write.begin() as session:
+        session.get_one(Run, run_id).purge_at = session.get_one(Run, run_id).deleted_at
+    reconcile(services)
+    assert api.get(f"runs/{run_id}").status_code == 404
+    assert api.get(f"creatures/{elite}").status_code == 200
+    for run in runs_of(api, sweep):
+        (file,) = claimed(services, run).origin()
+        assert file["sha256"] == elite
+
+
+@pytest.mark.parametrize(
+    ("asked", "origin", "field"),
+    [
+        ({}, "ab" * 32, "spec.search.origin"),
+        ({"grid": {"search.origin": [[], ["ab" * 32]]}}, None, "grid.search.origin[1]"),
+        ({"grid": {"control.timer": ["linear"], **VISCOSITIES}}, None, "spec.control: inputs"),
+    ],
+)
+def test_a_sweep_that_could_not_begin_is_refused(api, post, spec, elite, asked, origin, field):
+    spec["search"]["origin"] = [origin or elite]
+    answer = post(**asked)
+    assert (answer.status_code, answer.json()["errors"][0]["field"]) == (422, field)
+    assert len(api.get("runs").json()["items"]) == 1
 
 
 def test_single_runs_are_taken_before_those_of_a_sweep(api, services, six, spec):
