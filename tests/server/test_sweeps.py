@@ -294,6 +294,8 @@ def test_sweeps_are_listed_in_pages_newest_first(api, post):
     assert [sweep["id"] for sweep in first["items"]] == [ids[2], ids[1]]
     rest = api.get("sweeps", params={"limit": 2, "cursor": first["next"]}).json()
     assert ([sweep["id"] for sweep in rest["items"]], rest["next"]) == ([ids[0]], None)
+    plain = httpx.get(f"{api.base_url}sweeps?limit=2&cursor={first['next']}")
+    assert plain.json() == rest, "an address has it as it is"
     for cursor in ("x", "2026-01-01T00:00:00~x", "9999-99-99~" + ids[0]):
         assert api.get("sweeps", params={"cursor": cursor}).status_code == 422
 
@@ -321,6 +323,50 @@ def test_who_steers_a_sweep_is_told_which_runs_were_left_alone(api, services, si
     assert cancelled["progress"] == pytest.approx(1 / 6)
     again = api.post(f"sweeps/{six['id']}/cancel").json()
     assert (again["changed"], len(again["left"])) == ([], 6)
+
+
+def test_a_sweep_has_a_name_that_can_be_changed(api, six):
+    runs = [run["name"] for run in api.get("runs").json()["items"]]
+    for sent, name in (({"name": " Thick "}, "Thick"), ({"name": ""}, None)):
+        answer = api.patch(f"sweeps/{six['id']}", json=sent)
+        assert (answer.status_code, answer.json()["name"]) == (200, name)
+        assert api.get(f"sweeps/{six['id']}").json() == {**six, "name": name}
+    assert [run["name"] for run in api.get("runs").json()["items"]] == runs
+    for sent in ({}, {"name": "x" * 201}, {"name": 1}, {"spec": {}}):
+        assert api.patch(f"sweeps/{six['id']}", json=sent).status_code == 422
+    assert api.patch(f"sweeps/{UUID(int=5)}", json={"name": "x"}).status_code == 404
+
+
+def test_a_deleted_sweep_is_out_of_sight_and_comes_back_as_it_was(api, services, six):
+    path = f"sweeps/{six['id']}"
+    first, *others = runs_of(api, six)
+    attempt = claimed(services, first)
+    refused = api.delete(path).json()
+    assert (refused["changed"], len(refused["left"])) == ([], 6)
+    assert "cancel it first" in refused["left"][0]["reason"]
+    api.post(f"{path}/cancel")
+    before = api.get(path).json()
+    deleted = api.delete(path)
+    assert deleted.status_code == 200
+    assert (deleted.json()["changed"], deleted.json()["left"][0]["run"]) == (others, first)
+    assert (deleted.json()["total"], deleted.json()["deleted"]) == (1, 5)
+    assert len(api.get("sweeps").json()["items"]) == 1
+    attempt.cancel()
+    api.delete(path)
+    assert api.get("sweeps").json()["items"] == api.get("runs").json()["items"] == []
+    (listed,) = api.get("sweeps", params={"deleted": True}).json()["items"]
+    assert (listed["id"], listed["total"], listed["deleted"]) == (six["id"], 0, 6)
+    assert api.get(path).json() == listed
+    empty = api.get(f"{path}/summary").json()["cases"]
+    assert [(case["members"], case["generation"], case["finals"]) for case in empty] == 2 * [
+        ([], [], {})
+    ]
+    reconcile(services)
+    restored = api.post(f"{path}/restore").json()
+    assert set(restored["changed"]) == {first, *others}
+    assert api.get(path).json() == {**before, "standing": {"cancelled": 6}}
+    assert api.get("sweeps", params={"deleted": True}).json()["items"] == []
+    assert api.post(f"{path}/restore").json()["changed"] == []
 
 
 def test_what_happens_to_a_sweep_is_told_to_everybody(address, services, six, api):

@@ -139,6 +139,8 @@ def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services
     assert "you are `bob`" in answer.json()["detail"]
     assert bob.get(f"/runs/{run['id']}").json()["owner"] == "alice"
     assert alice.post(f"/runs/{run['id']}/pause").json()["status"] == "paused"
+    sweep = alice.post("/sweeps", json={"spec": spec}).json()
+    assert bob.get(f"/sweeps/{sweep['id']}").json()["owner"] == sweep["owner"] == "alice"
     assert client(required, admin).post(f"/runs/{run['id']}/resume").status_code == 202
 
 
