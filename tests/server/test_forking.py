@@ -158,16 +158,15 @@ def test_what_a_fork_begins_from_outlives_the_run_that_it_was_in(
     assert api.get(f"runs/{forked}").json()["forked_from"] == {"run": None, "creatures": 1}
     api.post(f"runs/{forked}/cancel")
     api.delete(f"runs/{forked}")
-    for_good(api, services, forked)
+    for_good(api, services, UUID(forked))
     assert api.get(f"creatures/{kept}").status_code == 404
     with services.sessions.read() as session:
         assert session.scalars(select(Origin.creature)).all() == []
 
 
 def for_good(api, services, run_id):
-
     with services.sessions.write.begin() as session:
-        over = update(Run).where(Run.deleted_at.is_not(None))
+        over = update(Run).where(Run.id == run_id)
         session.execute(over.values(purge_at=Run.deleted_at))
     purge(services)
     assert api.get(f"runs/{run_id}").status_code == 404
@@ -176,3 +175,17 @@ def for_good(api, services, run_id):
 def test_nothing_begins_from_a_run_in_the_bin(fork, api, ended):
     api.delete(f"runs/{ended}")
     assert fork({"archive": True}).status_code == 404
+
+
+def test_a_fork_comes_back_from_the_bin_though_what_it_was_forked_from_is_gone(
+    fork, api, services, ended, identity
+):
+    forked = UUID(fork({"cells": [1]}).json()["id"])
+    api.post(f"runs/{forked}/pause")
+    api.delete(f"runs/{forked}")
+    assert api.delete(f"runs/{ended}").status_code == 200
+    for_good(api, services, ended)
+    api.post(f"runs/{forked}/restore")
+    assert api.post(f"runs/{forked}/resume").json()["status"] == "queued"
+    (file,) = claim(services, forked, "worker").origin()
+    assert file["sha256"] == names(identity, 1001)[0]

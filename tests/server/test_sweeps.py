@@ -2,12 +2,13 @@
 
 import json
 from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
 from uuid import UUID
 
 import httpx
 import numpy as np
 import pytest
-from sqlalchemy import delete, event, insert, select
+from sqlalchemy import delete, event, insert, select, update
 
 from microcosmos.archive import creature
 from server import sweeping
@@ -243,6 +244,15 @@ def test_single_runs_are_taken_before_those_of_a_sweep(api, services, six, spec)
     assert api.post("runs/estimate", json=spec).json()["queue"]["waiting"] == 1
     both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["waiting"]
     assert both == 7
+
+
+def test_runs_that_are_resumed_together_wait_in_their_old_order(services, post, api):
+    sweep = post(seeds=30).json()
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(queued_at=datetime(2026, 1, 1, tzinfo=UTC)))
+    with services.sessions.read() as session:
+        waiting = [str(one.run) for one in in_line(session)]
+    assert waiting == runs_of(api, sweep)
 
 
 def test_runs_of_a_sweep_are_enqueued_again_where_redis_forgot_them(services, six, flush, api):
