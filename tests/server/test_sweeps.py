@@ -438,6 +438,39 @@ def test_bands_are_the_quartiles_of_the_runs_that_have_got_so_far(api, services,
     assert line["coverage"] == [*told[line["run"]][:, 1], None, None]
 
 
+def test_a_run_that_comes_back_while_a_summary_is_made_is_not_taken_for_another(
+    api, services, post
+):
+    sweep = post(seeds=3).json()
+    runs = sweep["cases"][0]["runs"]
+    for run, value in zip(runs, (1.0, 2.0, 3.0), strict=True):
+        record(services, run, np.full((2, 3), value))
+        api.post(f"runs/{run}/cancel")
+    api.delete(f"runs/{runs[2]}")
+    asked = []
+
+    def restore(*_):
+        asked.append(1)
+        if len(asked) == 2:
+            with services.sessions.write.begin() as session:
+                session.get_one(Run, UUID(runs[2])).deleted_at = None
+
+    with services.sessions.read() as session:
+        found = session.get_one(Sweep, UUID(sweep["id"]))
+        event.listen(session.connection(), "before_cursor_execute", restore)
+        (case,) = summary(session, found, None).cases
+    assert [str(member.run) for member in case.members] == runs[:2]
+    assert (case.best.min, case.best.max) == ([1.0, 1.0], [2.0, 2.0])
+
+
+def test_a_summary_of_very_long_runs_can_be_asked_for(api, services, post):
+    sweep = post(seeds=3).json()
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(generation=900_000))
+    found = api.get(f"sweeps/{sweep['id']}/curves")
+    assert (found.status_code, len(found.json()["generation"])) == (200, 10_000)
+
+
 def record(services, run, rows):
     """Write down generations of a run, as a worker would have."""
     columns = ("qd_score", "coverage", "best")
