@@ -96,4 +96,4 @@ def test_a_sweep_is_renamed_put_into_the_bin_and_taken_back(idle_page: Page, idl
     page.get_by_role("button", name="Delete all").click()
     page.get_by_role("button", name="Restore").click(timeout=FAST)
     expect(states).to_have_text("2 cancelled", timeout=FAST)
-    expect(page.get_by_text("in the bin.")).to_have_count(1)  # The note, which goes by itself.
+    expect(page.get_by_text("Its runs are in the bin.")).to_have_count(0)
