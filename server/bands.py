@@ -19,6 +19,8 @@ FIGURES = ("qd_score", "coverage", "best")
 QUANTILES = {"median": 0.5, "low": 0.25, "high": 0.75, "min": 0.0, "max": 1.0}
 POINTS = 400_000
 """Values of each figure that are looked at for one answer."""
+NAMED = 10_000
+"""Generations that one question to the database names."""
 OF_RUNS = ("id", "place", "status", "generation", "generations", "evaluations")
 
 Told = Any
@@ -46,7 +48,8 @@ def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
     runs = session.execute(mine).all()
     last = max((run.generation for run in runs), default=0)
     most = max(2, POINTS // max(1, len(runs)))
-    generation = evenly(last, min(points or last, most))
+    wanted = points or last
+    generation = evenly(last, wanted if wanted <= most else min(most, NAMED))
     return Recorded(runs, generation, *_table(session, sweep, runs, generation, last))
 
 
@@ -62,8 +65,9 @@ def _table(
     asked = select(Run.place, Generation.generation, *columns).join(
         Run, Run.id == Generation.run_id
     )
-    # Runs may have gone on since they were read.
-    asked = asked.where(Run.sweep == sweep.id, KEPT, Generation.generation <= last)
+    # Runs may have gone on since they were read, or have come back from the bin.
+    asked = asked.where(Run.sweep == sweep.id, Run.place.in_([run.place for run in runs]))
+    asked = asked.where(Generation.generation <= last)
     if len(generation) < last:
         asked = asked.where(Generation.generation.in_(generation))
     found = session.execute(asked).all()

@@ -93,6 +93,8 @@ def _sqlite(url: Any) -> Engine:
 
 def _prepare_sqlite(connection: Any, _: Any) -> None:
     connection.isolation_level = None  # The driver begins nothing by itself.
+    # SQLite's own knows no letters but ASCII's.
+    connection.create_function("lower", 1, _lower, deterministic=True)
     for pragma in (
         f"busy_timeout={TIMEOUT_MS}",
         "journal_mode=WAL",
@@ -100,6 +102,10 @@ def _prepare_sqlite(connection: Any, _: Any) -> None:
         "foreign_keys=ON",
     ):
         connection.execute(f"PRAGMA {pragma}")
+
+
+def _lower(text: str | None) -> str | None:
+    return None if text is None else text.lower()
 
 
 def _begin_sqlite(connection: Any) -> None:

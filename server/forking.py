@@ -1,6 +1,6 @@
 """A new run that begins from creatures of another: which ones, and what is to be different."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from pydantic import ValidationError
@@ -82,7 +82,8 @@ def chosen(session: Session, run: Run, start: Beginning, generation: int | None)
         raise refused("from", "`creatures`, since this run fills no archive", run.experiment)
     as_of = run.generation if generation is None else min(generation, run.generation)
     living = session.execute(elites.at(run, as_of)).all()
-    names = sorted({elite.creature for elite in living if _within(run, start, elite)})
+    within = _place(run, start)
+    names = sorted({elite.creature for elite in living if within(elite)})
     _refuse_empty(start, {elite.cell for elite in living}, names)
     if len(names) > ORIGINS:
         needed = f"at most {ORIGINS:,} creatures (a `region`, or some `cells`)"
@@ -90,19 +91,21 @@ def chosen(session: Session, run: Run, start: Beginning, generation: int | None)
     return names
 
 
-def _within(run: Run, start: Beginning, elite: Any) -> bool:
+def _place(run: Run, start: Beginning) -> Callable[[Any], bool]:
+    """Whether an elite lives where a fork is to begin."""
     if start.cells is not None:
-        return elite.cell in start.cells
+        cells = set(start.cells)
+        return lambda elite: elite.cell in cells
     if start.region is None:
-        return True
+        return lambda _: True
     axes = [axis.name for axis in features.axes(run)]
     if unknown := set(start.region) - set(axes):
         name = min(unknown)
         raise refused(
             f"from.region.{name}", f"one of the archive's axes {', '.join(axes)}", name
         )
-    values = dict(zip(axes, elite.descriptors, strict=True))
-    return all(low <= values[name] <= high for name, (low, high) in start.region.items())
+    ends = [(axes.index(name), *ends) for name, ends in start.region.items()]
+    return lambda elite: all(low <= elite.descriptors[i] <= high for i, low, high in ends)
 
 
 def _refuse_empty(start: Beginning, occupied: set[int], names: list[str]) -> None:

@@ -1,28 +1,46 @@
 """Creatures that a run begins from: there, fit for its spec, and kept as long as the run is."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from typing import Any
+from uuid import UUID
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from microcosmos.archive.creature import CreatureError
 from microcosmos.archive.origin import genes_of
 from microcosmos.spec import Evolution, Refinement, Spec
 
 from .creatures import document
-from .models import Creature, Origin, Run
-from .problems import FieldError, Refused
+from .models import Creature, Origin
 from .records import insert_missing
 
+DECISIVE: Any = {"control": True, "genome": True, "body": True, "search": {"origin"}}
+"""The parts of a spec that decide whether it can begin from creatures."""
 
-def keep(session: Session, run: Run, spec: Spec) -> None:
-    """Note what a new run begins from; `Refused` or `CreatureError` where it cannot."""
-    names = named(spec)
-    found = held(session, names)
-    if isinstance(spec, Evolution):
-        _refuse_unknown(names, found)
-        genes_of(spec, [document(found[name]) for name in names])
-    insert_missing(session, Origin, [{"run_id": run.id, "creature": name} for name in found])
+
+def check(session: Session, spec: Spec) -> None:
+    """Raise `CreatureError` where a spec cannot begin from what it names.
+
+    Creatures never change: nobody who wants to write has to wait for it.
+    """
+    if isinstance(spec, Evolution) and spec.search.origin:
+        rows = {row["sha256"]: row for row in files(session, spec.search.origin)}
+        _refuse_lacking(spec, rows)
+        genes_of(spec, [rows[name] for name in spec.search.origin])
+
+
+def keep(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> None:
+    """Note what new runs begin from, which stays as long as they do; by spec, all at once.
+
+    Raises `CreatureError` where it is gone.
+    """
+    held = _hold(session, sorted({name for spec, _ in runs for name in named(spec)}))
+    for spec, run_ids in runs:
+        _refuse_lacking(spec, held)
+        names = [name for name in named(spec) if name in held]
+        rows = [{"run_id": run, "creature": name} for run in run_ids for name in names]
+        insert_missing(session, Origin, rows)
 
 
 def named(spec: Spec) -> Sequence[str]:
@@ -32,25 +50,23 @@ def named(spec: Spec) -> Sequence[str]:
     return [spec.creature["sha256"]] if isinstance(spec, Refinement) else []
 
 
-def held(session: Session, names: Sequence[str]) -> dict[str, Creature]:
-    """Those that are there, by name in their order; none can go before the transaction ends."""
-    if not names:
-        return {}
-    mine = select(Creature).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
-    rows = session.scalars(mine.with_for_update(read=True, key_share=True))
-    return {row.sha256: row for row in rows}
-
-
 def files(session: Session, names: Sequence[str]) -> list[dict[str, Any]]:
     """Creature files."""
     mine = select(Creature).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
     return [document(row) for row in session.scalars(mine)] if names else []
 
 
-def _refuse_unknown(names: Sequence[str], found: dict[str, Creature]) -> None:
-    for name in names:
-        if name not in found:
-            needed = "names of creatures that are here; import it first"
-            message = f"needs {needed}; got {name}"
-            error = FieldError(field="search.origin", message=message, needed=needed, got=name)
-            raise Refused(422, "Invalid input", f"search.origin: {message}", [error])
+def _hold(session: Session, names: Sequence[str]) -> set[str]:
+    """Those that are there; none can go before the transaction ends."""
+    if not names:
+        return set()
+    mine = select(Creature.sha256).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
+    return set(session.scalars(mine.with_for_update(read=True, key_share=True)))
+
+
+def _refuse_lacking(spec: Spec, there: Container[str]) -> None:
+    """A refinement has its creature with it, a search only their names."""
+    lacking = [name for name in named(spec) if name not in there]
+    if lacking and isinstance(spec, Evolution):
+        needed = "names of creatures that are here (import it first)"
+        raise CreatureError("search.origin", needed, lacking[0])

@@ -6,13 +6,15 @@ from math import prod
 from typing import Any
 
 from pydantic import ValidationError
+from sqlalchemy.orm import Session
 
+from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import Spec
 
-from . import grid
+from . import grid, origins
 from .cases import TOLD, Case, cases_of, combination, concerned, moved, refused, run_name
 from .own_specs import Parse
-from .problems import Refused, brief, field_errors
+from .problems import Refused, bad_creature, brief, field_errors
 from .schemas import MOST, FieldError, SweepSent
 from .submission import TOO_LARGE, too_large
 
@@ -127,10 +129,27 @@ def refuse_too_large(plan: Plan, limit: int) -> None:
     errors: dict[str, FieldError] = {}
     for case in plan.cases:
         if found := too_large(case.spec, limit):
-            own = concerned(found.field, case.values)
-            field = case.field(own[0]) if own else f"spec.{found.field}"
-            told = f"with {combination(case.values)}: " if case.values else ""
-            errors.setdefault(field, moved(found, field, told))
+            placed = _placed(found, case)
+            errors.setdefault(placed.field, placed)
     if errors:
         told = list(errors.values())[:TOLD]
         raise Refused(422, TOO_LARGE, "; ".join(error.message for error in told), told)
+
+
+def refuse_origins(session: Session, plan: Plan) -> None:
+    """Raise `Refused` where one of the runs cannot begin from what it names."""
+    alike = {case.spec.model_dump_json(include=origins.DECISIVE): case for case in plan.cases}
+    for case in alike.values():
+        try:
+            origins.check(session, case.spec)
+        except CreatureError as error:
+            found = bad_creature(error).errors or []
+            raise refused([_placed(one, case) for one in found]) from error
+
+
+def _placed(found: FieldError, case: Case) -> FieldError:
+    """An error of a case's spec, where it was asked for."""
+    own = concerned(found.field, case.values)
+    field = case.field(own[0]) if own else f"spec.{found.field}"
+    told = f"with {combination(case.values)}: " if case.values else ""
+    return moved(found, field, told)

@@ -2,17 +2,15 @@
 
 import os
 from dataclasses import dataclass, field
-from hashlib import sha256
 from typing import Any
 
-import rfc8785
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import Spec, estimate
 from microcosmos.version import VERSION
 
-from . import origins, own, workers
+from . import origins, own, requests, workers
 from .journal import note
 from .lifecycle import announce
 from .models import Idempotency, Run
@@ -88,13 +86,15 @@ def _least(spec: Any, field: str) -> Spec:
 
 
 def submit(
-    services: Services, spec: Spec, key: str | None = None, **said: Any
+    services: Services, spec: Spec, key: str | None = None, request: Any = None, **said: Any
 ) -> tuple[Run, bool]:
-    """The run of a spec and whether it is new; the same key with the same spec is one run.
+    """The run of a spec and whether it is new; the same key with the same request is one run.
 
-    What else is `said` of a new run are columns of its row.
+    Of what is asked for by its spec alone, that is the request. What else is `said` of a new
+    run are columns of its row.
     """
     document = spec.model_dump(mode="json")
+    request = document if request is None else request
     run = Run(
         experiment=spec.experiment,
         spec=document,
@@ -103,41 +103,26 @@ def submit(
         version=VERSION,
         **said,
     )
+    with services.sessions.read() as session:
+        origins.check(session, spec)
     try:
         with services.sessions.write.begin() as session:
             session.add(run)
             session.flush()
             note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
-            origins.keep(session, run, spec)
-            if key is not None:
-                session.add(Idempotency(key=key, body_sha256=digest(run.spec), run_id=run.id))
+            origins.keep(session, [(spec, [run.id])])
+            requests.remember(session, key, request, run_id=run.id)
     except IntegrityError:
-        if key is None:
+        known = requests.earlier(services, key, request)
+        if known is None:
             raise
-        return _earlier(services, key, run), False
+        return _made(services, known), False
     # Committed before it is enqueued: the worker must find the row.
     requeue(services, run.id)
     announce(services, run.id)
     return run, True
 
 
-def digest(document: dict[str, Any]) -> str:
-    """What two requests under one key must have in common."""
-    return sha256(rfc8785.dumps(document)).hexdigest()
-
-
-def _earlier(services: Services, key: str, run: Run) -> Run:
-    """The run that a key stands for already; `Refused` where its spec was another."""
+def _made(services: Services, known: Idempotency) -> Run:
     with services.sessions.read() as session:
-        known = same_request(session, key, run.spec)
         return session.get_one(Run, known.run_id)
-
-
-def same_request(session: Session, key: str, document: dict[str, Any]) -> Idempotency:
-    """What a key stands for already; `Refused` where another request came under it."""
-    known = session.get_one(Idempotency, key)
-    if known.body_sha256 != digest(document):
-        made = f"sweep {known.sweep}" if known.sweep else f"run {known.run_id}"
-        detail = f"Idempotency-Key {key!r} was used with another spec, for {made}."
-        raise Refused(422, "Idempotency key reused", detail)
-    return known

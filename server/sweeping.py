@@ -1,6 +1,5 @@
 """From a plan to a sweep and its queued runs, in one transaction."""
 
-import json
 import logging
 from datetime import timedelta
 from uuid import UUID
@@ -12,12 +11,11 @@ from sqlalchemy.orm import Session
 
 from microcosmos.version import VERSION
 
-from . import own
+from . import origins, own, requests
 from .db import clock
-from .models import Entry, Idempotency, Run, Sweep
-from .planning import Plan
+from .models import Entry, Run, Sweep
+from .planning import Plan, refuse_origins
 from .services import Services
-from .submission import digest, same_request
 from .sweeps import announce
 
 log = logging.getLogger(__name__)
@@ -25,15 +23,17 @@ log = logging.getLogger(__name__)
 
 def submit_sweep(services: Services, plan: Plan, key: str | None = None) -> tuple[UUID, bool]:
     """The sweep of a plan and whether it is new; the same key with the same plan is one."""
+    with services.sessions.read() as session:
+        refuse_origins(session, plan)
     try:
         with services.sessions.write.begin() as session:
             sweep = _write(session, plan, key)
             runs = _write_runs(session, plan, sweep)
     except IntegrityError:
-        if key is None:
+        known = earlier_sweep(services, plan, key)
+        if known is None:
             raise
-        with services.sessions.read() as session:
-            return UUID(str(same_request(session, key, _request(plan)).sweep)), False
+        return known, False
     # Committed before they are enqueued: workers must find the rows.
     try:
         services.jobs.evolve_new(runs)
@@ -41,6 +41,12 @@ def submit_sweep(services: Services, plan: Plan, key: str | None = None) -> tupl
         log.warning("runs of sweep %s stay queued until Redis answers: %s", sweep.id, error)
     announce(services, sweep.id)
     return sweep.id, True
+
+
+def earlier_sweep(services: Services, plan: Plan, key: str | None) -> UUID | None:
+    """The sweep that a key stands for already; `Refused` where another request did."""
+    known = requests.earlier(services, key, _request(plan))
+    return known.sweep if known else None
 
 
 def _write(session: Session, plan: Plan, key: str | None) -> Sweep:
@@ -53,10 +59,7 @@ def _write(session: Session, plan: Plan, key: str | None) -> Sweep:
     )
     session.add(sweep)
     session.flush()
-    if key is not None:
-        body = digest(_request(plan))
-        session.add(Idempotency(key=key, body_sha256=body, sweep=sweep.id))
-        session.flush()
+    requests.remember(session, key, _request(plan), sweep=sweep.id)
     return sweep
 
 
@@ -82,6 +85,9 @@ def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[Run]:
     session.add_all(runs)
     session.flush()
     session.add_all(_first_entry(run, len(runs)) for run in runs)
+    ids = [run.id for run in runs]
+    several = len(plan.cases)
+    origins.keep(session, [(case.spec, ids[i::several]) for i, case in enumerate(plan.cases)])
     return runs
 
 
@@ -92,10 +98,6 @@ def _first_entry(run: Run, total: int) -> Entry:
 
 
 def _request(plan: Plan) -> dict[str, object]:
-    """What two requests under one key must have in common.
-
-    As text: a spec may have whole numbers that canonical JSON has not.
-    """
+    """What two requests under one key must have in common; grids with their order."""
     spec = plan.spec.model_dump(mode="json")
-    asked = [plan.name, spec, plan.seeds, list(plan.grid.items())]
-    return {"sweep": json.dumps(asked, sort_keys=True)}
+    return {"sweep": [plan.name, spec, plan.seeds, list(plan.grid.items())]}

@@ -3,19 +3,22 @@
 import logging
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
+from datetime import datetime
 from itertools import product
 from typing import Any
 from uuid import UUID
 
 from redis import RedisError
-from sqlalchemy import select
+from sqlalchemy import ColumnElement, and_, or_, select
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
+from . import owners
 from .lifecycle import KEPT, Conflict
 from .models import STATUSES, Run, Sweep
+from .problems import Refused
 from .progress import progress, read_runs
-from .schemas import CaseRead, Left, SweepRead
+from .schemas import CaseRead, FieldError, Left, SweepPage, SweepRead
 from .services import Services
 
 AT_ONCE = 50
@@ -27,20 +30,52 @@ log = logging.getLogger(__name__)
 def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
     """With their runs, all in one query."""
     of_sweeps: dict[UUID, list[Any]] = defaultdict(list)
-    columns = (Run.id, Run.sweep, Run.place, Run.status, Run.generation, Run.generations)
+    names = ("id", "sweep", "place", "status", "generation", "generations", "deleted_at")
+    columns = [getattr(Run, name) for name in names]
     mine = Run.sweep.in_([sweep.id for sweep in sweeps])
-    for row in session.execute(
-        select(*columns).where(mine, KEPT).order_by(Run.sweep, Run.place)
-    ):
+    for row in session.execute(select(*columns).where(mine).order_by(Run.sweep, Run.place)):
         of_sweeps[row.sweep].append(row)
-    return [_read(sweep, of_sweeps[sweep.id]) for sweep in sweeps]
+    named = owners.names(session, (sweep.owner for sweep in sweeps))
+    return [_read(one, of_sweeps[one.id], named.get(one.owner)) for one in sweeps]
+
+
+def page(session: Session, cursor: str | None, limit: int, deleted: bool) -> SweepPage:
+    """Newest first from a place on: those that have runs, or those whose runs are deleted."""
+    kept = select(Run.id).where(Run.sweep == Sweep.id, KEPT).exists()
+    listed = select(Sweep).where(~kept if deleted else kept)
+    if cursor is not None:
+        listed = listed.where(_after(cursor))
+    ordered = listed.order_by(Sweep.created_at.desc(), Sweep.id.desc())
+    found = session.scalars(ordered.limit(limit + 1)).all()
+    more = len(found) > limit
+    items = read_sweeps(session, found[:limit])
+    return SweepPage(items=items, next=_place(found[limit - 1]) if more else None)
+
+
+def _place(sweep: Sweep) -> str:
+    """In an address as it is: there, a plus would be a space."""
+    return f"{sweep.created_at:%Y-%m-%dT%H:%M:%S.%fZ}~{sweep.id}"
+
+
+def _after(cursor: str) -> ColumnElement[bool]:
+    moment, _, last = cursor.partition("~")
+    try:
+        created, identity = datetime.fromisoformat(moment).astimezone(), UUID(last)
+    except (ValueError, OverflowError):
+        needed = "the `next` of an earlier answer"
+        detail = f"`cursor` must be {needed}; got {cursor!r:.80}."
+        error = FieldError(field="cursor", message=detail, needed=needed, got=cursor)
+        raise Refused(422, "Invalid input", detail, [error]) from None
+    same = and_(Sweep.created_at == created, Sweep.id < identity)
+    return or_(Sweep.created_at < created, same)
 
 
 def read_sweep(session: Session, sweep: Sweep) -> SweepRead:
     return read_sweeps(session, [sweep])[0]
 
 
-def _read(sweep: Sweep, runs: Sequence[Any]) -> SweepRead:
+def _read(sweep: Sweep, all_runs: Sequence[Any], owner: str | None) -> SweepRead:
+    runs = [run for run in all_runs if run.deleted_at is None]
     cases = [CaseRead(values=values, runs=[]) for values in combinations(sweep.grid)]
     for run in runs:
         cases[run.place % len(cases)].runs.append(run.id)
@@ -49,8 +84,10 @@ def _read(sweep: Sweep, runs: Sequence[Any]) -> SweepRead:
     names = ("id", "name", "experiment", "spec", "seeds", "grid", "created_at")
     return SweepRead(
         **{name: getattr(sweep, name) for name in names},
+        owner=owner,
         cases=cases,
         total=len(runs),
+        deleted=len(all_runs) - len(runs),
         standing={status: counted[status] for status in STATUSES if counted[status]},
         progress=sum(shares) / len(shares) if shares else 1.0,
     )
@@ -62,11 +99,14 @@ def combinations(grid: dict[str, list[Any]]) -> list[dict[str, Any]]:
 
 
 def steer(
-    services: Services, sweep_id: UUID, change: Callable[[Session, Run], Run]
+    services: Services,
+    sweep_id: UUID,
+    change: Callable[[Session, Run], Run],
+    among: ColumnElement[bool] = KEPT,
 ) -> tuple[list[UUID], list[Left]]:
     """Change each run by itself: those that did, and those that could not."""
     with services.sessions.read() as session:
-        mine = select(Run.id).where(Run.sweep == sweep_id, KEPT).order_by(Run.place)
+        mine = select(Run.id).where(Run.sweep == sweep_id, among).order_by(Run.place)
         ids = list(session.scalars(mine))
     changed: list[UUID] = []
     left: list[Left] = []
@@ -119,5 +159,5 @@ def announce_runs(services: Services, run_ids: Sequence[UUID]) -> None:
 
 
 def announce(services: Services, sweep_id: UUID) -> None:
-    """Tell everybody that a sweep began or was steered; how it stands they ask themselves."""
+    """Tell everybody that a sweep began or changed; how it stands they ask themselves."""
     services.events.publish("sweep", sweep_id, {"sweep": str(sweep_id)})

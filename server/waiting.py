@@ -76,7 +76,9 @@ def in_line(session: Session) -> list[InLine]:
     """Runs that wait, in the order in which they are taken: those of sweeps last."""
     of_sweep = Run.sweep.is_not(None)
     waiting = select(Run.id, of_sweep, Run.sources).where(Run.status == QUEUED)
-    found = session.execute(waiting.order_by(of_sweep, Run.queued_at, Run.id))
+    # SQLite's clock counts milliseconds: what was resumed together waits in its old order.
+    ordered = waiting.order_by(of_sweep, Run.queued_at, Run.created_at, Run.id)
+    found = session.execute(ordered)
     return [InLine(run, bool(swept), sources) for run, swept, sources in found]
 
 

@@ -21,6 +21,7 @@ from ..pace import pace_of
 from ..problems import Refused
 from ..progress import read_run, read_runs
 from ..reconcile import requeue
+from ..requests import earlier
 from ..schemas import (
     EstimateRead,
     Extension,
@@ -75,8 +76,11 @@ def create_run(
     spec: SpecDep, services: ServicesDep, response: Response, idempotency_key: Key = None
 ) -> RunRead:
     """Queue a run. The same key with the same spec is the same run, answered with 200."""
+    if known := earlier(services, idempotency_key, spec.model_dump(mode="json")):
+        return _submitted(services, response, known.run_id, new=False)
     refuse_too_large(services, spec)
-    return _submitted(services, response, *submit(services, spec, idempotency_key))
+    run, new = submit(services, spec, idempotency_key)
+    return _submitted(services, response, run.id, new)
 
 
 @router.post("/estimate", openapi_extra=body)
@@ -228,18 +232,28 @@ def fork_run(
     sent: Annotated[Fork, Depends(fork_sent)],
     idempotency_key: Key = None,
 ) -> RunRead:
-    """A new run that begins from creatures of this one, its spec changed by a merge patch."""
+    """A new run that begins from creatures of this one, its spec changed by a merge patch.
+
+    The same key with the same request is the same run, though others may live there by then.
+    """
+    request = {"fork": str(run_id), **sent.model_dump(mode="json")}
+    if known := earlier(services, idempotency_key, request):
+        return _submitted(services, response, known.run_id, new=False)
     with services.sessions.read() as session, own_specs.parsing(services) as parse:
         spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
     refuse_too_large(services, spec)
     said = {"name": sent.name or None, "forked_from": run_id, "forked": len(named(spec))}
-    return _submitted(services, response, *submit(services, spec, idempotency_key, **said))
+    run, new = submit(services, spec, idempotency_key, request, **said)
+    return _submitted(services, response, run.id, new)
 
 
-def _submitted(services: Services, response: Response, run: Run, new: bool) -> RunRead:
+def _submitted(
+    services: Services, response: Response, run_id: UUID | None, new: bool
+) -> RunRead:
+    assert run_id is not None  # No request for a run is one for a sweep.
     response.status_code = 202 if new else 200
-    response.headers["Location"] = f"/api/v1/runs/{run.id}"
-    return _current(services, run.id)
+    response.headers["Location"] = f"/api/v1/runs/{run_id}"
+    return _current(services, run_id)
 
 
 def _changed(

@@ -1,24 +1,22 @@
 """Sweeps: many runs that are asked for, looked at and steered together."""
 
 from collections.abc import Callable
-from datetime import datetime
 from typing import Annotated, Any
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Query, Response
-from sqlalchemy import and_, or_, select
+from sqlalchemy import ColumnElement
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import estimate
 
-from .. import bands, lifecycle, own_specs, waiting
+from .. import bands, binned, lifecycle, own_specs, waiting
 from ..deps import ServicesDep, SessionDep, SweepDep, find_sweep
-from ..models import Run, Sweep
+from ..models import Run
 from ..pace import paces_of
 from ..planning import Plan, plan, refuse_too_large
-from ..problems import Refused
 from ..schemas import (
-    FieldError,
+    SweepChange,
     SweepChanged,
     SweepCurves,
     SweepEstimate,
@@ -29,10 +27,10 @@ from ..schemas import (
 )
 from ..services import Services
 from ..submission import memory_limit
-from ..sweeping import submit_sweep
-from ..sweeps import read_sweep, read_sweeps, requeue, steer
+from ..sweeping import earlier_sweep, submit_sweep
+from ..sweeps import announce, page, read_sweep, requeue, steer
 from ..uploads import json_object
-from .runs import SPEC_BYTES, Key, described
+from .runs import CHANGE_BYTES, SPEC_BYTES, Key, described
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"])
 body = described(SweepSent.model_json_schema())
@@ -56,14 +54,15 @@ def create_sweep(
     plan: PlanDep, services: ServicesDep, response: Response, idempotency_key: Key = None
 ) -> SweepRead:
     """Queue all runs of a sweep, or none. The same key with the same request is the same."""
-    with services.sessions.read() as session:
-        limit = memory_limit(services, session)
-    refuse_too_large(plan, limit)
-    sweep_id, new = submit_sweep(services, plan, idempotency_key)
+    sweep_id, new = earlier_sweep(services, plan, idempotency_key), False
+    if sweep_id is None:
+        with services.sessions.read() as session:
+            limit = memory_limit(services, session)
+        refuse_too_large(plan, limit)
+        sweep_id, new = submit_sweep(services, plan, idempotency_key)
     response.status_code = 202 if new else 200
     response.headers["Location"] = f"/api/v1/sweeps/{sweep_id}"
-    with services.sessions.read() as session:
-        return read_sweep(session, find_sweep(session, sweep_id))
+    return _current(services, sweep_id)
 
 
 @router.post("/estimate", openapi_extra=body)
@@ -96,39 +95,32 @@ def list_sweeps(
     session: SessionDep,
     cursor: Annotated[str | None, Query(max_length=100)] = None,
     limit: Annotated[int, Query(ge=1, le=100)] = 20,
+    deleted: bool = False,
 ) -> SweepPage:
-    """Newest first."""
-    listed = select(Sweep).order_by(Sweep.created_at.desc(), Sweep.id.desc())
-    if cursor is not None:
-        listed = listed.where(_after(cursor))
-    found = session.scalars(listed.limit(limit + 1)).all()
-    more = len(found) > limit
-    return SweepPage(
-        items=read_sweeps(session, found[:limit]),
-        next=_place(found[limit - 1]) if more else None,
-    )
-
-
-def _place(sweep: Sweep) -> str:
-    return f"{sweep.created_at.isoformat()}~{sweep.id}"
-
-
-def _after(cursor: str) -> Any:
-    moment, _, last = cursor.partition("~")
-    try:
-        created, identity = datetime.fromisoformat(moment).astimezone(), UUID(last)
-    except (ValueError, OverflowError):
-        needed = "the `next` of an earlier answer"
-        detail = f"`cursor` must be {needed}; got {cursor!r:.80}."
-        error = FieldError(field="cursor", message=detail, needed=needed, got=cursor)
-        raise Refused(422, "Invalid input", detail, [error]) from None
-    same = and_(Sweep.created_at == created, Sweep.id < identity)
-    return or_(Sweep.created_at < created, same)
+    """Newest first; of `deleted` ones all runs lie in the bin."""
+    return page(session, cursor, limit, deleted)
 
 
 @router.get("/{sweep_id}")
 def read(sweep: SweepDep, session: SessionDep) -> SweepRead:
     return read_sweep(session, sweep)
+
+
+def change_sent(
+    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
+) -> SweepChange:
+    return SweepChange.model_validate(document)
+
+
+@router.patch("/{sweep_id}", openapi_extra=described(SweepChange.model_json_schema()))
+def change_sweep(
+    sweep_id: UUID, services: ServicesDep, sent: Annotated[SweepChange, Depends(change_sent)]
+) -> SweepRead:
+    """Say what a sweep is called; its runs keep their names."""
+    with services.sessions.write.begin() as session:
+        find_sweep(session, sweep_id).name = sent.name or None
+    announce(services, sweep_id)
+    return _current(services, sweep_id)
 
 
 @router.get("/{sweep_id}/summary")
@@ -167,12 +159,31 @@ def cancel_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
     return _steered(services, sweep_id, lifecycle.cancel)
 
 
+@router.delete("/{sweep_id}")
+def delete_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+    """Every run into the bin; `left` tells of those that wait or are at work."""
+    keep = services.settings.bin_seconds
+    return _steered(services, sweep_id, lambda session, run: binned.put(session, run, keep))
+
+
+@router.post("/{sweep_id}/restore")
+def restore_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+    """Every run that lies in the bin out of it, as it was."""
+    return _steered(services, sweep_id, binned.restore, ~lifecycle.KEPT)
+
+
 def _steered(
-    services: Services, sweep_id: UUID, change: Callable[[Session, Run], Run]
+    services: Services,
+    sweep_id: UUID,
+    change: Callable[[Session, Run], Run],
+    among: ColumnElement[bool] = lifecycle.KEPT,
 ) -> SweepChanged:
     with services.sessions.read() as session:
         find_sweep(session, sweep_id)
-    changed, left = steer(services, sweep_id, change)
+    changed, left = steer(services, sweep_id, change, among)
+    return SweepChanged(**dict(_current(services, sweep_id)), changed=changed, left=left)
+
+
+def _current(services: Services, sweep_id: UUID) -> SweepRead:
     with services.sessions.read() as session:
-        now = read_sweep(session, find_sweep(session, sweep_id))
-    return SweepChanged(**dict(now), changed=changed, left=left)
+        return read_sweep(session, find_sweep(session, sweep_id))

@@ -25,12 +25,13 @@ Tag = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_
 Tags = Annotated[list[Tag], Field(max_length=20), AfterValidator(distinct)]
 
 
+Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=NAME)]
+
+
 class RunChange(Wire):
     """What people may say of a run; what is left out stays as it is."""
 
-    name: Annotated[str, StringConstraints(strip_whitespace=True, max_length=NAME)] | None = (
-        None
-    )
+    name: Name | None = None
     tags: Tags = Field(default=[])
     note: Annotated[str, StringConstraints(max_length=10_000)] | None = None
 
@@ -82,9 +83,7 @@ class Fork(Wire):
     """Elites as they were after it; None: as they are."""
     spec: dict[str, Any] = Field(default={})
     """A merge patch (RFC 7396) over the other run's spec."""
-    name: Annotated[str, StringConstraints(strip_whitespace=True, max_length=NAME)] | None = (
-        None
-    )
+    name: Name | None = None
 
 
 class Forked(Wire):

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, StringConstraints
 
 from .base import Wire
 from .estimates import AheadRead, PaceRead
-from .runs import NAME, Status
+from .runs import Name, Status
 
 MOST = 1000
 """Runs that one request may ask for."""
@@ -52,9 +52,13 @@ class SweepSent(Wire):
     """So many from the spec's own on, or those in a list."""
     grid: Annotated[dict[Path, Values], Field(max_length=FIELDS)] = Field(default={})
     """Values by the dotted path of a field, as `archive.descriptors.0.bins`."""
-    name: Annotated[str, StringConstraints(strip_whitespace=True, max_length=NAME)] | None = (
-        None
-    )
+    name: Name | None = None
+
+
+class SweepChange(Wire):
+    """What a sweep is called; without anything in it, it has no name."""
+
+    name: Name | None
 
 
 class CaseRead(Wire):
@@ -74,8 +78,12 @@ class SweepRead(Wire):
     """None where the experiment has no seed."""
     grid: dict[str, list[Any]]
     created_at: datetime
+    owner: str | None
+    """The name of the token it was made with."""
     cases: list[CaseRead]
     total: int
+    deleted: int
+    """Its runs in the bin, which are not counted anywhere else."""
     standing: dict[Status, int]
     """How many runs are in each state that any is in."""
     progress: float

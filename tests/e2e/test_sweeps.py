@@ -73,3 +73,27 @@ def test_seeds_and_a_grid_make_a_sweep_that_is_summed_up_while_it_is_computed(
     page.get_by_role("link", name="Runs of Thick and thin").click()
     expect(page.locator(".runs tbody tr")).to_have_count(6)
     complaints[:] = [said for said in complaints if "status of 422" not in said]
+
+
+@pytest.mark.e2e
+def test_a_sweep_is_renamed_put_into_the_bin_and_taken_back(idle_page: Page, idle: Any):
+    page, http = idle_page, idle.product.http
+    sweep = http.post("/api/v1/sweeps", json={"spec": TINY, "seeds": 2}).json()
+    page.goto(f"{idle.product.url}/sweeps/{sweep['id']}")
+    states = page.locator(".sweep-states")
+    expect(states).to_have_text("2 queued", timeout=FAST)
+    expect(page.get_by_role("button", name="Delete all")).to_have_count(0)
+    page.get_by_role("button", name="Rename").click()
+    page.get_by_label("Name of Sweep").fill("Twins")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("heading", name="Twins")).to_be_visible(timeout=FAST)
+    http.post(f"/api/v1/sweeps/{sweep['id']}/cancel")
+    page.get_by_role("button", name="Delete all").click(timeout=FAST)
+    expect(page.get_by_text("2 runs put into the bin.")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Its runs are in the bin.")).to_be_visible(timeout=FAST)
+    page.get_by_role("button", name="Undo").click()
+    expect(states).to_have_text("2 cancelled", timeout=FAST)
+    page.get_by_role("button", name="Delete all").click()
+    page.get_by_role("button", name="Restore").click(timeout=FAST)
+    expect(states).to_have_text("2 cancelled", timeout=FAST)
+    expect(page.get_by_text("Its runs are in the bin.")).to_have_count(0)

@@ -121,6 +121,22 @@ def test_the_same_key_is_the_same_fork(fork):
     assert fork({"cells": [2]}, headers=headers).status_code == 422
 
 
+def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {0: 1.0}), 1.0)
+    asked = {"json": {"from": {"archive": True}}, "headers": {"Idempotency-Key": "a key"}}
+    first = api.post(f"runs/{run_id}/fork", **asked)
+    attempt.record(report(2, {1: 2.0}), 1.0)
+    attempt.finish()
+    second = api.post(f"runs/{run_id}/fork", **asked)
+    assert (first.status_code, second.status_code) == (202, 200)
+    api.delete(f"runs/{run_id}")
+    third = api.post(f"runs/{run_id}/fork", **asked)
+    assert first.json()["id"] == second.json()["id"] == third.json()["id"]
+    other = first.json()["id"]
+    assert api.post(f"runs/{other}/fork", **asked).status_code == 422
+
+
 def test_a_spec_with_an_origin_can_be_submitted_as_it_is(api, ended, spec, identity):
     origin = names(identity, 2000)
     search = {**spec["search"], "origin": origin}
@@ -142,16 +158,15 @@ def test_what_a_fork_begins_from_outlives_the_run_that_it_was_in(
     assert api.get(f"runs/{forked}").json()["forked_from"] == {"run": None, "creatures": 1}
     api.post(f"runs/{forked}/cancel")
     api.delete(f"runs/{forked}")
-    for_good(api, services, forked)
+    for_good(api, services, UUID(forked))
     assert api.get(f"creatures/{kept}").status_code == 404
     with services.sessions.read() as session:
         assert session.scalars(select(Origin.creature)).all() == []
 
 
 def for_good(api, services, run_id):
-
     with services.sessions.write.begin() as session:
-        over = update(Run).where(Run.deleted_at.is_not(None))
+        over = update(Run).where(Run.id == run_id)
         session.execute(over.values(purge_at=Run.deleted_at))
     purge(services)
     assert api.get(f"runs/{run_id}").status_code == 404
@@ -160,3 +175,17 @@ def for_good(api, services, run_id):
 def test_nothing_begins_from_a_run_in_the_bin(fork, api, ended):
     api.delete(f"runs/{ended}")
     assert fork({"archive": True}).status_code == 404
+
+
+def test_a_fork_comes_back_from_the_bin_though_what_it_was_forked_from_is_gone(
+    fork, api, services, ended, identity
+):
+    forked = UUID(fork({"cells": [1]}).json()["id"])
+    api.post(f"runs/{forked}/pause")
+    api.delete(f"runs/{forked}")
+    assert api.delete(f"runs/{ended}").status_code == 200
+    for_good(api, services, ended)
+    api.post(f"runs/{forked}/restore")
+    assert api.post(f"runs/{forked}/resume").json()["status"] == "queued"
+    (file,) = claim(services, forked, "worker").origin()
+    assert file["sha256"] == names(identity, 1001)[0]

@@ -111,6 +111,15 @@ def test_tags_are_whole_and_text_is_looked_for_anywhere(found, add):
     assert found(q="\\") == found(q='"') == []
 
 
+def test_capitals_of_any_alphabet_are_letters_like_others(found, add):
+    run = add({"name": "ÄLCHEN", "tags": ["Größe"], "note": "Вода"})
+    add({"name": "Alchen"})
+    for text in ("älchen", "GRÖ", "вОДа"):
+        assert found(q=text) == [run], text
+    last = add({"name": "äffchen"})
+    assert found(sort="name", q="ä") == [last, run]
+
+
 def test_text_of_blanks_leaves_nothing_out(found, add):
     plain, named = add(), add({"name": "Wide bodies"})
     assert found(q=" ") == found(q=" \t ") == found() == [named, plain]

@@ -311,3 +311,14 @@ def test_gaits_encodings_and_folded_bodies_of_ones_own_are_queued(api, have, min
             api.get(f"runs/{answer.json()['id']}").json()["waiting"].startswith("A worker is")
         )
     assert "own" not in api.post("runs", json=sweep).json()["spec"]
+
+
+def test_a_run_with_something_of_ones_own_is_extended_as_it_is(api, services, have, mine):
+    have(plugins=declared(A))
+    run = api.post("runs", json=mine).json()
+    claim(services, UUID(run["id"]), "worker").finish()
+    have(plugins=declared(B))
+    longer = api.post(f"runs/{run['id']}/extend", json={"generations": 1})
+    assert longer.status_code == 202
+    search = {**run["spec"]["search"], "generations": run["generations"] + 1}
+    assert longer.json()["spec"] == {**run["spec"], "search": search}

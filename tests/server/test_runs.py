@@ -162,6 +162,26 @@ def test_a_key_cannot_be_used_for_another_spec(api, spec):
     assert run["id"] in answer.json()["detail"]
 
 
+def test_a_key_stands_for_a_spec_with_numbers_that_canonical_json_has_not(api, spec):
+    spec["search"]["stop"] = {"evaluations": 2**53 + 1}
+    headers = {"Idempotency-Key": "large"}
+    first, second = (api.post("runs", json=spec, headers=headers) for _ in range(2))
+    assert (first.status_code, second.status_code) == (202, 200)
+    assert first.json()["id"] == second.json()["id"]
+    spec["search"]["stop"]["evaluations"] += 1
+    assert api.post("runs", json=spec, headers=headers).status_code == 422
+
+
+def test_what_was_accepted_once_is_not_refused_when_it_is_asked_again(api, services, spec):
+    """A worker with the memory may have gone meanwhile."""
+    headers = {"Idempotency-Key": "a key"}
+    workers.report(services.sessions, "large", "cpu", 1 << 29, "idle")
+    first = api.post("runs", json=spec, headers=headers)
+    workers.report(services.sessions, "large", "cpu", 1000, "idle")
+    assert api.post("runs", json=spec).status_code == 422
+    assert api.post("runs", json=spec, headers=headers).json()["id"] == first.json()["id"]
+
+
 def test_runs_are_listed_newest_first_in_pages(api, spec):
     ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(5)]
     seen, cursor = [], None

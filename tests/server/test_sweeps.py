@@ -2,13 +2,15 @@
 
 import json
 from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
 from uuid import UUID
 
 import httpx
 import numpy as np
 import pytest
-from sqlalchemy import delete, event, insert, select
+from sqlalchemy import delete, event, insert, select, update
 
+from microcosmos.archive import creature
 from server import sweeping
 from server.bands import summary
 from server.claims import Claim, claim
@@ -193,6 +195,46 @@ def test_whole_numbers_that_canonical_json_has_not_are_no_hindrance(api, spec):
     assert run["spec"]["search"]["stop"]["evaluations"] == 10**20
 
 
+@pytest.fixture
+def elite(services, run_id, report, identity):
+    """The name of a creature that lives in a finished run."""
+    attempt = claimed(services, run_id)
+    attempt.record(report(1, {0: 1.0}), 1.0)
+    attempt.finish()
+    return creature.name(identity(1000))
+
+
+def test_what_a_sweep_begins_from_stays_as_long_as_its_runs(
+    api, services, post, spec, run_id, elite
+):
+    spec["search"]["origin"] = [elite]
+    sweep = post(seeds=2, grid=VISCOSITIES).json()
+    api.delete(f"runs/{run_id}")
+    with services.sessions.write.begin() as session:
+        session.get_one(Run, run_id).purge_at = session.get_one(Run, run_id).deleted_at
+    reconcile(services)
+    assert api.get(f"runs/{run_id}").status_code == 404
+    assert api.get(f"creatures/{elite}").status_code == 200
+    for run in runs_of(api, sweep):
+        (file,) = claimed(services, run).origin()
+        assert file["sha256"] == elite
+
+
+@pytest.mark.parametrize(
+    ("asked", "origin", "field"),
+    [
+        ({}, "ab" * 32, "spec.search.origin"),
+        ({"grid": {"search.origin": [[], ["ab" * 32]]}}, None, "grid.search.origin[1]"),
+        ({"grid": {"control.timer": ["linear"], **VISCOSITIES}}, None, "spec.control: inputs"),
+    ],
+)
+def test_a_sweep_that_could_not_begin_is_refused(api, post, spec, elite, asked, origin, field):
+    spec["search"]["origin"] = [origin or elite]
+    answer = post(**asked)
+    assert (answer.status_code, answer.json()["errors"][0]["field"]) == (422, field)
+    assert len(api.get("runs").json()["items"]) == 1
+
+
 def test_single_runs_are_taken_before_those_of_a_sweep(api, services, six, spec):
     single = api.post("runs", json=spec).json()["id"]
     ids = runs_of(api, six)
@@ -202,6 +244,15 @@ def test_single_runs_are_taken_before_those_of_a_sweep(api, services, six, spec)
     assert api.post("runs/estimate", json=spec).json()["queue"]["waiting"] == 1
     both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["waiting"]
     assert both == 7
+
+
+def test_runs_that_are_resumed_together_wait_in_their_old_order(services, post, api):
+    sweep = post(seeds=30).json()
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(queued_at=datetime(2026, 1, 1, tzinfo=UTC)))
+    with services.sessions.read() as session:
+        waiting = [str(one.run) for one in in_line(session)]
+    assert waiting == runs_of(api, sweep)
 
 
 def test_runs_of_a_sweep_are_enqueued_again_where_redis_forgot_them(services, six, flush, api):
@@ -253,6 +304,8 @@ def test_sweeps_are_listed_in_pages_newest_first(api, post):
     assert [sweep["id"] for sweep in first["items"]] == [ids[2], ids[1]]
     rest = api.get("sweeps", params={"limit": 2, "cursor": first["next"]}).json()
     assert ([sweep["id"] for sweep in rest["items"]], rest["next"]) == ([ids[0]], None)
+    plain = httpx.get(f"{api.base_url}sweeps?limit=2&cursor={first['next']}")
+    assert plain.json() == rest, "an address has it as it is"
     for cursor in ("x", "2026-01-01T00:00:00~x", "9999-99-99~" + ids[0]):
         assert api.get("sweeps", params={"cursor": cursor}).status_code == 422
 
@@ -280,6 +333,50 @@ def test_who_steers_a_sweep_is_told_which_runs_were_left_alone(api, services, si
     assert cancelled["progress"] == pytest.approx(1 / 6)
     again = api.post(f"sweeps/{six['id']}/cancel").json()
     assert (again["changed"], len(again["left"])) == ([], 6)
+
+
+def test_a_sweep_has_a_name_that_can_be_changed(api, six):
+    runs = [run["name"] for run in api.get("runs").json()["items"]]
+    for sent, name in (({"name": " Thick "}, "Thick"), ({"name": ""}, None)):
+        answer = api.patch(f"sweeps/{six['id']}", json=sent)
+        assert (answer.status_code, answer.json()["name"]) == (200, name)
+        assert api.get(f"sweeps/{six['id']}").json() == {**six, "name": name}
+    assert [run["name"] for run in api.get("runs").json()["items"]] == runs
+    for sent in ({}, {"name": "x" * 201}, {"name": 1}, {"spec": {}}):
+        assert api.patch(f"sweeps/{six['id']}", json=sent).status_code == 422
+    assert api.patch(f"sweeps/{UUID(int=5)}", json={"name": "x"}).status_code == 404
+
+
+def test_a_deleted_sweep_is_out_of_sight_and_comes_back_as_it_was(api, services, six):
+    path = f"sweeps/{six['id']}"
+    first, *others = runs_of(api, six)
+    attempt = claimed(services, first)
+    refused = api.delete(path).json()
+    assert (refused["changed"], len(refused["left"])) == ([], 6)
+    assert "cancel it first" in refused["left"][0]["reason"]
+    api.post(f"{path}/cancel")
+    before = api.get(path).json()
+    deleted = api.delete(path)
+    assert deleted.status_code == 200
+    assert (deleted.json()["changed"], deleted.json()["left"][0]["run"]) == (others, first)
+    assert (deleted.json()["total"], deleted.json()["deleted"]) == (1, 5)
+    assert len(api.get("sweeps").json()["items"]) == 1
+    attempt.cancel()
+    api.delete(path)
+    assert api.get("sweeps").json()["items"] == api.get("runs").json()["items"] == []
+    (listed,) = api.get("sweeps", params={"deleted": True}).json()["items"]
+    assert (listed["id"], listed["total"], listed["deleted"]) == (six["id"], 0, 6)
+    assert api.get(path).json() == listed
+    empty = api.get(f"{path}/summary").json()["cases"]
+    assert [(case["members"], case["generation"], case["finals"]) for case in empty] == 2 * [
+        ([], [], {})
+    ]
+    reconcile(services)
+    restored = api.post(f"{path}/restore").json()
+    assert set(restored["changed"]) == {first, *others}
+    assert api.get(path).json() == {**before, "standing": {"cancelled": 6}}
+    assert api.get("sweeps", params={"deleted": True}).json()["items"] == []
+    assert api.post(f"{path}/restore").json()["changed"] == []
 
 
 def test_what_happens_to_a_sweep_is_told_to_everybody(address, services, six, api):
@@ -339,6 +436,39 @@ def test_bands_are_the_quartiles_of_the_runs_that_have_got_so_far(api, services,
     assert lines["generation"] == [1, 2, 3, 4, 5]
     (line,) = [one for one in lines["lines"] if one["run"] == sweep["cases"][1]["runs"][1]]
     assert line["coverage"] == [*told[line["run"]][:, 1], None, None]
+
+
+def test_a_run_that_comes_back_while_a_summary_is_made_is_not_taken_for_another(
+    api, services, post
+):
+    sweep = post(seeds=3).json()
+    runs = sweep["cases"][0]["runs"]
+    for run, value in zip(runs, (1.0, 2.0, 3.0), strict=True):
+        record(services, run, np.full((2, 3), value))
+        api.post(f"runs/{run}/cancel")
+    api.delete(f"runs/{runs[2]}")
+    asked = []
+
+    def restore(*_):
+        asked.append(1)
+        if len(asked) == 2:
+            with services.sessions.write.begin() as session:
+                session.get_one(Run, UUID(runs[2])).deleted_at = None
+
+    with services.sessions.read() as session:
+        found = session.get_one(Sweep, UUID(sweep["id"]))
+        event.listen(session.connection(), "before_cursor_execute", restore)
+        (case,) = summary(session, found, None).cases
+    assert [str(member.run) for member in case.members] == runs[:2]
+    assert (case.best.min, case.best.max) == ([1.0, 1.0], [2.0, 2.0])
+
+
+def test_a_summary_of_very_long_runs_can_be_asked_for(api, services, post):
+    sweep = post(seeds=3).json()
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(generation=900_000))
+    found = api.get(f"sweeps/{sweep['id']}/curves")
+    assert (found.status_code, len(found.json()["generation"])) == (200, 10_000)
 
 
 def record(services, run, rows):

@@ -128,6 +128,23 @@ def test_when_a_token_was_last_used_is_told_coarsely(required, client, services,
     assert first not in [row.last_used_at for row in rows(services)]
 
 
+def test_a_key_that_somebody_else_chose_too_stands_for_a_run_of_ones_own(
+    required, client, services, spec
+):
+    made = {}
+    for name in ("alice", "bob"):
+        who = client(required, tokens.create(services, name, "write").secret)
+        for asked in ("runs", "sweeps"):
+            sent = spec if asked == "runs" else {"spec": spec}
+            answers = [
+                who.post(f"/{asked}", json=sent, headers={"Idempotency-Key": f"my {asked}"})
+                for _ in range(2)
+            ]
+            assert [answer.status_code for answer in answers] == [202, 200]
+            made[name, asked] = answers[1].json()
+    assert made["bob", "runs"]["owner"] == made["bob", "sweeps"]["owner"] == "bob"
+
+
 def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services, spec):
     alice = client(required, tokens.create(services, "alice", "write").secret)
     bob = client(required, tokens.create(services, "bob", "write").secret)
@@ -139,6 +156,8 @@ def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services
     assert "you are `bob`" in answer.json()["detail"]
     assert bob.get(f"/runs/{run['id']}").json()["owner"] == "alice"
     assert alice.post(f"/runs/{run['id']}/pause").json()["status"] == "paused"
+    sweep = alice.post("/sweeps", json={"spec": spec}).json()
+    assert bob.get(f"/sweeps/{sweep['id']}").json()["owner"] == sweep["owner"] == "alice"
     assert client(required, admin).post(f"/runs/{run['id']}/resume").status_code == 202
 
 

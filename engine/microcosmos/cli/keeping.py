@@ -8,7 +8,7 @@ import typer
 from . import overrides
 from .app import app
 from .following import ended
-from .remote import RUNS, Id, Ids, Json, Token, Url, found, named, reaching, say, show
+from .remote import RUNS, Id, Ids, Json, Token, Url, about, found, reaching, say, show, title
 from .submit import Name, Set, Watch, tell
 
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")]
@@ -94,27 +94,26 @@ def cancel(ids: Ids, url: Url = None, token: Token = None) -> None:
 
 @app.command(rich_help_panel=RUNS)
 def delete(ids: Ids, yes: Yes = False, url: Url = None, token: Token = None) -> None:
-    """Put runs into the bin; for a day `restore` takes them back."""
+    """Put runs or sweeps into the bin; for a day `restore` takes them back."""
     with reaching(url, token) as client:
-        found = [client.run(id) for id in ids]
-        for run in found:
-            question = (
-                f"Delete run {named(run.record)}, {run.status} at generation {run.generation}?"
-            )
-            if not yes and not typer.confirm(question, err=True):
-                say(f"Run {named(run.record)} stays.")
+        for one in [found(client, id) for id in ids]:
+            if not yes and not typer.confirm(f"{about(one)}. Delete?", err=True):
+                say(f"{title(one)} stays.")
                 continue
-            run.delete()
-            undo = f"microcosmos restore {run.id[:8]}"
-            say(f"Run {named(run.record)} is in the bin; to take it back: {undo}")
+            record = one.delete().record
+            if record.get("total"):  # Of a sweep.
+                say(f"{about(one)}; these stay: cancel them first")
+            if record.get("deleted", True):
+                undo = f"microcosmos restore {one.id[:8]}"
+                say(f"{title(one)} is in the bin; to take it back: {undo}")
 
 
 @app.command(rich_help_panel=RUNS)
 def restore(ids: Ids, url: Url = None, token: Token = None) -> None:
-    """Take runs back from the bin."""
+    """Take runs or sweeps back from the bin."""
     with reaching(url, token) as client:
-        for run in [client.run(id, deleted=True) for id in ids]:
-            say(f"Run {named(run.restore().record)} is back.")
+        for one in [found(client, id, deleted=True) for id in ids]:
+            say(f"{title(one.restore())} is back.")
 
 
 @app.command(rich_help_panel=RUNS)
@@ -142,13 +141,7 @@ def sweep(
 def _each(ids: list[str], url: str | None, token: str | None, do: Callable[[Any], Any]) -> None:
     with reaching(url, token) as client:
         for one in [found(client, id) for id in ids]:
-            record = do(one).record
-            if "cases" in record:
-                standing = record["standing"].items()
-                say(f"Sweep {one.id[:8]}: " + ", ".join(f"{n} {s}" for s, n in standing if n))
-                continue
-            wish = f", asked to {record['wish']}" if record.get("wish") else ""
-            say(f"Run {named(record)}: {record['status']}{wish}")
+            say(about(do(one)))
 
 
 def _numbers(text: str | None) -> list[int] | None:

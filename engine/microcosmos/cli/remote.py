@@ -69,17 +69,32 @@ def stdout() -> Console:
     return Console() if sys.stdout.isatty() else Console(width=WIDE)
 
 
-def found(client: "Client", id: str) -> "Run | Sweep":
-    """The run of an id, else the sweep."""
+def found(client: "Client", id: str, deleted: bool = False) -> "Run | Sweep":
+    """The run of an id, else the sweep; in the bin, where they are `deleted`."""
     from ..client import NotFound
 
     try:
-        return client.run(id)
+        return client.run(id, deleted=deleted)
     except NotFound as error:
         try:
-            return client.sweep(id)
+            return client.sweep(id, deleted=deleted)
         except NotFound:
             raise error from None
+
+
+def about(thing: "Run | Sweep") -> str:
+    """Which it is and how it stands, for people."""
+    record = thing.record
+    if "cases" in record:
+        standing = ", ".join(f"{n} {status}" for status, n in record["standing"].items() if n)
+    else:
+        wish = f", asked to {record['wish']}" if record.get("wish") else ""
+        standing = f"{record['status']}{wish}"
+    return f"{title(thing)}: {standing}"
+
+
+def title(thing: "Run | Sweep") -> str:
+    return f"{type(thing).__name__} {named(thing.record)}"
 
 
 def named(run: Mapping[str, Any]) -> str:

@@ -19,20 +19,22 @@ def members(sweep: "Sweep") -> list[dict[str, Any]]:
 
 
 def cases(sweep: "Sweep") -> list[dict[str, Any]]:
-    """A row for each case: of each measure the newest median, and a quarter to either side."""
+    """A row for each case: of each measure the median of its runs, as far as they have got,
+    and a quarter to either side.
+    """
     return [
         {
             **case["values"],
-            "generation": case["generation"][-1] if case["generation"] else 0,
-            "runs": case["runs"][-1] if case["runs"] else 0,
-            **{name: _newest(case[name]) for name in MEASURES},
+            "runs": len(case["members"]),
+            "finished": sum(one["status"] == "finished" for one in case["members"]),
+            **{name: _spread(case["finals"].get(name)) for name in MEASURES},
         }
         for case in sweep.summary().cases
     ]
 
 
-def _newest(band: dict[str, list[Any]]) -> dict[str, Any]:
-    return {name: band[name][-1] if band[name] else None for name in ("median", "low", "high")}
+def _spread(final: dict[str, Any] | None) -> dict[str, Any]:
+    return {name: final[name] if final else None for name in ("median", "low", "high")}
 
 
 def table(rows: list[dict[str, Any]]) -> None:

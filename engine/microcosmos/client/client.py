@@ -3,6 +3,7 @@
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any, Self, overload
 from uuid import uuid4
@@ -157,9 +158,13 @@ class Client:
         """All sweeps, newest first."""
         return (Sweep(self.connection, one) for one in items(self.connection, "sweeps"))
 
-    def sweep(self, id: str) -> Sweep:
-        """The sweep of this id, or whose id alone begins so; `NotFound` where none does."""
-        like = items(self.connection, "sweeps")
+    def sweep(self, id: str, *, deleted: bool = False) -> Sweep:
+        """The sweep of this id, or whose id alone begins so; `NotFound` where none does.
+
+        With `deleted`, beginnings are looked for among those in the bin too.
+        """
+        lists = [None, True] if deleted else [None]
+        like = chain(*(items(self.connection, "sweeps", deleted=one) for one in lists))
         return Sweep(self.connection, only(self.connection, "sweeps", id, like))
 
     def experiments(self) -> list[dict[str, Any]]:

@@ -79,6 +79,20 @@ class Sweep:
     def cancel(self) -> Self:
         return self._ask("cancel")
 
+    def delete(self) -> Self:
+        """Its runs into the bin, but for those that wait or are at work: see `standing`."""
+        self._connection.send("DELETE", self._path)
+        return self.refresh()
+
+    def restore(self) -> Self:
+        """Its runs back from the bin."""
+        return self._ask("restore")
+
+    def change(self, *, name: str | None) -> Self:
+        """Say what it is called."""
+        self.record = self._connection.send("PATCH", self._path, {"name": name})
+        return self
+
     def summary(self) -> "Summary":
         """Of each case, median and spread of its runs by generation."""
         return Summary(self._connection.read(f"{self._path}/summary")["cases"])

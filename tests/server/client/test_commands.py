@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
+from uuid import UUID
 
 import pytest
 from click.testing import Result
@@ -48,6 +49,38 @@ def test_a_run_is_submitted_listed_and_kept(command, client):
     assert "queued" in command("resume", id[:8]).stderr
     assert "cancelled" in command("cancel", id[:8]).stderr
     assert command("watch", "--last", code=1).stdout.count("cancelled") == 1
+
+
+def test_a_sweep_is_named_deleted_and_taken_back(command, client):
+    sweep = client.submit("demo", seeds=2)
+    assert sweep.change(name="twins").name == "twins"
+    first = next(sweep.runs())
+    sweep.cancel()
+    first.delete()
+    assert sweep.refresh().total == 1
+    gone = command("delete", sweep.id[:8], "--yes").stderr
+    assert f"Sweep {sweep.id[:8]} “twins” is in the bin" in gone
+    assert [list(client.sweeps()), list(client.runs())] == [[], []]
+    assert "is back" in command("restore", sweep.id[:8]).stderr
+    assert (sweep.refresh().total, client.sweep(sweep.id[:8])) == (2, sweep)
+    waiting = client.submit("demo", seeds=2)
+    told = command("delete", waiting.id[:8], "--yes").stderr
+    assert "2 queued; these stay: cancel them first" in told
+    assert waiting.refresh().total == 2
+
+
+def test_the_table_of_a_sweep_is_of_all_runs_however_far_one_of_them_went(
+    command, client, services, report
+):
+    sweep = client.submit("demo", seeds=3)
+    for run, last in zip(sweep.runs(), (2, 2, 5), strict=True):
+        attempt = claim(services, UUID(run.id), "worker")
+        for generation in range(1, last + 1):
+            attempt.record(report(generation), 1.0)
+        attempt.finish()
+    (row,) = json.loads(command("sweep", sweep.id, "--json").stdout)
+    assert (row["runs"], row["finished"], row["best"]["median"]) == (3, 3, 2.0)
+    assert "2 (2 to 3.5)" in command("sweep", sweep.id).stdout
 
 
 def test_what_is_wrong_is_a_sentence_and_1(command):

@@ -203,6 +203,21 @@ export async function steerSweep(id: string, verb: Wish): Promise<SweepChanged> 
   return (await success(asked)) as SweepChanged;
 }
 
+export async function nameSweep(id: string, name: string | null): Promise<Sweep> {
+  const asked = client.PATCH(`${ROOT}/sweeps/{sweep_id}`, { ...sweep(id), body: { name } });
+  return (await success(asked)) as Sweep;
+}
+
+/** Its runs into the bin, those that wait or are at work left out. */
+export async function deleteSweep(id: string): Promise<SweepChanged> {
+  return (await success(client.DELETE(`${ROOT}/sweeps/{sweep_id}`, sweep(id)))) as SweepChanged;
+}
+
+/** Its runs out of the bin. */
+export async function restoreSweep(id: string): Promise<SweepChanged> {
+  return (await success(client.POST(`${ROOT}/sweeps/{sweep_id}/restore`, sweep(id)))) as SweepChanged;
+}
+
 export async function readCreature(sha: string): Promise<Creature> {
   const asked = client.GET(`${ROOT}/creatures/{sha}`, { params: { path: { sha } } });
   return (await success(asked)) as unknown as Creature;

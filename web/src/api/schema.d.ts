@@ -671,6 +671,8 @@ export interface paths {
         /**
          * Fork Run
          * @description A new run that begins from creatures of this one, its spec changed by a merge patch.
+         *
+         *     The same key with the same request is the same run, though others may live there by then.
          */
         post: operations["fork_run_api_v1_runs__run_id__fork_post"];
         delete?: never;
@@ -1215,7 +1217,7 @@ export interface paths {
         };
         /**
          * List Sweeps
-         * @description Newest first.
+         * @description Newest first; of `deleted` ones all runs lie in the bin.
          */
         get: operations["list_sweeps_api_v1_sweeps_get"];
         put?: never;
@@ -1261,10 +1263,18 @@ export interface paths {
         get: operations["read_api_v1_sweeps__sweep_id__get"];
         put?: never;
         post?: never;
-        delete?: never;
+        /**
+         * Delete Sweep
+         * @description Every run into the bin; `left` tells of those that wait or are at work.
+         */
+        delete: operations["delete_sweep_api_v1_sweeps__sweep_id__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Change Sweep
+         * @description Say what a sweep is called; its runs keep their names.
+         */
+        patch: operations["change_sweep_api_v1_sweeps__sweep_id__patch"];
         trace?: never;
     };
     "/api/v1/sweeps/{sweep_id}/cancel": {
@@ -1321,6 +1331,26 @@ export interface paths {
          * @description Pause every run that can be paused; `left` tells of those that cannot.
          */
         post: operations["pause_sweep_api_v1_sweeps__sweep_id__pause_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore Sweep
+         * @description Every run that lies in the bin out of it, as it was.
+         */
+        post: operations["restore_sweep_api_v1_sweeps__sweep_id__restore_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2310,6 +2340,8 @@ export interface components {
              * Format: date-time
              */
             created_at: string;
+            /** Deleted */
+            deleted: number;
             /** Experiment */
             experiment: string;
             /** Grid */
@@ -2325,6 +2357,8 @@ export interface components {
             left: components["schemas"]["Left"][];
             /** Name */
             name: string | null;
+            /** Owner */
+            owner: string | null;
             /** Progress */
             progress: number;
             /** Seeds */
@@ -2382,6 +2416,8 @@ export interface components {
              * Format: date-time
              */
             created_at: string;
+            /** Deleted */
+            deleted: number;
             /** Experiment */
             experiment: string;
             /** Grid */
@@ -2395,6 +2431,8 @@ export interface components {
             id: string;
             /** Name */
             name: string | null;
+            /** Owner */
+            owner: string | null;
             /** Progress */
             progress: number;
             /** Seeds */
@@ -4943,6 +4981,7 @@ export interface operations {
             query?: {
                 cursor?: string | null;
                 limit?: number;
+                deleted?: boolean;
             };
             header?: never;
             path?: never;
@@ -5107,6 +5146,75 @@ export interface operations {
             };
         };
     };
+    delete_sweep_api_v1_sweeps__sweep_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepChanged"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_sweep_api_v1_sweeps__sweep_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": {
+                    /** Name */
+                    name: string | null;
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     cancel_sweep_api_v1_sweeps__sweep_id__cancel_post: {
         parameters: {
             query?: never;
@@ -5184,6 +5292,37 @@ export interface operations {
         responses: {
             /** @description Successful Response */
             202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepChanged"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    restore_sweep_api_v1_sweeps__sweep_id__restore_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -2,7 +2,7 @@
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Sweep, SweepCurves, SweepPage, SweepSummary } from "../api/types";
+import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "../api/types";
 import { type Loaded, useFetched } from "./fetching";
 import { useLive } from "./live";
 import { usePaced } from "./pacing";
@@ -48,15 +48,40 @@ const DONE: Record<api.Wish, string> = {
   cancel: "asked to cancel",
 };
 
-/** Asks it of every run, and says how many could not. */
-export async function steer(id: string, verb: api.Wish): Promise<void> {
+/** What was asked, once it is done; what the server says where it refuses. */
+async function asked<T>(answered: Promise<T>): Promise<T | null> {
   try {
-    const { changed, left } = await api.steerSweep(id, verb);
-    const rest = left.length > 0 ? `; ${runs(left.length)} left as they were` : "";
-    tell({ kind: "note", text: `${runs(changed.length)} ${DONE[verb]}${rest}.` });
+    return await answered;
   } catch (error) {
     tell({ kind: "wrong", text: messageOf(error) });
+    return null;
   }
+}
+
+/** How many runs did it, and how many could not. */
+const outcome = ({ changed, left }: SweepChanged, done: string) =>
+  `${runs(changed.length)} ${done}${left.length > 0 ? `; ${runs(left.length)} left as they were` : ""}.`;
+
+/** Asks it of every run. */
+export async function steer(id: string, verb: api.Wish): Promise<void> {
+  const answer = await asked(api.steerSweep(id, verb));
+  if (answer) tell({ kind: "note", text: outcome(answer, DONE[verb]) });
+}
+
+export const rename = (id: string, name: string | null) => asked(api.nameSweep(id, name));
+
+export const restore = (id: string) => asked(api.restoreSweep(id));
+
+/** Its runs into the bin at once; the note leads back, and so does the page. */
+export async function remove(id: string): Promise<void> {
+  const answer = await asked(api.deleteSweep(id));
+  if (!answer) return;
+  const back = () => {
+    dismiss(toast);
+    void restore(id);
+  };
+  const text = outcome(answer, "put into the bin");
+  const toast = tell({ kind: "note", text, action: { label: "Undo", run: back } });
 }
 
 const runs = (count: number) => `${count} ${count === 1 ? "run" : "runs"}`;

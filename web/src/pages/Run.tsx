@@ -63,7 +63,7 @@ export function RunPage({ id, query }: Props) {
         {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
       </nav>
       <header class="page-head">
-        <Name run={run} title={title} onName={(name) => void say(id, { name })}>
+        <Name of={run} title={title} onName={(name) => void say(id, { name })}>
           <h1>
             {title} <code>{short(run.id)}</code>
           </h1>

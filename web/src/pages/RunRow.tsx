@@ -34,7 +34,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
       </td>
       <th scope="row">
-        <Name run={run} title={title} onName={(name) => void say(run.id, { name })}>
+        <Name of={run} title={title} onName={(name) => void say(run.id, { name })}>
           <a class="run-name" href={`/runs/${run.id}`}>
             {title} <code>{short(run.id)}</code>
           </a>

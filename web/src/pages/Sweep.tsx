@@ -3,12 +3,13 @@
 import { useEffect } from "preact/hooks";
 import type { CaseSummary, Sweep } from "../api/types";
 import { useExperiments } from "../live/fetching";
-import { type Whole, cancelSweepSoon, steer, useSweep } from "../live/sweeps";
+import { type Whole, cancelSweepSoon, remove, rename, restore, steer, useSweep } from "../live/sweeps";
 import { setQuery } from "../router";
 import { Curves } from "../view/curves/Curves";
 import { SHOWN, type Shown, bandsOf, caseName } from "../view/sweeps/bands";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../view/sweeps/Standing";
 import { moment } from "../view/format";
+import { Name } from "../view/runs/Said";
 import { colourOf, dashOf } from "./compare/Legend";
 import { Cases, Finals, Members } from "./sweep/Tables";
 
@@ -124,29 +125,49 @@ function Head({ sweep }: { sweep: Sweep }) {
   return (
     <>
       <header class="page-head">
-        <h1>{title}</h1>
+        <Name of={sweep} title={title} onName={(name) => void rename(sweep.id, name)}>
+          <h1>{title}</h1>
+        </Name>
         <span class="spring" />
         <Actions sweep={sweep} title={title} />
       </header>
       <p class="quiet sweep-about">
-        {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)} ·{" "}
-        <a href={`/?sweep=${sweep.id}`}>As a list of runs</a>
+        {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)}
+        {sweep.owner && <> · by {sweep.owner}</>} · <a href={`/?sweep=${sweep.id}`}>As a list of runs</a>
       </p>
+      {sweep.deleted > 0 && <InBin sweep={sweep} />}
     </>
   );
 }
 
 /** Only what the state of any run allows. */
-function Actions({ sweep: { id, standing }, title }: { sweep: Sweep; title: string }) {
+function Actions({ sweep: { id, standing, total }, title }: { sweep: Sweep; title: string }) {
   const { queued = 0, running = 0, paused = 0 } = standing;
-  if (queued + running + paused === 0) return null;
+  const going = queued + running;
+  if (total === 0) return null;
   return (
     <span class="actions" role="group" aria-label="All runs">
       {paused > 0 && <button onClick={() => void steer(id, "resume")}>Resume all</button>}
-      {queued + running > 0 && <button onClick={() => void steer(id, "pause")}>Pause all</button>}
-      <button class="danger" onClick={() => cancelSweepSoon(id, title)}>
-        Cancel all
-      </button>
+      {going > 0 && <button onClick={() => void steer(id, "pause")}>Pause all</button>}
+      {going + paused > 0 && (
+        <button class="danger" onClick={() => cancelSweepSoon(id, title)}>
+          Cancel all
+        </button>
+      )}
+      {going === 0 && (
+        <button class="danger" onClick={() => void remove(id)}>
+          Delete all
+        </button>
+      )}
     </span>
+  );
+}
+
+function InBin({ sweep: { id, deleted, total } }: { sweep: Sweep }) {
+  const which = total === 0 ? "Its runs are" : deleted === 1 ? "One of its runs is" : `${deleted} of its runs are`;
+  return (
+    <p class="banner warning" role="status">
+      {which} in the bin. <button onClick={() => void restore(id)}>Restore</button>
+    </p>
   );
 }

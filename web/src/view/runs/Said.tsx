@@ -6,18 +6,18 @@ import type { Run } from "../../api/types";
 import { InPlace } from "./InPlace";
 
 interface NameProps {
-  run: Run;
+  of: { name: string | null };
   title: string;
   onName: (name: string | null) => void;
   children: ComponentChildren;
 }
 
 /** A name, and a button that makes it a field. */
-export function Name({ run, title, onName, children }: NameProps) {
+export function Name({ of, title, onName, children }: NameProps) {
   const [open, setOpen, button] = useOpen();
   const done = (text: string | null) => {
     setOpen(false);
-    if (text !== null && text !== (run.name ?? "") && text !== title) onName(text || null);
+    if (text !== null && text !== (of.name ?? "") && text !== title) onName(text || null);
   };
   if (open) return <InPlace label={`Name of ${title}`} value={title} limit={200} onDone={done} />;
   return (

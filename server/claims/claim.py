@@ -1,8 +1,4 @@
-"""A worker's claim on a run: the fence behind which everything of an attempt is written.
-
-Each write is one transaction that first proves that the attempt is still the current
-one. `Fenced` says that it is not: the process should end without another word.
-"""
+"""One attempt at a run, and all that is written of it."""
 
 import logging
 from dataclasses import dataclass
@@ -10,31 +6,28 @@ from time import monotonic
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import case, func, or_
+from sqlalchemy import case
 from sqlalchemy.orm import Session
 
-from . import journal, origins, own, records
-from .artifacts import Stored, checkpoint_path
-from .checkpoints import fall_back, last_checkpoint, point_at, rewind
-from .db import clock
-from .journal import UNSAVED, Level, note
-from .lifecycle import announce, change, hand_back, lost, release
-from .models import (
+from .. import journal, origins, records
+from ..artifacts import Stored, checkpoint_path
+from ..checkpoints import fall_back, point_at
+from ..db import clock
+from ..journal import UNSAVED, Level, note
+from ..lifecycle import announce, change, hand_back, release
+from ..models import (
     CANCEL,
     CANCELLED,
     FAILED,
     FINISHED,
-    GIVEN,
     NEEDED,
     PAUSED,
-    QUEUED,
     RUNNING,
     Artifact,
     Run,
-    Worker,
 )
-from .reports import Report
-from .services import Services
+from ..reports import Report
+from ..services import Services
 
 log = logging.getLogger(__name__)
 
@@ -44,80 +37,6 @@ ANNOUNCE_EVERY = 1.0
 
 class Fenced(Exception):
     """The run is another attempt's by now, or was ended."""
-
-
-def claim(services: Services, run_id: UUID, worker: str) -> "Claim | None":
-    """Begin an attempt at a queued run; None where there is nothing to do for this worker.
-
-    A run that this very worker had, or whose worker is silent, counts as queued: its last
-    attempt is over. What was written beyond the checkpoint is deleted.
-    """
-    with services.sessions.write.begin() as session:
-        if not _fit(session, run_id, worker):  # Whoever has it finds it in another queue.
-            return None
-        over = or_(Run.worker == worker, lost(session, services.settings.lease))
-        release(session, run_id, over, error="the worker ended without a word")
-        run = change(session, run_id, Run.status == QUEUED, **_begun(worker))
-        before = run.generation if run else 0
-        rewound = run is not None and rewind(session, run)
-        if run:
-            journal.note_beginning(session, run, before)
-        begun = _begin(services, session, run) if run else None
-    if rewound and begun:
-        _tell_rewind(begun)
-    announce(services, run_id)
-    return begun
-
-
-def _fit(session: Session, run_id: UUID, worker: str) -> bool:
-    """Whether a worker has what a run needs of users' own."""
-    run = session.get(Run, run_id)
-    return run is None or own.fit(session.get(Worker, worker), run.sources)
-
-
-def _begun(worker: str) -> dict[str, Any]:
-    return {
-        "status": RUNNING,
-        "attempt": Run.attempt + 1,
-        "attempts_without_checkpoint": Run.attempts_without_checkpoint + 1,
-        "worker": worker,
-        "heartbeat_at": clock(),
-        "started_at": func.coalesce(Run.started_at, clock()),
-    }
-
-
-def _stored(row: Artifact | None) -> Stored | None:
-    return Stored(row.path, row.size, row.sha256) if row else None
-
-
-def _tell_rewind(held: "Claim") -> None:
-    place = {"run": str(held.run_id), "generation": held.generation}
-    held.services.events.publish("rewind", held.run_id, place)
-
-
-def _paused() -> dict[str, Any]:
-    """Unless people have meanwhile asked to cancel."""
-    return {
-        "status": case((Run.wish == CANCEL, CANCELLED), else_=PAUSED),
-        "finished_at": case((Run.wish == CANCEL, clock()), else_=None),
-        "worker": None,
-        "wish": None,
-        "wished_at": None,
-    }
-
-
-def _begin(services: Services, session: Session, run: Run) -> "Claim":
-    row = last_checkpoint(session, run.id)
-    return Claim(
-        services=services,
-        run_id=run.id,
-        attempt=run.attempt,
-        spec=run.spec,
-        generation=run.checkpoint_generation,
-        checkpoint=_stored(row),
-        seconds=run.seconds,
-        other_device=run.device_leave == GIVEN,
-    )
 
 
 @dataclass
@@ -172,9 +91,9 @@ class Claim:
             )
             note(session, run, text, "warning")
         log.warning("run %s: %s (%s)", self.run_id, run.warning, unsound.path)
-        self.checkpoint = _stored(row)
+        self.checkpoint = stored(row)
         self.generation, self.seconds = run.checkpoint_generation, run.seconds
-        _tell_rewind(self)
+        tell_rewind(self)
         announce(self.services, self.run_id)
 
     def record(self, report: Report, seconds: float) -> str | None:
@@ -298,3 +217,23 @@ class Claim:
         if monotonic() - self.announced >= ANNOUNCE_EVERY:
             self.announced = monotonic()
             announce(self.services, self.run_id, without=["spec"])
+
+
+def _paused() -> dict[str, Any]:
+    """Unless people have meanwhile asked to cancel."""
+    return {
+        "status": case((Run.wish == CANCEL, CANCELLED), else_=PAUSED),
+        "finished_at": case((Run.wish == CANCEL, clock()), else_=None),
+        "worker": None,
+        "wish": None,
+        "wished_at": None,
+    }
+
+
+def stored(row: Artifact | None) -> Stored | None:
+    return Stored(row.path, row.size, row.sha256) if row else None
+
+
+def tell_rewind(held: Claim) -> None:
+    place = {"run": str(held.run_id), "generation": held.generation}
+    held.services.events.publish("rewind", held.run_id, place)

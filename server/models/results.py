@@ -1,0 +1,62 @@
+"""What runs have brought: curves, tables, elites."""
+
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import BigInteger, ForeignKey
+from sqlalchemy.orm import Mapped, mapped_column
+
+from .base import Base, Sha256
+
+
+class Generation(Base):
+    """One narrow row per generation: the curves."""
+
+    __tablename__ = "generations"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    generation: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    qd_score: Mapped[float | None]
+    coverage: Mapped[float | None]
+    best: Mapped[float | None]
+    mean: Mapped[float | None]
+    evaluations: Mapped[int] = mapped_column(BigInteger)
+    diverged: Mapped[int] = mapped_column(BigInteger)
+    seconds: Mapped[float]
+    summary: Mapped[dict[str, Any] | None]
+    """As the run's, where this generation changed it."""
+
+
+class Result(Base):
+    """A row of the table that is a run's result; append-only."""
+
+    __tablename__ = "results"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    """Its place in the whole table, from 0."""
+    generation: Mapped[int]
+    values: Mapped[dict[str, Any]]
+    creature: Mapped[str | None] = mapped_column(
+        Sha256, ForeignKey("creatures.sha256"), index=True
+    )
+
+
+class Elite(Base):
+    """A cell's new elite; append-only. Now is the last row of a cell, the past one before."""
+
+    __tablename__ = "elites"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    cell: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    generation: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    fitness: Mapped[float]
+    descriptors: Mapped[list[float]]
+    """In raw units, in the order of the archive's axes."""
+    creature: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), index=True)
