@@ -10,6 +10,7 @@ from fastapi import FastAPI
 from microcosmos.version import VERSION
 
 from . import migrations, problems, tokens
+from .access import Door
 from .description import describe
 from .discretion import Discretion
 from .guard import Guard
@@ -43,7 +44,8 @@ def create_app(services: Services) -> FastAPI:
     problems.install(app)
     describe(app)
     app.add_middleware(Discretion)
-    app.add_middleware(Guard, services=services)
+    app.state.door = door = Door(services)
+    app.add_middleware(Guard, door=door)
     app.state.requests = requests = Requests()
     app.add_middleware(Counting, requests=requests)
     for router in (api, health.router, metrics.router, share_page.router, page.router):

@@ -179,6 +179,22 @@ def test_signing_in_keeps_a_cookie_and_signing_out_forgets_it(required, client, 
     assert page.get("/tokens").status_code == 401
 
 
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        (b'{"token": "' + bytes(1 << 22), 413),
+        (b'{"token": "\\ud800"}', 422),
+        (b'{"token": "\\u0000"}', 422),
+        (b"[" * 1000, 422),
+        (b'{"token": {}}', 422),
+    ],
+)
+def test_strangers_send_little_and_break_nothing(required, client, body, status):
+    answer = client(required).post("/session", content=body)
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == "application/problem+json"
+
+
 def test_the_pages_of_other_sites_sign_nobody_in(required, client, admin):
     other = {"Origin": "http://evil.example"}
     answer = client(required).post("/session", json={"token": admin}, headers=other)

@@ -2282,11 +2282,6 @@ export interface components {
             /** Url */
             url: string;
         };
-        /** SignIn */
-        SignIn: {
-            /** Token */
-            token: string;
-        };
         /**
          * Species
          * @description Columns, one entry for each generation that tells its species, those that live.
@@ -2442,21 +2437,6 @@ export interface components {
             size: number;
             /** Width */
             width: number;
-        };
-        /**
-         * TokenCreate
-         * @description What a token is to be called, what it may, and until when.
-         */
-        TokenCreate: {
-            /** Expires At */
-            expires_at?: string | null;
-            /** Name */
-            name: string;
-            /**
-             * Scope
-             * @enum {string}
-             */
-            scope: "read" | "write" | "admin";
         };
         /** TokenMade */
         TokenMade: {
@@ -4238,7 +4218,10 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["SignIn"];
+                "application/json": {
+                    /** Token */
+                    token: string;
+                };
             };
         };
         responses: {
@@ -5333,7 +5316,17 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["TokenCreate"];
+                "application/json": {
+                    /** Expires At */
+                    expires_at?: string | null;
+                    /** Name */
+                    name: string;
+                    /**
+                     * Scope
+                     * @enum {string}
+                     */
+                    scope: "read" | "write" | "admin";
+                };
             };
         };
         responses: {
