@@ -99,6 +99,8 @@ def _refuse_other(services: Services, caller: Caller, parameters: dict[str, str]
 
 def _key(table: type[Any], text: str) -> Any:
     """The primary key that a path holds; None where it cannot be one."""
+    if "\0" in text:  # PostgreSQL reads no such text.
+        return None
     try:
         return inspect(table).primary_key[0].type.python_type(text)
     except ValueError:

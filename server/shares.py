@@ -1,5 +1,6 @@
 """What was published: who may see what of it, and until when."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -19,6 +20,7 @@ from .schemas import FieldError, ShareAsked, ShareState
 
 BYTES = 24
 """Random ones in an address: nobody finds it by trying."""
+SLUG = re.compile(r"[A-Za-z0-9_-]{1,43}")
 MEANT = ("creature", "run_id", "generation", "title", "credit", "licence", "listed")
 
 
@@ -122,9 +124,14 @@ def state(session: Session, share: Share) -> ShareState:
     return "expired" if share.expires_at and share.expires_at <= now else "live"
 
 
+def find(session: Session, slug: str) -> Share | None:
+    """The share of a name; what cannot be one, a database need not be able to read."""
+    return session.get(Share, slug) if SLUG.fullmatch(slug) else None
+
+
 def opened(session: Session, slug: str) -> Share:
     """The share at an address; `Refused` says that there is none, or none any more."""
-    share = session.get(Share, slug)
+    share = find(session, slug)
     if share is None:
         raise Refused(404, "Not found", "Nothing was ever shared at this address.")
     standing = state(session, share)

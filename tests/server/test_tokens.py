@@ -142,6 +142,13 @@ def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services
     assert client(required, admin).post(f"/runs/{run['id']}/resume").status_code == 202
 
 
+def test_what_cannot_have_an_owner_is_not_found(required, client, admin, services):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    for path in ("/shares/%00", "/runs/%00", "/sweeps/%00/pause"):
+        method = "POST" if path.endswith("pause") else "DELETE"
+        assert alice.request(method, path).status_code in (404, 422), path
+
+
 def test_what_was_made_without_a_token_is_for_admins_to_change(
     required, client, admin, services, run_id
 ):
