@@ -7,7 +7,7 @@ from datetime import datetime
 from secrets import token_urlsafe
 from typing import Any
 
-from sqlalchemy import Select, func, or_, select
+from sqlalchemy import Select, exists, func, or_, select
 from sqlalchemy.orm import Session
 
 from . import features
@@ -112,9 +112,10 @@ def _refuse_past(session: Session, expires: datetime | None) -> None:
 
 
 def live() -> Select[Share]:
-    """Shares that are neither revoked nor expired."""
+    """Shares that are neither revoked nor expired, and whose run does not lie in the bin."""
     lasting = or_(Share.expires_at.is_(None), Share.expires_at > clock())
-    return select(Share).where(Share.revoked_at.is_(None), lasting)
+    binned = exists().where(Run.id == Share.run_id, Run.deleted_at.is_not(None))
+    return select(Share).where(Share.revoked_at.is_(None), lasting, ~binned)
 
 
 def state(session: Session, share: Share) -> ShareState:
@@ -133,7 +134,7 @@ def opened(session: Session, slug: str) -> Share:
     """The share at an address; `Refused` says that there is none, or none any more."""
     share = find(session, slug)
     if share is None:
-        raise Refused(404, "Not found", "Nothing was ever shared at this address.")
+        raise Refused(404, "Not found", "Nothing is shared at this address.")
     standing = state(session, share)
     if standing == "revoked":
         raise Refused(410, "Gone", "Whoever shared this has taken it back.")

@@ -93,7 +93,7 @@ def revoke(slug: str, request: Request, services: ServicesDep) -> ShareRead:
     with services.sessions.write.begin() as session:
         share = shares.find(session, slug)
         if share is None:
-            raise Refused(404, "Not found", "Nothing was ever shared under this name.")
+            raise Refused(404, "Not found", "Nothing is shared under this name.")
         if share.revoked_at is None:
             share.revoked_at = session.execute(select(clock())).scalar_one()
         stored = published.forget(session, share)
