@@ -9,7 +9,7 @@ from fastapi import FastAPI
 
 from microcosmos.version import VERSION
 
-from . import migrations, problems, tokens
+from . import migrations, problems, request_log, tokens
 from .access import Door
 from .description import describe
 from .discretion import Discretion
@@ -42,6 +42,7 @@ def create_app(services: Services) -> FastAPI:
     )
     app.state.services = services
     problems.install(app)
+    request_log.discreet()
     describe(app)
     app.add_middleware(Discretion)
     app.state.door = door = Door(services)

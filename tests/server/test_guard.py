@@ -1,6 +1,7 @@
 """Who may speak to the server, and where it may listen."""
 
 import logging
+from contextlib import contextmanager
 from urllib.parse import urlsplit
 
 import httpx
@@ -99,16 +100,35 @@ def test_a_cookie_is_of_no_use_to_the_pages_of_other_sites(serve, spec):
         assert httpx.post(url, json=spec, headers=bearer | other).status_code == 202
 
 
-def test_the_log_of_requests_does_not_name_a_token_in_an_address(serve, caplog):
+@contextmanager
+def listening(caplog):
+    """To the log of requests, which a server sets up when it starts: their addresses."""
     log = logging.getLogger("uvicorn.access")
-    with serve(token=SecretStr("secret")) as address:
-        log.addHandler(caplog.handler)
-        caplog.set_level("INFO", "uvicorn.access")
+    log.addHandler(caplog.handler)
+    caplog.set_level("INFO", "uvicorn.access")
+    yield lambda: [r.getMessage().partition('"')[2].split()[1] for r in caplog.records]
+    log.removeHandler(caplog.handler)
+
+
+def test_the_log_of_requests_does_not_name_a_token_in_an_address(serve, caplog):
+    with serve(token=SecretStr("secret")) as address, listening(caplog) as logged:
         for token in ("secret", "guessed"):
             httpx.get(f"{address}/runs?token={token}&view=map")
-        log.removeHandler(caplog.handler)
-    told = [record.getMessage() for record in caplog.records]
-    assert [text.partition('"')[2].split()[1] for text in told] == ["/runs?view=map"] * 2
+        assert logged() == ["/runs?view=map"] * 2
+
+
+def test_the_log_of_requests_does_not_name_shares(serve, caplog):
+    slug, sha = "q7Xv-_0123456789abcdefghijklmnop", "ab" * 32
+    with serve() as address, listening(caplog) as logged:
+        for path in (f"/s/{slug}", f"/s/{slug}/creatures/{sha}"):
+            httpx.get(address + path)
+        for path in (f"shares/{slug}", f"shares/{slug}/preview.png", f"commons?cursor={slug}"):
+            httpx.get(f"{address}/api/v1/{path}")
+        httpx.delete(f"{address}/api/v1/shares/{slug}")
+        lines = logged()
+    assert not any(slug[4:] in line for line in lines)
+    assert lines[:2] == ["/s/q7Xv…", f"/s/q7Xv…/creatures/{sha}"]
+    assert len(lines) == 6
 
 
 def test_while_the_database_is_away_a_token_is_not_wrong(serve, monkeypatch):
