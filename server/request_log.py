@@ -1,4 +1,4 @@
-"""The log of requests: it names no share, since whoever reads its name may see what is shared."""
+"""The log of requests names no share: whoever knows its name may see what was shared."""
 
 import logging
 import re
