@@ -4,16 +4,24 @@ Images are not built here: this keeps the words in them from going stale.
 """
 
 import importlib.util
+import os
 import re
+import signal
 import tomllib
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
+from subprocess import Popen
 
 import pytest
 import yaml
 from packaging.specifiers import SpecifierSet
+from redis import Redis
+from redis.backoff import ConstantBackoff
+from redis.retry import Retry
 
 from server.__main__ import GRACE
+from server.redis_embedded import find_binary, free_port
 from server.settings import Settings
 from worker.health import PARTS
 from worker.supervisor import PATIENCE
@@ -157,6 +165,29 @@ def test_what_is_copied_into_images_is_there_and_not_kept_out(services):
         if isinstance(built := one.get("build"), dict):
             assert (ROOT / built["dockerfile"]).is_file()
             assert (ROOT / built.get("args", {}).get("LOCK", "requirements.lock")).is_file()
+
+
+def test_valkey_takes_its_password_from_a_pipe_and_hears_that_it_is_to_end(services, tmp_path):
+    """Docker tells the first process: a shell before it would not hand that on."""
+    (tmp_path / "valkey-server").symlink_to(find_binary())
+    port, password = free_port(), "abc123"
+    *shell, script = services["valkey"]["command"]
+    script = script.replace("$$", "$").replace("dir /data", f"dir {tmp_path}\nport {port}")
+    environment = {
+        "PATH": f"{tmp_path}:{os.environ['PATH']}",
+        "VALKEY_PASSWORD": password,
+    }
+    with (tmp_path / "log").open("w") as log:
+        started = Popen([*shell, script], env=environment, stdout=log, process_group=0)
+    try:
+        retry = Retry(ConstantBackoff(0.1), 100)
+        with Redis(port=port, password=password, retry=retry) as client:
+            assert client.config_get("appendonly") == {"appendonly": "yes"}
+        started.terminate()
+        assert started.wait(20) == 0, (tmp_path / "log").read_text()
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(started.pid, signal.SIGKILL)
 
 
 def test_images_run_as_nobody_special_with_what_the_locks_say():
