@@ -5,10 +5,12 @@ from hmac import compare_digest
 from typing import Any
 
 from sqlalchemy import inspect
+from sqlalchemy.orm import Session
 
 from . import owners, tokens
 from .caller import ADMIN, LOCAL, NOBODY, SETTING, WRITE, Caller
 from .guesses import Guesses
+from .models import Owned
 from .needs import OWNED, OWNER, PUBLIC, Need
 from .problems import Refused
 from .services import Services
@@ -82,17 +84,23 @@ def _refuse_other(services: Services, caller: Caller, parameters: dict[str, str]
     if name is None:
         detail = "Only an admin may do this: whose it is is not known."
         raise Refused(403, "Forbidden", detail)
-    table = OWNED[name]
-    key = _key(table, parameters[name])
+    key = _key(OWNED[name], parameters[name])
     with services.sessions.read() as session:
-        row = session.get(table, key) if key is not None else None
-        if row is None or row.owner == caller.token:
-            return
-        owner = owners.names(session, [row.owner]).get(row.owner)
+        row = session.get(OWNED[name], key) if key is not None else None
+        if row is not None:
+            refuse_other(session, caller, row, "change")
+
+
+def refuse_other(session: Session, caller: Caller, row: Owned, deed: str) -> None:
+    """Raise `Refused` unless what somebody wants to do something to is theirs, or all is."""
+    if caller.may(ADMIN) or row.owner == caller.token:
+        return
+    owner = owners.names(session, [row.owner]).get(row.owner)
     whose = f"belongs to `{owner}`" if owner else "was made without a token"
+    (key,) = inspect(row).identity
     detail = (
-        f"The {table.__name__.lower()} {parameters[name]} {whose}: only "
-        f"{'its owner or ' if owner else ''}an admin may change it; you are `{caller.name}`."
+        f"The {type(row).__name__.lower()} {key} {whose}: only "
+        f"{'its owner or ' if owner else ''}an admin may {deed} it; you are `{caller.name}`."
     )
     raise Refused(403, "Forbidden", detail)
 

@@ -44,9 +44,9 @@ def create_app(services: Services) -> FastAPI:
     problems.install(app)
     request_log.discreet()
     describe(app)
-    app.add_middleware(Discretion)
     app.state.door = door = Door(services)
     app.add_middleware(Guard, door=door)
+    app.add_middleware(Discretion)
     app.state.requests = requests = Requests()
     app.add_middleware(Counting, requests=requests)
     for router in (api, health.router, metrics.router, share_page.router, page.router):

@@ -11,7 +11,8 @@ from sqlalchemy import Select, exists, func, or_, select
 from sqlalchemy.orm import Session
 
 from . import features
-from .caller import owner
+from .access import refuse_other
+from .caller import CALLER, owner
 from .db import clock
 from .deps import find_run
 from .models import FINISHED, Creature, Elite, Generation, Run, Share
@@ -47,6 +48,7 @@ def subject(session: Session, asked: ShareAsked) -> Subject:
         return Subject(row.sha256, title, row.licence, row.credit, creature=row.sha256)
     assert asked.run is not None
     run = find_run(session, asked.run)
+    refuse_other(session, CALLER.get(), run, "publish")
     if not features.searched(run):
         detail = f"A run of `{run.experiment}` fills no archive that could be published."
         raise Refused(422, "No archive", detail)

@@ -168,3 +168,17 @@ def test_the_cookie_is_named_after_the_port_that_the_browser_knows(serve):
             sent = {"Host": host}
             answer = client.get(f"{address}/?token=secret", headers=sent)
             assert answer.headers["set-cookie"].startswith(f"{name}=")
+
+
+def test_no_page_of_others_holds_ours_or_reads_what_it_shows(api, address):
+    """Where no token is needed, a frame would be as good as a token."""
+    for path in ("/", "/runs", "/settings", "/api/v1/runs", "/api/v1/nothing", "/metrics"):
+        headers = httpx.get(address + path).headers
+        assert "frame-ancestors 'none'" in headers["content-security-policy"], path
+        assert "default-src 'self'" in headers["content-security-policy"], path
+        assert headers["cross-origin-resource-policy"] == "same-origin", path
+        assert headers["x-content-type-options"] == "nosniff", path
+    refused = api.get("runs", headers={"Host": "evil.example"})
+    assert refused.headers["cross-origin-resource-policy"] == "same-origin"
+    shared = api.get("shares/whatever/preview.png")
+    assert shared.headers["cross-origin-resource-policy"] == "cross-origin"

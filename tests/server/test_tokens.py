@@ -142,6 +142,20 @@ def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services
     assert client(required, admin).post(f"/runs/{run['id']}/resume").status_code == 202
 
 
+def test_only_who_made_a_run_publishes_its_archive(required, client, admin, services, spec):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    bob = client(required, tokens.create(services, "bob", "write").secret)
+    run = alice.post("/runs", json=spec).json()["id"]
+    answer = bob.post("/shares", json={"run": run})
+    assert answer.status_code == 403
+    assert answer.json()["detail"] == (
+        f"The run {run} belongs to `alice`: only its owner or an admin may publish it; "
+        "you are `bob`."
+    )
+    for may in (alice, client(required, admin)):
+        assert may.post("/shares", json={"run": run}).json()["title"] == "Nothing to publish"
+
+
 def test_what_cannot_have_an_owner_is_not_found(required, client, admin, services):
     alice = client(required, tokens.create(services, "alice", "write").secret)
     for path in ("/shares/%00", "/runs/%00", "/sweeps/%00/pause"):
