@@ -13,6 +13,7 @@ from microcosmos.spec import Spec, estimate
 from microcosmos.version import VERSION
 
 from . import origins, own, workers
+from .caller import owner
 from .journal import note
 from .lifecycle import announce
 from .models import Idempotency, Run
@@ -110,7 +111,8 @@ def submit(
             note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
             origins.keep(session, run, spec)
             if key is not None:
-                session.add(Idempotency(key=key, body_sha256=digest(run.spec), run_id=run.id))
+                mine, body = own_key(key), digest(run.spec)
+                session.add(Idempotency(key=mine, body_sha256=body, run_id=run.id))
     except IntegrityError:
         if key is None:
             raise
@@ -119,6 +121,12 @@ def submit(
     requeue(services, run.id)
     announce(services, run.id)
     return run, True
+
+
+def own_key(key: str) -> str:
+    """A key as it is kept: what others sent under the same one is theirs."""
+    mine = owner()
+    return sha256(f"{mine} {key}".encode()).hexdigest() if mine else key
 
 
 def digest(document: dict[str, Any]) -> str:
@@ -135,7 +143,7 @@ def _earlier(services: Services, key: str, run: Run) -> Run:
 
 def same_request(session: Session, key: str, document: dict[str, Any]) -> Idempotency:
     """What a key stands for already; `Refused` where another request came under it."""
-    known = session.get_one(Idempotency, key)
+    known = session.get_one(Idempotency, own_key(key))
     if known.body_sha256 != digest(document):
         made = f"sweep {known.sweep}" if known.sweep else f"run {known.run_id}"
         detail = f"Idempotency-Key {key!r} was used with another spec, for {made}."

@@ -17,7 +17,7 @@ from .db import clock
 from .models import Entry, Idempotency, Run, Sweep
 from .planning import Plan
 from .services import Services
-from .submission import digest, same_request
+from .submission import digest, own_key, same_request
 from .sweeps import announce
 
 log = logging.getLogger(__name__)
@@ -55,7 +55,7 @@ def _write(session: Session, plan: Plan, key: str | None) -> Sweep:
     session.flush()
     if key is not None:
         body = digest(_request(plan))
-        session.add(Idempotency(key=key, body_sha256=body, sweep=sweep.id))
+        session.add(Idempotency(key=own_key(key), body_sha256=body, sweep=sweep.id))
         session.flush()
     return sweep
 

@@ -14,6 +14,8 @@ from server.problems import Refused
 from server.tokens import __main__ as commands
 from server.tokens import book
 
+KEY = {"Idempotency-Key": "first"}
+
 
 @pytest.fixture
 def admin(services) -> str:
@@ -140,6 +142,18 @@ def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services
     assert bob.get(f"/runs/{run['id']}").json()["owner"] == "alice"
     assert alice.post(f"/runs/{run['id']}/pause").json()["status"] == "paused"
     assert client(required, admin).post(f"/runs/{run['id']}/resume").status_code == 202
+
+
+@pytest.mark.parametrize("noun", ["runs", "sweeps"])
+def test_everybody_has_idempotency_keys_of_their_own(required, client, services, spec, noun):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    bob = client(required, tokens.create(services, "bob", "write").secret)
+    sent = {"json": spec if noun == "runs" else {"spec": spec}, "headers": KEY}
+    mine = alice.post(f"/{noun}", **sent).json()["id"]
+    his = bob.post(f"/{noun}", **sent)
+    assert (his.status_code, his.json()["id"] == mine) == (202, False)
+    again = alice.post(f"/{noun}", **sent)
+    assert (again.status_code, again.json()["id"]) == (200, mine)
 
 
 def test_only_who_made_a_run_publishes_its_archive(required, client, admin, services, spec):
