@@ -3,6 +3,7 @@
 Images are not built here: this keeps the words in them from going stale.
 """
 
+import asyncio
 import importlib.util
 import os
 import re
@@ -12,6 +13,7 @@ from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 from subprocess import Popen
+from typing import Any
 
 import pytest
 import yaml
@@ -19,6 +21,7 @@ from packaging.specifiers import SpecifierSet
 from redis import Redis
 from redis.backoff import ConstantBackoff
 from redis.retry import Retry
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from server.__main__ import GRACE
 from server.redis_embedded import find_binary, free_port
@@ -28,7 +31,7 @@ from worker.supervisor import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 OURS = ("microcosmos-server", "microcosmos-worker", "microcosmos-worker-cuda")
-OTHERS = {"JAX_PLATFORMS", "JAX_COMPILATION_CACHE_DIR"}
+OTHERS = {"JAX_PLATFORMS", "JAX_COMPILATION_CACHE_DIR", "FORWARDED_ALLOW_IPS"}
 OF_PYTHON = {"PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE", "PYTHONPATH"}
 
 
@@ -141,6 +144,22 @@ def test_containers_have_longer_to_stop_than_what_is_in_them(ours):
 def test_only_this_machine_reaches_the_server_and_nobody_the_rest(services):
     assert {name for name, one in services.items() if "ports" in one} == {"server"}
     assert all(port.startswith("127.0.0.1:") for port in services["server"]["ports"])
+
+
+def test_a_proxy_on_this_machine_says_who_comes(services):
+    """Else wrong tokens of one count for all, and cookies go where nothing is encrypted."""
+    seen: dict[str, Any] = {}
+
+    async def app(scope, receive, send):
+        seen.update(scope)
+
+    told = {"x-forwarded-for": "10.0.0.7, 203.0.113.5", "x-forwarded-proto": "https"}
+    headers = [(name.encode(), value.encode()) for name, value in told.items()]
+    scope = {"type": "http", "scheme": "http", "client": ("172.18.0.1", 1), "headers": headers}
+    trusted = services["server"]["environment"]["FORWARDED_ALLOW_IPS"]
+    asyncio.run(ProxyHeadersMiddleware(app, trusted)(scope, None, None))
+    # The client may have claimed the first address; the proxy added the second.
+    assert (seen["client"][0], seen["scheme"]) == ("203.0.113.5", "https")
 
 
 def test_every_gpu_worker_has_a_device_of_its_own(services):
