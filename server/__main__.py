@@ -5,6 +5,7 @@ import sys
 import uvicorn
 
 from . import migrations, tokens
+from .folders import private
 from .services import connect
 from .settings import Settings
 
@@ -14,6 +15,7 @@ GRACE = 5
 
 def main() -> None:
     settings = Settings()
+    private(settings.data)
     if settings.needs_token:
         _prepare(settings)
     uvicorn.run(

@@ -9,7 +9,8 @@ from fastapi import FastAPI
 
 from microcosmos.version import VERSION
 
-from . import migrations, problems, tokens
+from . import migrations, problems, request_log, tokens
+from .access import Door
 from .description import describe
 from .discretion import Discretion
 from .guard import Guard
@@ -41,9 +42,11 @@ def create_app(services: Services) -> FastAPI:
     )
     app.state.services = services
     problems.install(app)
+    request_log.discreet()
     describe(app)
+    app.state.door = door = Door(services)
+    app.add_middleware(Guard, door=door)
     app.add_middleware(Discretion)
-    app.add_middleware(Guard, services=services)
     app.state.requests = requests = Requests()
     app.add_middleware(Counting, requests=requests)
     for router in (api, health.router, metrics.router, share_page.router, page.router):

@@ -10,6 +10,8 @@ from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.expression import FunctionElement
 from sqlalchemy.types import TypeDecorator
 
+from .folders import private
+
 TIMEOUT_MS = 15_000
 
 
@@ -84,7 +86,7 @@ def _postgresql(url: Any) -> Engine:
 
 def _sqlite(url: Any) -> Engine:
     if url.database:
-        Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+        private(Path(url.database).parent)
     engine = create_engine(url, connect_args={"timeout": TIMEOUT_MS / 1000})
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)

@@ -1,4 +1,4 @@
-"""How carefully strangers are answered, who see without a token what was shared."""
+"""How carefully answers are given: to strangers, and to the pages of other sites."""
 
 import re
 
@@ -6,27 +6,48 @@ from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 SHARED = re.compile(r"(/s/|/api/v1/shares/).+")
+PAGE = (
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+    "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+)
+"""What a page of ours may load and run, and that no other page may hold it in a frame: where no
+token is needed, its visitors could be made to click on what they do not see."""
 
 
 class Discretion:
-    """Has addresses that were told in confidence stay with those who were told them.
+    """Says what browsers may do with an answer.
 
-    Nothing is kept without asking again, so that what is revoked is gone at once.
+    Addresses that were told in confidence stay with those who were told them; nothing of what
+    was shared is kept without asking again, so that what is revoked is gone at once. What was
+    not shared is of no use to other sites, not even as a picture that loads or does not.
     """
 
     def __init__(self, app: ASGIApp):
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        shared = scope["type"] == "http" and SHARED.fullmatch(scope["path"])
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        shared = SHARED.fullmatch(scope["path"]) is not None
 
         async def discreetly(message: Message) -> None:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
-                headers["Cache-Control"] = "no-cache"
-                headers["Referrer-Policy"] = "no-referrer"
-                if not scope.get("state", {}).get("listed"):
-                    headers["X-Robots-Tag"] = "noindex"
+                headers.setdefault("Content-Security-Policy", PAGE)
+                headers["X-Content-Type-Options"] = "nosniff"
+                headers["Cross-Origin-Resource-Policy"] = (
+                    "cross-origin" if shared else "same-origin"
+                )
+                if shared:
+                    _confide(headers, scope.get("state", {}).get("listed", False))
             await send(message)
 
-        await self.app(scope, receive, discreetly if shared else send)
+        await self.app(scope, receive, discreetly)
+
+
+def _confide(headers: MutableHeaders, listed: bool) -> None:
+    headers["Cache-Control"] = "no-cache"
+    headers["Referrer-Policy"] = "no-referrer"
+    if not listed:
+        headers["X-Robots-Tag"] = "noindex"

@@ -9,12 +9,11 @@ from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from . import access
+from .access import Door, Shown
 from .caller import CALLER, NOBODY, Caller
-from .cookies import COOKIE, remember
+from .cookies import remember, remembered
 from .needs import METRICS, Unnamed, need_of
 from .problems import Refused, answer, unavailable
-from .services import Services
 from .settings import LOOPBACK
 
 SAFE = ("GET", "HEAD")
@@ -26,9 +25,9 @@ class Guard:
     The latter keeps out pages of other sites, also those that have their name resolve to us.
     """
 
-    def __init__(self, app: ASGIApp, services: Services):
-        self.app, self.services = app, services
-        self.needs_token = services.settings.needs_token
+    def __init__(self, app: ASGIApp, door: Door):
+        self.app, self.door = app, door
+        self.needs_token = door.services.settings.needs_token
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -53,23 +52,24 @@ class Guard:
         if not self.needs_token:
             _refuse_foreign_host(request.headers)
             _refuse_foreign_origin(request.headers)
-        if not request.url.path.startswith("/api/") and request.url.path != METRICS:
+        path = request.scope["path"]
+        if not path.startswith("/api/") and path != METRICS:
             return await self._page(request)
-        bearer, cookie = _bearer(request.headers), request.cookies.get(COOKIE)
+        bearer = _bearer(request.headers)
         if self.needs_token and bearer is None and request.scope["method"] not in SAFE:
             # A browser sends cookies by itself, whoever's page has it ask.
             _refuse_foreign_origin(request.headers)
-        given = bearer if bearer is not None or not self.needs_token else cookie
-        return await self._api(request, given)
+        cookie = remembered(request) if self.needs_token else None
+        shown = Shown(cookie if bearer is None else bearer, address(request))
+        return await self._api(request.scope["method"], path, shown)
 
-    async def _api(self, request: HTTPConnection, given: str | None) -> Caller:
-        method, path = request.scope["method"], request.url.path
+    async def _api(self, method: str, path: str, shown: Shown) -> Caller:
         try:
             need = need_of(method, path)
         except Unnamed as error:
-            await run_in_threadpool(access.identify, self.services, given)
+            await run_in_threadpool(self.door.identify, shown)
             raise _nothing(method, path, error.methods) from None
-        return await run_in_threadpool(access.admit, self.services, given, need)
+        return await run_in_threadpool(self.door.admit, shown, need)
 
     async def _page(self, request: HTTPConnection) -> Caller | Response:
         """The page itself is for everybody; a token in its address is taken into a cookie."""
@@ -81,12 +81,18 @@ class Guard:
         # The log of requests is written at the end: it must not name the secret.
         request.scope["query_string"] = clean.query.encode()
         try:
-            caller = await run_in_threadpool(access.identify, self.services, given)
+            shown = Shown(given, address(request))
+            caller = await run_in_threadpool(self.door.identify, shown)
         except Refused:
             return everybody  # Its page asks for a token.
         redirect = RedirectResponse(clean, 303)
-        remember(redirect, given, request.url.scheme, caller.expires_at)
+        remember(redirect, request, given, caller.expires_at)
         return redirect
+
+
+def address(request: HTTPConnection) -> str:
+    """Where a request comes from, as far as that is known."""
+    return request.client.host if request.client else ""
 
 
 def _bearer(headers: Headers) -> str | None:

@@ -13,6 +13,7 @@ from subprocess import Popen
 from sqlalchemy.exc import OperationalError
 
 from . import demonstration, locks, migrations, redis_embedded, services, tokens
+from .folders import open_to_others, private
 from .process_tree import Child, Tree, say
 from .processes import spawn
 from .settings import Settings
@@ -42,6 +43,9 @@ class Place:
 def occupy(settings: Settings) -> Place:
     """Take the data folder for as long as this process lives; nobody else may use it."""
     folder = settings.data.resolve()
+    private(folder)
+    if settings.needs_token and open_to_others(folder):
+        say("warning", f"other users can look into {folder}: chmod o= {folder}")
     try:
         locks.take(folder / "lock")
     except locks.Held:

@@ -21,6 +21,7 @@ from .services import Services
 BUCKETS = (0.005, 0.02, 0.05, 0.1, 0.25, 1.0, 5.0)
 """Seconds of requests, the last bucket aside, which is for the longest."""
 QUEUES = ("runs", "sweeps", "renderings", "audits")
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
 ESCAPES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
 
 Labels = Mapping[str, str]
@@ -58,6 +59,7 @@ class Requests:
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def add(self, method: str, route: str, status: int, seconds: float) -> None:
+        method = method if method in METHODS else "other"  # Strangers may invent some.
         bucket = next((limit for limit in BUCKETS if seconds <= limit), float("inf"))
         with self.lock:
             self.counts[method, route, str(status)] += 1

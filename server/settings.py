@@ -3,10 +3,12 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import AliasChoices, Field, SecretStr
+from pydantic import AliasChoices, Field, SecretStr, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
+SHORTEST = 16
+"""Characters of a token that is set: shorter ones could be found by trying."""
 
 
 class Settings(BaseSettings):
@@ -55,6 +57,16 @@ class Settings(BaseSettings):
     bin_seconds: float = Field(default=86_400.0, ge=0.0)
     """How long a deleted run can be restored, before it goes for good."""
     reconcile_interval: float = Field(default=5.0, gt=0.0)
+
+    @field_validator("token")
+    @classmethod
+    def refuse_guessable(cls, token: SecretStr | None) -> SecretStr | None:
+        if token and len(token) < SHORTEST:
+            raise ValueError(
+                f"`token` must have at least {SHORTEST} characters that nobody can guess "
+                f"(`openssl rand -hex 32` makes them); got {len(token)}"
+            )
+        return token
 
     @property
     def database(self) -> str:

@@ -1,16 +1,18 @@
 """What was published: who may see what of it, and until when."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from secrets import token_urlsafe
 from typing import Any
 
-from sqlalchemy import Select, func, or_, select
+from sqlalchemy import Select, exists, func, or_, select
 from sqlalchemy.orm import Session
 
 from . import features
-from .caller import owner
+from .access import refuse_other
+from .caller import CALLER, owner
 from .db import clock
 from .deps import find_run
 from .models import FINISHED, Creature, Elite, Generation, Run, Share
@@ -19,6 +21,7 @@ from .schemas import FieldError, ShareAsked, ShareState
 
 BYTES = 24
 """Random ones in an address: nobody finds it by trying."""
+SLUG = re.compile(r"[A-Za-z0-9_-]{1,43}")
 MEANT = ("creature", "run_id", "generation", "title", "credit", "licence", "listed")
 
 
@@ -45,6 +48,7 @@ def subject(session: Session, asked: ShareAsked) -> Subject:
         return Subject(row.sha256, title, row.licence, row.credit, creature=row.sha256)
     assert asked.run is not None
     run = find_run(session, asked.run)
+    refuse_other(session, CALLER.get(), run, "publish")
     if not features.searched(run):
         detail = f"A run of `{run.experiment}` fills no archive that could be published."
         raise Refused(422, "No archive", detail)
@@ -110,9 +114,10 @@ def _refuse_past(session: Session, expires: datetime | None) -> None:
 
 
 def live() -> Select[Share]:
-    """Shares that are neither revoked nor expired."""
+    """Shares that are neither revoked nor expired, and whose run does not lie in the bin."""
     lasting = or_(Share.expires_at.is_(None), Share.expires_at > clock())
-    return select(Share).where(Share.revoked_at.is_(None), lasting)
+    binned = exists().where(Run.id == Share.run_id, Run.deleted_at.is_not(None))
+    return select(Share).where(Share.revoked_at.is_(None), lasting, ~binned)
 
 
 def state(session: Session, share: Share) -> ShareState:
@@ -122,11 +127,16 @@ def state(session: Session, share: Share) -> ShareState:
     return "expired" if share.expires_at and share.expires_at <= now else "live"
 
 
+def find(session: Session, slug: str) -> Share | None:
+    """The share of a name; what cannot be one, a database need not be able to read."""
+    return session.get(Share, slug) if SLUG.fullmatch(slug) else None
+
+
 def opened(session: Session, slug: str) -> Share:
     """The share at an address; `Refused` says that there is none, or none any more."""
-    share = session.get(Share, slug)
+    share = find(session, slug)
     if share is None:
-        raise Refused(404, "Not found", "Nothing was ever shared at this address.")
+        raise Refused(404, "Not found", "Nothing is shared at this address.")
     standing = state(session, share)
     if standing == "revoked":
         raise Refused(410, "Gone", "Whoever shared this has taken it back.")

@@ -5,13 +5,15 @@ import math
 import re
 from collections import Counter
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import Any, TypeVar
 
 from fastapi import Request
 from fastapi.concurrency import run_in_threadpool
+from pydantic import BaseModel
 
 from .problems import Refused
 
+Sent = TypeVar("Sent", bound=BaseModel)
 DEPTH = 32
 VALUES = 100_000
 """More than the largest creature has: each may become an error with words to it."""
@@ -24,6 +26,16 @@ def json_object(limit: int) -> Callable[[Request], Awaitable[dict[str, Any]]]:
 
     async def read(request: Request) -> dict[str, Any]:
         return mapping(await run_in_threadpool(parse, await limited(request, limit)))
+
+    return read
+
+
+def sent(model: type[Sent], limit: int) -> Callable[[Request], Awaitable[Sent]]:
+    """A dependency that reads the body as a model, of at most so many bytes of JSON."""
+    read_object = json_object(limit)
+
+    async def read(request: Request) -> Sent:
+        return model.model_validate(await read_object(request))
 
     return read
 

@@ -56,12 +56,16 @@ def kept(
 
 
 def ordered(services: Services, sha: str, kind: str, *, patient: bool = False) -> Response:
-    """Says that a rendering is being made, or why it cannot be."""
+    """Says that a rendering is being made, or why it cannot be.
+
+    Strangers, who are `patient`, are not told why: words of errors may name files and hosts.
+    """
     try:
         renderings.order(services, sha, kind, patient=patient)
     except renderings.RenderingFailed as error:
-        made = f"The {WORDS.get(kind, kind)} could not be made"
-        detail = f"{made}: {error}. It can be tried again in a minute."
+        why = "" if patient else f": {error}"
+        detail = f"The {WORDS.get(kind, kind)} could not be made{why}. "
+        detail += "It can be tried again in a minute."
         headers = {"Retry-After": str(FAILURE_KEPT)}
         raise Refused(500, "Rendering failed", detail, headers=headers) from error
     return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})

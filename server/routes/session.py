@@ -1,33 +1,39 @@
 """Signing in and out of the page: a token in a cookie, which scripts cannot read."""
 
-from fastapi import APIRouter, Request, Response
-from fastapi.concurrency import run_in_threadpool
+from typing import Annotated
 
-from .. import access
+from fastapi import APIRouter, Depends, Request, Response
+
+from ..access import Door, Shown
 from ..cookies import forget, remember
-from ..deps import ServicesDep
+from ..guard import address
 from ..schemas import CallerRead, SignIn
+from ..uploads import sent
+from .runs import described
+
+BYTES = 1 << 12
 
 router = APIRouter(prefix="/session", tags=["tokens"])
 
 
-@router.post("")
-async def sign_in(
-    asked: SignIn, request: Request, response: Response, services: ServicesDep
+@router.post("", openapi_extra=described(SignIn.model_json_schema()))
+def sign_in(
+    asked: Annotated[SignIn, Depends(sent(SignIn, BYTES))], request: Request, response: Response
 ) -> CallerRead:
     """Keep a token in a cookie of this site; 401 where it is wrong."""
-    caller = await run_in_threadpool(access.identify, services, asked.token)
-    remember(response, asked.token, request.url.scheme, caller.expires_at)
+    door: Door = request.app.state.door
+    caller = door.identify(Shown(asked.token, address(request)))
+    remember(response, request, asked.token, caller.expires_at)
     return CallerRead(
         name=caller.name,
         scope=caller.scope,
         token=caller.token,
         expires_at=caller.expires_at,
-        needed=services.settings.needs_token,
+        needed=door.services.settings.needs_token,
     )
 
 
 @router.delete("", status_code=204)
-async def sign_out(response: Response) -> None:
+async def sign_out(request: Request, response: Response) -> None:
     """Forget the cookie; the token stays good."""
-    forget(response)
+    forget(response, request)

@@ -22,7 +22,7 @@ router = APIRouter(prefix="/shares/{slug}", tags=["shares"])
 
 def share(
     request: Request,
-    slug: Annotated[str, Path(pattern="^[A-Za-z0-9_-]{1,43}$")],
+    slug: Annotated[str, Path(pattern=f"^{shares.SLUG.pattern}$")],
     session: SessionDep,
 ) -> Share:
     found = shares.opened(session, slug)

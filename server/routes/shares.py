@@ -91,9 +91,9 @@ def read_commons(
 def revoke(slug: str, request: Request, services: ServicesDep) -> ShareRead:
     """Take it back: from now on its address shows nothing."""
     with services.sessions.write.begin() as session:
-        share = session.get(Share, slug)
+        share = shares.find(session, slug)
         if share is None:
-            raise Refused(404, "Not found", "Nothing was ever shared under this name.")
+            raise Refused(404, "Not found", "Nothing is shared under this name.")
         if share.revoked_at is None:
             share.revoked_at = session.execute(select(clock())).scalar_one()
         stored = published.forget(session, share)
@@ -136,7 +136,7 @@ def _page(
 
 
 def _after(session: Session, cursor: str) -> Any:
-    last = session.get(Share, cursor)
+    last = shares.find(session, cursor)
     if last is None:
         detail = f"`cursor` must be the `next` of an earlier answer; got {cursor!r:.80}."
         raise Refused(422, "Invalid input", detail)

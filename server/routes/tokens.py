@@ -1,13 +1,18 @@
 """Tokens: who asks; make, list and revoke them. Only admins come to the latter."""
 
+from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Depends
 
 from .. import tokens
 from ..caller import CALLER
 from ..deps import ServicesDep, SessionDep
 from ..schemas import CallerRead, TokenCreate, TokenMade, TokenRead
+from ..uploads import sent
+from .runs import described
+
+BYTES = 1 << 12
 
 router = APIRouter(prefix="/tokens", tags=["tokens"])
 
@@ -31,8 +36,10 @@ def list_tokens(session: SessionDep) -> list[TokenRead]:
     return [TokenRead.model_validate(token) for token in tokens.known(session)]
 
 
-@router.post("", status_code=201)
-def create_token(asked: TokenCreate, services: ServicesDep) -> TokenMade:
+@router.post("", status_code=201, openapi_extra=described(TokenCreate.model_json_schema()))
+def create_token(
+    asked: Annotated[TokenCreate, Depends(sent(TokenCreate, BYTES))], services: ServicesDep
+) -> TokenMade:
     """Make a token. Its secret is in this answer and nowhere else."""
     made = tokens.create(services, asked.name, asked.scope, asked.expires_at)
     read = TokenRead.model_validate(made.token)

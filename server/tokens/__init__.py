@@ -1,8 +1,10 @@
 """Tokens: made, shown, revoked, and who holds one."""
 
 from .book import (
+    CHALLENGE,
     PREFIX,
     Made,
+    Wrong,
     create,
     has_admin,
     hashed,
@@ -14,9 +16,11 @@ from .book import (
 from .first import FILE, begin, refuse_without_admin, told
 
 __all__ = [
+    "CHALLENGE",
     "FILE",
     "PREFIX",
     "Made",
+    "Wrong",
     "begin",
     "create",
     "has_admin",

@@ -30,6 +30,14 @@ COARSE = timedelta(minutes=5)
 CHALLENGE = {"WWW-Authenticate": "Bearer"}
 
 
+class Wrong(Refused):
+    """What was sent is no token of this server's, and never was: somebody may be guessing."""
+
+    def __init__(self) -> None:
+        detail = "The token that was sent is none of this server's."
+        super().__init__(401, "Unauthorized", detail, headers=CHALLENGE)
+
+
 @dataclass(frozen=True)
 class Made:
     """A new token and its secret, which is known now and never again."""
@@ -81,17 +89,17 @@ def _refuse_past(expires_at: datetime | None, now: datetime) -> None:
 
 
 def holder(services: Services, secret: str) -> Caller:
-    """Who holds a secret; `Refused` where it is none, or no longer."""
+    """Who holds a secret; `Wrong` where it is none, `Refused` where it is one no longer."""
     with services.sessions.read() as session:
         now = _now(session)
         mine = select(Token).where(Token.secret_sha256 == hashed(secret))
         token = session.scalars(mine).one_or_none()
     if token is None:
-        raise _unknown("The token that was sent is none of this server's.")
+        raise Wrong()
     if token.revoked_at is not None:
-        raise _unknown(f"The token `{token.name}` was revoked.")
+        raise _over(f"The token `{token.name}` was revoked.")
     if token.expires_at is not None and token.expires_at <= now:
-        raise _unknown(
+        raise _over(
             f"The token `{token.name}` expired at {token.expires_at:%Y-%m-%d %H:%M} UTC."
         )
     if token.last_used_at is None or now - token.last_used_at > COARSE:
@@ -106,7 +114,7 @@ def _note_use(services: Services, token: UUID) -> None:
         session.execute(used)
 
 
-def _unknown(detail: str) -> Refused:
+def _over(detail: str) -> Refused:
     return Refused(401, "Unauthorized", detail, headers=CHALLENGE)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from sqlalchemy import exists, select
 
 from ..caller import ADMIN
+from ..folders import private
 from ..models import Token
 from ..problems import Refused
 from ..services import Services
@@ -64,7 +65,7 @@ def refuse_without_admin(services: Services) -> None:
 
 def _keep(path: Path, secret: str) -> None:
     """Readable by nobody else, from the moment on at which it is there."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    private(path.parent)
     path.unlink(missing_ok=True)
     with os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as file:
         file.write(secret + "\n")

@@ -100,14 +100,17 @@ def test_sigterm_ends_a_server_with_open_streams_at_once(services, tmp_path, eve
     }
     address = f"http://127.0.0.1:{port}"
     with subprocess.Popen([sys.executable, "-m", "server"], env=environment) as process:
-        eventually(lambda: answers(f"{address}/healthz"))
-        with httpx.stream("GET", f"{address}/api/v1/events") as stream:
-            lines = stream.iter_lines()
-            next(lines)
-            begun = time.monotonic()
-            process.terminate()
-            list(lines)
-        process.wait()
+        try:
+            eventually(lambda: answers(f"{address}/healthz"))
+            with httpx.stream("GET", f"{address}/api/v1/events") as stream:
+                lines = stream.iter_lines()
+                next(lines)
+                begun = time.monotonic()
+                process.terminate()
+                list(lines)
+            process.wait()
+        finally:
+            process.kill()  # Where it came too late, nobody waits for it for ever.
     assert time.monotonic() - begun < 4, "uvicorn alone would wait for 5 s"
 
 

@@ -3,24 +3,35 @@
 Images are not built here: this keeps the words in them from going stale.
 """
 
+import asyncio
 import importlib.util
+import os
 import re
+import signal
 import tomllib
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
+from subprocess import Popen
+from typing import Any
 
 import pytest
 import yaml
 from packaging.specifiers import SpecifierSet
+from redis import Redis
+from redis.backoff import ConstantBackoff
+from redis.retry import Retry
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from server.__main__ import GRACE
+from server.redis_embedded import find_binary, free_port
 from server.settings import Settings
 from worker.health import PARTS
 from worker.supervisor import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 OURS = ("microcosmos-server", "microcosmos-worker", "microcosmos-worker-cuda")
-OTHERS = {"JAX_PLATFORMS", "JAX_COMPILATION_CACHE_DIR"}
+OTHERS = {"JAX_PLATFORMS", "JAX_COMPILATION_CACHE_DIR", "FORWARDED_ALLOW_IPS"}
 OF_PYTHON = {"PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE", "PYTHONPATH"}
 
 
@@ -135,6 +146,22 @@ def test_only_this_machine_reaches_the_server_and_nobody_the_rest(services):
     assert all(port.startswith("127.0.0.1:") for port in services["server"]["ports"])
 
 
+def test_a_proxy_on_this_machine_says_who_comes(services):
+    """Else wrong tokens of one count for all, and cookies go where nothing is encrypted."""
+    seen: dict[str, Any] = {}
+
+    async def app(scope, receive, send):
+        seen.update(scope)
+
+    told = {"x-forwarded-for": "10.0.0.7, 203.0.113.5", "x-forwarded-proto": "https"}
+    headers = [(name.encode(), value.encode()) for name, value in told.items()]
+    scope = {"type": "http", "scheme": "http", "client": ("172.18.0.1", 1), "headers": headers}
+    trusted = services["server"]["environment"]["FORWARDED_ALLOW_IPS"]
+    asyncio.run(ProxyHeadersMiddleware(app, trusted)(scope, None, None))
+    # The client may have claimed the first address; the proxy added the second.
+    assert (seen["client"][0], seen["scheme"]) == ("203.0.113.5", "https")
+
+
 def test_every_gpu_worker_has_a_device_of_its_own(services):
     gpus = [one for one in services.values() if one["image"] == "microcosmos-worker-cuda"]
     devices = [one["deploy"]["resources"]["reservations"]["devices"] for one in gpus]
@@ -157,6 +184,29 @@ def test_what_is_copied_into_images_is_there_and_not_kept_out(services):
         if isinstance(built := one.get("build"), dict):
             assert (ROOT / built["dockerfile"]).is_file()
             assert (ROOT / built.get("args", {}).get("LOCK", "requirements.lock")).is_file()
+
+
+def test_valkey_takes_its_password_from_a_pipe_and_hears_that_it_is_to_end(services, tmp_path):
+    """Docker tells the first process: a shell before it would not hand that on."""
+    (tmp_path / "valkey-server").symlink_to(find_binary())
+    port, password = free_port(), "abc123"
+    *shell, script = services["valkey"]["command"]
+    script = script.replace("$$", "$").replace("dir /data", f"dir {tmp_path}\nport {port}")
+    environment = {
+        "PATH": f"{tmp_path}:{os.environ['PATH']}",
+        "VALKEY_PASSWORD": password,
+    }
+    with (tmp_path / "log").open("w") as log:
+        started = Popen([*shell, script], env=environment, stdout=log, process_group=0)
+    try:
+        retry = Retry(ConstantBackoff(0.1), 100)
+        with Redis(port=port, password=password, retry=retry) as client:
+            assert client.config_get("appendonly") == {"appendonly": "yes"}
+        started.terminate()
+        assert started.wait(20) == 0, (tmp_path / "log").read_text()
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(started.pid, signal.SIGKILL)
 
 
 def test_images_run_as_nobody_special_with_what_the_locks_say():

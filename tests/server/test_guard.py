@@ -1,6 +1,8 @@
 """Who may speak to the server, and where it may listen."""
 
 import logging
+from contextlib import contextmanager
+from urllib.parse import urlsplit
 
 import httpx
 import pytest
@@ -8,7 +10,8 @@ from pydantic import SecretStr
 from sqlalchemy.exc import OperationalError
 
 from server import access
-from server.settings import Settings
+from server.cookies import COOKIE
+from server.settings import SHORTEST, Settings
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.0.2.1", "::"])
@@ -19,7 +22,14 @@ def test_a_server_for_others_needs_a_token(host):
 def test_on_loopback_a_token_is_needed_where_it_is_asked_for():
     assert not Settings(host="127.0.0.1", token=None).needs_token
     assert Settings(host="127.0.0.1", token=None, auth="required").needs_token
-    assert Settings(host="127.0.0.1", token=SecretStr("secret")).needs_token
+    assert Settings(host="127.0.0.1", token=SecretStr("s" * SHORTEST)).needs_token
+    assert not Settings(host="127.0.0.1", token=SecretStr("")).needs_token
+
+
+def test_a_token_that_could_be_guessed_is_refused(monkeypatch):
+    monkeypatch.setenv("MICROCOSMOS_TOKEN", "secret")
+    with pytest.raises(ValueError, match=r"`token` must have at least 16 .*; got 6"):
+        Settings()
 
 
 @pytest.mark.parametrize("name", ["evil.example", "127.0.0.1.evil.example", "", "["])
@@ -50,7 +60,7 @@ def test_with_a_token_the_api_needs_it_from_any_host(serve):
         assert client.get(url, headers={"Authorization": "Bearer wrong"}).status_code == 401
         sent = {"Authorization": "Bearer secret", "Host": "microcosmos.example"}
         assert client.get(url, headers=sent).status_code == 200
-        cookie = {"Cookie": "microcosmos_token=secret"}
+        cookie = {"Cookie": f"microcosmos_token_{urlsplit(url).port}=secret"}
         assert client.get(url, headers=cookie).status_code == 200
         assert client.get(f"{address}/healthz").status_code == 200
 
@@ -80,7 +90,8 @@ def test_a_port_that_nobody_can_be_told_is_refused(monkeypatch):
 def test_a_cookie_is_of_no_use_to_the_pages_of_other_sites(serve, spec):
     """A browser may send it by itself; a header it does not."""
     with serve(token=SecretStr("secret")) as address:
-        url, cookie = f"{address}/api/v1/runs", {"Cookie": "microcosmos_token=secret"}
+        url = f"{address}/api/v1/runs"
+        cookie = {"Cookie": f"microcosmos_token_{urlsplit(url).port}=secret"}
         other = {"Origin": "http://evil.example"}
         assert httpx.post(url, json=spec, headers=cookie | other).status_code == 403
         own = {"Origin": address}
@@ -89,16 +100,35 @@ def test_a_cookie_is_of_no_use_to_the_pages_of_other_sites(serve, spec):
         assert httpx.post(url, json=spec, headers=bearer | other).status_code == 202
 
 
-def test_the_log_of_requests_does_not_name_a_token_in_an_address(serve, caplog):
+@contextmanager
+def listening(caplog):
+    """To the log of requests, which a server sets up when it starts: their addresses."""
     log = logging.getLogger("uvicorn.access")
-    with serve(token=SecretStr("secret")) as address:
-        log.addHandler(caplog.handler)
-        caplog.set_level("INFO", "uvicorn.access")
+    log.addHandler(caplog.handler)
+    caplog.set_level("INFO", "uvicorn.access")
+    yield lambda: [r.getMessage().partition('"')[2].split()[1] for r in caplog.records]
+    log.removeHandler(caplog.handler)
+
+
+def test_the_log_of_requests_does_not_name_a_token_in_an_address(serve, caplog):
+    with serve(token=SecretStr("secret")) as address, listening(caplog) as logged:
         for token in ("secret", "guessed"):
             httpx.get(f"{address}/runs?token={token}&view=map")
-        log.removeHandler(caplog.handler)
-    told = [record.getMessage() for record in caplog.records]
-    assert [text.partition('"')[2].split()[1] for text in told] == ["/runs?view=map"] * 2
+        assert logged() == ["/runs?view=map"] * 2
+
+
+def test_the_log_of_requests_does_not_name_shares(serve, caplog):
+    slug, sha = "q7Xv-_0123456789abcdefghijklmnop", "ab" * 32
+    with serve() as address, listening(caplog) as logged:
+        for path in (f"/s/{slug}", f"/s/{slug}/creatures/{sha}"):
+            httpx.get(address + path)
+        for path in (f"shares/{slug}", f"shares/{slug}/preview.png", f"commons?cursor={slug}"):
+            httpx.get(f"{address}/api/v1/{path}")
+        httpx.delete(f"{address}/api/v1/shares/{slug}")
+        lines = logged()
+    assert not any(slug[4:] in line for line in lines)
+    assert lines[:2] == ["/s/q7Xv…", f"/s/q7Xv…/creatures/{sha}"]
+    assert len(lines) == 6
 
 
 def test_while_the_database_is_away_a_token_is_not_wrong(serve, monkeypatch):
@@ -111,3 +141,44 @@ def test_while_the_database_is_away_a_token_is_not_wrong(serve, monkeypatch):
         answer = httpx.get(f"{address}/api/v1/runs", headers=sent)
     assert (answer.status_code, answer.headers["retry-after"]) == (503, "2")
     assert answer.json()["detail"] == "The database does not answer; try again."
+
+
+def test_servers_on_one_host_keep_a_cookie_each(serve):
+    """A browser sends the cookies of all ports of a host, as this client does."""
+    first, second = SecretStr("first"), SecretStr("second")
+    with (
+        serve(token=first) as one,
+        serve(token=second) as other,
+        httpx.Client() as browser,
+    ):
+        for address, token in ((one, first), (other, second)):
+            asked = {"token": token.get_secret_value()}
+            assert browser.post(f"{address}/api/v1/session", json=asked).status_code == 200
+        for address in (one, other):
+            assert browser.get(f"{address}/api/v1/runs").status_code == 200
+        assert browser.delete(f"{one}/api/v1/session").status_code == 204
+        assert browser.get(f"{one}/api/v1/runs").status_code == 401
+        assert browser.get(f"{other}/api/v1/runs").status_code == 200
+
+
+def test_the_cookie_is_named_after_the_port_that_the_browser_knows(serve):
+    """Two boxes may be brought to two ports of a laptop by `ssh -L`, both from port 8000."""
+    with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
+        for host, name in (("localhost:9000", "microcosmos_token_9000"), ("box", COOKIE)):
+            sent = {"Host": host}
+            answer = client.get(f"{address}/?token=secret", headers=sent)
+            assert answer.headers["set-cookie"].startswith(f"{name}=")
+
+
+def test_no_page_of_others_holds_ours_or_reads_what_it_shows(api, address):
+    """Where no token is needed, a frame would be as good as a token."""
+    for path in ("/", "/runs", "/settings", "/api/v1/runs", "/api/v1/nothing", "/metrics"):
+        headers = httpx.get(address + path).headers
+        assert "frame-ancestors 'none'" in headers["content-security-policy"], path
+        assert "default-src 'self'" in headers["content-security-policy"], path
+        assert headers["cross-origin-resource-policy"] == "same-origin", path
+        assert headers["x-content-type-options"] == "nosniff", path
+    refused = api.get("runs", headers={"Host": "evil.example"})
+    assert refused.headers["cross-origin-resource-policy"] == "same-origin"
+    shared = api.get("shares/whatever/preview.png")
+    assert shared.headers["cross-origin-resource-policy"] == "cross-origin"

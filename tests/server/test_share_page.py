@@ -65,3 +65,13 @@ def test_the_page_of_what_is_gone_says_so_and_shows_nothing(api, address, built,
     gone = api.get(f"{address}/s/{slug}")
     assert (gone.status_code, "og:title" in gone.text) == (410, False)
     assert api.get(f"{address}/s/none/creatures/x").status_code == 404
+
+
+@pytest.mark.parametrize("name", ["%00", "a" * 10_000, "%ED%A0%80", "%0A"])
+def test_what_cannot_be_an_address_is_nobodys(api, address, built, name):
+    """Databases do not take every text; whoever sends it anyway is told no more than others."""
+    for path in (f"{address}/s/{name}", f"{address}/s/{name}/creatures/x", f"shares/{name}"):
+        assert api.get(path).status_code in (404, 422), path
+    assert api.delete(f"shares/{name}").status_code in (404, 422)
+    assert api.get(f"commons?cursor={name}").status_code == 422
+    assert api.get(f"shares?cursor={name}").status_code == 422

@@ -268,3 +268,42 @@ def test_a_preview_is_the_covers_picture(api, services, shared, known):
     renderings.save(services, known, PREVIEW, b"PNG")
     answer = api.get(f"shares/{shared['slug']}/preview.png")
     assert (answer.content, answer.headers["content-type"]) == (b"PNG", "image/png")
+
+
+def test_a_deleted_run_leaves_the_commons_and_comes_back_to_them(
+    api, services, attempt, run_id
+):
+    attempt.finish()
+    sent = {"run": str(run_id), "title": "Swimmers", "listed": True}
+    share = api.post("shares", json=sent).json()
+    under, film = f"shares/{share['slug']}", f"creatures/{share['cover']}/film.gif"
+    renderings.save(services, share["cover"], "film.gif", b"GIF")
+    assert api.get("commons").json()["items"] == [share]
+    assert api.delete(f"runs/{run_id}").status_code == 200
+    for path in (
+        "",
+        "/preview.png",
+        f"/runs/{run_id}",
+        f"/runs/{run_id}/archive.h5",
+        f"/{film}",
+    ):
+        assert api.get(under + path).status_code == 410, path
+    assert api.get("commons").json()["items"] == []
+    assert api.post(f"runs/{run_id}/restore").status_code == 200
+    assert api.get("commons").json()["items"] == [share]
+    assert api.get(f"{under}/{film}").status_code == 200
+
+
+def test_strangers_are_not_told_the_renderers_words(api, services, shared, known):
+    """They may name files, hosts and whatever else stands in an error."""
+    (job,) = services.jobs.renderings.get_jobs()
+    raised = "OSError: [Errno 28] No space left on device: '/home/ada/data/artifacts/x.part'"
+    services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
+    owner = api.get(f"creatures/{known}/preview.png")
+    assert "/home/ada" in owner.json()["detail"]
+    stranger = api.get(f"shares/{shared['slug']}/preview.png")
+    assert stranger.status_code == 500
+    assert stranger.json()["detail"] == (
+        "The picture could not be made. It can be tried again in a minute."
+    )
+    assert stranger.headers["retry-after"] == "60"

@@ -14,6 +14,8 @@ from server.problems import Refused
 from server.tokens import __main__ as commands
 from server.tokens import book
 
+KEY = {"Idempotency-Key": "first"}
+
 
 @pytest.fixture
 def admin(services) -> str:
@@ -128,23 +130,6 @@ def test_when_a_token_was_last_used_is_told_coarsely(required, client, services,
     assert first not in [row.last_used_at for row in rows(services)]
 
 
-def test_a_key_that_somebody_else_chose_too_stands_for_a_run_of_ones_own(
-    required, client, services, spec
-):
-    made = {}
-    for name in ("alice", "bob"):
-        who = client(required, tokens.create(services, name, "write").secret)
-        for asked in ("runs", "sweeps"):
-            sent = spec if asked == "runs" else {"spec": spec}
-            answers = [
-                who.post(f"/{asked}", json=sent, headers={"Idempotency-Key": f"my {asked}"})
-                for _ in range(2)
-            ]
-            assert [answer.status_code for answer in answers] == [202, 200]
-            made[name, asked] = answers[1].json()
-    assert made["bob", "runs"]["owner"] == made["bob", "sweeps"]["owner"] == "bob"
-
-
 def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services, spec):
     alice = client(required, tokens.create(services, "alice", "write").secret)
     bob = client(required, tokens.create(services, "bob", "write").secret)
@@ -159,6 +144,39 @@ def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services
     sweep = alice.post("/sweeps", json={"spec": spec}).json()
     assert bob.get(f"/sweeps/{sweep['id']}").json()["owner"] == sweep["owner"] == "alice"
     assert client(required, admin).post(f"/runs/{run['id']}/resume").status_code == 202
+
+
+@pytest.mark.parametrize("noun", ["runs", "sweeps"])
+def test_everybody_has_idempotency_keys_of_their_own(required, client, services, spec, noun):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    bob = client(required, tokens.create(services, "bob", "write").secret)
+    sent = {"json": spec if noun == "runs" else {"spec": spec}, "headers": KEY}
+    mine = alice.post(f"/{noun}", **sent).json()["id"]
+    his = bob.post(f"/{noun}", **sent)
+    assert (his.status_code, his.json()["id"] == mine) == (202, False)
+    again = alice.post(f"/{noun}", **sent)
+    assert (again.status_code, again.json()["id"]) == (200, mine)
+
+
+def test_only_who_made_a_run_publishes_its_archive(required, client, admin, services, spec):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    bob = client(required, tokens.create(services, "bob", "write").secret)
+    run = alice.post("/runs", json=spec).json()["id"]
+    answer = bob.post("/shares", json={"run": run})
+    assert answer.status_code == 403
+    assert answer.json()["detail"] == (
+        f"The run {run} belongs to `alice`: only its owner or an admin may publish it; "
+        "you are `bob`."
+    )
+    for may in (alice, client(required, admin)):
+        assert may.post("/shares", json={"run": run}).json()["title"] == "Nothing to publish"
+
+
+def test_what_cannot_have_an_owner_is_not_found(required, client, admin, services):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    for path in ("/shares/%00", "/runs/%00", "/sweeps/%00/pause"):
+        method = "POST" if path.endswith("pause") else "DELETE"
+        assert alice.request(method, path).status_code in (404, 422), path
 
 
 def test_what_was_made_without_a_token_is_for_admins_to_change(
@@ -196,6 +214,22 @@ def test_signing_in_keeps_a_cookie_and_signing_out_forgets_it(required, client, 
     assert page.get("/tokens").status_code == 200
     assert page.delete("/session").status_code == 204
     assert page.get("/tokens").status_code == 401
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        (b'{"token": "' + bytes(1 << 22), 413),
+        (b'{"token": "\\ud800"}', 422),
+        (b'{"token": "\\u0000"}', 422),
+        (b"[" * 1000, 422),
+        (b'{"token": {}}', 422),
+    ],
+)
+def test_strangers_send_little_and_break_nothing(required, client, body, status):
+    answer = client(required).post("/session", content=body)
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == "application/problem+json"
 
 
 def test_the_pages_of_other_sites_sign_nobody_in(required, client, admin):

@@ -2312,11 +2312,6 @@ export interface components {
             /** Url */
             url: string;
         };
-        /** SignIn */
-        SignIn: {
-            /** Token */
-            token: string;
-        };
         /**
          * Species
          * @description Columns, one entry for each generation that tells its species, those that live.
@@ -2480,21 +2475,6 @@ export interface components {
             size: number;
             /** Width */
             width: number;
-        };
-        /**
-         * TokenCreate
-         * @description What a token is to be called, what it may, and until when.
-         */
-        TokenCreate: {
-            /** Expires At */
-            expires_at?: string | null;
-            /** Name */
-            name: string;
-            /**
-             * Scope
-             * @enum {string}
-             */
-            scope: "read" | "write" | "admin";
         };
         /** TokenMade */
         TokenMade: {
@@ -4276,7 +4256,10 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["SignIn"];
+                "application/json": {
+                    /** Token */
+                    token: string;
+                };
             };
         };
         responses: {
@@ -5472,7 +5455,17 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["TokenCreate"];
+                "application/json": {
+                    /** Expires At */
+                    expires_at?: string | null;
+                    /** Name */
+                    name: string;
+                    /**
+                     * Scope
+                     * @enum {string}
+                     */
+                    scope: "read" | "write" | "admin";
+                };
             };
         };
         responses: {

@@ -65,7 +65,8 @@ export type SpeciesHistory = Wire["Species"];
 export type Caller = Wire["CallerRead"];
 export type Token = Wire["TokenRead"];
 export type TokenMade = Wire["TokenMade"];
-export type TokenCreate = Wire["TokenCreate"];
+export type TokenCreate =
+  operations["create_token_api_v1_tokens_post"]["requestBody"]["content"]["application/json"];
 export type TokenScope = Token["scope"];
 /** A picture that a filament folds into. */
 export type Target = Wire["Target"];
