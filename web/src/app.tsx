@@ -2,7 +2,7 @@
 
 import { useEffect } from "preact/hooks";
 import { later } from "./later";
-import { useUnknown } from "./live/caller";
+import { learnCaller, useRefusal, useUnknown } from "./live/caller";
 import { useLive } from "./live/live";
 import { type Toast, dismiss, useToasts } from "./live/toasts";
 import { DropTarget, OpenButton } from "./pages/DropTarget";
@@ -33,6 +33,8 @@ export function App() {
   const place = usePlace();
   const { page } = place.route;
   const unknown = useUnknown();
+  const refusal = useRefusal();
+  useEffect(() => void learnCaller(), []);
   useEffect(() => {
     if (TITLES[page]) document.title = `${TITLES[page]} · Microcosmos`;
   }, [page]);
@@ -66,7 +68,7 @@ export function App() {
           </a>
         </nav>
         <span class="spring" />
-        <OpenButton />
+        {!refusal && <OpenButton />}
         <Connection />
       </header>
       {unknown ? <SignInPage /> : <Page {...place} />}

@@ -2,6 +2,7 @@
 
 import { useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { extend, remove, restore } from "../live/life";
 import { count, moment, short } from "../view/format";
 
@@ -73,10 +74,11 @@ export function ForkedFrom({ run }: { run: Run }) {
 
 /** In place of a run's page while it lies in the bin. */
 export function InBin({ run }: { run: Run }) {
+  const refusal = useRefusal(run);
   return (
     <p class="banner warning" role="status">
       This run is in the bin until {run.purge_at && moment(run.purge_at)}; then it goes for good.{" "}
-      <button onClick={() => void restore(run.id)}>Restore</button>
+      {refusal ?? <button onClick={() => void restore(run.id)}>Restore</button>}
     </p>
   );
 }

@@ -4,6 +4,7 @@ import { useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Share, ShareAsked } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { copyText } from "./copying";
 
 interface Props {
@@ -31,6 +32,8 @@ const DAY_MS = 86_400_000;
 export function Publish({ of, title, file }: Props) {
   const dialog = useRef<HTMLDialogElement>(null);
   const [share, setShare] = useState<Share | null>(null);
+  const refusal = useRefusal();
+  if (refusal) return null;
   const open = () => {
     setShare(null);
     dialog.current!.showModal();

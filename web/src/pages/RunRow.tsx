@@ -1,6 +1,7 @@
 /** A run in the list: how it is doing, what people say of it, what can be done. */
 
 import type { Experiment } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { restore } from "../live/life";
 import { useLive } from "../live/live";
 import { addTag, removeNote, removeTag, say } from "../live/saying";
@@ -27,6 +28,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
   const title = titleOf(run, experiments);
   const name = `${title} ${short(run.id)}`;
   const time = timeOf(run);
+  const [mayMake, fixed] = [!useRefusal(), useRefusal(run) !== null];
   const [figureName, figure] = keyFigureOf(run);
   return (
     <tr class={chosen ? "chosen-row" : ""}>
@@ -34,7 +36,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
       </td>
       <th scope="row">
-        <Name run={run} title={title} onName={(name) => void say(run.id, { name })}>
+        <Name {...{ run, title, fixed }} onName={(name) => void say(run.id, { name })}>
           <a class="run-name" href={`/runs/${run.id}`}>
             {title} <code>{short(run.id)}</code>
           </a>
@@ -53,16 +55,14 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         {run.warning && <span class="row-note warning-text">{run.warning}</span>}
         <span class="said">
           <Tags
-            run={run}
-            name={name}
+            {...{ run, name, fixed }}
             known={knownTags}
             onPick={(tag) => setQuery({ tag })}
             onAdd={(tag) => addTag(run, tag)}
             onRemove={(tag) => removeTag(run, tag)}
           />
           <Note
-            run={run}
-            name={name}
+            {...{ run, name, fixed }}
             onNote={(note) => void say(run.id, { note })}
             onRemove={() => removeNote(run)}
           />
@@ -92,16 +92,17 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
       </td>
       <td class="row-actions">
         <span class="actions">
-          {run.deleted_at ? (
+          {!fixed && run.deleted_at && (
             <button onClick={() => void restore(run.id)} aria-label={`Restore ${name}`}>
               Restore
             </button>
-          ) : (
-            <Actions run={run} on={ON(title)} name={name} />
           )}
-          <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
-            Clone
-          </a>
+          {!fixed && !run.deleted_at && <Actions run={run} on={ON(title)} name={name} />}
+          {mayMake && (
+            <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
+              Clone
+            </a>
+          )}
         </span>
       </td>
     </tr>

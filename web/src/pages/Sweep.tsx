@@ -2,6 +2,7 @@
 
 import { useEffect } from "preact/hooks";
 import type { CaseSummary, Sweep } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { useExperiments } from "../live/fetching";
 import { type Whole, cancelSweepSoon, steer, useSweep } from "../live/sweeps";
 import { setQuery } from "../router";
@@ -10,6 +11,7 @@ import { SHOWN, type Shown, bandsOf, caseName } from "../view/sweeps/bands";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../view/sweeps/Standing";
 import { moment } from "../view/format";
 import { colourOf, dashOf } from "./compare/Legend";
+import { CurveBar, Check } from "./CurveChoices";
 import { Cases, Finals, Members } from "./sweep/Tables";
 
 interface Props {
@@ -53,7 +55,9 @@ function Loaded({ value, query, each }: { value: Whole; query: URLSearchParams; 
           <h2 id="bands">Curves</h2>
           <span class="quiet small">the median of each case, between its quartiles</span>
         </div>
-        <Choices query={query} each={each} />
+        <CurveBar log={query.get("log") === "1"}>
+          <Check title="Each run" name="each" on={each} />
+        </CurveBar>
         {summary.cases.length > 1 && (
           <Cases cases={summary.cases.map(shownOf)} chosen={chosen} onChoose={choose} />
         )}
@@ -93,30 +97,6 @@ function Bands({ shown, query, curves }: { shown: Shown[]; query: URLSearchParam
 /** Each case has its own places. */
 const NOWHERE: readonly number[] = [];
 
-function Choices({ query, each }: { query: URLSearchParams; each: boolean }) {
-  const log = query.get("log") === "1";
-  return (
-    <div class="curve-choices" role="group" aria-label="How curves are drawn">
-      <label class="compact">
-        <input
-          type="checkbox"
-          checked={each}
-          onChange={(event) => setQuery({ each: event.currentTarget.checked ? "1" : null })}
-        />
-        Each run
-      </label>
-      <label class="compact">
-        <input
-          type="checkbox"
-          checked={log}
-          onChange={(event) => setQuery({ log: event.currentTarget.checked ? "1" : null })}
-        />
-        Log scale
-      </label>
-    </div>
-  );
-}
-
 function Head({ sweep }: { sweep: Sweep }) {
   const experiments = useExperiments().value ?? [];
   const title = sweepTitle(sweep);
@@ -139,7 +119,9 @@ function Head({ sweep }: { sweep: Sweep }) {
 /** Only what the state of any run allows. */
 function Actions({ sweep: { id, standing }, title }: { sweep: Sweep; title: string }) {
   const { queued = 0, running = 0, paused = 0 } = standing;
+  const refusal = useRefusal();
   if (queued + running + paused === 0) return null;
+  if (refusal) return <span class="quiet small">{refusal}</span>;
   return (
     <span class="actions" role="group" aria-label="All runs">
       {paused > 0 && <button onClick={() => void steer(id, "resume")}>Resume all</button>}
