@@ -40,7 +40,9 @@ export interface SweepSent {
 /** A run that begins from another's creatures, its spec changed by a merge patch. */
 export interface ForkSent {
   run: string;
-  from: { creatures: string[] } | { archive: true };
+  from: { creatures: string[] } | { cells: number[] } | { archive: true };
+  /** Elites as they were after it; left out: as they are. */
+  generation?: number;
   spec: Spec;
   name: string | null;
 }
