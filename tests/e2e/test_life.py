@@ -97,8 +97,9 @@ def fork_the_chosen(page: Page, address: str, run: str) -> None:
 
 def fork_the_past(page: Page, address: str, run: str) -> None:
     page.goto(f"{address}/runs/{run}?at=1")
-    expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures? of generation 1$"))
-    page.locator(".chosen-bar").get_by_role("link", name="Fork").click()
+    bar = page.locator(".chosen-bar")
+    expect(bar).to_contain_text(re.compile(r"^\d+ creatures? of generation 1"))
+    bar.get_by_role("link", name="Fork").click()
     expect(page.locator(".beginning")).to_contain_text(
         f"of run {run[:8]}, as they were after generation 1.", timeout=FAST
     )
@@ -140,7 +141,8 @@ def bin_and_undo(page: Page) -> None:
     page.get_by_role("button", name=f"Delete {NAME}").click()
     expect(page.get_by_text("This run is in the bin until")).to_be_visible()
     assert violations(page) == []
-    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_role("button", name="Undo")).to_be_visible()
+    page.keyboard.press("ControlOrMeta+z")
     expect(map_of(page)).to_be_visible(timeout=FAST)
 
 

@@ -4,7 +4,7 @@ import { useEffect } from "preact/hooks";
 import { later } from "./later";
 import { learnCaller, useRefusal, useUnknown } from "./live/caller";
 import { useLive } from "./live/live";
-import { type Toast, dismiss, useToasts } from "./live/toasts";
+import { type Toast, dismiss, undo, useToasts } from "./live/toasts";
 import { DropTarget, OpenButton } from "./pages/DropTarget";
 import { RunsPage } from "./pages/Runs";
 import { type Place, usePlace } from "./router";
@@ -131,6 +131,10 @@ function Connection() {
 
 export function Toasts() {
   const toasts = useToasts();
+  useEffect(() => {
+    document.addEventListener("keydown", undo);
+    return () => document.removeEventListener("keydown", undo);
+  }, []);
   return (
     <div class="toasts" role="status" aria-live="polite">
       {toasts.map((toast) => (
@@ -145,7 +149,9 @@ function Note({ id, text, kind, action }: Toast) {
     <div class={`toast ${kind}`}>
       <span>{text}</span>
       {action ? (
-        <button onClick={action.run}>{action.label}</button>
+        <button onClick={action.run} aria-keyshortcuts="Control+Z" title="Ctrl + Z">
+          {action.label}
+        </button>
       ) : (
         <button class="plain" aria-label="Dismiss" onClick={() => dismiss(id)}>
           ✕

@@ -1,10 +1,10 @@
 /** More generations for a run that is done, its way into the bin, and where it came from. */
 
-import { useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
 import { useRefusal } from "../live/caller";
 import { extend, remove, restore } from "../live/life";
 import { count, moment, short } from "../view/format";
+import { useOpening } from "../view/opening";
 
 const OVER = ["finished", "failed", "cancelled", "paused"];
 
@@ -25,9 +25,14 @@ const extendable = (run: Run) =>
   run.status === "finished" && "search" in run.spec && !run.summary?.["ended"];
 
 function Extend({ run }: { run: Run }) {
-  const [open, setOpen] = useState(false);
-  const field = useRef<HTMLInputElement>(null);
-  if (!open) return <button onClick={() => setOpen(true)}>Extend</button>;
+  const { open, setOpen, button, first: field } = useOpening<HTMLInputElement>();
+  if (!open) {
+    return (
+      <button ref={button} onClick={() => setOpen(true)}>
+        Extend
+      </button>
+    );
+  }
   const send = async (event: Event) => {
     event.preventDefault();
     const more = field.current?.valueAsNumber ?? NaN;
@@ -47,7 +52,6 @@ function Extend({ run }: { run: Run }) {
           min={1}
           max={1_000_000}
           required
-          autofocus
           defaultValue={String(run.generations)}
         />
       </label>

@@ -1,6 +1,6 @@
 /** Publishes a creature or an archive: what to call it, whom to name, how long, for whom. */
 
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Share, ShareAsked } from "../api/types";
@@ -122,7 +122,11 @@ function Asking({ of, title, file, onDone, onEnd }: AskingProps) {
       <label class="check">
         <input name="listed" type="checkbox" /> List it in the commons, for everybody to find
       </label>
-      {error && <p class="banner wrong">{error}</p>}
+      {error && (
+        <p class="banner wrong" role="alert">
+          {error}
+        </p>
+      )}
       <p class="links">
         <button class="primary" disabled={busy}>
           {busy ? "Publishing …" : "Publish"}
@@ -154,12 +158,14 @@ function endOf(term: string, until: string, now: number): string | null {
 }
 
 function Published({ share, onEnd }: { share: Share; onEnd: () => void }) {
+  const address = useRef<HTMLInputElement>(null);
+  useEffect(() => address.current!.focus(), []);
   return (
     <div class="published">
       <h2 id="publish-title">Published</h2>
       <label>
         Its address
-        <input readOnly value={share.url} onFocus={(event) => event.currentTarget.select()} />
+        <input ref={address} readOnly value={share.url} onFocus={(event) => event.currentTarget.select()} />
       </label>
       <p class="links">
         <button class="primary" onClick={() => void copyText(share.url, "Link copied.")}>

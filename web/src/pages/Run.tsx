@@ -16,6 +16,7 @@ import { Doing, doingOf } from "../view/Doing";
 import { endingOf } from "../view/ending";
 import { count, short, titleOf } from "../view/format";
 import { NotFree } from "../view/NotFree";
+import { NotThere } from "../view/NotThere";
 import { type Figure, figuresOf, generationsOf } from "../view/results/figures";
 import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
 import { Name } from "../view/runs/Said";
@@ -53,7 +54,7 @@ export function RunPage({ id, query }: Props) {
   if (!run) {
     return (
       <main>
-        {error ? <p class="banner wrong">{error}</p> : <p class="quiet loading">Loading run …</p>}
+        {error ? <NotThere what="No such run" reason={error} /> : <p class="quiet loading">Loading run …</p>}
       </main>
     );
   }
@@ -65,7 +66,7 @@ export function RunPage({ id, query }: Props) {
         {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
       </nav>
       <header class="page-head">
-        <Name run={run} title={title} fixed={!!refusal} onName={(name) => void say(id, { name })}>
+        <Name run={run} title={title} fixed={!!refusal || !!run.deleted_at} onName={(name) => void say(id, { name })}>
           <h1>
             {title} <code>{short(run.id)}</code>
           </h1>

@@ -7,7 +7,7 @@ import { useLive } from "../live/live";
 import { addTag, removeNote, removeTag, say } from "../live/saying";
 import { setQuery } from "../router";
 import { freedomOf } from "../view/coupling";
-import { DASH, short, titleOf } from "../view/format";
+import { DASH, moment, short, titleOf } from "../view/format";
 import { NotFree } from "../view/NotFree";
 import { keyFigureOf } from "../view/results/figures";
 import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
@@ -28,12 +28,16 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
   const title = titleOf(run, experiments);
   const name = `${title} ${short(run.id)}`;
   const time = timeOf(run);
-  const [mayMake, fixed] = [!useRefusal(), useRefusal(run) !== null];
+  const mayMake = !useRefusal();
+  const mayChange = !useRefusal(run);
+  const fixed = !mayChange || run.deleted_at !== null;
   const [figureName, figure] = keyFigureOf(run);
   return (
     <tr class={chosen ? "chosen-row" : ""}>
       <td class="row-choice">
-        <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
+        {!run.deleted_at && (
+          <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
+        )}
       </td>
       <th scope="row">
         <Name {...{ run, title, fixed }} onName={(name) => void say(run.id, { name })}>
@@ -50,6 +54,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         {run.status === "running" && run.generation === 0 && (
           <span class="row-note quiet">compiling and computing its first generation</span>
         )}
+        {run.purge_at && <span class="row-note quiet">until {moment(run.purge_at)}, then gone for good</span>}
         {run.waiting && <span class="row-note why">{run.waiting}</span>}
         {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
         {run.warning && <span class="row-note warning-text">{run.warning}</span>}
@@ -92,7 +97,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
       </td>
       <td class="row-actions">
         <span class="actions">
-          {!fixed && run.deleted_at && (
+          {mayChange && run.deleted_at && (
             <button onClick={() => void restore(run.id)} aria-label={`Restore ${name}`}>
               Restore
             </button>

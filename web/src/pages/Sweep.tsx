@@ -10,6 +10,7 @@ import { Curves } from "../view/curves/Curves";
 import { SHOWN, type Shown, bandsOf, caseName } from "../view/sweeps/bands";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../view/sweeps/Standing";
 import { moment } from "../view/format";
+import { NotThere } from "../view/NotThere";
 import { colourOf, dashOf } from "./compare/Legend";
 import { CurveBar, Check } from "./CurveChoices";
 import { Cases, Finals, Members } from "./sweep/Tables";
@@ -31,7 +32,8 @@ export function SweepPage({ id, query }: Props) {
       <nav class="crumbs" aria-label="Where you are">
         <a href="/">Runs</a>
       </nav>
-      {error && <p class="banner wrong">{error}</p>}
+      {error && value && <p class="banner wrong">{error}</p>}
+      {error && !value && <NotThere what="No such sweep" reason={error} />}
       {!value && !error && <p class="quiet loading">Loading sweep …</p>}
       {value && <Loaded {...{ value, query, each }} />}
     </main>

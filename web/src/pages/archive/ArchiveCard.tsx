@@ -89,8 +89,8 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
         />
       )}
       {view.error && <p class="banner wrong">{view.error}</p>}
-      <ChosenBar {...{ run, at }} elites={view.elites} {...choosing} />
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
+      <ChosenBar {...{ run, at }} elites={view.elites} {...choosing} />
       {guide.open && (
         <Guide
           steps={stepsOf(run, archive, view)}

@@ -57,12 +57,12 @@ export function ChosenBar({ run, elites, at, chosen, onChoose }: Props) {
   const then = at === null ? "" : ` of generation ${count(at)}`;
   const cells = chosen.size > 0 ? [...chosen] : at === null ? [] : [...elites.keys()];
   const creatures = new Set(cells.map((cell) => elites.get(cell)!.creature)).size;
+  const text = `${count(creatures)} ${creatures === 1 ? "creature" : "creatures"}${then}`;
   return (
     <div class="chosen-bar">
-      <span role="status">
-        {creatures > 0 && `${count(creatures)} ${creatures === 1 ? "creature" : "creatures"}${then}`}
-        {chosen.size > 0 && " chosen"}
-      </span>
+      <span role="status">{chosen.size > 0 && `${text} chosen`}</span>
+      {/* Not said with every step of the slider. */}
+      {chosen.size === 0 && creatures > 0 && <span>{text}</span>}
       {creatures > 0 && (
         <ForkLink
           run={run.id}
