@@ -33,11 +33,11 @@ export function App() {
   const place = usePlace();
   const { page } = place.route;
   const unknown = useUnknown();
-  const refusal = useRefusal();
   useEffect(() => void learnCaller(), []);
   useEffect(() => {
-    if (TITLES[page]) document.title = `${TITLES[page]} · Microcosmos`;
-  }, [page]);
+    const title = unknown ? "Sign in" : TITLES[page];
+    if (title) document.title = `${title} · Microcosmos`;
+  }, [page, unknown]);
   return (
     <>
       <header class="top">
@@ -47,33 +47,43 @@ export function App() {
           </svg>
           Microcosmos
         </a>
-        <nav aria-label="Pages">
-          <a href="/" aria-current={page === "runs" ? "page" : undefined}>
-            Runs
-          </a>
-          <a href="/new" aria-current={page === "new" ? "page" : undefined}>
-            New run
-          </a>
-          <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
-            Workers
-          </a>
-          <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
-            Shares
-          </a>
-          <a href="/commons" target="_self">
-            Commons
-          </a>
-          <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
-            Settings
-          </a>
-        </nav>
-        <span class="spring" />
-        {!refusal && <OpenButton />}
-        <Connection />
+        {!unknown && <Ways page={page} />}
       </header>
       {unknown ? <SignInPage /> : <Page {...place} />}
-      <DropTarget />
+      {!unknown && <DropTarget />}
       <Toasts />
+    </>
+  );
+}
+
+/** Where one can go and what one can open, once the server knows who asks. */
+function Ways({ page }: { page: string }) {
+  const refusal = useRefusal();
+  return (
+    <>
+      <nav aria-label="Pages">
+        <a href="/" aria-current={page === "runs" ? "page" : undefined}>
+          Runs
+        </a>
+        <a href="/new" aria-current={page === "new" ? "page" : undefined}>
+          New run
+        </a>
+        <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
+          Workers
+        </a>
+        <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
+          Shares
+        </a>
+        <a href="/commons" target="_self">
+          Commons
+        </a>
+        <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
+          Settings
+        </a>
+      </nav>
+      <span class="spring" />
+      {!refusal && <OpenButton />}
+      <Connection />
     </>
   );
 }

@@ -17,7 +17,9 @@ export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
 /** What people may say of a run. */
 export type RunChange = Partial<Pick<Run, "name" | "tags" | "note">>;
 export type RunQuery = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
-export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }>;
+export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }> & Owned;
+/** With the name of the token it was made with, null without one; some things do not tell. */
+export type Owned = { owner?: string | null };
 export type SweepPage = With<Wire["SweepPage"], { items: Sweep[] }>;
 export type SweepChanged = Sweep & Pick<Wire["SweepChanged"], "changed" | "left">;
 export type SweepCase = { values: CaseValues; runs: string[] };

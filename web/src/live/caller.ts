@@ -2,7 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { readCaller } from "../api/client";
-import type { Caller, Run } from "../api/types";
+import type { Caller, Owned } from "../api/types";
 import { UNKNOWN, isUnknown } from "../api/unknown";
 import { type Loaded, useFetched } from "./fetching";
 import { dispatch, useLive } from "./live";
@@ -29,8 +29,6 @@ export function useUnknown(): boolean {
   return unknown;
 }
 
-type Owned = Pick<Run, "owner">;
-
 /** Why we may not make anything here, or not change what somebody made; null where we may. */
 export const useRefusal = (thing?: Owned): string | null =>
   refusalOf(useLive((state) => state.caller), thing);
@@ -39,7 +37,7 @@ export const useRefusal = (thing?: Owned): string | null =>
 export function refusalOf(caller: Caller | null, thing?: Owned): string | null {
   if (!caller || caller.scope === "admin") return null;
   if (caller.scope === "read") return "Your token may only look.";
-  if (!thing || thing.owner === caller.name) return null;
+  if (thing?.owner === undefined || thing.owner === caller.name) return null;
   const owner = thing.owner ? `${thing.owner} or an admin` : "an admin";
   return `Only ${owner} may change it.`;
 }

@@ -80,7 +80,7 @@ export function RunPage({ id, query }: Props) {
         {hasArchive(run) && !!run.coverage && !run.deleted_at && (
           <ForkLink run={run.id} title="A new run that begins from the creatures of this one" />
         )}
-        {refusal && <span class="quiet small">{refusal}</span>}
+        {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
         {!refusal && !run.deleted_at && <Actions run={run} on={ON(title)} name={title} />}
         {!refusal && <Life run={run} title={title} />}
       </header>

@@ -3,6 +3,7 @@
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Share } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { usePages } from "../live/pages";
 import { tell } from "../live/toasts";
 import { moment } from "../view/format";
@@ -10,6 +11,7 @@ import { Twice } from "../view/Twice";
 import { copyText } from "./copying";
 
 export function SharesPage() {
+  const refusal = useRefusal();
   const { items: shares, error, more, put } = usePages(api.readShares, ({ slug }) => slug);
   return (
     <main>
@@ -21,7 +23,7 @@ export function SharesPage() {
       {shares?.length === 0 && (
         <section class="empty card">
           <h2>Nothing is shared</h2>
-          <p>Publish a creature from its page, or an archive from its run’s.</p>
+          <p>{refusal ?? "Publish a creature from its page, or an archive from its run’s."}</p>
         </section>
       )}
       {shares && shares.length > 0 && (

@@ -119,9 +119,10 @@ function Head({ sweep }: { sweep: Sweep }) {
 }
 
 /** Only what the state of any run allows. */
-function Actions({ sweep: { id, standing }, title }: { sweep: Sweep; title: string }) {
+function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
+  const { id, standing } = sweep;
   const { queued = 0, running = 0, paused = 0 } = standing;
-  const refusal = useRefusal();
+  const refusal = useRefusal(sweep);
   if (queued + running + paused === 0) return null;
   if (refusal) return <span class="quiet small">{refusal}</span>;
   return (
