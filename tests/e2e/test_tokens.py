@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from accessibility import violations
 from drive import Installation
+from looks import faults
 from playwright.sync_api import Browser, Page, expect
 from small import TINY
 
@@ -89,6 +90,11 @@ def make_a_token(page: Page, address: str) -> str:
     assert SECRET.fullmatch(secret)
     expect(page.get_by_role("row", name=re.compile("^alice"))).to_contain_text(secret[:9])
     assert violations(page) == []
+    desk = page.viewport_size
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert faults(page) == []
+    assert desk
+    page.set_viewport_size(desk)
     page.reload()
     expect(page.get_by_role("row", name=re.compile("^alice"))).to_be_visible()
     assert secret not in page.content()
