@@ -152,4 +152,9 @@ def meet_it_in_the_commons(stranger: Page, address: str, link: str) -> None:
 def take_back(page: Page, address: str, title: str) -> None:
     page.goto(f"{address}/shares")
     page.get_by_role("button", name=f"Revoke {title}").click()
+    expect(page.get_by_role("button", name=f"Revoke now: {title}")).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("button", name=f"Revoke {title}")).to_be_focused()
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name=f"Revoke now: {title}").click()
     expect(page.get_by_text(f"{title} is not shared any more.")).to_be_visible(timeout=FAST)

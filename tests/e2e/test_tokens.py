@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 from accessibility import violations
 from drive import Installation
+from looks import faults
 from playwright.sync_api import Browser, Page, expect
+from small import TINY
 
 SECRET = re.compile(r"mc_[\w-]{43}")
 
@@ -43,6 +45,7 @@ def test_an_admin_signs_in_with_the_first_token_and_makes_and_revokes_others(
         sign_in(admin, guarded.url, first)
         secret = make_a_token(admin, guarded.url)
         use_it(alice, guarded.url, secret)
+        stay_within_what_it_may(alice, guarded, first)
         revoke_it(admin)
         # The stream that she watches ends, and the page finds out why.
         expect(alice.get_by_role("heading", name="Sign in")).to_be_visible(timeout=20_000)
@@ -87,6 +90,11 @@ def make_a_token(page: Page, address: str) -> str:
     assert SECRET.fullmatch(secret)
     expect(page.get_by_role("row", name=re.compile("^alice"))).to_contain_text(secret[:9])
     assert violations(page) == []
+    desk = page.viewport_size
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert faults(page) == []
+    assert desk
+    page.set_viewport_size(desk)
     page.reload()
     expect(page.get_by_role("row", name=re.compile("^alice"))).to_be_visible()
     assert secret not in page.content()
@@ -102,7 +110,26 @@ def use_it(page: Page, address: str, secret: str) -> None:
     page.goto(address)
 
 
+def stay_within_what_it_may(page: Page, place: Installation, first: str) -> None:
+    """What is another's has no buttons, and the page says whose it is; one's own has them."""
+    as_admin = {"Authorization": f"Bearer {first}"}
+    asked = place.http.post("/api/v1/runs", json=TINY, headers=as_admin).raise_for_status()
+    theirs = asked.json()["id"]
+    row = page.get_by_role("row", name=re.compile(theirs[:8]))
+    expect(row.get_by_role("link", name=re.compile("^Clone"))).to_be_visible()
+    expect(row.get_by_role("button")).to_have_count(0)
+    page.goto(f"{place.url}/runs/{theirs}")
+    expect(page.get_by_text("Only admin or an admin may change it.")).to_be_visible()
+    expect(page.get_by_role("button", name=re.compile("^(Cancel|Pause|Rename)"))).to_have_count(
+        0
+    )
+    own = page.request.post(f"{place.url}/api/v1/runs", data={**TINY, "seed": 1})
+    page.goto(f"{place.url}/runs/{own.json()['id']}")
+    expect(page.get_by_role("button", name=re.compile("^Cancel"))).to_be_visible()
+    page.goto(place.url)
+
+
 def revoke_it(page: Page) -> None:
     page.get_by_role("button", name="Revoke alice").click()
-    page.get_by_role("button", name="Revoke alice now").click()
+    page.get_by_role("button", name="Revoke now: alice").click()
     expect(page.get_by_role("row", name=re.compile("^alice"))).to_contain_text("Revoked")

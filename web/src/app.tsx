@@ -2,9 +2,9 @@
 
 import { useEffect } from "preact/hooks";
 import { later } from "./later";
-import { useUnknown } from "./live/caller";
+import { learnCaller, useRefusal, useUnknown } from "./live/caller";
 import { useLive } from "./live/live";
-import { type Toast, dismiss, useToasts } from "./live/toasts";
+import { type Toast, dismiss, undo, useToasts } from "./live/toasts";
 import { DropTarget, OpenButton } from "./pages/DropTarget";
 import { RunsPage } from "./pages/Runs";
 import { type Place, usePlace } from "./router";
@@ -33,9 +33,11 @@ export function App() {
   const place = usePlace();
   const { page } = place.route;
   const unknown = useUnknown();
+  useEffect(() => void learnCaller(), []);
   useEffect(() => {
-    if (TITLES[page]) document.title = `${TITLES[page]} · Microcosmos`;
-  }, [page]);
+    const title = unknown ? "Sign in" : TITLES[page];
+    if (title) document.title = `${title} · Microcosmos`;
+  }, [page, unknown]);
   return (
     <>
       <header class="top">
@@ -45,33 +47,43 @@ export function App() {
           </svg>
           Microcosmos
         </a>
-        <nav aria-label="Pages">
-          <a href="/" aria-current={page === "runs" ? "page" : undefined}>
-            Runs
-          </a>
-          <a href="/new" aria-current={page === "new" ? "page" : undefined}>
-            New run
-          </a>
-          <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
-            Workers
-          </a>
-          <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
-            Shares
-          </a>
-          <a href="/commons" target="_self">
-            Commons
-          </a>
-          <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
-            Settings
-          </a>
-        </nav>
-        <span class="spring" />
-        <OpenButton />
-        <Connection />
+        {!unknown && <Ways page={page} />}
       </header>
       {unknown ? <SignInPage /> : <Page {...place} />}
-      <DropTarget />
+      {!unknown && <DropTarget />}
       <Toasts />
+    </>
+  );
+}
+
+/** Where one can go and what one can open, once the server knows who asks. */
+function Ways({ page }: { page: string }) {
+  const refusal = useRefusal();
+  return (
+    <>
+      <nav aria-label="Pages">
+        <a href="/" aria-current={page === "runs" ? "page" : undefined}>
+          Runs
+        </a>
+        <a href="/new" aria-current={page === "new" ? "page" : undefined}>
+          New run
+        </a>
+        <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
+          Workers
+        </a>
+        <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
+          Shares
+        </a>
+        <a href="/commons" target="_self">
+          Commons
+        </a>
+        <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
+          Settings
+        </a>
+      </nav>
+      <span class="spring" />
+      {!refusal && <OpenButton />}
+      <Connection />
     </>
   );
 }
@@ -129,6 +141,10 @@ function Connection() {
 
 export function Toasts() {
   const toasts = useToasts();
+  useEffect(() => {
+    document.addEventListener("keydown", undo);
+    return () => document.removeEventListener("keydown", undo);
+  }, []);
   return (
     <div class="toasts" role="status" aria-live="polite">
       {toasts.map((toast) => (
@@ -143,7 +159,9 @@ function Note({ id, text, kind, action }: Toast) {
     <div class={`toast ${kind}`}>
       <span>{text}</span>
       {action ? (
-        <button onClick={action.run}>{action.label}</button>
+        <button onClick={action.run} aria-keyshortcuts="Control+Z" title="Ctrl + Z">
+          {action.label}
+        </button>
       ) : (
         <button class="plain" aria-label="Dismiss" onClick={() => dismiss(id)}>
           ✕

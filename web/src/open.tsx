@@ -5,6 +5,7 @@ import { share } from "./api/place";
 import { CommonsPage } from "./pages/Commons";
 import { SharedPage } from "./pages/Shared";
 import { usePlace } from "./router";
+import { NotThere } from "./view/NotThere";
 
 export function Open() {
   const { route, query } = usePlace();
@@ -28,7 +29,7 @@ export function Open() {
       {route.page === "commons" && <CommonsPage />}
       {route.page === "unknown" && (
         <main>
-          <p class="banner wrong">Nothing was shared at this address.</p>
+          <NotThere what="Nothing to see here" reason="Nothing was shared at this address." />
         </main>
       )}
       <Toasts />

@@ -5,8 +5,8 @@ import type { Json, Spec } from "../src/api/types";
 import { addressOf } from "../src/live/draft";
 import { isAboutOrigin } from "../src/pages/new/ForkCard";
 import { forkOf } from "../src/pages/new/forking";
-import { addressed, load } from "../src/pages/new/sources";
-import { formOf } from "../src/view/form/fields";
+import { MOST, addressed, load } from "../src/pages/new/sources";
+import { type Section, formOf } from "../src/view/form/fields";
 import { placesOf } from "../src/view/form/document";
 import { mergePatch, withOrigin, withoutOrigin } from "../src/view/form/forking";
 
@@ -20,6 +20,10 @@ const RUNS: Record<string, Spec> = {
   [RUN]: withOrigin(SPEC, [SHA]),
   table: { experiment: "gaits" },
 };
+/** All of a run, as they are. */
+const ALL = { run: RUN, creature: null, cells: null, at: null, creatures: 3 };
+const ONE = { ...ALL, creature: SHA, creatures: 1 };
+
 const CREATURE = {
   identity: {
     format: "microcosmos-creature/1",
@@ -33,7 +37,10 @@ const CREATURE = {
 
 vi.mock("../src/api/client", () => ({
   readRun: async (id: string) => ({ id, spec: RUNS[id] }),
-  readArchive: async () => ({ creature: ["x", "y", "z"] }),
+  readArchive: async (_: string, __: string[], generation?: number) =>
+    generation === 0
+      ? { cell: [], creature: [], generation }
+      : { cell: [2, 3, 5, 9], creature: ["x", "y", "z", "x"], generation: Math.min(generation ?? 8, 8) },
   readCreature: async () => CREATURE,
 }));
 
@@ -80,19 +87,25 @@ describe("a fork", () => {
   const spec = { ...base.spec, world: { ...(SPEC.world as Spec), viscosity: 0.3 } };
 
   it("is sent as what differs, with whom it begins from", () => {
-    const all = { ...base, fork: { run: RUN, creature: null, creatures: 7 } };
+    const all = { ...base, fork: ALL };
     expect(forkOf({ base: all, spec }, "  thick ")).toEqual({
       fork: { run: RUN, from: { archive: true }, spec: { world: { viscosity: 0.3 } }, name: "thick" },
     });
-    const one = { ...base, fork: { run: RUN, creature: SHA, creatures: 1 } };
+    const one = { ...base, fork: ONE };
     expect(forkOf({ base: one, spec: base.spec }, "")).toEqual({
       fork: { run: RUN, from: { creatures: [SHA] }, spec: {}, name: null },
     });
   });
 
+  it("names the cells, and the generation after which they lived there", () => {
+    const some = { ...base, fork: { ...ALL, cells: [2, 3, 9], at: 4 } };
+    expect(forkOf({ base: some, spec: base.spec }, "")).toEqual({
+      fork: { run: RUN, from: { cells: [2, 3, 9] }, generation: 4, spec: {}, name: null },
+    });
+  });
+
   it("takes no other names of creatures, typed as JSON or into a field", () => {
-    const fork = { run: RUN, creature: null, creatures: 7 };
-    const sent = forkOf({ base: { ...base, fork }, spec: withOrigin(spec, [SHA]) }, "");
+    const sent = forkOf({ base: { ...base, fork: ALL }, spec: withOrigin(spec, [SHA]) }, "");
     expect(sent).toMatchObject({ fork: { spec: { world: { viscosity: 0.3 } } } });
     const form = formOf(SEARCH.schema);
     const places = placesOf(form, spec).filter((path) => path !== "search.origin");
@@ -101,15 +114,17 @@ describe("a fork", () => {
   });
 
   it("is a run as any other where no run is known, or nobody to begin from", () => {
-    const alone = { ...base, fork: { run: null, creature: SHA, creatures: 1 } };
+    const alone = { ...base, fork: { ...ONE, run: null } };
     expect(forkOf({ base: alone, spec }, "")).toBeNull();
     expect(forkOf({ base, spec }, "")).toBeNull();
   });
 
   it.each([
-    [`fork=${RUN}`, ["fork", RUN], { run: RUN, creature: null, creatures: 7 }],
-    [`fork=${RUN}&creature=${SHA}`, ["fork", RUN, SHA], { run: RUN, creature: SHA, creatures: 1 }],
-    [`begin=${SHA}`, ["begin", SHA], { run: null, creature: SHA, creatures: 1 }],
+    [`fork=${RUN}`, [["fork", RUN]], ALL],
+    [`fork=${RUN}&creature=${SHA}`, [["fork", RUN], ["creature", SHA]], ONE],
+    [`fork=${RUN}&cells=2-3,9`, [["fork", RUN], ["cells", "2-3,9"]], { ...ALL, cells: [9, 2, 3] }],
+    [`fork=${RUN}&at=0`, [["fork", RUN], ["at", "0"]], { ...ALL, at: 0 }],
+    [`begin=${SHA}`, [["begin", SHA]], { ...ONE, run: null }],
   ])("is named by the address %s", (text, address, fork) => {
     expect(addressed(new URLSearchParams(text))).toEqual(address);
     expect(addressOf({ ...base, fork })).toEqual(address);
@@ -126,15 +141,30 @@ describe("a fork", () => {
 
 describe("what an address of a fork names", () => {
   it("is the run's spec, with how many creatures live there", async () => {
-    const base = await load(["fork", RUN], EXPERIMENTS);
-    expect(base.fork).toEqual({ run: RUN, creature: null, creatures: 3 });
+    const base = await load([["fork", RUN]], EXPERIMENTS);
+    expect(base.fork).toEqual(ALL);
     expect((base.spec.search as Spec).origin).toEqual([]);
   });
 
+  it("is whoever lives in the cells, each once, and not later than there are generations", async () => {
+    const some = async (...words: [string, string][]) =>
+      (await load([["fork", RUN], ...words], EXPERIMENTS)).fork;
+    expect(await some(["cells", "0-2,8-9"])).toEqual({ ...ALL, cells: [2, 9], creatures: 1 });
+    expect(await some(["at", "99"])).toEqual({ ...ALL, at: 8 });
+    await expect(some(["cells", "4,6-8"])).rejects.toThrow("nobody lives there");
+    await expect(some(["at", "0"])).rejects.toThrow("nobody lives there");
+    await expect(some(["at", "then"])).rejects.toThrow("“at” must be a generation; got then.");
+  });
+
+  it("is of no more creatures than the schema has room for", () => {
+    const { fields } = formOf(SEARCH.schema).fields.find(({ path }) => path === "search") as Section;
+    expect(JSON.stringify(fields.find(({ path }) => path === "search.origin"))).toContain(`${MOST}`);
+  });
+
   it("is the creature's own world where its run was no search", async () => {
-    const base = await load(["fork", "table", SHA], EXPERIMENTS);
+    const base = await load([["fork", "table"], ["creature", SHA]], EXPERIMENTS);
     expect(base).toMatchObject({ kind: "creature", fork: { run: null, creature: SHA } });
     expect(base.spec).toMatchObject({ world: { width: 96 }, search: { origin: [SHA] } });
-    await expect(load(["fork", "table"], EXPERIMENTS)).rejects.toThrow("fills no archive");
+    await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("fills no archive");
   });
 });

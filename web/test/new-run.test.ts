@@ -158,9 +158,9 @@ describe("a draft", () => {
 
   it("gives way where the address names something else", () => {
     keep(work);
-    expect(draftFor(["preset", "gaits/demo"])).toEqual(work);
-    expect(draftFor(["preset", "gaits/paper"])).toBeNull();
-    expect(draftFor(["from", "a run"])).toBeNull();
+    expect(draftFor([["preset", "gaits/demo"]])).toEqual(work);
+    expect(draftFor([["preset", "gaits/paper"]])).toBeNull();
+    expect(draftFor([["from", "a run"]])).toBeNull();
   });
 
   it("that cannot be read is none", () => {
@@ -171,12 +171,12 @@ describe("a draft", () => {
   });
 
   it("has an address where it was begun from something with a name", async () => {
-    expect(addressOf(base)).toEqual(["preset", "gaits/demo"]);
-    expect(addressOf({ kind: "run", name: "a" })).toEqual(["from", "a"]);
+    expect(addressOf(base)).toEqual([["preset", "gaits/demo"]]);
+    expect(addressOf({ kind: "run", name: "a" })).toEqual([["from", "a"]]);
     expect(addressOf({ kind: "pasted", name: "spec.json" })).toBeNull();
     expect(addressOf({ kind: "run", name: "a", foreign: true })).toBeNull();
-    expect(await load(["preset", "gaits/demo"], EXPERIMENTS)).toEqual(base);
-    await expect(load(["preset", "gaits/none"], EXPERIMENTS)).rejects.toThrow(/gaits\/paper.*got gaits\/none/);
+    expect(await load([["preset", "gaits/demo"]], EXPERIMENTS)).toEqual(base);
+    await expect(load([["preset", "gaits/none"]], EXPERIMENTS)).rejects.toThrow(/gaits\/paper.*got gaits\/none/);
     expect(titleOfBase(base)).toBe("preset “demo”");
   });
 });

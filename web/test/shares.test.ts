@@ -2,7 +2,7 @@
 
 import { describe, expect, it } from "vitest";
 import { isOpen } from "../src/api/place";
-import { askedIn } from "../src/pages/Publish";
+import { askedIn } from "../src/pages/PublishDialog";
 import { routeOf } from "../src/router";
 
 const form = (fields: Record<string, string>) => {

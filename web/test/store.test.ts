@@ -395,3 +395,34 @@ describe("curves of runs that are looked at beside others", () => {
     expect(after(curves, third).watching.size).toBe(0);
   });
 });
+
+describe("a run that is put into the bin elsewhere", () => {
+  it("may not belong to a list any more, or to another", () => {
+    const known = reduce(EMPTY, { type: "run", run: RUN });
+    const binned = reduce(known, { type: "run", run: { ...RUN, deleted_at: "2026-01-03T00:00:00Z" } });
+    expect(binned.news).toBe(known.news + 1);
+    expect(reduce(binned, { type: "run", run: RUN }).news).toBe(known.news + 2);
+  });
+});
+
+describe("a run that is gone for good", () => {
+  const page = { items: [RUN, { ...RUN, id: "b" }], next: null };
+  const listed = reduce(EMPTY, { type: "list", asked: "", page, known: 0, sent: 0 });
+  const gone = reduce(listed, { type: "purge", run: "a" });
+
+  it("leaves the lists at once, which are read anew", () => {
+    expect(gone.listed).toEqual(["b"]);
+    expect(gone.runs.has("a")).toBe(false);
+    expect(gone.news).toBeGreaterThan(listed.news);
+  });
+
+  it("is asked for anew by whoever looks at it, and so told to be gone", () => {
+    expect(epochOf(gone, "a")).toBeGreaterThan(epochOf(listed, "a"));
+  });
+
+  it("is no news of a sweep but its own", () => {
+    expect(gone.swept.size).toBe(0);
+    const swept = reduce(listed, { type: "run", run: { ...RUN, sweep: "s" } });
+    expect(reduce(swept, { type: "purge", run: "a" }).swept.get("s")).toBe(2);
+  });
+});

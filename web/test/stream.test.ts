@@ -49,6 +49,12 @@ afterEach(() => {
 const open = () => Source.made.filter(({ readyState }) => readyState !== Source.CLOSED).length;
 
 describe("the stream", () => {
+  it("tells of a run that is gone for good", () => {
+    const data = JSON.stringify({ run: "a" });
+    Source.made[0]!.dispatchEvent(Object.assign(new Event("purge"), { data }));
+    expect(live.current().epochs.get("a")).toBe(1);
+  });
+
   it("is closed in a tab that stays hidden, and what was missed is fetched anew", () => {
     const { epoch } = live.current();
     page.turn("hidden");

@@ -103,9 +103,9 @@ export async function readRun(id: string): Promise<Run> {
   return (await success(client.GET(`${ROOT}/runs/{run_id}`, run(id)))) as Run;
 }
 
-/** The archive, with columns of the features that are named. */
-export function readArchive(id: string, features: string[] = []) {
-  const query = features.length > 0 ? { features: features.join(",") } : {};
+/** The archive now or after a generation, with columns of the features that are named. */
+export function readArchive(id: string, features: string[] = [], generation?: number) {
+  const query = { ...(features.length > 0 && { features: features.join(",") }), generation };
   const params = { path: { run_id: id }, query };
   return success(client.GET(`${ROOT}/runs/{run_id}/archive`, { params }));
 }

@@ -17,7 +17,9 @@ export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
 /** What people may say of a run. */
 export type RunChange = Partial<Pick<Run, "name" | "tags" | "note">>;
 export type RunQuery = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
-export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }>;
+export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }> & Owned;
+/** With the name of the token it was made with, null without one. */
+export type Owned = { owner: string | null };
 export type SweepPage = With<Wire["SweepPage"], { items: Sweep[] }>;
 export type SweepChanged = Sweep & Pick<Wire["SweepChanged"], "changed" | "left">;
 export type SweepCase = { values: CaseValues; runs: string[] };
@@ -40,7 +42,9 @@ export interface SweepSent {
 /** A run that begins from another's creatures, its spec changed by a merge patch. */
 export interface ForkSent {
   run: string;
-  from: { creatures: string[] } | { archive: true };
+  from: { creatures: string[] } | { cells: number[] } | { archive: true };
+  /** Elites as they were after it; left out: as they are. */
+  generation?: number;
   spec: Spec;
   name: string | null;
 }

@@ -1,6 +1,7 @@
 /** The spec that is being written, kept while the tab lives. */
 
 import type { Spec } from "../api/types";
+import { written } from "./cells";
 
 /** What a spec was begun from. */
 export interface Base {
@@ -17,13 +18,17 @@ export interface Base {
 export interface Forking {
   /** Whose creatures they are; null where no run is known. */
   run: string | null;
-  /** The only one; null for all elites of the run. */
+  /** The only one; null for elites of the run. */
   creature: string | null;
+  /** Whose elites they are; null for those of all. */
+  cells: number[] | null;
+  /** The generation after which they lived there; null: as they are. */
+  at: number | null;
   creatures: number;
 }
 
-/** A word of the address with a name; of a fork also the creature, where it is one. */
-export type Address = [word: string, name: string, creature?: string];
+/** What the address says of it: a word with a name, and of a fork which creatures. */
+export type Address = (readonly [word: string, value: string])[];
 
 export interface Work {
   base: Base;
@@ -37,13 +42,20 @@ const QUERIES = { preset: "preset", run: "from", creature: "creature", pasted: n
 export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Address | null {
   if (fork) return addressOfFork(fork);
   const word = QUERIES[kind];
-  return word && !foreign ? [word, name] : null;
+  return word && !foreign ? [[word, name]] : null;
 }
 
-function addressOfFork({ run, creature }: Forking): Address {
-  if (run === null) return ["begin", creature!];
-  return creature === null ? ["fork", run] : ["fork", run, creature];
+function addressOfFork({ run, creature, cells, at }: Forking): Address {
+  if (run === null) return [["begin", creature!]];
+  return forked(run, { creature, cells: cells && written(cells), at: at === null ? null : String(at) });
 }
+
+/** The address of a fork: which of a run's creatures it begins from. */
+export function forked(run: string, which: { [name in (typeof WHICH)[number]]?: string | null }): Address {
+  return [["fork", run], ...WHICH.flatMap((name) => (which[name] ? [[name, which[name]] as const] : []))];
+}
+
+export const WHICH = ["creature", "cells", "at"] as const;
 
 export function keep(work: Work): void {
   try {

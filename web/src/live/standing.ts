@@ -20,7 +20,7 @@ export function told(state: State, event: RunEvent): State {
 }
 
 /** What decides whether a run belongs to a list, or why it waits; its figures come by the second. */
-const DECISIVE = ["status", "name", "tags", "note"] as const;
+const DECISIVE = ["status", "name", "tags", "note", "deleted_at"] as const;
 
 const differ = (one: unknown, other: unknown) => JSON.stringify(one) !== JSON.stringify(other);
 

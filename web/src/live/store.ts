@@ -2,6 +2,7 @@
 
 import type {
   Archive,
+  Caller,
   ElitesEvent,
   GenerationEvent,
   Generations,
@@ -36,6 +37,8 @@ export type Connection = "connecting" | "live" | "lost";
 
 export interface State {
   connection: Connection;
+  /** Who the server takes us for; null until it says so. */
+  caller: Caller | null;
   runs: ReadonlyMap<string, Run>;
   paces: ReadonlyMap<string, Pace>;
   details: ReadonlyMap<string, Detail>;
@@ -64,6 +67,7 @@ export interface State {
 
 export type Action =
   | { type: "connection"; connection: Connection }
+  | { type: "caller"; caller: Caller }
   | { type: "run"; run: RunEvent }
   | { type: "answer"; run: Run; sent: number }
   | { type: "done"; run: Run; sent: number }
@@ -85,6 +89,7 @@ export type Action =
   | { type: "results"; event: ResultsEvent }
   | { type: "rewind"; event: RewindEvent }
   | { type: "sweep"; sweep: string }
+  | { type: "purge"; run: string }
   | { type: "reset" };
 
 /** A list from its beginning, asked for when so many runs of it were known. */
@@ -105,6 +110,7 @@ interface Further {
 
 export const EMPTY: State = {
   connection: "connecting",
+  caller: null,
   runs: new Map(),
   paces: new Map(),
   details: new Map(),
@@ -127,6 +133,8 @@ export function reduce(state: State, action: Action): State {
   switch (action.type) {
     case "connection":
       return { ...state, connection: action.connection };
+    case "caller":
+      return { ...state, caller: action.caller };
     case "run":
       return told(sweptOf(state, action.run.sweep), action.run);
     case "answer":
@@ -157,6 +165,8 @@ export function reduce(state: State, action: Action): State {
       return rewound(state, action.event);
     case "sweep":
       return { ...sweptOf(state, action.sweep), news: state.news + 1 };
+    case "purge":
+      return purged(state, action.run);
     case "reset":
       return reset(state);
   }
@@ -253,6 +263,20 @@ function rewound(state: State, event: RewindEvent): State {
   };
   if (run) next.runs = new Map(state.runs).set(run.id, cutRun(run, event.generation));
   return withDetail(next, event.run, (detail) => cut(detail, event.generation));
+}
+
+/** Gone for good: no list has it, and whoever looks at it asks again and is told so. */
+function purged(state: State, id: string): State {
+  const sweep = state.runs.get(id)?.sweep;
+  const runs = new Map(state.runs);
+  runs.delete(id);
+  return {
+    ...sweptOf(heardOf(state, id), sweep),
+    runs,
+    listed: state.listed.filter((listed) => listed !== id),
+    epochs: new Map(state.epochs).set(id, (state.epochs.get(id) ?? 0) + 1),
+    news: state.news + 1,
+  };
 }
 
 /** A rewind may have been missed: what is known is shown on, but not believed. */

@@ -1,6 +1,7 @@
 /** The one stream of events that feeds a tab's store, while somebody looks at the tab. */
 
-import { EVENTS_URL, readCaller } from "../api/client";
+import { EVENTS_URL } from "../api/client";
+import { learnCaller } from "./caller";
 import { dispatch } from "./live";
 import type { Action } from "./store";
 
@@ -52,7 +53,7 @@ function open(): EventSource {
     dispatch({ type: "connection", connection: "lost" });
     if (opened.readyState !== EventSource.CLOSED) return;
     reconnecting = setTimeout(open, RECONNECT_MS);
-    readCaller().catch(() => {}); // A stream does not tell that a token was revoked.
+    void learnCaller(); // A stream does not tell that a token was revoked.
   };
   listen(opened, "run", (run) => ({ type: "run", run }) as Action);
   listen(opened, "generation", (event) => ({ type: "generation", event }) as Action);
@@ -60,6 +61,7 @@ function open(): EventSource {
   listen(opened, "results", (event) => ({ type: "results", event }) as Action);
   listen(opened, "rewind", (event) => ({ type: "rewind", event }) as Action);
   listen(opened, "sweep", (data) => ({ type: "sweep", ...(data as object) }) as Action);
+  listen(opened, "purge", (data) => ({ type: "purge", ...(data as object) }) as Action);
   listen(opened, "reset", () => ({ type: "reset" }));
   return opened;
 }

@@ -32,6 +32,16 @@ export function tell(toast: Omit<Toast, "id">): number {
   return id;
 }
 
+/** The newest way back by Ctrl+Z, which a note at the end of the page would be too short for. */
+export function undo(event: KeyboardEvent): void {
+  const field = (event.target as Element).closest("input:not([type=checkbox]), textarea, select");
+  if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || field) return;
+  const last = toasts.findLast(({ action }) => action);
+  if (!last) return;
+  event.preventDefault();
+  last.action!.run();
+}
+
 export function useToasts(): readonly Toast[] {
   const [shown, setShown] = useState(toasts);
   useEffect(() => {

@@ -2,29 +2,16 @@
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Share } from "../api/types";
 import { type Motion, decodeMotion } from "../frames/motion";
+import { usePages } from "../live/pages";
 import { poll } from "../live/polling";
 import { Swimming } from "../view/gallery/Swimming";
 
 export function CommonsPage() {
-  const [shares, setShares] = useState<Share[] | null>(null);
-  const [next, setNext] = useState<string | null>(null);
-  const [error, setError] = useState<string | null>(null);
-  const load = async (cursor?: string) => {
-    try {
-      const page = await api.readCommons(cursor);
-      setShares((old) => [...(cursor ? (old ?? []) : []), ...page.items]);
-      setNext(page.next);
-      setError(null);
-    } catch (reason) {
-      setError(messageOf(reason));
-    }
-  };
+  const { items: shares, error, more } = usePages(api.readCommons, ({ slug }) => slug);
   useEffect(() => {
     document.title = "Commons · Microcosmos";
-    void load();
   }, []);
   return (
     <main>
@@ -48,7 +35,7 @@ export function CommonsPage() {
           </li>
         ))}
       </ul>
-      {next && <button onClick={() => void load(next)}>Show more</button>}
+      {more && <button onClick={more}>Show more</button>}
     </main>
   );
 }

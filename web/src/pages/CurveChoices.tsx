@@ -1,5 +1,6 @@
 /** How curves are drawn, as the address holds it. */
 
+import type { ComponentChildren } from "preact";
 import { setQuery } from "../router";
 import { Choice } from "../view/Choice";
 import { AXES, type Look, OVER, WINDOWS } from "../view/curves/look";
@@ -11,7 +12,7 @@ const MEANS = WINDOWS.map((size): [string, string] => [
 
 export function CurveChoices({ look: { over, smooth, log } }: { look: Look }) {
   return (
-    <div class="curve-choices" role="group" aria-label="How curves are drawn">
+    <CurveBar log={log}>
       <Choice
         title="Over"
         choices={AXES.map((name) => [name, OVER[name]])}
@@ -24,14 +25,30 @@ export function CurveChoices({ look: { over, smooth, log } }: { look: Look }) {
         value={String(smooth)}
         onChange={(size) => setQuery({ smooth: size === "1" ? null : size })}
       />
-      <label class="compact">
-        <input
-          type="checkbox"
-          checked={log}
-          onChange={(event) => setQuery({ log: event.currentTarget.checked ? "1" : null })}
-        />
-        Log scale
-      </label>
+    </CurveBar>
+  );
+}
+
+/** What can be chosen for all curves, beside what only some have. */
+export function CurveBar({ log, children }: { log: boolean; children: ComponentChildren }) {
+  return (
+    <div class="curve-choices" role="group" aria-label="How curves are drawn">
+      {children}
+      <Check title="Log scale" name="log" on={log} />
     </div>
+  );
+}
+
+/** Something that is so or not: `1` under its name in the address. */
+export function Check({ title, name, on }: { title: string; name: string; on: boolean }) {
+  return (
+    <label class="compact">
+      <input
+        type="checkbox"
+        checked={on}
+        onChange={(event) => setQuery({ [name]: event.currentTarget.checked ? "1" : null })}
+      />
+      {title}
+    </label>
   );
 }

@@ -32,7 +32,7 @@ export function Family({ creature, query }: Props) {
   return (
     <section class="card" aria-labelledby="family-title">
       <div class="card-head">
-        <h2 id="family-title">Parents and children</h2>
+        <h2 id="family-title">{share ? "Ancestors" : "Parents and children"}</h2>
         <span class="spring" />
         {value?.[0].more && back < FARTHEST && (
           <button onClick={() => setQuery({ back: String(back + FURTHER) })}>Further back</button>

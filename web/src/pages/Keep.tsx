@@ -9,9 +9,9 @@ import {
   proveRendering,
 } from "../api/client";
 import { share } from "../api/place";
-import { messageOf } from "../api/problem";
 import { poll } from "../live/polling";
 import { tell } from "../live/toasts";
+import { copyText } from "./copying";
 import { FileLink, save } from "./FileLink";
 
 const KINDS: [Picture, string][] = [
@@ -25,7 +25,7 @@ export function Keep({ sha }: { sha: string }) {
     <p class="links pictures" role="group" aria-label="Keep it as">
       <span class="quiet small">Keep it as</span>
       {!share && (
-        <button onClick={() => void copy(`${location.origin}/creatures/${sha}`)}>Copy link</button>
+        <button onClick={() => void copyText(`${location.origin}/creatures/${sha}`, "Link copied.")}>Copy link</button>
       )}
       <a
         class="button"
@@ -41,17 +41,6 @@ export function Keep({ sha }: { sha: string }) {
       ))}
     </p>
   );
-}
-
-/** Browsers keep the clipboard from pages that came over plain HTTP from elsewhere. */
-async function copy(link: string): Promise<void> {
-  try {
-    if (!navigator.clipboard) throw new Error(`This page may not copy: it came over plain HTTP. The link is ${link}`);
-    await navigator.clipboard.writeText(link);
-    tell({ kind: "note", text: "Link copied." });
-  } catch (error) {
-    tell({ kind: "wrong", text: messageOf(error) });
-  }
 }
 
 /** A button that waits for the rendering and then saves it. */

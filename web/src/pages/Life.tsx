@@ -1,9 +1,10 @@
 /** More generations for a run that is done, its way into the bin, and where it came from. */
 
-import { useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { extend, remove, restore } from "../live/life";
 import { count, moment, short } from "../view/format";
+import { useOpening } from "../view/opening";
 
 const OVER = ["finished", "failed", "cancelled", "paused"];
 
@@ -24,9 +25,14 @@ const extendable = (run: Run) =>
   run.status === "finished" && "search" in run.spec && !run.summary?.["ended"];
 
 function Extend({ run }: { run: Run }) {
-  const [open, setOpen] = useState(false);
-  const field = useRef<HTMLInputElement>(null);
-  if (!open) return <button onClick={() => setOpen(true)}>Extend</button>;
+  const { open, setOpen, button, first: field } = useOpening<HTMLInputElement>();
+  if (!open) {
+    return (
+      <button ref={button} onClick={() => setOpen(true)}>
+        Extend
+      </button>
+    );
+  }
   const send = async (event: Event) => {
     event.preventDefault();
     const more = field.current?.valueAsNumber ?? NaN;
@@ -46,7 +52,6 @@ function Extend({ run }: { run: Run }) {
           min={1}
           max={1_000_000}
           required
-          autofocus
           defaultValue={String(run.generations)}
         />
       </label>
@@ -73,10 +78,11 @@ export function ForkedFrom({ run }: { run: Run }) {
 
 /** In place of a run's page while it lies in the bin. */
 export function InBin({ run }: { run: Run }) {
+  const refusal = useRefusal(run);
   return (
     <p class="banner warning" role="status">
       This run is in the bin until {run.purge_at && moment(run.purge_at)}; then it goes for good.{" "}
-      <button onClick={() => void restore(run.id)}>Restore</button>
+      {refusal ?? <button onClick={() => void restore(run.id)}>Restore</button>}
     </p>
   );
 }

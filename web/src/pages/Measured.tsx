@@ -5,6 +5,7 @@ import * as api from "../api/client";
 import { share } from "../api/place";
 import { messageOf } from "../api/problem";
 import type { Measurement } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { poll } from "../live/polling";
 import { number, words } from "../view/format";
 
@@ -15,6 +16,7 @@ export function MeasuredCard({ sha }: { sha: string }) {
   const [note, setNote] = useState<string | null>(null);
   const [error, setError] = useState<string | null>(null);
   const [turn, setTurn] = useState(0);
+  const refusal = useRefusal();
   useEffect(() => {
     const look = async () => {
       const found = await api.readMeasurement(sha);
@@ -42,7 +44,7 @@ export function MeasuredCard({ sha }: { sha: string }) {
         <h2 id="measured-title">Measured here</h2>
         {found && <Verdict {...found} />}
         <span class="spring" />
-        {!share && (idle || error) && (
+        {!share && !refusal && (idle || error) && (
           <button onClick={() => void measure()}>{found ? "Measure once more" : "Measure it here"}</button>
         )}
       </div>

@@ -4,6 +4,7 @@ import { useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Json } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { answer } from "../live/live";
 import { tell } from "../live/toasts";
 import { navigate } from "../router";
@@ -17,6 +18,8 @@ interface Props {
 
 export function Refine({ creature, run }: Props) {
   const [busy, setBusy] = useState(false);
+  const refusal = useRefusal();
+  if (refusal) return null;
   const start = async () => {
     setBusy(true);
     try {

@@ -7,6 +7,7 @@ import type { Elites } from "../live/elites";
 import { hasArchive, useExperiments, useRunDetail } from "../live/fetching";
 import { useFresh } from "../live/repeating";
 import { later } from "../later";
+import { useRefusal } from "../live/caller";
 import { useLive } from "../live/live";
 import { useNow } from "../live/runpage";
 import { say } from "../live/saying";
@@ -15,6 +16,7 @@ import { Doing, doingOf } from "../view/Doing";
 import { endingOf } from "../view/ending";
 import { count, short, titleOf } from "../view/format";
 import { NotFree } from "../view/NotFree";
+import { NotThere } from "../view/NotThere";
 import { type Figure, figuresOf, generationsOf } from "../view/results/figures";
 import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
 import { Name } from "../view/runs/Said";
@@ -45,13 +47,14 @@ export function RunPage({ id, query }: Props) {
   const run = useLive((state) => state.runs.get(id));
   const detail = useLive((state) => state.details.get(id));
   const title = useTitle(run);
+  const refusal = useRefusal(run);
   useEffect(() => {
     document.title = `${title} · Microcosmos`;
   }, [title]);
   if (!run) {
     return (
       <main>
-        {error ? <p class="banner wrong">{error}</p> : <p class="quiet loading">Loading run …</p>}
+        {error ? <NotThere what="No such run" reason={error} /> : <p class="quiet loading">Loading run …</p>}
       </main>
     );
   }
@@ -63,7 +66,7 @@ export function RunPage({ id, query }: Props) {
         {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
       </nav>
       <header class="page-head">
-        <Name of={run} title={title} onName={(name) => void say(id, { name })}>
+        <Name of={run} title={title} fixed={!!refusal || !!run.deleted_at} onName={(name) => void say(id, { name })}>
           <h1>
             {title} <code>{short(run.id)}</code>
           </h1>
@@ -77,8 +80,9 @@ export function RunPage({ id, query }: Props) {
         {hasArchive(run) && !!run.coverage && !run.deleted_at && (
           <ForkLink run={run.id} title="A new run that begins from the creatures of this one" />
         )}
-        {!run.deleted_at && <Actions run={run} on={ON(title)} name={title} />}
-        <Life run={run} title={title} />
+        {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
+        {!refusal && !run.deleted_at && <Actions run={run} on={ON(title)} name={title} />}
+        {!refusal && <Life run={run} title={title} />}
       </header>
       {run.deleted_at ? <InBin run={run} /> : <Whole {...{ run, query, error, detail }} />}
     </main>

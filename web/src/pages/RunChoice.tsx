@@ -1,10 +1,11 @@
 /** A button that turns into a choice of another run. */
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useRef } from "preact/hooks";
 import type { Run } from "../api/types";
 import { useExperiments } from "../live/fetching";
 import { useRunChoices } from "../live/runpage";
 import { moment, short, titleOf } from "../view/format";
+import { useOpening } from "../view/opening";
 
 interface Props {
   run: Run;
@@ -15,13 +16,7 @@ interface Props {
 }
 
 export function RunChoice(props: Props) {
-  const [open, setOpen] = useState(false);
-  const button = useRef<HTMLButtonElement>(null);
-  const wasOpen = useRef(false);
-  useEffect(() => {
-    if (wasOpen.current && !open) button.current?.focus();
-    wasOpen.current = open;
-  }, [open]);
+  const { open, setOpen, button } = useOpening();
   if (open) return <Choosing {...props} onClose={() => setOpen(false)} />;
   return (
     <button ref={button} class="slim" onClick={() => setOpen(true)}>

@@ -1,12 +1,13 @@
 /** A run in the list: how it is doing, what people say of it, what can be done. */
 
 import type { Experiment } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { restore } from "../live/life";
 import { useLive } from "../live/live";
 import { addTag, removeNote, removeTag, say } from "../live/saying";
 import { setQuery } from "../router";
 import { freedomOf } from "../view/coupling";
-import { DASH, short, titleOf } from "../view/format";
+import { DASH, moment, short, titleOf } from "../view/format";
 import { NotFree } from "../view/NotFree";
 import { keyFigureOf } from "../view/results/figures";
 import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
@@ -27,14 +28,19 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
   const title = titleOf(run, experiments);
   const name = `${title} ${short(run.id)}`;
   const time = timeOf(run);
+  const mayMake = !useRefusal();
+  const mayChange = !useRefusal(run);
+  const fixed = !mayChange || run.deleted_at !== null;
   const [figureName, figure] = keyFigureOf(run);
   return (
     <tr class={chosen ? "chosen-row" : ""}>
       <td class="row-choice">
-        <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
+        {!run.deleted_at && (
+          <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
+        )}
       </td>
       <th scope="row">
-        <Name of={run} title={title} onName={(name) => void say(run.id, { name })}>
+        <Name of={run} {...{ title, fixed }} onName={(name) => void say(run.id, { name })}>
           <a class="run-name" href={`/runs/${run.id}`}>
             {title} <code>{short(run.id)}</code>
           </a>
@@ -48,21 +54,20 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         {run.status === "running" && run.generation === 0 && (
           <span class="row-note quiet">compiling and computing its first generation</span>
         )}
+        {run.purge_at && <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>}
         {run.waiting && <span class="row-note why">{run.waiting}</span>}
         {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
         {run.warning && <span class="row-note warning-text">{run.warning}</span>}
         <span class="said">
           <Tags
-            run={run}
-            name={name}
+            {...{ run, name, fixed }}
             known={knownTags}
             onPick={(tag) => setQuery({ tag })}
             onAdd={(tag) => addTag(run, tag)}
             onRemove={(tag) => removeTag(run, tag)}
           />
           <Note
-            run={run}
-            name={name}
+            {...{ run, name, fixed }}
             onNote={(note) => void say(run.id, { note })}
             onRemove={() => removeNote(run)}
           />
@@ -92,16 +97,17 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
       </td>
       <td class="row-actions">
         <span class="actions">
-          {run.deleted_at ? (
+          {mayChange && run.deleted_at && (
             <button onClick={() => void restore(run.id)} aria-label={`Restore ${name}`}>
               Restore
             </button>
-          ) : (
-            <Actions run={run} on={ON(title)} name={name} />
           )}
-          <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
-            Clone
-          </a>
+          {!fixed && !run.deleted_at && <Actions run={run} on={ON(title)} name={name} />}
+          {mayMake && (
+            <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
+              Clone
+            </a>
+          )}
         </span>
       </td>
     </tr>

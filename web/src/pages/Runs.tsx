@@ -3,6 +3,7 @@
 import { useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
 import type { Experiment, RunQuery } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { useExperiments } from "../live/fetching";
 import { moreRuns, useRunList, useTags } from "../live/listing";
 import { useLive } from "../live/live";
@@ -42,6 +43,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const next = useLive((state) => state.next);
   const experiments = useExperiments().value ?? [];
   const tags = useTags();
+  const refusal = useRefusal();
   const [chosen, setChosen] = useState<string[]>([]);
   const choose = (id: string) =>
     setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
@@ -55,9 +57,11 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
         <a class="button" href={query.deleted ? "/" : "/?deleted=true"}>
           {query.deleted ? "Runs" : "Bin"}
         </a>
-        <a class="button primary" href="/new">
-          New run
-        </a>
+        {!refusal && (
+          <a class="button primary" href="/new">
+            New run
+          </a>
+        )}
       </header>
       <Welcome />
       {error && <p class="banner wrong">{error}</p>}

@@ -27,6 +27,9 @@ export function SettingsPage() {
   );
 }
 
+/** Where this page came from. */
+const PORT = globalThis.location?.port || "80";
+
 const MAY = {
   read: "You may look at everything and change nothing.",
   write: "You may look at everything, and change what you made.",
@@ -57,7 +60,7 @@ function You({ caller: { name, scope, expires_at, needed } }: { caller: Caller }
       {!needed && (
         <p class="quiet">
           The server answers nobody but this machine, and asks for no token. From elsewhere it is
-          reached safely through <code>ssh -L 8000:localhost:8000 HOST</code>.
+          reached safely through <code>ssh -L {PORT}:127.0.0.1:{PORT} HOST</code>.
         </p>
       )}
     </section>

@@ -6,6 +6,7 @@ import type { Share } from "../api/types";
 import { useFetched, useRunDetail } from "../live/fetching";
 import { useLive } from "../live/live";
 import { count, moment, short } from "../view/format";
+import { NotThere } from "../view/NotThere";
 import { ArchiveRun } from "./ArchiveRun";
 import { Whole } from "./Creature";
 import { FileLink } from "./FileLink";
@@ -26,7 +27,7 @@ export function SharedPage({ slug, sha, query }: Props) {
   if (!share) {
     return (
       <main>
-        {error ? <p class="banner wrong">{error}</p> : <p class="quiet loading">Loading …</p>}
+        {error ? <NotThere what="Nothing to see here" reason={error} /> : <p class="quiet loading">Loading …</p>}
       </main>
     );
   }

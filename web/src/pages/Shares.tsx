@@ -1,29 +1,18 @@
 /** What was published from here, and taking it back. */
 
-import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Share } from "../api/types";
+import { useRefusal } from "../live/caller";
+import { usePages } from "../live/pages";
 import { tell } from "../live/toasts";
 import { moment } from "../view/format";
+import { Twice } from "../view/Twice";
 import { copyText } from "./copying";
 
 export function SharesPage() {
-  const [shares, setShares] = useState<Share[] | null>(null);
-  const [next, setNext] = useState<string | null>(null);
-  const [error, setError] = useState<string | null>(null);
-  const load = async (cursor?: string) => {
-    try {
-      const page = await api.readShares(cursor);
-      setShares((old) => [...(cursor ? (old ?? []) : []), ...page.items]);
-      setNext(page.next);
-    } catch (reason) {
-      setError(messageOf(reason));
-    }
-  };
-  useEffect(() => void load(), []);
-  const put = (changed: Share) =>
-    setShares((old) => old?.map((share) => (share.slug === changed.slug ? changed : share)) ?? null);
+  const refusal = useRefusal();
+  const { items: shares, error, more, put } = usePages(api.readShares, ({ slug }) => slug);
   return (
     <main>
       <header class="page-head">
@@ -34,11 +23,11 @@ export function SharesPage() {
       {shares?.length === 0 && (
         <section class="empty card">
           <h2>Nothing is shared</h2>
-          <p>Publish a creature from its page, or an archive from its run’s.</p>
+          <p>{refusal ?? "Publish a creature from its page, or an archive from its run’s."}</p>
         </section>
       )}
       {shares && shares.length > 0 && (
-        <section class="card scroll" aria-label="What was published">
+        <section class="card scroll" aria-label="What was published" tabIndex={0}>
           <table class="plain-table shares">
             <thead>
               <tr>
@@ -61,7 +50,7 @@ export function SharesPage() {
           </table>
         </section>
       )}
-      {next && <button onClick={() => void load(next)}>Show more</button>}
+      {more && <button onClick={more}>Show more</button>}
     </main>
   );
 }
@@ -72,22 +61,24 @@ function Row({ share, onChange }: { share: Share; onChange: (share: Share) => vo
   return (
     <tr class={live ? "" : "quiet"}>
       <th scope="row">{live ? <a href={`/s/${slug}`} target="_blank">{title}</a> : title}</th>
-      <td>
+      <td data-label="What">
         {run ? <a href={`/runs/${run}`}>archive, generation {generation}</a> : <a href={`/creatures/${creature}`}>creature</a>}
       </td>
-      <td>{licence.slice(0, 40)}</td>
-      <td>{moment(share.created_at)}</td>
-      <td>{share.expires_at ? moment(share.expires_at) : "never"}</td>
-      <td>{live ? (share.listed ? "everybody" : "who has the link") : state}</td>
+      <td data-label="Licence">{licence.slice(0, 40)}</td>
+      <td data-label="Published">{moment(share.created_at)}</td>
+      <td data-label="Expires">{share.expires_at ? moment(share.expires_at) : "never"}</td>
+      <td data-label="Seen by">{live ? (share.listed ? "everybody" : "who has the link") : `nobody: ${state}`}</td>
       <td>
         {live && (
           <span class="actions">
-            <button class="slim" onClick={() => void copyText(share.url, "Link copied.")}>
+            <button
+              class="slim"
+              aria-label={`Copy link of ${title}`}
+              onClick={() => void copyText(share.url, "Link copied.")}
+            >
               Copy link
             </button>
-            <button class="slim danger" aria-label={`Revoke ${title}`} onClick={() => void revoke(share, onChange)}>
-              Revoke
-            </button>
+            <Twice verb="Revoke" what={title} onDo={() => revoke(share, onChange)} />
           </span>
         )}
       </td>

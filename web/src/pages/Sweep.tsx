@@ -2,6 +2,7 @@
 
 import { useEffect } from "preact/hooks";
 import type { CaseSummary, Sweep } from "../api/types";
+import { useRefusal } from "../live/caller";
 import { useExperiments } from "../live/fetching";
 import { type Whole, cancelSweepSoon, remove, rename, restore, steer, useSweep } from "../live/sweeps";
 import { setQuery } from "../router";
@@ -9,8 +10,10 @@ import { Curves } from "../view/curves/Curves";
 import { SHOWN, type Shown, bandsOf, caseName } from "../view/sweeps/bands";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../view/sweeps/Standing";
 import { moment } from "../view/format";
+import { NotThere } from "../view/NotThere";
 import { Name } from "../view/runs/Said";
 import { colourOf, dashOf } from "./compare/Legend";
+import { CurveBar, Check } from "./CurveChoices";
 import { Cases, Finals, Members } from "./sweep/Tables";
 
 interface Props {
@@ -30,7 +33,8 @@ export function SweepPage({ id, query }: Props) {
       <nav class="crumbs" aria-label="Where you are">
         <a href="/">Runs</a>
       </nav>
-      {error && <p class="banner wrong">{error}</p>}
+      {error && value && <p class="banner wrong">{error}</p>}
+      {error && !value && <NotThere what="No such sweep" reason={error} />}
       {!value && !error && <p class="quiet loading">Loading sweep …</p>}
       {value && <Loaded {...{ value, query, each }} />}
     </main>
@@ -54,7 +58,9 @@ function Loaded({ value, query, each }: { value: Whole; query: URLSearchParams; 
           <h2 id="bands">Curves</h2>
           <span class="quiet small">the median of each case, between its quartiles</span>
         </div>
-        <Choices query={query} each={each} />
+        <CurveBar log={query.get("log") === "1"}>
+          <Check title="Each run" name="each" on={each} />
+        </CurveBar>
         {summary.cases.length > 1 && (
           <Cases cases={summary.cases.map(shownOf)} chosen={chosen} onChoose={choose} />
         )}
@@ -94,38 +100,15 @@ function Bands({ shown, query, curves }: { shown: Shown[]; query: URLSearchParam
 /** Each case has its own places. */
 const NOWHERE: readonly number[] = [];
 
-function Choices({ query, each }: { query: URLSearchParams; each: boolean }) {
-  const log = query.get("log") === "1";
-  return (
-    <div class="curve-choices" role="group" aria-label="How curves are drawn">
-      <label class="compact">
-        <input
-          type="checkbox"
-          checked={each}
-          onChange={(event) => setQuery({ each: event.currentTarget.checked ? "1" : null })}
-        />
-        Each run
-      </label>
-      <label class="compact">
-        <input
-          type="checkbox"
-          checked={log}
-          onChange={(event) => setQuery({ log: event.currentTarget.checked ? "1" : null })}
-        />
-        Log scale
-      </label>
-    </div>
-  );
-}
-
 function Head({ sweep }: { sweep: Sweep }) {
   const experiments = useExperiments().value ?? [];
   const title = sweepTitle(sweep);
+  const fixed = useRefusal(sweep) !== null || sweep.total === 0;
   const kind = experiments.find(({ experiment }) => experiment === sweep.experiment)?.title;
   return (
     <>
       <header class="page-head">
-        <Name of={sweep} title={title} onName={(name) => void rename(sweep.id, name)}>
+        <Name of={sweep} title={title} fixed={fixed} onName={(name) => void rename(sweep.id, name)}>
           <h1>{title}</h1>
         </Name>
         <span class="spring" />
@@ -141,7 +124,10 @@ function Head({ sweep }: { sweep: Sweep }) {
 }
 
 /** Only what the state of any run allows. */
-function Actions({ sweep: { id, standing, total }, title }: { sweep: Sweep; title: string }) {
+function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
+  const { id, standing, total } = sweep;
+  const refusal = useRefusal(sweep);
+  if (refusal) return <span class="quiet small">{refusal}</span>;
   const { queued = 0, running = 0, paused = 0 } = standing;
   const going = queued + running;
   if (total === 0) return null;
@@ -163,11 +149,13 @@ function Actions({ sweep: { id, standing, total }, title }: { sweep: Sweep; titl
   );
 }
 
-function InBin({ sweep: { id, deleted, total } }: { sweep: Sweep }) {
+function InBin({ sweep }: { sweep: Sweep }) {
+  const { id, deleted, total } = sweep;
+  const refusal = useRefusal(sweep);
   const which = total === 0 ? "Its runs are" : deleted === 1 ? "One of its runs is" : `${deleted} of its runs are`;
   return (
     <p class="banner warning" role="status">
-      {which} in the bin. <button onClick={() => void restore(id)}>Restore</button>
+      {which} in the bin. {!refusal && <button onClick={() => void restore(id)}>Restore</button>}
     </p>
   );
 }

@@ -6,6 +6,7 @@ import { messageOf } from "../api/problem";
 import type { Token, TokenMade, TokenScope } from "../api/types";
 import { useFetched } from "../live/fetching";
 import { tell } from "../live/toasts";
+import { Twice } from "../view/Twice";
 import { copyText } from "./copying";
 import { TERMS, day, endOf, isOver, standingOf } from "./tokens";
 
@@ -147,7 +148,11 @@ function Table({ tokens, own, onRevoked }: TableProps) {
               <td>{day(token.created_at)}</td>
               <td>{token.last_used_at ? day(token.last_used_at) : "Never"}</td>
               <td>{standingOf(token)}</td>
-              <td>{!isOver(token) && <Revoke token={token} onRevoked={onRevoked} />}</td>
+              <td>
+                {!isOver(token) && (
+                  <Twice verb="Revoke" what={token.name} onDo={() => revoke(token, onRevoked)} />
+                )}
+              </td>
             </tr>
           ))}
         </tbody>
@@ -156,34 +161,12 @@ function Table({ tokens, own, onRevoked }: TableProps) {
   );
 }
 
-/** Asks once more: whoever works with the token is out at once. */
-function Revoke({ token, onRevoked }: { token: Token; onRevoked: () => void }) {
-  const [asking, setAsking] = useState(false);
-  const revoke = async () => {
-    try {
-      await revokeToken(token.id);
-      tell({ kind: "note", text: `The token of ${token.name} is revoked.` });
-      onRevoked();
-    } catch (error) {
-      tell({ kind: "wrong", text: messageOf(error) });
-      setAsking(false);
-    }
-  };
-  if (!asking) {
-    return (
-      <button class="slim" aria-label={`Revoke ${token.name}`} onClick={() => setAsking(true)}>
-        Revoke
-      </button>
-    );
+async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void> {
+  try {
+    await revokeToken(id);
+    tell({ kind: "note", text: `The token of ${name} is revoked.` });
+    onRevoked();
+  } catch (error) {
+    tell({ kind: "wrong", text: messageOf(error) });
   }
-  return (
-    <span class="actions">
-      <button class="slim danger" aria-label={`Revoke ${token.name} now`} autofocus onClick={revoke}>
-        Revoke now
-      </button>
-      <button class="slim plain" onClick={() => setAsking(false)}>
-        Keep
-      </button>
-    </span>
-  );
 }

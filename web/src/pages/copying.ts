@@ -19,7 +19,7 @@ async function write(text: string): Promise<void> {
   const area = document.createElement("textarea");
   area.value = text;
   area.style.cssText = "position: fixed; top: 0; opacity: 0";
-  document.body.append(area);
+  (focused?.closest("dialog") ?? document.body).append(area); // Beside a dialog nothing can be selected.
   area.select();
   const copied = document.execCommand("copy");
   area.remove();

@@ -13,6 +13,7 @@ import { TimeSlider } from "../../view/archive/TimeSlider";
 import { count } from "../../view/format";
 import { Guide } from "../../view/Guide";
 import { ForkLink } from "../ForkLink";
+import { ChooseOne, ChosenBar, useChoosing } from "./Choice";
 import { bestOf, stepsOf, useGuide } from "./guide";
 import { LookedAt } from "./LookedAt";
 import { setSlice, useArchiveView } from "./view";
@@ -33,13 +34,20 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const [about, setAbout] = useState<string | null>(null);
   const gallery = query.get("view") === "gallery";
   const cell = query.get("cell");
+  const choosing = useChoosing(query, view.elites);
+  const projection = gallery ? view.grid : view.map;
   const common = {
     axes: view.axes,
     colouring: view.colouring,
     marked: cell === null ? null : Number(cell),
     onMark: useCallback((marked: number) => setQuery({ cell: String(marked) }), []),
-    actions: ({ creature }: Elite) => (
-      <ForkLink run={run.id} creature={creature} title="A new run that begins from this creature" inline />
+    ...choosing,
+    projection,
+    actions: ({ creature }: Elite, cell: number) => (
+      <>
+        <ForkLink run={run.id} creature={creature} title="A new run that begins from this creature" inline />
+        <ChooseOne {...{ cell, projection }} {...choosing} />
+      </>
     ),
     onOpen: (chosen: number) => {
       setQuery({ cell: String(chosen) });
@@ -70,12 +78,11 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       </div>
       <Slices slices={view.slices} onChange={setSlice} />
       {gallery ? (
-        <Wall key={names.join(" ")} {...common} projection={view.grid} query={query} />
+        <Wall key={names.join(" ")} {...common} query={query} />
       ) : (
         <ArchiveMap
           key={names.join(" ")}
           {...common}
-          projection={view.map}
           elites={view.elites}
           onLook={setLooking}
           inset={looking && <LookedAt sha={looking.elite.creature} />}
@@ -83,6 +90,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       )}
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
+      <ChosenBar {...{ run, at }} elites={view.elites} {...choosing} />
       {guide.open && (
         <Guide
           steps={stepsOf(run, archive, view)}

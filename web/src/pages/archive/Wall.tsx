@@ -6,18 +6,19 @@ import type { Elite } from "../../live/elites";
 import { useMotions } from "../../live/motions";
 import { setQuery } from "../../router";
 import type { MapAxis } from "../../view/archive/axes";
+import type { Choosing } from "../../view/archive/choosing";
 import type { Colouring } from "../../view/archive/colouring";
 import type { Projection } from "../../view/archive/projection";
 import { Gallery } from "../../view/gallery/Gallery";
 
-interface Props {
+interface Props extends Choosing {
   axes: readonly [MapAxis, MapAxis];
   projection: Projection;
   colouring: Colouring;
   marked: number | null;
   onMark: (cell: number) => void;
   onOpen: (cell: number) => void;
-  actions: (elite: Elite) => ComponentChildren;
+  actions: (elite: Elite, cell: number) => ComponentChildren;
   query: URLSearchParams;
 }
 

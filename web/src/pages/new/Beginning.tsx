@@ -3,6 +3,7 @@
 import { importCreature } from "../../api/client";
 import { messageOf } from "../../api/problem";
 import type { Experiment } from "../../api/types";
+import { written } from "../../live/cells";
 import type { Base, Forking, Work } from "../../live/draft";
 import { tell } from "../../live/toasts";
 import { navigate } from "../../router";
@@ -60,8 +61,9 @@ export function Beginning({ desk, work, experiments, file }: Props) {
 }
 
 /** Whom the run begins from, with a way to them. */
-function Begins({ fork: { run, creature, creatures } }: { fork: Forking }) {
-  const place = creature ? `/creatures/${creature}${run ? `?run=${run}` : ""}` : `/runs/${run}`;
+function Begins({ fork: { run, creature, cells, at, creatures } }: { fork: Forking }) {
+  const then = new URLSearchParams({ ...(cells && { cells: written(cells) }), ...(at !== null && { at: String(at) }) });
+  const place = creature ? `/creatures/${creature}${run ? `?run=${run}` : ""}` : `/runs/${run}?${then}`;
   const which = creature ? ` ${short(creature)}` : "";
   return (
     <span>
@@ -76,7 +78,7 @@ function Begins({ fork: { run, creature, creatures } }: { fork: Forking }) {
           of <a href={`/runs/${run}`}>run {short(run)}</a>
         </>
       )}
-      .
+      {at !== null && `, as they were after generation ${count(at)}`}.
     </span>
   );
 }

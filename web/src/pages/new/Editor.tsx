@@ -2,6 +2,7 @@
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Experiment, FieldError, Json, Spec } from "../../api/types";
+import { useRefusal } from "../../live/caller";
 import type { Work } from "../../live/draft";
 import { BodyDrawing } from "../../view/BodyDrawing";
 import { CostDetails, Costs } from "../../view/Costs";
@@ -65,6 +66,7 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
   };
   const element = useRef<HTMLFormElement>(null);
   useSubmitKey(element);
+  const refusal = useRefusal();
   return (
     <form
       class="new-run"
@@ -72,7 +74,7 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
       ref={element}
       onSubmit={(event) => {
         event.preventDefault();
-        if (!illegible && !slipped) void submission.start();
+        if (!illegible && !slipped && !refusal) void submission.start();
       }}
     >
       <div class="new-columns">
@@ -124,8 +126,8 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
             }
           />
           <span class="submit-how">
-            <kbd class="quiet wide-only">Ctrl + Enter</kbd>
-            <button class="primary" type="submit" disabled={submission.busy}>
+            {refusal ? <span class="quiet">{refusal}</span> : <kbd class="quiet wide-only">Ctrl + Enter</kbd>}
+            <button class="primary" type="submit" disabled={submission.busy || refusal !== null}>
               {submission.busy ? "Starting …" : startOf(!forking && begun(sweeping) ? sweeping.total : 1)}
             </button>
           </span>

@@ -1,7 +1,8 @@
 /** A new run that begins from creatures of another. */
 
 import { useEffect, useMemo, useState } from "preact/hooks";
-import type { Work } from "../../live/draft";
+import type { ForkSent } from "../../api/types";
+import type { Forking, Work } from "../../live/draft";
 import { mergePatch, withOrigin } from "../../view/form/forking";
 import type { Instead } from "./submission";
 
@@ -22,10 +23,15 @@ export function useFork({ base, spec }: Work): Fork {
 
 /** The request for a fork, which says only what is to differ. */
 export function forkOf({ base, spec }: Work, name: string): Instead | null {
-  const { run = null, creature = null } = base.fork ?? {};
+  const { run = null, at = null } = base.fork ?? {};
   if (run === null) return null;
-  const from = creature === null ? { archive: true as const } : { creatures: [creature] };
   // Typed as JSON the names would be passed over.
   const patch = mergePatch(withOrigin(base.spec, []), withOrigin(spec, []));
-  return { fork: { run, from, spec: patch, name: name.trim() || null } };
+  const then = at === null ? {} : { generation: at };
+  return { fork: { run, from: fromOf(base.fork!), ...then, spec: patch, name: name.trim() || null } };
+}
+
+function fromOf({ creature, cells }: Forking): ForkSent["from"] {
+  if (creature !== null) return { creatures: [creature] };
+  return cells === null ? { archive: true } : { cells };
 }

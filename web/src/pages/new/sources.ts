@@ -3,17 +3,22 @@
 import * as api from "../../api/client";
 import { messageOf } from "../../api/problem";
 import type { Experiment, Preset, Spec } from "../../api/types";
-import type { Address, Base } from "../../live/draft";
+import { among } from "../../live/cells";
+import { type Address, type Base, type Forking, WHICH, forked } from "../../live/draft";
 import { completed } from "../../view/form/completing";
 import { isSearch, withOrigin } from "../../view/form/forking";
 import { type Found, specOf } from "../../view/form/reading";
-import { short } from "../../view/format";
+import { count, short } from "../../view/format";
+
+/** Creatures that a run can begin from; `search.origin` in the schemas has the same. */
+export const MOST = 4096;
 
 export function addressed(query: URLSearchParams): Address | null {
   const word = ["fork", "begin", "from", "creature", "preset"].find((name) => query.get(name));
   if (!word) return null;
-  const creature = word === "fork" ? query.get("creature") : null;
-  return creature ? [word, query.get(word)!, creature] : [word, query.get(word)!];
+  const name = query.get(word)!;
+  if (word !== "fork") return [[word, name]];
+  return forked(name, Object.fromEntries(WHICH.map((each) => [each, query.get(each)])));
 }
 
 export function ofPreset(preset: Preset, { experiment }: Experiment): Base {
@@ -21,14 +26,12 @@ export function ofPreset(preset: Preset, { experiment }: Experiment): Base {
 }
 
 /** What the address names; throws what a person can read where there is no such thing. */
-export async function load(
-  [word, name, creature]: Address,
-  experiments: Experiment[],
-): Promise<Base> {
+export async function load(address: Address, experiments: Experiment[]): Promise<Base> {
+  const [word, name] = address[0]!;
   if (word === "preset") return named(name, experiments);
   try {
     if (word === "begin") return await begunFrom(name, experiments);
-    if (word === "fork") return await forkOf(name, creature ?? null, experiments);
+    if (word === "fork") return await forkOf(name, Object.fromEntries(address), experiments);
     if (word === "creature") {
       const spec = specOf(await api.readCreature(name));
       return { kind: "creature", name, spec: whole(spec, experiments) };
@@ -44,20 +47,46 @@ export async function load(
 async function begunFrom(sha: string, experiments: Experiment[]): Promise<Base> {
   const spec = whole(specOf(await api.readCreature(sha)), experiments);
   if (!isSearch(spec)) throw new Error("no search can begin from it.");
-  const fork = { run: null, creature: sha, creatures: 1 };
+  const fork = { run: null, creature: sha, cells: null, at: null, creatures: 1 };
   return { kind: "creature", name: sha, spec: withOrigin(spec, [sha]), fork };
 }
 
-/** A run's spec, to begin from one creature or from all its elites. */
-async function forkOf(id: string, creature: string | null, experiments: Experiment[]): Promise<Base> {
+/** A run's spec, to begin from one creature or from its elites: all, or those of some cells. */
+async function forkOf(
+  id: string,
+  { creature, cells, at }: Record<string, string>,
+  experiments: Experiment[],
+): Promise<Base> {
   const run = await api.readRun(id);
   if (!isSearch(run.spec)) {
     if (creature) return begunFrom(creature, experiments);
     throw new Error("it fills no archive to begin from.");
   }
-  const creatures = creature ? 1 : (await api.readArchive(id)).creature.length;
   const spec = withOrigin(whole(run.spec, experiments), []);
-  return { kind: "run", name: id, spec, fork: { run: id, creature, creatures } };
+  const one = { run: id, creature: creature ?? null, cells: null, at: null, creatures: 1 };
+  const fork = creature ? one : await elitesOf(id, cells ?? null, generationOf(at));
+  return { kind: "run", name: id, spec, fork };
+}
+
+/** The elites that live in some cells, or in all, or lived there after a generation. */
+async function elitesOf(run: string, cells: string | null, at: number | null): Promise<Forking> {
+  const { cell, creature, generation } = await api.readArchive(run, [], at ?? undefined);
+  const chosen = cells === null ? () => true : among(cells);
+  const places = [...cell.keys()].filter((i) => chosen(cell[i]!));
+  if (places.length === 0) throw new Error("nobody lives there to begin from.");
+  const creatures = new Set(places.map((i) => creature[i]!)).size;
+  if (creatures > MOST) {
+    const least = `at most ${count(MOST)} creatures can begin a run; there live ${count(creatures)}.`;
+    throw new Error(`${least} Choose some of them on the map of the archive.`);
+  }
+  const named = cells === null ? null : places.map((i) => cell[i]!);
+  return { run, creature: null, cells: named, at: at === null ? null : generation, creatures };
+}
+
+function generationOf(at: string | undefined): number | null {
+  if (at === undefined) return null;
+  if (/^\d+$/.test(at)) return Number(at);
+  throw new Error(`“at” must be a generation; got ${at}.`);
 }
 
 function named(name: string, experiments: Experiment[]): Base {

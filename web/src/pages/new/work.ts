@@ -3,7 +3,7 @@
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { messageOf } from "../../api/problem";
 import type { Experiment, Spec } from "../../api/types";
-import { type Address, type Base, type Work, addressOf, discard, draftFor, keep } from "../../live/draft";
+import { type Base, type Work, WHICH, addressOf, discard, draftFor, keep } from "../../live/draft";
 import { dismiss, tell } from "../../live/toasts";
 import { setQuery } from "../../router";
 import { changedPaths } from "../../view/form/differences";
@@ -26,9 +26,9 @@ export interface Desk {
   release: () => void;
 }
 
-const UNNAMED = { preset: null, from: null, creature: null, fork: null, begin: null };
+const WORDS = ["preset", "from", "fork", "begin", ...WHICH];
+const UNNAMED = Object.fromEntries(WORDS.map((word) => [word, null]));
 
-const named = ([word, name, creature]: Address) => ({ [word]: name, ...(creature && { creature }) });
 const NONE: ReadonlySet<string> = new Set();
 
 export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk {
@@ -45,7 +45,7 @@ export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk
   const put = (next: Work) => {
     const address = addressOf(next.base);
     shown.current = String(address);
-    setQuery({ ...UNNAMED, ...(address && named(address)) });
+    setQuery({ ...UNNAMED, ...(address && Object.fromEntries(address)) });
     setWork(next);
     setRestored(false);
     setRevision((count) => count + 1);

@@ -1,14 +1,25 @@
 /** The archive as a map: one cell an elite, to be looked at, pointed at and opened. */
 
-import type { ComponentChildren, RefObject } from "preact";
-import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { ComponentChildren } from "preact";
+import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Elite, Elites } from "../../live/elites";
-import { useSize } from "../canvas";
-import { prefersStillness, useTheme } from "../theme";
 import { Horizontal, Vertical } from "./Axes";
 import type { MapAxis } from "./axes";
+import {
+  type Box,
+  type Choosing,
+  adds,
+  binsOf,
+  binsWithin,
+  both,
+  cellsIn,
+  chosenByKey,
+  keysOf,
+  turned,
+} from "./choosing";
 import type { Colouring } from "./colouring";
-import { FLASH_MS, MapPainter, type Picture } from "./draw";
+import { useDrag } from "./dragging";
+import { useDrawing } from "./drawing";
 import { Legend } from "./Legend";
 import { type Direction, type Layout, isDirection, nextBin } from "./layout";
 import type { Projection, Tiles } from "./projection";
@@ -19,7 +30,7 @@ export interface Looking {
   elite: Elite;
 }
 
-interface Props {
+interface Props extends Choosing {
   axes: readonly [MapAxis, MapAxis];
   projection: Projection;
   elites: Elites;
@@ -28,7 +39,7 @@ interface Props {
   onMark: (cell: number) => void;
   onOpen: (cell: number) => void;
   /** What else can be done with an elite. */
-  actions: (elite: Elite) => ComponentChildren;
+  actions: (elite: Elite, cell: number) => ComponentChildren;
   /** The elite that is pointed at, else the marked one. */
   onLook: (looking: Looking | null) => void;
   /** What stands beside the cell that is looked at. */
@@ -37,27 +48,39 @@ interface Props {
 
 /** Cells are the archive's; bins are the map's, and each shows the best elite in it. */
 export function ArchiveMap(props: Props) {
-  const { axes, projection, elites, colouring, marked, onMark, onOpen, onLook, inset } = props;
+  const { axes, projection, elites, colouring, marked, onMark, onOpen, onLook, onChoose, inset } = props;
   const { layout, tiles, bins } = projection;
   const plot = useRef<HTMLDivElement>(null);
   const [hovered, setHovered] = useState<number | null>(null);
   const from = marked === null ? null : (bins.get(marked) ?? null);
   const looked = hovered !== null && tiles.has(hovered) ? hovered : from;
   const tile = looked === null ? undefined : tiles.get(looked);
-  const canvas = useDrawing(plot, { layout, tiles, colouring }, elites);
+  const drag = useDrag(onChoose !== null, (box, event) => {
+    const inside = cellsIn(binsWithin(box, layout, tiles), projection);
+    onChoose!(adds(event) ? both(props.chosen, inside) : inside);
+  });
+  const chosen = useMemo(
+    () => (drag.box ? new Set(binsWithin(drag.box, layout, tiles)) : binsOf(props.chosen, projection)),
+    [drag.box, props.chosen, projection],
+  );
+  const canvas = useDrawing(plot, { layout, tiles, colouring, chosen }, elites);
   useLayoutEffect(() => onLook(tile ? { cell: tile.cell, elite: tile.elite } : null), [tile?.elite]);
 
   const press = (event: KeyboardEvent) => {
+    if (drag.box) return;
     if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
-    if (!isDirection(event.key)) return;
+    const next = isDirection(event.key) ? binByKey(event.key, from, tiles, layout) : null;
+    const changed = onChoose && chosenByKey(event, props.chosen, projection, from, next);
+    if (changed) onChoose(changed);
+    if (!changed && !isDirection(event.key)) return;
     event.preventDefault();
     setHovered(null);
-    const next = binByKey(event.key, from, tiles, layout);
     if (next !== null) onMark(tiles.get(next)!.cell);
   };
   const click = (event: MouseEvent) => {
     const bin = tileUnder(event, layout, tiles);
-    if (bin === null) return;
+    if (bin === null || drag.wasDrag()) return;
+    if (onChoose && adds(event)) return onChoose(turned(props.chosen, cellsIn([bin], projection)));
     const { cell } = tiles.get(bin)!;
     // A finger cannot hover: its first tap looks, the second opens.
     if ((event as PointerEvent).pointerType === "touch" && bin !== from) onMark(cell);
@@ -72,10 +95,12 @@ export function ArchiveMap(props: Props) {
         class={`map-plot ${hovered === null ? "" : "over"}`}
         tabIndex={0}
         role="application"
-        aria-label="Archive map. Arrow keys move between elites, Enter opens one."
+        aria-label={`Archive map. Arrow keys move between elites, ${keysOf(props)}`}
         aria-describedby="map-reading"
+        {...drag.handlers}
         onPointerMove={(event) => {
-          if (event.pointerType !== "touch") setHovered(tileUnder(event, layout, tiles));
+          if (drag.onMove(event)) setHovered(null);
+          else if (event.pointerType !== "touch") setHovered(tileUnder(event, layout, tiles));
         }}
         onPointerLeave={() => setHovered(null)}
         onClick={click}
@@ -83,11 +108,17 @@ export function ArchiveMap(props: Props) {
       >
         <canvas ref={canvas} />
         {looked !== null && tile && <Mark layout={layout} bin={looked} />}
-        {looked !== null && tile && <Beside layout={layout} bin={looked} children={inset} />}
+        {drag.box && <Drawn {...drag.box} />}
+        {looked !== null && tile && !drag.box && <Beside layout={layout} bin={looked} children={inset} />}
       </div>
       <Horizontal axis={axes[0]} />
       <Legend colouring={colouring} />
-      <Reading tile={tile} axes={axes} colour={colouring.measure} onOpen={onOpen} actions={props.actions} />
+      <Reading
+        {...{ tile, axes, onOpen }}
+        colour={colouring.measure}
+        hint={`Point at a cell to see its creature swim; click it to open it${onChoose ? "; drag over several to choose them" : ""}.`}
+        actions={props.actions}
+      />
     </div>
   );
 }
@@ -121,6 +152,17 @@ function Mark({ layout, bin }: { layout: Layout; bin: number }) {
   );
 }
 
+/** The box that is being drawn. */
+function Drawn({ from, to }: Box) {
+  const [x, y] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
+  const [width, height] = [Math.abs(from[0] - to[0]), Math.abs(from[1] - to[1])];
+  return (
+    <svg class="map-mark" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
+      <rect {...{ x, y, width, height }} />
+    </svg>
+  );
+}
+
 /** Stands where it hides neither the bin nor more of the map than it must. */
 function Beside({ layout, bin, children }: { layout: Layout; bin: number; children: ComponentChildren }) {
   const [x, y] = layout.centre(bin);
@@ -130,55 +172,4 @@ function Beside({ layout, bin, children }: { layout: Layout; bin: number; childr
       {children}
     </div>
   );
-}
-
-type Drawn = Pick<Picture, "layout" | "tiles" | "colouring">;
-
-/** A canvas that always shows the picture, and flashes where it changed. */
-function useDrawing(plot: RefObject<HTMLElement | null>, drawn: Drawn, elites: Elites) {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const painter = useMemo(() => new MapPainter(), []);
-  const size = useSize(plot);
-  const theme = useTheme();
-  const changed = useChanges(elites);
-  useEffect(() => {
-    const element = canvas.current;
-    if (!element || size.width === 0) return;
-    const picture = { ...drawn, theme, changed };
-    const stop = animate((now) => {
-      painter.draw(element, size, picture, now);
-      return [...changed.values()].some((time) => now - time < FLASH_MS);
-    });
-    performance.clearMarks("map");
-    performance.mark("map");
-    return stop;
-  }, [size, theme, changed, ...Object.values(drawn)]);
-  return canvas;
-}
-
-/** When each cell last got another elite; what is there at first has not changed. */
-function useChanges(elites: Elites): ReadonlyMap<number, number> {
-  const seen = useRef<Elites | null>(null);
-  const times = useRef<ReadonlyMap<number, number>>(new Map());
-  if (seen.current !== elites) {
-    const before = seen.current;
-    const now = performance.now();
-    const next = new Map([...times.current].filter(([, time]) => now - time < FLASH_MS));
-    for (const [cell, elite] of before && !prefersStillness() ? elites : []) {
-      if (before!.get(cell)?.creature !== elite.creature) next.set(cell, now);
-    }
-    seen.current = elites;
-    times.current = next;
-  }
-  return times.current;
-}
-
-/** Draws a picture at once, and again with every frame for as long as `draw` asks for it. */
-function animate(draw: (now: number) => boolean): () => void {
-  let frame = 0;
-  const step = () => {
-    if (draw(performance.now())) frame = requestAnimationFrame(step);
-  };
-  step();
-  return () => cancelAnimationFrame(frame);
 }

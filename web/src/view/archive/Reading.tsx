@@ -11,18 +11,20 @@ interface Props {
   tile: Tile | undefined;
   axes: readonly MapAxis[];
   colour: Measure;
+  /** What is said where nobody is looked at. */
+  hint: string;
   onOpen: (cell: number) => void;
   /** What else can be done with an elite. */
-  actions: (elite: Elite) => ComponentChildren;
+  actions: (elite: Elite, cell: number) => ComponentChildren;
 }
 
-export function Reading({ tile, axes, colour, onOpen, actions }: Props) {
+export function Reading({ tile, axes, colour, hint, onOpen, actions }: Props) {
   return (
     <p id="map-reading" class="map-reading" aria-live="polite">
       {tile ? (
         <Words {...{ tile, onOpen, actions, measures: [...axes, colour] }} />
       ) : (
-        <span class="quiet">Point at a cell to see its creature swim; click it to open it.</span>
+        <span class="quiet">{hint}</span>
       )}
     </p>
   );
@@ -59,7 +61,7 @@ function Words({ tile: { elite, cell, behind }, measures, onOpen, actions }: Wor
       <button class="link" onClick={() => onOpen(cell)}>
         Open <code>{short(elite.creature)}</code>
       </button>
-      {actions(elite)}
+      {actions(elite, cell)}
     </>
   );
 }

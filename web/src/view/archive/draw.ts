@@ -6,6 +6,8 @@ import { type Layout, rasterOf } from "./layout";
 import type { Tiles } from "./projection";
 
 export const FLASH_MS = 1200;
+/** What of its colour is left to whom is not chosen where others are. */
+export const FADED = 0.28;
 
 export interface Picture {
   layout: Layout;
@@ -13,6 +15,8 @@ export interface Picture {
   colouring: Colouring;
   /** When elites last changed, by their cells in the archive, in milliseconds. */
   changed: ReadonlyMap<number, number>;
+  /** The bins that stand out before all others; null: none does. */
+  chosen: ReadonlySet<number> | null;
   theme: "light" | "dark";
 }
 
@@ -38,7 +42,9 @@ export class MapPainter {
     const image = this.fit(canvas, size, picture.layout);
     const { layout, tiles, colouring } = picture;
     const { empty, unknown, flash } = INKS[picture.theme];
-    paint(image, this.raster, binColours(tiles, layout.count, colouring, empty, unknown));
+    const colours = binColours(tiles, layout.count, colouring, empty, unknown);
+    if (picture.chosen) fade(colours, tiles, picture.chosen);
+    paint(image, this.raster, colours);
     context.putImageData(image, 0, 0);
     drawFlashes(context, size, picture, flash, now);
     performance.measure("map-draw", { start: begun });
@@ -50,6 +56,15 @@ export class MapPainter {
     this.layout = layout;
     this.raster = rasterOf(layout, width, height, width / size.width);
     return (this.image = new ImageData(width, height));
+  }
+}
+
+/** Leaves of all that are not chosen a shadow. */
+function fade(colours: Uint32Array, tiles: Tiles, chosen: ReadonlySet<number>): void {
+  for (const bin of tiles.keys()) {
+    if (chosen.has(bin)) continue;
+    const bytes = new Uint8Array(colours.buffer, 4 * bin, 4);
+    bytes[3] = bytes[3]! * FADED;
   }
 }
 

@@ -18,7 +18,7 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
   const known = tree.kin.map(({ relative }) => relative.fitness ?? 0);
   const most = Math.max(1e-12, ...known.map(Math.abs));
   return (
-    <div class="scroll" ref={(box) => void box?.scrollTo(box.scrollWidth, 0)}>
+    <div class="scroll" tabIndex={0} role="group" aria-label="Family tree" ref={(box) => void box?.scrollTo(box.scrollWidth, 0)}>
       <div class="family" style={px({ width: tree.width, height: tree.height + HEAD })}>
         <svg width={tree.width} height={tree.height + HEAD} aria-hidden="true">
           {tree.lines.map(([parent, child]) => (

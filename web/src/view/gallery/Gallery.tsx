@@ -7,6 +7,7 @@ import type { Elite } from "../../live/elites";
 import { Horizontal, Vertical } from "../archive/Axes";
 import { binByKey } from "../archive/ArchiveMap";
 import type { MapAxis } from "../archive/axes";
+import { type Choosing, adds, binsOf, cellsIn, chosenByKey, keysOf, turned } from "../archive/choosing";
 import type { Colouring } from "../archive/colouring";
 import type { Shape } from "../archive/geometry";
 import { Legend } from "../archive/Legend";
@@ -19,7 +20,7 @@ import { prefersStillness, useTheme } from "../theme";
 import { type WallPicture, drawWall } from "./draw";
 import { cornerOf, visibleBins } from "./wall";
 
-interface Props {
+interface Props extends Choosing {
   axes: readonly [MapAxis, MapAxis];
   projection: Projection;
   colouring: Colouring;
@@ -35,7 +36,7 @@ interface Props {
   onMark: (cell: number) => void;
   onOpen: (cell: number) => void;
   /** What else can be done with an elite. */
-  actions: (elite: Elite) => ComponentChildren;
+  actions: (elite: Elite, cell: number) => ComponentChildren;
 }
 
 const [SMALLEST, LARGEST] = [36, 180];
@@ -47,7 +48,7 @@ const SECONDS = 5;
 const bounded = (side: number) => Math.min(LARGEST, Math.max(SMALLEST, side));
 
 export function Gallery(props: Props) {
-  const { axes, projection, colouring, marked, motions, onSee, onMark, onOpen } = props;
+  const { axes, projection, colouring, marked, motions, onSee, onMark, onOpen, onChoose } = props;
   const { tiles, bins, layout } = projection;
   const shape: Shape = [axes[0].bins, axes[1].bins];
   const port = useRef<HTMLDivElement>(null);
@@ -66,7 +67,9 @@ export function Gallery(props: Props) {
     return visibleBins(tiles.keys(), shape, side, window);
   }, [tiles, side, scroll, size]);
   useEffect(() => onSee(seen.map((bin) => tiles.get(bin)!.elite.creature)), [seen]);
-  const picture: WallPicture = { shape, side, tiles, bins: seen, colouring, motions, theme, marked: looked };
+  const chosen = useMemo(() => binsOf(props.chosen, projection), [props.chosen, projection]);
+  const common = { shape, side, tiles, colouring, motions, theme, chosen };
+  const picture: WallPicture = { ...common, bins: seen, marked: looked };
   useMoving(canvas, shown, picture, scroll);
 
   const binUnder = (event: MouseEvent): number | null => {
@@ -78,10 +81,12 @@ export function Gallery(props: Props) {
   };
   const press = (event: KeyboardEvent) => {
     if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
-    if (!isDirection(event.key)) return;
+    const next = isDirection(event.key) ? binByKey(event.key, from, tiles, layout) : null;
+    const changed = onChoose && chosenByKey(event, props.chosen, projection, from, next);
+    if (changed) onChoose(changed);
+    if (!changed && !isDirection(event.key)) return;
     event.preventDefault();
     setHovered(null);
-    const next = binByKey(event.key, from, tiles, layout);
     if (next === null) return;
     onMark(tiles.get(next)!.cell);
     reveal(port.current!, cornerOf(next, shape, side), side);
@@ -109,14 +114,16 @@ export function Gallery(props: Props) {
           class={`gallery-port ${hovered === null ? "" : "over"}`}
           tabIndex={0}
           role="application"
-          aria-label="Gallery. Arrow keys move between creatures, Enter opens one."
+          aria-label={`Gallery. Arrow keys move between creatures, ${keysOf(props)}`}
           aria-describedby="map-reading"
           onScroll={({ currentTarget: { scrollLeft, scrollTop } }) => setScroll([scrollLeft, scrollTop])}
           onPointerMove={(event) => setHovered(binUnder(event))}
           onPointerLeave={() => setHovered(null)}
           onClick={(event) => {
             const bin = binUnder(event);
-            if (bin !== null) onOpen(tiles.get(bin)!.cell);
+            if (bin === null) return;
+            if (onChoose && adds(event)) onChoose(turned(props.chosen, cellsIn([bin], projection)));
+            else onOpen(tiles.get(bin)!.cell);
           }}
           onKeyDown={press}
         >
@@ -132,6 +139,7 @@ export function Gallery(props: Props) {
         tile={looked === null ? undefined : tiles.get(looked)}
         axes={axes}
         colour={colouring.measure}
+        hint="Point at a creature to read of it; click it to open it."
         onOpen={onOpen}
         actions={props.actions}
       />

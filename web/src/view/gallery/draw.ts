@@ -4,6 +4,7 @@ import type { Motion } from "../../frames/motion";
 import { type Size, prepare } from "../canvas";
 import { css, sequential } from "../colours";
 import { type Colouring, placeOf } from "../archive/colouring";
+import { FADED } from "../archive/draw";
 import type { Shape } from "../archive/geometry";
 import type { Tiles } from "../archive/projection";
 import { traceBody } from "./body";
@@ -19,6 +20,8 @@ export interface WallPicture {
   motions: ReadonlyMap<string, Motion>;
   theme: "light" | "dark";
   marked: number | null;
+  /** The bins that stand out before all others; null: none does. */
+  chosen: ReadonlySet<number> | null;
 }
 
 const INKS = {
@@ -51,7 +54,7 @@ export function drawWall(
 
 function drawTile(
   context: CanvasRenderingContext2D,
-  { tiles, colouring, motions, theme }: WallPicture,
+  { tiles, colouring, motions, theme, chosen }: WallPicture,
   bin: number,
   [left, top, side]: readonly [number, number, number],
   share: number,
@@ -60,9 +63,10 @@ function drawTile(
   const tile = tiles.get(bin)!;
   const place = placeOf(colouring, tile);
   context.fillStyle = place === null ? quiet : css(sequential(place, colouring.palette));
-  context.globalAlpha = tint;
+  const strength = !chosen || chosen.has(bin) ? 1 : FADED;
+  context.globalAlpha = tint * strength;
   context.fillRect(left + 1, top + 1, side - 2, side - 2);
-  context.globalAlpha = 1;
+  context.globalAlpha = strength;
   context.fillRect(left + 1, top + side - 4, side - 2, 3);
   const motion = motions.get(tile.elite.creature);
   if (motion) {
@@ -74,4 +78,5 @@ function drawTile(
     context.strokeStyle = quiet;
   }
   context.stroke();
+  context.globalAlpha = 1;
 }

@@ -8,17 +8,20 @@ import { InPlace } from "./InPlace";
 interface NameProps {
   of: { name: string | null };
   title: string;
+  /** Whether it is not ours to change. */
+  fixed: boolean;
   onName: (name: string | null) => void;
   children: ComponentChildren;
 }
 
 /** A name, and a button that makes it a field. */
-export function Name({ of, title, onName, children }: NameProps) {
+export function Name({ of, title, fixed, onName, children }: NameProps) {
   const [open, setOpen, button] = useOpen();
   const done = (text: string | null) => {
     setOpen(false);
     if (text !== null && text !== (of.name ?? "") && text !== title) onName(text || null);
   };
+  if (fixed) return <>{children}</>;
   if (open) return <InPlace label={`Name of ${title}`} value={title} limit={200} onDone={done} />;
   return (
     <>
@@ -39,6 +42,7 @@ export function Name({ of, title, onName, children }: NameProps) {
 interface TagsProps {
   run: Run;
   name: string;
+  fixed: boolean;
   /** The id of a list of tags that others have. */
   known?: string;
   onPick: (tag: string) => void;
@@ -48,7 +52,7 @@ interface TagsProps {
 
 const TAGS = 20;
 
-export function Tags({ run, name, known, onPick, onAdd, onRemove }: TagsProps) {
+export function Tags({ run, name, fixed, known, onPick, onAdd, onRemove }: TagsProps) {
   const [open, setOpen, button] = useOpen();
   const done = (text: string | null) => {
     setOpen(false);
@@ -61,15 +65,17 @@ export function Tags({ run, name, known, onPick, onAdd, onRemove }: TagsProps) {
           <button title={`Runs tagged ${tag}`} onClick={() => onPick(tag)}>
             {tag}
           </button>
-          <button aria-label={`Remove the tag ${tag} from ${name}`} onClick={() => onRemove(tag)}>
-            ✕
-          </button>
+          {!fixed && (
+            <button aria-label={`Remove the tag ${tag} from ${name}`} onClick={() => onRemove(tag)}>
+              ✕
+            </button>
+          )}
         </span>
       ))}
       {open && (
         <InPlace label={`New tag of ${name}`} value="" limit={50} list={known} onDone={done} />
       )}
-      {!open && run.tags.length < TAGS && (
+      {!open && !fixed && run.tags.length < TAGS && (
         <button
           ref={button}
           class="plain small-button"
@@ -86,11 +92,12 @@ export function Tags({ run, name, known, onPick, onAdd, onRemove }: TagsProps) {
 interface NoteProps {
   run: Run;
   name: string;
+  fixed: boolean;
   onNote: (note: string) => void;
   onRemove: () => void;
 }
 
-export function Note({ run, name, onNote, onRemove }: NoteProps) {
+export function Note({ run, name, fixed, onNote, onRemove }: NoteProps) {
   const [open, setOpen, button] = useOpen();
   const done = (text: string | null) => {
     setOpen(false);
@@ -98,6 +105,7 @@ export function Note({ run, name, onNote, onRemove }: NoteProps) {
     if (text) onNote(text);
     else onRemove();
   };
+  if (fixed) return run.note ? <span class="note quiet small">{run.note}</span> : null;
   if (open) {
     return (
       <InPlace label={`Note on ${name}`} value={run.note ?? ""} limit={10_000} long onDone={done} />

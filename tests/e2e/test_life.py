@@ -1,0 +1,159 @@
+"""A run's further life, by mouse and keyboard: forked, extended, binned, undone, restored."""
+
+import re
+from typing import Any
+
+import pytest
+from accessibility import violations
+from places import GUIDED
+from playwright.sync_api import Locator, Page, expect
+from small import TINY
+
+FAST, SLOW = 10_000, 60_000
+NAME = "In honey"
+VISCOSITY = 0.5
+MORE = 2
+LAST = TINY["search"]["generations"]
+
+
+@pytest.mark.e2e
+def test_elites_are_forked_and_the_new_run_is_extended_binned_and_restored(
+    shared_page: Page, shared: Any, complaints: list[str]
+):
+    page, address = shared_page, shared.product.url
+    page.add_init_script(GUIDED)
+    run = shared.finished("voronoi")
+    page.goto(f"{address}/runs/{run}")
+    choose_by_keyboard(page)
+    choose_by_mouse(page)
+    fork_the_chosen(page, address, run)
+    fork_the_past(page, address, run)
+    fork = fork_an_elite_in_another_viscosity(page, address, run)
+    shared.product.wait(fork, "finished")
+    extend_by_keyboard(page)
+    shared.product.wait(fork, "finished")
+    bin_and_undo(page)
+    bin_and_restore(page, address, fork)
+    # Where the cells of a CVT are is asked for until the first checkpoint tells.
+    complaints[:] = [said for said in complaints if "status of 404" not in said]
+
+
+def map_of(page: Page) -> Locator:
+    return page.get_by_role("application", name=re.compile("^Archive map"))
+
+
+def chosen(page: Page) -> Locator:
+    return page.locator(".chosen-bar [role=status]")
+
+
+def choose_by_keyboard(page: Page) -> None:
+    """Space turns one, Shift with an arrow goes on, Escape lets go; the address follows."""
+    map_of(page).focus()
+    for key in ("ArrowRight", "Space"):
+        page.keyboard.press(key)
+    expect(chosen(page)).to_have_text("1 creature chosen")
+    page.keyboard.press("Space")
+    expect(chosen(page)).to_be_empty()
+    for key in ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"):
+        page.keyboard.press(f"Shift+{key}")
+    expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures chosen$"))
+    text = chosen(page).inner_text()
+    page.reload()
+    expect(chosen(page)).to_have_text(text, timeout=FAST)
+    assert violations(page) == []
+    map_of(page).focus()
+    page.keyboard.press("Escape")
+    expect(chosen(page)).to_be_empty()
+    assert "cells=" not in page.url
+
+
+def choose_by_mouse(page: Page) -> None:
+    """A box over all of the map, then one elite less by a click with Shift."""
+    box = map_of(page).bounding_box()
+    assert box
+    page.mouse.move(box["x"] + 2, box["y"] + 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.move(box["x"] + box["width"] - 2, box["y"] + box["height"] - 2)
+    page.mouse.up()
+    expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures chosen$"))
+    assert re.search(r"/runs/[^/]+\?", page.url), "a drag opens nobody"
+    everybody = int(chosen(page).inner_text().split()[0])
+    page.get_by_role("button", name="Choose", exact=True).click()
+    expect(chosen(page)).to_have_text(re.compile(f"^{everybody - 1} creatures? chosen$"))
+
+
+def fork_the_chosen(page: Page, address: str, run: str) -> None:
+    """The form says whom the run begins from, and leads back to them."""
+    text = chosen(page).inner_text().removesuffix(" chosen")
+    page.locator(".chosen-bar").get_by_role("link", name="Fork").click()
+    beginning = page.locator(".beginning")
+    expect(beginning).to_contain_text(f"Begins from {text} of run {run[:8]}.", timeout=FAST)
+    assert "cells=" in page.url
+    expect(page.get_by_label("Estimate")).to_be_visible(timeout=FAST)
+    beginning.get_by_role("link", name=text).click()
+    expect(chosen(page)).to_have_text(f"{text} chosen", timeout=FAST)
+
+
+def fork_the_past(page: Page, address: str, run: str) -> None:
+    page.goto(f"{address}/runs/{run}?at=1")
+    bar = page.locator(".chosen-bar")
+    expect(bar).to_contain_text(re.compile(r"^\d+ creatures? of generation 1"))
+    bar.get_by_role("link", name="Fork").click()
+    expect(page.locator(".beginning")).to_contain_text(
+        f"of run {run[:8]}, as they were after generation 1.", timeout=FAST
+    )
+
+
+def fork_an_elite_in_another_viscosity(page: Page, address: str, run: str) -> str:
+    """The id of the new run, which its page says came of one creature."""
+    page.goto(f"{address}/runs/{run}")
+    map_of(page).focus()
+    page.keyboard.press("ArrowRight")
+    page.locator("#map-reading").get_by_role("link", name="Fork").click()
+    expect(page.locator(".beginning")).to_contain_text("Begins from 1 creature", timeout=FAST)
+    world = page.get_by_role("group", name="World", exact=True)
+    world.get_by_label("Viscosity", exact=True).fill(str(VISCOSITY))
+    page.get_by_label("Name of the run").fill(NAME)
+    page.keyboard.press("ControlOrMeta+Enter")
+    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    expect(page.get_by_text("Began from one creature of")).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("heading", level=1)).to_contain_text(NAME)
+    fork = page.url.rpartition("/")[2]
+    made = page.request.get(f"{address}/api/v1/runs/{fork}").json()
+    assert made["spec"]["world"]["viscosity"] == VISCOSITY
+    assert made["forked_from"] == {"run": run, "creatures": 1}
+    return fork
+
+
+def extend_by_keyboard(page: Page) -> None:
+    page.get_by_role("button", name="Extend").focus()
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("Generations more")).to_be_focused()
+    page.keyboard.press("ControlOrMeta+a")
+    page.keyboard.type(str(MORE))
+    page.keyboard.press("Enter")
+    standing = page.get_by_role("region", name="How the run is doing")
+    expect(standing).to_contain_text(f"{LAST + MORE} / {LAST + MORE}", timeout=SLOW)
+
+
+def bin_and_undo(page: Page) -> None:
+    page.get_by_role("button", name=f"Delete {NAME}").click()
+    expect(page.get_by_text("This run is in the bin until")).to_be_visible()
+    assert violations(page) == []
+    expect(page.get_by_role("button", name="Undo")).to_be_visible()
+    page.keyboard.press("ControlOrMeta+z")
+    expect(map_of(page)).to_be_visible(timeout=FAST)
+
+
+def bin_and_restore(page: Page, address: str, fork: str) -> None:
+    page.get_by_role("button", name=f"Delete {NAME}").click()
+    expect(page.get_by_text("This run is in the bin until")).to_be_visible()
+    page.goto(address)
+    page.get_by_role("link", name="Bin").click()
+    row = page.get_by_role("row", name=re.compile(NAME))
+    row.get_by_role("button", name=re.compile("^Restore")).focus()
+    page.keyboard.press("Enter")
+    expect(row).to_have_count(0, timeout=FAST)
+    page.goto(f"{address}/runs/{fork}")
+    expect(map_of(page)).to_be_visible(timeout=FAST)

@@ -1,0 +1,73 @@
+/** Choosing elites on a map or a wall: by bins, each with all elites that stand in it. */
+
+import type { Projection, Tiles } from "./projection";
+import type { Layout, Spot } from "./layout";
+
+/** Cells of the archive. */
+export type Chosen = ReadonlySet<number>;
+
+export interface Choosing {
+  chosen: Chosen;
+  /** Null where nothing can be done with what is chosen. */
+  onChoose: ((chosen: Chosen) => void) | null;
+}
+
+const NONE: Chosen = new Set();
+
+/** The cells of all elites that stand in some bins. */
+export function cellsIn(bins: Iterable<number>, projection: Pick<Projection, "bins">): Chosen {
+  const wanted = new Set(bins);
+  return new Set([...projection.bins].flatMap(([cell, bin]) => (wanted.has(bin) ? [cell] : [])));
+}
+
+/** The bins in which somebody stands who is chosen; null where nobody is: then none stands out. */
+export function binsOf(chosen: Chosen, projection: Pick<Projection, "bins">): Chosen | null {
+  if (chosen.size === 0) return null;
+  return new Set([...chosen].flatMap((cell) => projection.bins.get(cell) ?? []));
+}
+
+export const both = (some: Chosen, others: Chosen): Chosen => new Set([...some, ...others]);
+
+/** With these cells, or without them where all of them were chosen. */
+export function turned(chosen: Chosen, cells: Chosen): Chosen {
+  const all = [...cells].every((cell) => chosen.has(cell));
+  return all ? new Set([...chosen].filter((cell) => !cells.has(cell))) : both(chosen, cells);
+}
+
+/** What keys do on a map or a wall, in the words that a screen reader says. */
+export const keysOf = ({ onChoose }: Pick<Choosing, "onChoose">): string =>
+  "Enter opens one" + (onChoose ? ", Space chooses it, Shift with arrows several, Escape none." : ".");
+
+/** What a key makes of the choice; null where it has nothing to say of it. */
+export function chosenByKey(
+  { key, shiftKey }: KeyboardEvent,
+  chosen: Chosen,
+  projection: Projection,
+  from: number | null,
+  next: number | null,
+): Chosen | null {
+  if (key === "Escape") return chosen.size > 0 ? NONE : null;
+  if (from === null) return null;
+  if (key === " ") return turned(chosen, cellsIn([from], projection));
+  if (!shiftKey || next === null) return null;
+  return both(chosen, cellsIn([from, next], projection));
+}
+
+export interface Box {
+  from: Spot;
+  to: Spot;
+}
+
+/** The filled bins whose middle a box has, and those under the corners it was drawn between. */
+export function binsWithin({ from, to }: Box, layout: Layout, tiles: Tiles): number[] {
+  const [left, right] = [Math.min(from[0], to[0]), Math.max(from[0], to[0])];
+  const [top, bottom] = [Math.min(from[1], to[1]), Math.max(from[1], to[1])];
+  const ends = [from, to].map((spot) => layout.at(...spot));
+  return [...tiles.keys()].filter((bin) => {
+    const [x, y] = layout.centre(bin);
+    return (left <= x && x <= right && top <= y && y <= bottom) || ends.includes(bin);
+  });
+}
+
+/** Whether a click or a drag is to add to what is chosen. */
+export const adds = (event: MouseEvent) => event.shiftKey || event.ctrlKey || event.metaKey;

@@ -1,0 +1,16 @@
+/** A button that turns into something else: the focus goes along, there and back. */
+
+import { useEffect, useRef, useState } from "preact/hooks";
+
+export function useOpening<First extends HTMLElement>() {
+  const [open, setOpen] = useState(false);
+  const button = useRef<HTMLButtonElement>(null);
+  const first = useRef<First>(null);
+  const wasOpen = useRef(false);
+  useEffect(() => {
+    if (open) first.current?.focus();
+    else if (wasOpen.current) button.current?.focus();
+    wasOpen.current = open;
+  }, [open]);
+  return { open, setOpen, button, first };
+}
