@@ -101,8 +101,10 @@ class Client:
         """
         document, key = specs.document(self.connection, spec), key or str(uuid4())
         if seeds is None and grid is None:
-            run = Run(self.connection, self.connection.send("POST", "runs", document, key=key))
-            return run.change(name=name) if name else run
+            # Named as it is made: what was queued without its name would be submitted again.
+            told = self.connection.send("POST", "runs", document, key=key, name=name)
+            run = Run(self.connection, told)
+            return run.change(name=name) if name and not run.name else run
         many = {
             "spec": document,
             "seeds": seeds if isinstance(seeds, int) else list(seeds or []) or 1,

@@ -5,10 +5,11 @@ from typing import Any
 
 import httpx
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 from microcosmos import client
-from microcosmos.cli import app, overrides
+from microcosmos.cli import app, overrides, tables
 
 SHA = "ab" * 32
 TOKEN = {"id": "70ce0000-0000-4000-8000-000000000001", "name": "laptop", "scope": "write"}
@@ -35,7 +36,7 @@ def told(fake, record, monkeypatch):
         "name": "demo",
         "spec": {"experiment": "quality-diversity", "world": {"width": 9}},
     }
-    share = {"slug": "s1", "url": "http://fake/s/s1", "title": None, "expires_at": None}
+    share = {"slug": "s1", "url": "http://fake/s/s1", "title": "[/x]", "expires_at": None}
     answers: dict[tuple[str, str], Any] = {
         ("GET", "experiments"): [{"experiment": "quality-diversity", "presets": [preset]}],
         ("GET", "runs"): {"items": [record], "next": None},
@@ -140,6 +141,16 @@ def test_tokens(told):
     assert json.loads(told("tokens", "list", "--json")[0].stdout) == [TOKEN]
     _, asked = told("tokens", "revoke", "70ce")
     assert asked[-1][:2] == ("DELETE", f"tokens/{TOKEN['id']}")
+
+
+def test_what_people_write_is_no_markup(told, record, monkeypatch):
+    """Nor is an id broken where there is little room."""
+    monkeypatch.setitem(TOKEN, "name", "lap[/top]")
+    monkeypatch.setitem(record, "name", "swims [bold]far[/nowhere]")
+    for command, name in (("tokens list", TOKEN["name"]), ("runs", record["name"])):
+        assert name in told(*command.split())[0].stdout
+    monkeypatch.setattr(tables, "stdout", lambda: Console(width=40))
+    assert record["id"][:8] in told("runs")[0].stdout
 
 
 def test_an_id_may_be_a_sweeps(told, record):
