@@ -129,7 +129,9 @@ class Connection:
         twice = named or request.method in IDEMPOTENT
         waited, attempt = 0.0, 0
         while True:
+            begun = time.monotonic()
             answer, failure = self._once(request, stream)
+            waited += time.monotonic() - begun
             pause = self._pause(answer, failure, twice, attempt)
             if pause is None or waited + pause > self.patience:
                 break

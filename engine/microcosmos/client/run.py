@@ -10,6 +10,7 @@ from . import files, following, forking, watching
 from .archive import Archive
 from .columns import Columns
 from .creature import Creature
+from .errors import NotFound
 from .kin import entries
 from .progress import bar
 from .record import Record
@@ -109,7 +110,12 @@ class Run(Record):
 
     def delete(self) -> Self:
         """Into the bin, from which `restore` takes it back for a day."""
-        self.record = self._connection.send("DELETE", self._path)
+        try:
+            self.record = self._connection.send("DELETE", self._path)
+        except NotFound:
+            # It lies there already where the answer to a first request was lost.
+            if not self.refresh().record.get("deleted_at"):
+                raise
         return self
 
     def restore(self) -> Self:

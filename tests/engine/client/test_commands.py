@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from microcosmos import client
 from microcosmos.cli import app, overrides, tables
+from microcosmos.version import VERSION
 
 SHA = "ab" * 32
 TOKEN = {"id": "70ce0000-0000-4000-8000-000000000001", "name": "laptop", "scope": "write"}
@@ -83,6 +84,23 @@ def test_a_sweep_is_submitted_with_its_grid(told):
     }
     assert made.stdout.strip() == SWEEP["id"]
     assert "A sweep of 6 runs" in made.stderr
+
+
+def test_what_was_deleted_when_the_answer_was_lost_is_deleted(fake, record):
+    path, gone = f"runs/{record['id']}", record | {"deleted_at": "2026-01-01T00:00:00Z"}
+    problem = {"content-type": "application/problem+json"}
+    there = httpx.Response(404, headers=problem, json={"detail": "It is in the bin."})
+    run = client.Run(
+        fake({("DELETE", path): there, ("GET", path): gone}).client.connection, record
+    )
+    assert run.delete().record == gone
+    never = fake({("DELETE", path): there, ("GET", path): record})
+    with pytest.raises(client.NotFound):
+        client.Run(never.client.connection, record).delete()
+
+
+def test_the_version_is_told():
+    assert CliRunner().invoke(app, ["--version"]).stdout.strip() == VERSION
 
 
 def test_extending(told, record):
@@ -159,7 +177,16 @@ def test_an_id_may_be_a_sweeps(told, record):
     assert asked[-2][:2] == ("POST", f"sweeps/{SWEEP['id']}/pause")
     assert "Sweep 5eed0000: 6 queued" in paused.stderr
     missing, _ = told("pause", "ffff", code=1)
-    assert "No run at http://fake has an id that begins with ffff" in missing.stderr
+    said = "No run or sweep at http://fake has an id that begins with ffff."
+    assert missing.stderr.strip() == said
+
+
+def test_an_id_that_may_be_a_runs_or_a_sweeps_is_refused(told, record, monkeypatch):
+    """To cancel cannot be undone."""
+    monkeypatch.setitem(SWEEP, "id", record["id"][:4] + SWEEP["id"][4:])
+    refused, asked = told("cancel", "0f3c", code=1)
+    assert {one.method for one in asked} == {"GET"}
+    assert f"run {record['id']} and of sweep {SWEEP['id']}" in refused.stderr
 
 
 @pytest.mark.parametrize(
