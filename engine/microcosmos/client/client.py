@@ -9,6 +9,7 @@ from uuid import uuid4
 
 import httpx
 
+from ..archive.naming import HDF5
 from . import specs
 from .connection import Connection
 from .creature import Creature
@@ -20,7 +21,6 @@ from .sharing import Share, expiry, publish
 from .streaming import Event, events
 from .sweep import Sweep
 
-HDF5 = b"\x89HDF"
 HERE = "http://127.0.0.1:8000"
 
 
@@ -241,6 +241,6 @@ def creature_file(path: Path) -> dict[str, Any]:
 
     data = path.read_bytes()
     try:
-        return creature_h5.load(data) if data[:4] == HDF5 else json.loads(data)
+        return creature_h5.load(data) if data.startswith(HDF5) else json.loads(data)
     except ValueError as error:
         raise ValueError(f"{path} needs a creature, as JSON or HDF5: {error}") from error

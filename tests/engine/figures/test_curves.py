@@ -54,7 +54,9 @@ def test_specs_are_told_apart_by_the_fields_in_which_they_differ(runs):
     thick = lines(figure.axes[0])[1]
     np.testing.assert_allclose(thick.get_xdata(), [1, 2])  # As long as both runs went on.
     np.testing.assert_allclose(thick.get_ydata(), [2, 3])
-    told = caption.of_curves(grouped(runs))
+    told = caption.of_curves(grouped(runs), ["best", "hit_rate", "qd_score"])
+    assert told.startswith("Best fitness, hit rate and QD score: median over seeds (thick)")
+    assert "; medians and bands as far as all seeds went. " in told
     assert "world viscosity 0.5: seeds 7, 8" in told
 
 
