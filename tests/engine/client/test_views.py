@@ -75,6 +75,11 @@ def test_a_terminal_shows_how_it_stands(record):
     assert max(map(len, narrow.splitlines())) <= 40
 
 
+def test_how_far_and_how_long_stand_on_one_line_of_a_usual_terminal(record):
+    (line,) = (one for one in shown(Standing(record), 80).splitlines() if "50 %" in one)
+    assert "1 min 15 s left" in line
+
+
 def test_trouble_and_reasons_are_shown(record):
     waits = record | {"status": "queued", "waiting": "no worker is free", "eta_seconds": None}
     text = shown(Standing(waits, {}, "No server answers."))
