@@ -3,6 +3,8 @@
 import json
 from typing import Any
 
+from ..spec.own import used
+
 
 class OtherDevice(ValueError):
     """The file was computed on another kind of device, where bits may differ."""
@@ -35,16 +37,24 @@ def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
     held, wanted = _of_today(held), _of_today(wanted)
     if _without_length(held) != _without_length(wanted):
         if _unversioned(_without_length(held)) == _unversioned(_without_length(wanted)):
-            raise ValueError(
-                "the file was computed with another version of a module of one's own: go on "
-                "with that one, or begin anew"
-            )
+            raise ValueError(_versions(held, wanted))
         raise ValueError("`spec` in the file must be the run's own, got another")
     before, now = _length(held), _length(wanted)
     if now < before:
         raise ValueError(
             f"`search.generations` must be at least the file's {before}, got {now}"
         )
+
+
+def _versions(held: dict[str, Any], wanted: dict[str, Any]) -> str:
+    """Which module is not what it was."""
+    now = {one.path: one.own.source for one in used(wanted)}
+    other = next(one for one in used(held) if now.get(one.path) != one.own.source)
+    return (
+        f"`{other.path}`: {other.name} must be of version {other.own.source[:12]}, with which "
+        f"the run was computed, got {now[other.path][:12]}: go on with the module as it was, "
+        "or begin anew"
+    )
 
 
 def _unversioned(spec: Any) -> Any:
