@@ -44,7 +44,8 @@ def curves(
 
 
 def _known(shown: Sequence[str], groups: Sequence[Group]) -> Sequence[str]:
-    there = groups[0].runs[0].curves
+    runs = [run for group in groups for run in group.runs]
+    there = [name for name in runs[0].curves if all(name in run.curves for run in runs)]
     if not shown:
         raise ValueError(f"`shown` must be one or more of {', '.join(there)}, got none.")
     for name in shown:
