@@ -1,9 +1,8 @@
 """Whether a file can be gone on from: the same spec, on the same kind of device."""
 
 import json
+from collections.abc import Iterator
 from typing import Any
-
-from ..spec.own import used
 
 
 class OtherDevice(ValueError):
@@ -47,14 +46,23 @@ def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
 
 
 def _versions(held: dict[str, Any], wanted: dict[str, Any]) -> str:
-    """Which module is not what it was."""
-    now = {one.path: one.own.source for one in used(wanted)}
-    other = next(one for one in used(held) if now.get(one.path) != one.own.source)
+    """Which module of one's own is not what it was."""
+    now = dict(_sources(wanted))
+    path, then = next((path, of) for path, of in _sources(held) if now.get(path) != of)
     return (
-        f"`{other.path}`: {other.name} must be of version {other.own.source[:12]}, with which "
-        f"the run was computed, got {now[other.path][:12]}: go on with the module as it was, "
-        "or begin anew"
+        f"`{path}` must be {then[:12]}, the version with which the run was computed, got "
+        f"{now.get(path, 'none')[:12]}: go on with the module as it was, or begin anew"
     )
+
+
+def _sources(spec: Any, path: str = "") -> Iterator[tuple[str, str]]:
+    """The versions of what is of one's own, by their paths."""
+    parts = spec.items() if isinstance(spec, dict) else enumerate(spec)
+    for name, part in parts:
+        if name == "source":
+            yield f"{path}{name}", part
+        elif isinstance(part, dict | list):
+            yield from _sources(part, f"{path}{name}.")
 
 
 def _unversioned(spec: Any) -> Any:
