@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Header, Query, Response
+from pydantic import StringConstraints
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
@@ -23,6 +24,7 @@ from ..progress import read_run, read_runs
 from ..reconcile import requeue
 from ..requests import earlier
 from ..schemas import (
+    NAME,
     EstimateRead,
     Extension,
     FieldError,
@@ -71,15 +73,29 @@ SpecDep = Annotated[Spec, Depends(spec_sent)]
 Key = Annotated[str | None, Header(alias="Idempotency-Key", min_length=1, max_length=255)]
 
 
+Called = Annotated[
+    str | None,
+    StringConstraints(strip_whitespace=True, max_length=NAME, pattern=r"^[^\x00]*$"),
+    Query(),
+]
+
+
 @router.post("", status_code=202, openapi_extra=body)
 def create_run(
-    spec: SpecDep, services: ServicesDep, response: Response, idempotency_key: Key = None
+    spec: SpecDep,
+    services: ServicesDep,
+    response: Response,
+    idempotency_key: Key = None,
+    name: Called = None,
 ) -> RunRead:
-    """Queue a run. The same key with the same spec is the same run, answered with 200."""
+    """Queue a run. The same key with the same spec is the same run, answered with 200.
+
+    `name` is what it is called, as `PATCH` could say later.
+    """
     if known := earlier(services, idempotency_key, spec.model_dump(mode="json")):
         return _submitted(services, response, known.run_id, new=False)
     refuse_too_large(services, spec)
-    run, new = submit(services, spec, idempotency_key)
+    run, new = submit(services, spec, idempotency_key, name=name or None)
     return _submitted(services, response, run.id, new)
 
 

@@ -11,6 +11,8 @@ REPLAY_VERSION = 2
 """A replay that was kept in an earlier one is recorded anew when it is wanted."""
 REPLAY_FORMAT = f"microcosmos-replay/{REPLAY_VERSION}"
 LICENCE = "CC-BY-4.0"
+HDF5 = b"\x89HDF\r\n\x1a\n"
+"""How an HDF5 file begins."""
 
 
 def canonical(identity: Mapping[str, Any]) -> bytes:

@@ -10,14 +10,12 @@ from pydantic import ValidationError
 from ..archive import creature_h5, origin
 from ..archive.creature import CreatureError, parse
 from ..archive.file import load
+from ..archive.naming import HDF5
 from ..plugins import Broken, Missing
 from ..spec import Evolution, Spec
 from ..spec import parse as parse_spec
 from .app import fail
 from .specs import said
-
-HDF5 = b"\x89HDF\r\n\x1a\n"
-"""How such a file begins."""
 
 CreatureFile = dict[str, Any]
 

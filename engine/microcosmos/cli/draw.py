@@ -7,11 +7,9 @@ import typer
 from typer.core import TyperGroup
 
 from ..archive.file import load
+from ..archive.naming import HDF5
 from .app import CACHE, app, console, fail
 from .modules import Modules, load_modules
-
-HDF5 = b"\x89HDF\r\n\x1a\n"
-"""How such a file begins."""
 
 DEFAULT = "file"
 """The command that is meant where none is named."""
@@ -129,8 +127,10 @@ def sheet(
     caption: Under = False,
     latex: Tex = False,
     palette: Palette = "viridis",
+    module: Modules = None,
 ) -> None:
     """The contact sheet of gaits: the fittest swimmer of each region over the axes."""
+    load_modules(module)
     from rich.progress import Progress
 
     from ..device import prepare
@@ -194,12 +194,12 @@ def _names(text: str | None) -> list[str] | None:
 def _draw(file: Path, out: Path) -> None:
     """A creature file is simulated first; the file of a run holds its table or its archive."""
     data = file.read_bytes()
-    if data[:8] == HDF5 and "archive" in load(data)[0]:
+    if data.startswith(HDF5) and "archive" in load(data)[0]:
         from ..figures import drawing
 
         drawing.archive(file, out, drawing.Print(), None, "fitness")
         return
-    if data[:8] == HDF5:
+    if data.startswith(HDF5):
         from ..render import figures
 
         figures.save(figures.of(data), out)

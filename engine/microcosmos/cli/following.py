@@ -4,10 +4,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.table import Table
+from rich.text import Text
 
 from .app import app
-from .remote import RUNS, Id, Json, Token, Url, found, reaching, show, stdout
+from .remote import RUNS, Id, Json, Token, Url, found, reaching, say, show
+from .tables import shown
 
 if TYPE_CHECKING:
     from ..client import Run, Sweep
@@ -53,9 +54,9 @@ def runs(
     if json:
         show(records[:most])
         return
-    stdout().print(listed(records[:most]))
+    shown(COLUMNS, map(_row, records[:most]))
     if len(records) > most:
-        print(f"There are more: --most {10 * most} lists up to so many.")
+        say(f"There are more: --most {10 * most} lists up to so many.")
 
 
 @app.command(rich_help_panel=RUNS)
@@ -98,24 +99,12 @@ def ended(watched: "Run | Sweep") -> int:
     return 0 if good else 1
 
 
-def listed(records: list[dict[str, Any]]) -> Table:
+def _row(record: dict[str, Any]) -> list[Any]:
     from ..client import words
 
-    table = Table(*COLUMNS, box=None, pad_edge=False)
-    for record in records:
-        status = record["status"]
-        figures = (
-            words.figure(name, record[name]) for name in ("qd_score", "coverage", "best")
-        )
-        colour = COLOURS.get(status, "default")
-        cells = (record["id"][:8], _plain(record["name"] or ""), record["experiment"])
-        done = f"{100 * record['progress']:.0f} %"
-        table.add_row(*cells, f"[{colour}]{status}[/]", done, *figures)
-    return table
-
-
-def _plain(text: str) -> str:
-    """Brackets in it are no markup."""
-    from rich.markup import escape
-
-    return escape(text)
+    status = record["status"]
+    figures = [words.figure(name, record[name]) for name in ("qd_score", "coverage", "best")]
+    coloured = Text(status, COLOURS.get(status, "default"))
+    done = f"{100 * record['progress']:.0f} %"
+    names = [record["id"][:8], record["name"], record["experiment"]]
+    return [*names, coloured, done, *figures]

@@ -3,7 +3,7 @@
 import json
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -70,16 +70,24 @@ def stdout() -> Console:
 
 
 def found(client: "Client", id: str, deleted: bool = False) -> "Run | Sweep":
-    """The run of an id, else the sweep; in the bin, where they are `deleted`."""
-    from ..client import NotFound
+    """The run or the sweep of an id, in the bin where they are `deleted`.
 
-    try:
-        return client.run(id, deleted=deleted)
-    except NotFound as error:
-        try:
-            return client.sweep(id, deleted=deleted)
-        except NotFound:
-            raise error from None
+    Raises `NotFound`, and `Refused` where the id begins one of each.
+    """
+    from ..client import NotFound, Refused
+
+    both: list[Run | Sweep] = []
+    for look in (client.run, client.sweep):
+        with suppress(NotFound):
+            both.append(look(id, deleted=deleted))
+        if both and both[0].id == id.strip().lower():
+            break
+    if not both:
+        raise NotFound(f"No run or sweep at {client.url} has an id that begins with {id}.")
+    if len(both) > 1:
+        run, sweep = both
+        raise Refused(f"{id} is the beginning of run {run.id} and of sweep {sweep.id}.")
+    return both[0]
 
 
 def about(thing: "Run | Sweep") -> str:

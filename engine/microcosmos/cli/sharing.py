@@ -1,13 +1,14 @@
 """What is shared with others: creatures brought, links, tokens."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Table
 
 from .app import app
-from .remote import SHARING, Json, Token, Url, reaching, say, show, stdout
+from .remote import SHARING, Json, Token, Url, reaching, say, show
+from .tables import shown
 
 tokens = typer.Typer(help="Who may use the server.", no_args_is_help=True)
 app.add_typer(tokens, name="tokens", rich_help_panel=SHARING)
@@ -77,10 +78,8 @@ def shares(json: Json = False, url: Url = None, token: Token = None) -> None:
         show([one.record for one in found])
         return
     names = ("title", "state", "expires_at")
-    table = Table("link", *(n.removesuffix("_at") for n in names), box=None, pad_edge=False)
-    for one in found:
-        table.add_row(one.url, *(one.record.get(name) for name in names))
-    stdout().print(table)
+    rows = ((one.url, *(one.record.get(name) for name in names)) for one in found)
+    shown(("link", *_titles(names)), rows)
 
 
 @tokens.command("create")
@@ -113,10 +112,8 @@ def list_tokens(json: Json = False, url: Url = None, token: Token = None) -> Non
         show(found)
         return
     names = ("id", "name", "scope", "expires_at", "revoked_at", "last_used_at")
-    table = Table(*(name.removesuffix("_at") for name in names), box=None, pad_edge=False)
-    for one in found:
-        table.add_row(one["id"][:8], *(one.get(name) for name in names[1:]))
-    stdout().print(table)
+    rows = ((one["id"][:8], *(one.get(name) for name in names[1:])) for one in found)
+    shown(_titles(names), rows)
 
 
 @tokens.command("revoke")
@@ -130,3 +127,7 @@ def revoke_token(
         for id in ids:
             client.revoke_token(id)
             say(f"Token {id} is revoked.")
+
+
+def _titles(fields: Sequence[str]) -> list[str]:
+    return [name.removesuffix("_at") for name in fields]

@@ -13,7 +13,7 @@ from .app import fail
 
 def read_spec(name: str) -> Spec:
     path = Path(name)
-    if path.exists():
+    if path.is_file():  # A folder may be called like a preset.
         return _parse(path)
     found = presets().get(name)
     if found is None:

@@ -2,10 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from rich.markup import escape
-from rich.table import Table
-
-from .remote import stdout
+from .tables import shown
 
 if TYPE_CHECKING:
     from ..client import Sweep
@@ -39,10 +36,7 @@ def _spread(final: dict[str, Any] | None) -> dict[str, Any]:
 
 def table(rows: list[dict[str, Any]]) -> None:
     names = list(dict.fromkeys(name for row in rows for name in row))
-    found = Table(*names, box=None, pad_edge=False)
-    for row in rows:
-        found.add_row(*(escape(_cell(row.get(name))) for name in names))
-    stdout().print(found)
+    shown(names, ([_cell(row.get(name)) for name in names] for row in rows))
 
 
 def _cell(value: Any) -> str:

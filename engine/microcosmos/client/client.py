@@ -10,6 +10,7 @@ from uuid import uuid4
 
 import httpx
 
+from ..archive.naming import HDF5
 from . import specs
 from .connection import Connection
 from .creature import Creature
@@ -21,7 +22,6 @@ from .sharing import Share, expiry, publish
 from .streaming import Event, events
 from .sweep import Sweep
 
-HDF5 = b"\x89HDF"
 HERE = "http://127.0.0.1:8000"
 
 
@@ -102,8 +102,10 @@ class Client:
         """
         document, key = specs.document(self.connection, spec), key or str(uuid4())
         if seeds is None and grid is None:
-            run = Run(self.connection, self.connection.send("POST", "runs", document, key=key))
-            return run.change(name=name) if name else run
+            # Named as it is made: what was queued without its name would be submitted again.
+            told = self.connection.send("POST", "runs", document, key=key, name=name)
+            run = Run(self.connection, told)
+            return run.change(name=name) if name and not run.name else run
         many = {
             "spec": document,
             "seeds": seeds if isinstance(seeds, int) else list(seeds or []) or 1,
@@ -244,6 +246,6 @@ def creature_file(path: Path) -> dict[str, Any]:
 
     data = path.read_bytes()
     try:
-        return creature_h5.load(data) if data[:4] == HDF5 else json.loads(data)
+        return creature_h5.load(data) if data.startswith(HDF5) else json.loads(data)
     except ValueError as error:
         raise ValueError(f"{path} needs a creature, as JSON or HDF5: {error}") from error

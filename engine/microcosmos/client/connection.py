@@ -57,14 +57,20 @@ class Connection:
         return self.json(self.ask("GET", path, params=params))
 
     def send(
-        self, method: str, path: str, document: Any = None, *, key: str | None = None
+        self,
+        method: str,
+        path: str,
+        document: Any = None,
+        *,
+        key: str | None = None,
+        **params: Any,
     ) -> Any:
         """What a change comes to; `key` names it, so that it is made once."""
-        if document is None:
-            return self.json(self.ask(method, path, key=key))
-        kind = {"Content-Type": "application/json"}
-        content = plain.dumps(document)
-        return self.json(self.ask(method, path, key=key, headers=kind, content=content))
+        body: dict[str, Any] = {}
+        if document is not None:
+            kind = {"Content-Type": "application/json"}
+            body = {"headers": kind, "content": plain.dumps(document)}
+        return self.json(self.ask(method, path, key=key, params=params, **body))
 
     def json(self, answer: httpx.Response) -> Any:
         try:
@@ -123,7 +129,9 @@ class Connection:
         twice = named or request.method in IDEMPOTENT
         waited, attempt = 0.0, 0
         while True:
+            begun = time.monotonic()
             answer, failure = self._once(request, stream)
+            waited += time.monotonic() - begun
             pause = self._pause(answer, failure, twice, attempt)
             if pause is None or waited + pause > self.patience:
                 break

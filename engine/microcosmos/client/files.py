@@ -85,15 +85,19 @@ def _written(answer: httpx.Response, to: Path, part: Path | None, tell: Tell, ur
     if part and not goes_on:
         part.unlink(missing_ok=True)
     start = size(target) if goes_on else 0
-    whole = start + int(answer.headers["content-length"])
-    with target.open("ab" if goes_on else "wb") as file:
-        tell(start, whole)
-        for chunk in answer.iter_raw(CHUNK):
-            file.write(chunk)
-            file.flush()
-            start += len(chunk)
+    whole = start + int(answer.headers.get("content-length", 0))  # Some proxies drop it.
+    try:
+        with target.open("ab" if goes_on else "wb") as file:
             tell(start, whole)
-        os.fsync(file.fileno())
+            for chunk in answer.iter_raw(CHUNK):
+                file.write(chunk)
+                file.flush()
+                start += len(chunk)
+                tell(start, max(start, whole))
+            os.fsync(file.fileno())
+    except OSError as error:  # Of a full disk, which does not say whose.
+        error.filename = error.filename or str(target)
+        raise
     return target
 
 

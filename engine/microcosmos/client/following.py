@@ -1,7 +1,7 @@
-"""A run as it stands, again and again until it ends: told by events, else asked for."""
+"""A run or a sweep as it stands, again and again until it ends."""
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,6 +10,8 @@ from .errors import NoAnswer, NotFound, NotMicrocosmos, Refused
 from .streaming import Event, events
 
 ENDED = ("finished", "failed", "cancelled")
+TOLD_FIRST = ("running", "queued", "paused", "failed", "cancelled")
+"""Of a sweep whose runs are in several states, the one that it is in."""
 POINTS = 400
 POLL = 2.0
 AFRESH = 20.0
@@ -45,13 +47,26 @@ class Standing:
         return not known or told["generation"] > known[-1]
 
 
+Answered = Callable[[Standing], Iterator[Standing]]
+"""Brings a standing up to date, again and again, while the server answers."""
+
+
 def follow(connection: Connection, run: str) -> Iterator[Standing]:
     """The same object each time, brought up to date; it ends when the run has ended."""
+    return _through_outages(lambda standing: _answered(connection, run, standing))
+
+
+def follow_sweep(connection: Connection, sweep: str) -> Iterator[Standing]:
+    """The same for all runs of a sweep together, which stand as one."""
+    return _through_outages(lambda standing: _asked(connection, sweep, standing))
+
+
+def _through_outages(answered: Answered) -> Iterator[Standing]:
     standing = Standing()
     lost: float | None = None
     while True:
         try:
-            for found in _answered(connection, run, standing):
+            for found in answered(standing):
                 standing.trouble, lost = None, None
                 yield found
                 if found.ended:
@@ -63,6 +78,30 @@ def follow(connection: Connection, run: str) -> Iterator[Standing]:
             standing.trouble = str(error)
             yield standing
             time.sleep(POLL)
+
+
+def _asked(connection: Connection, sweep: str, standing: Standing) -> Iterator[Standing]:
+    while True:
+        standing.record = as_run(connection.read(f"sweeps/{sweep}"))
+        yield standing
+        time.sleep(POLL)
+
+
+def as_run(sweep: Mapping[str, Any]) -> dict[str, Any]:
+    """A sweep as the views know runs: what is counted are runs that have ended."""
+    standing = {status: count for status, count in sweep["standing"].items() if count}
+    over = sum(count for status, count in standing.items() if status in ENDED)
+    return {
+        "id": sweep["id"],
+        "experiment": "sweep",
+        "name": sweep["name"],
+        "status": next((status for status in TOLD_FIRST if status in standing), "finished"),
+        "progress": sweep.get("progress", over / max(1, sweep["total"])),
+        "generation": over,
+        "generations": sweep["total"],
+        "unit": "runs",
+        "summary": standing,
+    }
 
 
 def _answered(connection: Connection, run: str, standing: Standing) -> Iterator[Standing]:

@@ -9,44 +9,28 @@ from uuid import uuid4
 from . import files, following, forking, watching
 from .archive import Archive
 from .columns import Columns
-from .connection import Connection
 from .creature import Creature
+from .errors import NotFound
 from .kin import entries
 from .progress import bar
+from .record import Record
 from .sharing import Share, publish
 from .table import Table
 
 
-class Run:
+class Run(Record):
     """As it was when the server was last asked; `refresh` asks again."""
 
-    def __init__(self, connection: Connection, record: Mapping[str, Any]):
-        self._connection = connection
-        self.record = dict(record)
-        """All that the server tells of it."""
+    NOUN = "runs"
 
     def __repr__(self) -> str:
         name = f" {self.name!r}" if self.name else ""
         done = f"{self.generation} of {self.generations} generations"
         return f"<Run {self.id[:8]}{name}: {self.experiment}, {self.status}, {done}>"
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Run) and other.id == self.id
-
-    def __hash__(self) -> int:
-        return hash(self.id)
-
-    @property
-    def id(self) -> str:
-        return self.record["id"]
-
     @property
     def experiment(self) -> str:
         return self.record["experiment"]
-
-    @property
-    def name(self) -> str | None:
-        return self.record["name"]
 
     @property
     def status(self) -> str:
@@ -90,10 +74,6 @@ class Run:
     def error(self) -> str | None:
         return self.record["error"]
 
-    def refresh(self) -> Self:
-        self.record = self._connection.read(self._path)
-        return self
-
     def wait(self, timeout: float | None = None) -> str:
         """The state in which it has ended; `TimeoutError` after so many seconds."""
         self.record = following.wait(self._connection, self.id, timeout)
@@ -104,15 +84,6 @@ class Run:
         status = watching.watch(self._connection, self.id)
         self.refresh()
         return status
-
-    def pause(self) -> Self:
-        return self._ask("pause")
-
-    def resume(self) -> Self:
-        return self._ask("resume")
-
-    def cancel(self) -> Self:
-        return self._ask("cancel")
 
     def extend(self, generations: int) -> Self:
         """So many generations more."""
@@ -139,7 +110,12 @@ class Run:
 
     def delete(self) -> Self:
         """Into the bin, from which `restore` takes it back for a day."""
-        self.record = self._connection.send("DELETE", self._path)
+        try:
+            self.record = self._connection.send("DELETE", self._path)
+        except NotFound:
+            # It lies there already where the answer to a first request was lost.
+            if not self.refresh().record.get("deleted_at"):
+                raise
         return self
 
     def restore(self) -> Self:
@@ -206,11 +182,3 @@ class Run:
     def url(self) -> str:
         """Its page."""
         return f"{self._connection.url}/runs/{self.id}"
-
-    @property
-    def _path(self) -> str:
-        return f"runs/{self.id}"
-
-    def _ask(self, action: str, document: Any = None) -> Self:
-        self.record = self._connection.send("POST", f"{self._path}/{action}", document)
-        return self

@@ -5,39 +5,22 @@ from typing import Any, Self
 
 from . import watching
 from .columns import frame
-from .connection import Connection
 from .following import ENDED
 from .pages import items
+from .record import Record
 from .run import Run
 
 MEASURES = ("qd_score", "coverage", "best")
 
 
-class Sweep:
+class Sweep(Record):
     """As it was when the server was last asked; `refresh` asks again."""
 
-    def __init__(self, connection: Connection, record: Mapping[str, Any]):
-        self._connection = connection
-        self.record = dict(record)
-        """All that the server tells of it."""
+    NOUN = "sweeps"
 
     def __repr__(self) -> str:
         name = f" {self.name!r}" if self.name else ""
         return f"<Sweep {self.id[:8]}{name}: {self.total} runs, {told(self.standing)}>"
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Sweep) and other.id == self.id
-
-    def __hash__(self) -> int:
-        return hash(self.id)
-
-    @property
-    def id(self) -> str:
-        return self.record["id"]
-
-    @property
-    def name(self) -> str | None:
-        return self.record["name"]
 
     @property
     def cases(self) -> list[dict[str, Any]]:
@@ -61,23 +44,10 @@ class Sweep:
         found = items(self._connection, "runs", sweep=self.id, limit=200, sort="created")
         return (Run(self._connection, one) for one in found)
 
-    def refresh(self) -> Self:
-        self.record = self._connection.read(self._path)
-        return self
-
     def watch(self) -> dict[str, int]:
         """Show how its runs go until all have ended; Ctrl-C leaves them going."""
-        self.record = watching.watch_sweep(self._connection, self.id)
-        return self.standing
-
-    def pause(self) -> Self:
-        return self._ask("pause")
-
-    def resume(self) -> Self:
-        return self._ask("resume")
-
-    def cancel(self) -> Self:
-        return self._ask("cancel")
+        watching.watch_sweep(self._connection, self.id)
+        return self.refresh().standing
 
     def delete(self) -> Self:
         """Its runs into the bin, but for those that wait or are at work: see `standing`."""
@@ -116,12 +86,9 @@ class Sweep:
         """A data frame of `rows`."""
         return frame(self.rows())
 
-    @property
-    def _path(self) -> str:
-        return f"sweeps/{self.id}"
-
-    def _ask(self, action: str) -> Self:
-        self._connection.send("POST", f"{self._path}/{action}")
+    def _ask(self, action: str, document: Any = None) -> Self:
+        """The answer tells which runs were changed, not how the sweep stands."""
+        self._connection.send("POST", f"{self._path}/{action}", document)
         return self.refresh()
 
 

@@ -13,6 +13,8 @@ from .following import Standing
 
 COLOURS = {"finished": "green", "failed": "red", "cancelled": "yellow", "paused": "yellow"}
 HEIGHT = 4
+LONGEST = 32
+"""Signs of a progress bar."""
 
 
 class Terminal:
@@ -44,7 +46,7 @@ def drawn(standing: Standing, width: int) -> RenderableType:
     head = Text(words.titled(record) + "  ")
     head.append(words.standing(record), COLOURS.get(record["status"], "cyan"))
     figures = "   ".join(f"{name} {value}" for name, value in words.figures(record))
-    parts: list[RenderableType] = [head, _bar(standing), Text(figures)]
+    parts: list[RenderableType] = [head, _bar(standing, width), Text(figures)]
     parts += _curves(standing, width)
     for trouble in (record.get("warning"), standing.trouble):
         if trouble:
@@ -52,13 +54,16 @@ def drawn(standing: Standing, width: int) -> RenderableType:
     return Group(*parts)
 
 
-def _bar(standing: Standing) -> RenderableType:
+def _bar(standing: Standing, width: int) -> RenderableType:
+    """On one line: the bar has the room that its words leave."""
     record = standing.record
-    table = Table.grid(padding=(0, 2))
-    bar = ProgressBar(total=1.0, completed=record["progress"], width=32)
     share = f"{100 * record['progress']:.0f} %"
     done = f"{record['generation']}/{record['generations']} {record.get('unit', 'generations')}"
-    table.add_row(bar, share, done, words.pace(record))
+    told = [share, done, words.pace(record)]
+    room = width - sum(len(text) + 2 for text in told)
+    bar = ProgressBar(total=1.0, completed=record["progress"], width=max(4, min(LONGEST, room)))
+    table = Table.grid(padding=(0, 2))
+    table.add_row(bar, *told)
     return table
 
 

@@ -1,6 +1,7 @@
 """Whether a file can be gone on from: the same spec, on the same kind of device."""
 
 import json
+from collections.abc import Iterator
 from typing import Any
 
 
@@ -26,20 +27,42 @@ def devices_of(
     return tuple(devices if devices[-1] == device else [*devices, device])
 
 
+LATER: dict[str, dict[str, Any]] = {"search": {"origin": []}, "creature": {"credit": []}}
+"""What specs of earlier versions do not name yet, by the part that it stands in."""
+
+
 def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
     """A search may have more generations than the file's: each follows from those before."""
+    held, wanted = _of_today(held), _of_today(wanted)
     if _without_length(held) != _without_length(wanted):
         if _unversioned(_without_length(held)) == _unversioned(_without_length(wanted)):
-            raise ValueError(
-                "the file was computed with another version of a module of one's own: go on "
-                "with that one, or begin anew"
-            )
+            raise ValueError(_versions(held, wanted))
         raise ValueError("`spec` in the file must be the run's own, got another")
     before, now = _length(held), _length(wanted)
     if now < before:
         raise ValueError(
             f"`search.generations` must be at least the file's {before}, got {now}"
         )
+
+
+def _versions(held: dict[str, Any], wanted: dict[str, Any]) -> str:
+    """Which module of one's own is not what it was."""
+    now = dict(_sources(wanted))
+    path, then = next((path, of) for path, of in _sources(held) if now.get(path) != of)
+    return (
+        f"`{path}` must be {then[:12]}, the version with which the run was computed, got "
+        f"{now.get(path, 'none')[:12]}: go on with the module as it was, or begin anew"
+    )
+
+
+def _sources(spec: Any, path: str = "") -> Iterator[tuple[str, str]]:
+    """The versions of what is of one's own, by their paths."""
+    parts = spec.items() if isinstance(spec, dict) else enumerate(spec)
+    for name, part in parts:
+        if name == "source":
+            yield f"{path}{name}", part
+        elif isinstance(part, dict | list):
+            yield from _sources(part, f"{path}{name}.")
 
 
 def _unversioned(spec: Any) -> Any:
@@ -53,8 +76,14 @@ def _length(spec: dict[str, Any]) -> int:
     return spec.get("search", {}).get("generations", 0)
 
 
+def _of_today(spec: dict[str, Any]) -> dict[str, Any]:
+    return {
+        name: LATER[name] | part if name in LATER and isinstance(part, dict) else part
+        for name, part in spec.items()
+    }
+
+
 def _without_length(spec: dict[str, Any]) -> dict[str, Any]:
     if "search" not in spec:
         return spec
-    # Files of before there were origins do not name them.
-    return {**spec, "search": {"origin": [], **spec["search"], "generations": 0}}
+    return {**spec, "search": {**spec["search"], "generations": 0}}

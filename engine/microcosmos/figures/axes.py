@@ -18,15 +18,12 @@ class Axis:
     """One measure from end to end; places on it run from 0 to 1 on its own scale."""
 
     name: str
+    label: str
+    """Its title and unit."""
     low: float
     high: float
     logarithmic: bool
     bins: int
-
-    @property
-    def label(self) -> str:
-        """Its title and unit."""
-        return label(self.name)
 
     def places(self, values: np.ndarray) -> np.ndarray:
         """From 0 to 1; what is beyond an end is at it."""
@@ -47,9 +44,9 @@ class Axis:
         return self.values(np.linspace(0, 1, self.bins + 1))
 
 
-def label(name: str) -> str:
-    """The title and unit of a measure."""
-    known = FEATURES.get(name)
+def label(archive: Archive, name: str) -> str:
+    """The title and unit of a measure; one of one's own has those that it was declared with."""
+    known = archive.own.get(name) or FEATURES.get(name)
     if known is None:
         return name.replace("_", " ").capitalize()
     return known.title + (f" [{known.unit}]" if known.unit else "")
@@ -60,7 +57,7 @@ def fitness_label(archive: Archive) -> str:
     task = archive.spec.task
     if task.fitness == "displacement+energy":
         return f"Displacement + {task.energy_weight:g} × energy [cells]"
-    return label(task.fitness)
+    return label(archive, task.fitness)
 
 
 def chosen(archive: Archive, names: list[str] | None) -> list[Axis]:
@@ -83,20 +80,23 @@ def chosen(archive: Archive, names: list[str] | None) -> list[Axis]:
 
 def _own(archive: Archive, axis: Any) -> Axis:
     bins = axis.bins if archive.centroids is None else BINS
-    return Axis(axis.name, axis.low, axis.high, axis.scale == "log10", bins)
+    return Axis(
+        axis.name, label(archive, axis.name), axis.low, axis.high, axis.scale == "log10", bins
+    )
 
 
 def _other(archive: Archive, name: str) -> Axis:
     """From end to end of what there is, rounded outwards."""
     known, values = FEATURES.get(name), archive.features[name].astype(float)
+    title = label(archive, name)
     if known is not None and known.scale == "log10":
         found = np.log10(np.clip(values, known.low, None))
         low, high = np.floor(found.min() + 1e-9), np.ceil(found.max() - 1e-9)
-        return Axis(name, 10.0**low, 10.0 ** max(high, low + 1), True, BINS)
+        return Axis(name, title, 10.0**low, 10.0 ** max(high, low + 1), True, BINS)
     step = _round(max(np.ptp(values), 1e-9 * abs(values.max()), 1e-12) / 8)
     low = step * np.floor(values.min() / step + 1e-9)
     high = max(step * np.ceil(values.max() / step - 1e-9), low + step)
-    return Axis(name, float(low), float(high), False, BINS)
+    return Axis(name, title, float(low), float(high), False, BINS)
 
 
 def _round(least: float) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..spec import Chain
-from ..spec.body import Known, shape
+from ..spec.body import Known, OwnBody, shape
 from ..spec.emitters import PopulationEmitter
 from .axes import Axis, chosen
 from .groups import Group
@@ -18,26 +18,36 @@ FITNESS = {
 }
 
 
+NAMES = {"best": "best fitness", "mean": "mean fitness", "qd_score": "QD score"}
+"""Of curves, where the words of the column are others."""
+
+
 def of_archive(found: Archive, names: list[str] | None) -> str:
     """What the map shows, then the run."""
     along = chosen(found, names)
     filled, cells = len(found.cells), found.spec.archive.cells
+    fittest = "the ring marks the fittest" if len(along) == 2 else "the fittest has"
+    best = f"({found.fitness.max():.3g})" if len(along) == 2 else f"{found.fitness.max():.3g}"
     first = (
         f"Archive of {filled:,} elites in {cells:,} cells ({100 * filled / cells:.1f} %) over "
-        f"{_over(along)}; the ring marks the fittest "
-        f"({found.fitness.max():.3g})."
+        f"{_over(along)}; {fittest} {best}."
     )
     if len(along) < len(found.axes) or {a.name for a in along} != {a.name for a in found.axes}:
         first += " Of elites that share a place the fittest is shown."
     return " ".join([first, run(found)])
 
 
-def of_curves(groups: Sequence[Group]) -> str:
-    """What bands are, then the run; of several specs the first, and how others differ."""
+def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
+    """What is shown and what bands are, then the run; of several specs the first, and how
+    others differ.
+    """
     several = any(len(group.runs) > 1 for group in groups)
-    first = "Best fitness, coverage and QD score"
+    first = _listed([NAMES.get(name, name.replace("_", " ")) for name in shown])
+    first = first[0].upper() + first[1:]
     if several:
         first += ": median over seeds (thick), band between the quartiles, single runs (thin)"
+    if any(len({len(run.curves["best"]) for run in group.runs}) > 1 for group in groups):
+        first += "; medians and bands as far as all seeds went"
     named = "; ".join(
         f"{group.label}: {_seeds(group.seeds)}" for group in groups if group.label
     )
@@ -90,6 +100,8 @@ def run(found: Archive, seeds: Sequence[int] | None = None) -> str:
 
 def _fitness(spec: Search) -> str:
     task = spec.task
+    if task.own:
+        return f"Fitness is “{task.own.title}” ({task.fitness})"
     both = f"Fitness is displacement + {task.energy_weight:g} × energy collected"
     return FITNESS.get(
         task.fitness, both if "+" in task.fitness else f"Fitness is {task.fitness}"
@@ -107,6 +119,8 @@ def _emitters(spec: Search) -> str:
 
 def _body(spec: Search) -> str:
     body = spec.body
+    if isinstance(body, OwnBody):  # Whose nodes are known to those alone who have its module.
+        return f"the body “{body.own.title}” ({body.builder})"
     nodes = len(shape(body).positions)
     if isinstance(body, Chain):
         return f"a filament of {nodes} nodes"
@@ -140,6 +154,11 @@ def _device(devices: Sequence[str]) -> str:
 
 def _seeds(seeds: Sequence[int]) -> str:
     return ("seed " if len(seeds) == 1 else "seeds ") + ", ".join(map(str, seeds))
+
+
+def _listed(words: Sequence[str]) -> str:
+    *others, last = words
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _over(axes: Sequence[Axis]) -> str:

@@ -28,9 +28,10 @@ def curves(
 
     `against` is evaluations or generations.
     """
+    names = _known(shown, groups)
     figure = blank(width, max(45.0, 0.72 * width / len(shown)) + 7 * (len(groups) > 1))
     panels = figure.subplots(1, len(shown), squeeze=False)[0]
-    for panel, name in zip(panels, _known(shown, groups), strict=True):
+    for panel, name in zip(panels, names, strict=True):
         for number, group in enumerate(groups):
             _group(panel, group, name, against, number)
         _dress(panel, name, against, groups)
@@ -43,7 +44,10 @@ def curves(
 
 
 def _known(shown: Sequence[str], groups: Sequence[Group]) -> Sequence[str]:
-    there = groups[0].runs[0].curves
+    runs = [run for group in groups for run in group.runs]
+    there = [name for name in runs[0].curves if all(name in run.curves for run in runs)]
+    if not shown:
+        raise ValueError(f"`shown` must be one or more of {', '.join(there)}, got none.")
     for name in shown:
         if name not in there:
             raise ValueError(f"`shown` must be of {', '.join(there)}, got {name!r}.")

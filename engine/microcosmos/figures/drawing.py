@@ -49,7 +49,7 @@ def progress(
     with styled():
         width = millimetres(how.width)
         figure = curves.curves(found, shown=shown, against=against, width=width)
-        return how.publish(figure, out, caption.of_curves(found))
+        return how.publish(figure, out, caption.of_curves(found, shown))
 
 
 def contact(

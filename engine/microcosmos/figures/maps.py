@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from ..spec.features import FEATURES
 from .axes import Axis, chosen, dress, fitness_label, label
 from .reading import Archive
 from .style import EMPTY, GREY, INK, blank, palette
@@ -26,7 +27,7 @@ def archive(
     shown, title = _colour(found, colour)
     figure = blank(width, width * (0.78 if len(along) == 2 else 0.6))
     panel = figure.add_subplot()
-    scale = _scale(shown, colour)
+    scale = _scale(shown, _logarithmic(found, colour))
     shades = {"cmap": palette(colours), "norm": scale}
     draw = _bars if len(along) == 1 else _cells if _whole(found, along) else _bins
     drawn = draw(panel, found, along, shown, shades)
@@ -48,17 +49,22 @@ def _colour(found: Archive, name: str) -> tuple[np.ndarray, str]:
     if name not in found.features:
         known = ", ".join(["fitness", *found.features])
         raise ValueError(f"`colour` must be one of {known}, got {name!r}.")
-    return found.features[name].astype(float), label(name)
+    return found.features[name].astype(float), label(found, name)
 
 
-def _scale(shown: np.ndarray, name: str) -> Any:
-    """From the least to the greatest; in decades where the measure has them."""
+def _logarithmic(found: Archive, name: str) -> bool:
+    """Whether a measure goes in decades: as its axis does, where it is one of the archive's."""
+    own = {axis.name: axis.scale for axis in found.axes}
+    usual = FEATURES[name].scale if name in FEATURES else "linear"
+    return own.get(name, usual) == "log10"
+
+
+def _scale(shown: np.ndarray, logarithmic: bool) -> Any:
+    """From the least to the greatest."""
     from matplotlib.colors import LogNorm, Normalize
 
-    from ..spec.features import FEATURES
-
     low, high = float(shown.min()), float(shown.max())
-    if name in FEATURES and FEATURES[name].scale == "log10" and low > 0:
+    if logarithmic and low > 0:
         return LogNorm(low, high if high > low else 10 * low)
     return Normalize(low, high if high > low else low + 1)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..archive import file
-from ..spec import Descriptor, Neuroevolution, QualityDiversity, parse
+from ..spec import Descriptor, Neuroevolution, Own, QualityDiversity, parse
 
 Search = QualityDiversity | Neuroevolution
 """The specs whose runs fill an archive."""
@@ -40,6 +40,12 @@ class Archive:
     def axes(self) -> tuple[Descriptor, ...]:
         """The archive's descriptors."""
         return self.spec.archive.descriptors
+
+    @property
+    def own(self) -> dict[str, Own]:
+        """What is said of measures of one's own, by name."""
+        task = self.spec.task
+        return self.spec.archive.own | ({task.fitness: task.own} if task.own else {})
 
     @property
     def best(self) -> int:

@@ -37,31 +37,45 @@ def load(path: Path | str) -> tuple[Declaration, ...]:
     if file.suffix != ".py" or not file.is_file():
         there = "" if file.exists() else ", which is not there"
         raise ValueError(f"a module must be a Python file (.py), got {path}{there}")
-    name = f"microcosmos_own_{file.stem}"
-    found = importlib.util.spec_from_file_location(name, file)
-    assert found is not None
-    assert found.loader is not None
-    module = importlib.util.module_from_spec(found)
-    sys.modules[name] = module  # Where annotations of its classes are looked up.
-    try:
-        found.loader.exec_module(module)
-    except BaseException as error:
-        del sys.modules[name]
-        if isinstance(error, KeyboardInterrupt):
-            raise
-        raise ValueError(f"{path} fails with {type(error).__name__}: {error}") from error
-    return load_module(module, file.stem)
+    # Read once: what ran is what the hash is of, whatever Python has compiled of it before.
+    source = file.read_bytes()
+    module = _run(path, file, source)
+    return _taken(module, file.stem, sha256(source).hexdigest())
 
 
 def load_module(module: ModuleType, namespace: str) -> tuple[Declaration, ...]:
     """Take up what a module declares; `namespace` comes before its names."""
+    return _taken(module, namespace, digest(Path(str(module.__file__))))
+
+
+def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
+    name = f"microcosmos_own_{file.stem}"
+    found = importlib.util.spec_from_file_location(name, file)
+    assert found is not None
+    module = importlib.util.module_from_spec(found)
+    before = sys.modules.get(name)
+    sys.modules[name] = module  # Where annotations of its classes are looked up.
+    try:
+        exec(compile(source, file, "exec", dont_inherit=True), vars(module))
+    except BaseException as error:
+        if before is None:
+            del sys.modules[name]
+        else:
+            sys.modules[name] = before
+        if isinstance(error, KeyboardInterrupt):
+            raise
+        where = registry.line_of(error, str(file))
+        raise ValueError(f"{path}{where} fails with {type(error).__name__}: {error}") from error
+    return module
+
+
+def _taken(module: ModuleType, namespace: str, source: str) -> tuple[Declaration, ...]:
     if not re.fullmatch(NAME, namespace):
         raise ValueError(f"a module's name must be of a-z, 0-9 and _, got {namespace!r}")
     file = str(module.__file__)
     other = registry.origin_of(namespace)
     if other not in (None, file):
         raise ValueError(f"two modules are called {namespace!r}: {other} and {file}")
-    source = digest(Path(file))
     found = [_plugin(*one, f"{namespace}.", source, file) for one in _declared(module)]
     if not found:
         raise ValueError(f"{file} declares nothing: it needs a @plugins.fitness or another")

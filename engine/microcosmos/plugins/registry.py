@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from traceback import extract_tb
 from typing import Any, Protocol
 
 from pydantic import BaseModel, ValidationError
@@ -35,7 +36,7 @@ class Plugin:
             chosen = () if self.model is None else (self.model.model_validate(dict(settings)),)
             return self.function(*given, *chosen)
         except Exception as error:
-            what = f"{self.declaration.name} ({self.origin})"
+            what = f"{self.declaration.name} ({self.origin}{line_of(error, self.origin)})"
             raise Broken(f"{what} failed with {type(error).__name__}: {error}") from error
 
 
@@ -53,6 +54,12 @@ class Known(Protocol):
     def nobody(self, kind: str, name: str) -> str:
         """A sentence about a name that is not known."""
         ...
+
+
+def line_of(error: BaseException, file: str) -> str:
+    """Where in a file something went wrong, if it did there."""
+    lines = [one.lineno for one in extract_tb(error.__traceback__) if one.filename == file]
+    return f", line {lines[-1]}" if lines else ""
 
 
 _plugins: dict[tuple[str, str], Plugin] = {}

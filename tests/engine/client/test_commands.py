@@ -5,10 +5,12 @@ from typing import Any
 
 import httpx
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 from microcosmos import client
-from microcosmos.cli import app, overrides
+from microcosmos.cli import app, overrides, tables
+from microcosmos.version import VERSION
 
 SHA = "ab" * 32
 TOKEN = {"id": "70ce0000-0000-4000-8000-000000000001", "name": "laptop", "scope": "write"}
@@ -35,7 +37,7 @@ def told(fake, record, monkeypatch):
         "name": "demo",
         "spec": {"experiment": "quality-diversity", "world": {"width": 9}},
     }
-    share = {"slug": "s1", "url": "http://fake/s/s1", "title": None, "expires_at": None}
+    share = {"slug": "s1", "url": "http://fake/s/s1", "title": "[/x]", "expires_at": None}
     answers: dict[tuple[str, str], Any] = {
         ("GET", "experiments"): [{"experiment": "quality-diversity", "presets": [preset]}],
         ("GET", "runs"): {"items": [record], "next": None},
@@ -82,6 +84,23 @@ def test_a_sweep_is_submitted_with_its_grid(told):
     }
     assert made.stdout.strip() == SWEEP["id"]
     assert "A sweep of 6 runs" in made.stderr
+
+
+def test_what_was_deleted_when_the_answer_was_lost_is_deleted(fake, record):
+    path, gone = f"runs/{record['id']}", record | {"deleted_at": "2026-01-01T00:00:00Z"}
+    problem = {"content-type": "application/problem+json"}
+    there = httpx.Response(404, headers=problem, json={"detail": "It is in the bin."})
+    run = client.Run(
+        fake({("DELETE", path): there, ("GET", path): gone}).client.connection, record
+    )
+    assert run.delete().record == gone
+    never = fake({("DELETE", path): there, ("GET", path): record})
+    with pytest.raises(client.NotFound):
+        client.Run(never.client.connection, record).delete()
+
+
+def test_the_version_is_told():
+    assert CliRunner().invoke(app, ["--version"]).stdout.strip() == VERSION
 
 
 def test_extending(told, record):
@@ -142,13 +161,32 @@ def test_tokens(told):
     assert asked[-1][:2] == ("DELETE", f"tokens/{TOKEN['id']}")
 
 
+def test_what_people_write_is_no_markup(told, record, monkeypatch):
+    """Nor is an id broken where there is little room."""
+    monkeypatch.setitem(TOKEN, "name", "lap[/top]")
+    monkeypatch.setitem(record, "name", "swims [bold]far[/nowhere]")
+    for command, name in (("tokens list", TOKEN["name"]), ("runs", record["name"])):
+        assert name in told(*command.split())[0].stdout
+    monkeypatch.setattr(tables, "stdout", lambda: Console(width=40))
+    assert record["id"][:8] in told("runs")[0].stdout
+
+
 def test_an_id_may_be_a_sweeps(told, record):
     assert told("pause", "0f3c")[1][-1].path == f"runs/{record['id']}/pause"
     paused, asked = told("pause", "5eed")
     assert asked[-2][:2] == ("POST", f"sweeps/{SWEEP['id']}/pause")
     assert "Sweep 5eed0000: 6 queued" in paused.stderr
     missing, _ = told("pause", "ffff", code=1)
-    assert "No run at http://fake has an id that begins with ffff" in missing.stderr
+    said = "No run or sweep at http://fake has an id that begins with ffff."
+    assert missing.stderr.strip() == said
+
+
+def test_an_id_that_may_be_a_runs_or_a_sweeps_is_refused(told, record, monkeypatch):
+    """To cancel cannot be undone."""
+    monkeypatch.setitem(SWEEP, "id", record["id"][:4] + SWEEP["id"][4:])
+    refused, asked = told("cancel", "0f3c", code=1)
+    assert {one.method for one in asked} == {"GET"}
+    assert f"run {record['id']} and of sweep {SWEEP['id']}" in refused.stderr
 
 
 @pytest.mark.parametrize(

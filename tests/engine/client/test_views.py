@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from microcosmos.client import drawing, maps, notebook, terminal, views, words
+from microcosmos.client import (
+    NoAnswer,
+    drawing,
+    following,
+    maps,
+    notebook,
+    terminal,
+    views,
+    words,
+)
 from microcosmos.client.columns import Columns, array
 from microcosmos.client.following import Standing
 
@@ -64,6 +73,11 @@ def test_a_terminal_shows_how_it_stands(record):
     assert any(letter > "\u2800" for letter in text)
     narrow = shown(Standing(record, CURVES), 40)
     assert max(map(len, narrow.splitlines())) <= 40
+
+
+def test_how_far_and_how_long_stand_on_one_line_of_a_usual_terminal(record):
+    (line,) = (one for one in shown(Standing(record), 80).splitlines() if "50 %" in one)
+    assert "1 min 15 s left" in line
 
 
 def test_trouble_and_reasons_are_shown(record):
@@ -173,3 +187,31 @@ def test_without_pandas_it_is_said_what_to_install(monkeypatch):
 )
 def test_durations_have_two_units(seconds, words_):
     assert words.lasting(seconds) == words_
+
+
+def test_a_sweep_is_watched_through_an_outage(fake, monkeypatch):
+    """As a run is: laptops sleep, servers start again."""
+    monkeypatch.setattr(following, "POLL", 0.0)
+    sweep = {"id": "5eed", "name": None, "total": 2}
+    states = [
+        {"queued": 2},
+        {"running": 1, "failed": 1},
+        None,
+        None,
+        {"finished": 1, "failed": 1},
+    ]
+    left = list(states)
+
+    def read(path):
+        if (standing := left.pop(0)) is None:
+            raise NoAnswer("No server answers.")
+        return sweep | {"standing": standing}
+
+    connection = fake({}).client.connection
+    monkeypatch.setattr(connection, "read", read)
+    shown = [
+        (standing.record["status"], standing.trouble)
+        for standing in following.follow_sweep(connection, "5eed")
+    ]
+    lost = ("running", "No server answers.")
+    assert shown == [("queued", None), ("running", None), lost, lost, ("failed", None)]

@@ -29,7 +29,10 @@ def made():
             spec=spec.parse(document),
             version="0.1.0",
             devices=(DEVICE,),
-            features={n: np.array([e.get(n, 0.5) for e in elites]) for n in FEATURES},
+            features={
+                n: np.array([e.get(n, 0.5) for e in elites])
+                for n in [*FEATURES, *(axis["name"] for axis in axes)]
+            },
             cells=np.array([elite["cell"] for elite in elites]),
             fitness=np.array([elite["fitness"] for elite in elites], float),
             generation=np.ones(len(elites), int),

@@ -1,5 +1,7 @@
 """Curves show medians and quartiles over seeds, and tell specs apart by what differs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -54,7 +56,9 @@ def test_specs_are_told_apart_by_the_fields_in_which_they_differ(runs):
     thick = lines(figure.axes[0])[1]
     np.testing.assert_allclose(thick.get_xdata(), [1, 2])  # As long as both runs went on.
     np.testing.assert_allclose(thick.get_ydata(), [2, 3])
-    told = caption.of_curves(grouped(runs))
+    told = caption.of_curves(grouped(runs), ["best", "hit_rate", "qd_score"])
+    assert told.startswith("Best fitness, hit rate and QD score: median over seeds (thick)")
+    assert "; medians and bands as far as all seeds went. " in told
     assert "world viscosity 0.5: seeds 7, 8" in told
 
 
@@ -66,6 +70,11 @@ def test_a_run_that_is_given_twice_is_refused(runs):
 def test_a_curve_that_is_not_there_is_refused_with_those_that_are(runs):
     with pytest.raises(ValueError, match=r"best, coverage, .*got 'speed'"):
         curves.curves(grouped(runs), shown=["speed"])
+    with pytest.raises(ValueError, match="one or more of best, coverage"):
+        curves.curves(grouped(runs), shown=[])
+    extra = replace(runs[0], curves=runs[0].curves | {"speed": runs[0].curves["best"]})
+    with pytest.raises(ValueError, match="got 'speed'"):  # Of one run alone.
+        curves.curves(grouped([extra, runs[1]]), shown=["speed"])
 
 
 def test_coverage_is_drawn_in_per_cent(runs):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from microcosmos.figures import maps, style
-from microcosmos.figures.axes import chosen
+from microcosmos.figures import caption, maps, style
+from microcosmos.figures.axes import chosen, fitness_label
 from microcosmos.figures.tessellation import borders, cells
 
 THREE = (
@@ -95,3 +95,30 @@ def test_one_axis_alone_is_drawn_as_bars_as_high_as_the_fittest(made):
     elites = [{"cell": 0, "fitness": 1.0}, {"cell": 1, "fitness": 3.0}]  # Of one bin along x.
     panel = maps.archive(made(elites), axes=["bending_effort"]).axes[0]
     assert [bar.get_height() for bar in panel.patches] == [3.0]
+
+
+def test_measures_of_ones_own_have_the_words_they_were_declared_with(made):
+    """Although nobody has their module here."""
+    own = {"source": "0" * 64, "title": "Sway", "unit": "cells"}
+    sway = {"name": "mine.sway", "low": 1e-3, "high": 1.0, "scale": "log10", "own": own}
+    far = own | {"title": "Straight way"}
+    found = made(
+        [{"cell": 0, "fitness": 1.0, "mine.sway": 0.1}, {"cell": 9, "fitness": 2.0}],
+        axes=[sway, {"name": "straightness", "bins": 4}],
+        task={"fitness": "mine.straight", "own": far},
+        body={"builder": "mine.cross", "own": own | {"title": "Cross"}},
+    )
+    figure = maps.archive(found, colour="mine.sway")
+    assert figure.axes[0].get_xlabel() == figure.axes[1].get_ylabel() == "Sway [cells]"
+    assert figure.axes[1].get_yscale() == "log"
+    assert fitness_label(found) == "Straight way [cells]"
+    told = caption.of_archive(found, None)
+    assert "over sway [cells] and straightness;" in told
+    assert "Fitness is “Straight way” (mine.straight) over 500 steps" in told
+    assert "the body “Cross” (mine.cross), controlled by" in told
+
+
+def test_a_caption_of_one_axis_names_no_ring(made):
+    found = made([{"cell": 0, "fitness": 1.0}])
+    assert "ring marks" in caption.of_archive(found, None)
+    assert "; the fittest has 1." in caption.of_archive(found, ["straightness"])

@@ -1,6 +1,7 @@
 """What modules of one's own declare, and what is wrong with those that are not loaded."""
 
 import importlib.util
+import os
 import sys
 from hashlib import sha256
 from types import SimpleNamespace
@@ -51,6 +52,28 @@ def test_a_file_that_is_loaded_again_takes_the_place_of_what_it_was(write):
         plugins.Missing, match=f"{first.source[:12]}, got version {third.source[:12]}"
     ):
         plugins.find(("fitness",), "mine.far", first.source)
+
+
+def test_what_runs_is_what_the_hash_is_of_though_the_clock_stood_still(write, monkeypatch):
+    """Python would take what it compiled of a file of the same size and second."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    for value in ("1", "2"):
+        file = write(ONE.replace("return motion", f"return {value}"))
+        os.utime(file, (1e9, 1e9))
+        (one,) = plugins.load(file)
+        assert one.source == sha256(file.read_bytes()).hexdigest()
+        assert plugins.find(("fitness",), "mine.far", one.source)(7, settings={}) == int(value)
+    assert [path.name for path in file.parent.iterdir()] == ["mine.py"]
+
+
+def test_a_file_that_broke_leaves_what_was_loaded_of_it(write):
+    (one,) = plugins.load(write(ONE))
+    before = sys.modules["microcosmos_own_mine"]
+    file = write(ONE + "1 / 0\n")
+    with pytest.raises(ValueError, match=r"mine\.py, line 6 fails with ZeroDivisionError"):
+        plugins.load(file)
+    assert [plugin.declaration for plugin in plugins.loaded()] == [one]
+    assert sys.modules["microcosmos_own_mine"] is before
 
 
 @pytest.mark.parametrize(
@@ -136,5 +159,7 @@ def test_an_installed_package_names_its_module_and_all_its_files_count(
 
 def test_errors_of_a_function_are_named_as_its_own(write):
     (one,) = plugins.load(write(ONE.replace("return motion", "return motion.missing")))
-    with pytest.raises(plugins.Broken, match=r"mine\.far .* failed with AttributeError"):
+    with pytest.raises(
+        plugins.Broken, match=r"mine\.far .*, line 5\) failed with AttributeError"
+    ):
         plugins.find(("fitness",), "mine.far", one.source)(7, settings={})

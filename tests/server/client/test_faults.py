@@ -1,5 +1,6 @@
 """What the client does where the network, or what is at the other end, fails."""
 
+import errno
 import hashlib
 import os
 import socket
@@ -9,6 +10,7 @@ from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from urllib.parse import urlsplit
 
+import httpx
 import pytest
 
 from microcosmos.client import (
@@ -280,6 +282,46 @@ def test_who_is_busy_is_asked_again_when_it_says(hasty):
     with other(busy, busy, empty) as (url, asked):
         assert list(Client(url).runs()) == []
     assert (hasty, asked) == ([2.0, 2.0], ["GET"] * 3)
+
+
+def test_patience_counts_how_long_a_silence_was(hasty, monkeypatch):
+    clock, asked = [0.0], []
+
+    def silent(request: httpx.Request) -> httpx.Response:
+        asked.append(request)
+        clock[0] += 20.0
+        raise httpx.ReadTimeout("nothing came")
+
+    monkeypatch.setattr(connection.time, "monotonic", lambda: clock[0])
+    client = Client("http://box", patience=30.0, transport=httpx.MockTransport(silent))
+    client.connection.answered = True
+    with pytest.raises(NoAnswer, match="did not answer in time"):
+        list(client.runs())
+    assert len(asked) == 2
+
+
+def test_a_file_comes_through_a_proxy_that_does_not_say_how_long_it_is(hasty, tmp_path):
+    name = hashlib.sha256(b"whole").hexdigest()
+
+    def chunked(request: httpx.Request) -> httpx.Response:
+        return httpx.Response(200, headers={"etag": f'"{name}"'}, content=iter([b"wh", b"ole"]))
+
+    client, told = Client("http://box", transport=httpx.MockTransport(chunked)), []
+    files.fetch(client.connection, "x", tmp_path / "x", lambda *so_far: told.append(so_far))
+    assert (tmp_path / "x").read_bytes() == b"whole"
+    assert told == [(0, 0), (5, 5)]
+
+
+def test_a_full_disk_is_told_with_the_file(hasty, tmp_path, monkeypatch):
+    def full(descriptor: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(files.os, "fsync", full)
+    name = hashlib.sha256(b"whole").hexdigest()
+    answer = httpx.Response(200, headers={"etag": f'"{name}"'}, content=iter([b"whole"]))
+    client = Client("http://box", transport=httpx.MockTransport(lambda _: answer))
+    with pytest.raises(OSError, match=rf"No space left on device: '.*\.x\.{name}\.part'"):
+        files.fetch(client.connection, "x", tmp_path / "x")
 
 
 def test_patience_ends_with_the_servers_own_words(hasty):

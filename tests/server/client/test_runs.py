@@ -26,6 +26,14 @@ def test_a_key_names_one_run(client, spec):
     assert client.submit(spec) != first
 
 
+def test_a_run_whose_name_is_refused_is_not_queued(client, spec):
+    with pytest.raises(Refused, match="at most 200"):
+        client.submit(spec, name="a" * 201)
+    assert list(client.runs()) == []
+    named = client.submit(spec, name=" one ", key="the same")
+    assert client.submit(spec, name="another", key="the same").name == named.name == "one"
+
+
 def test_an_unknown_preset_is_refused_with_those_there_are(client):
     with pytest.raises(ValueError, match=r"quality-diversity/demo.*got nonsense"):
         client.submit("nonsense")

@@ -466,6 +466,8 @@ export interface paths {
         /**
          * Create Run
          * @description Queue a run. The same key with the same spec is the same run, answered with 200.
+         *
+         *     `name` is what it is called, as `PATCH` could say later.
          */
         post: operations["create_run_api_v1_runs_post"];
         delete?: never;
@@ -3484,7 +3486,9 @@ export interface operations {
     };
     create_run_api_v1_runs_post: {
         parameters: {
-            query?: never;
+            query?: {
+                name?: string | null;
+            };
             header?: {
                 "Idempotency-Key"?: string | null;
             };
