@@ -5,6 +5,6 @@ one. `Fenced` says that it is not: the process should end without another word.
 """
 
 from .beginning import claim
-from .claim import Claim, Fenced
+from .fence import Claim, Fenced
 
 __all__ = ["Claim", "Fenced", "claim"]

@@ -12,7 +12,7 @@ from ..db import clock
 from ..lifecycle import announce, change, lost, release
 from ..models import GIVEN, QUEUED, RUNNING, Run, Worker
 from ..services import Services
-from .claim import Claim, stored, tell_rewind
+from .fence import Claim, stored, tell_rewind
 
 
 def claim(services: Services, run_id: UUID, worker: str) -> Claim | None:
