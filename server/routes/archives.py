@@ -68,12 +68,15 @@ def read_history(run: RunDep, session: SessionDep, features: str = "") -> Histor
 
 @router.get("/archive/centroids")
 def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> CentroidsRead:
-    """The cells of a CVT archive, once its first checkpoint is there."""
+    """The cells of a CVT archive; null until its first checkpoint is there."""
     _refuse_without(run)
     if of_elites.kind(run)[0] != "cvt":
         detail = "The cells of this archive are a grid's: its axes say where they are."
         raise Refused(404, "No centroids", detail)
-    found = export.centroids(services.artifacts.read(_checkpoint(session, run).path))
+    first = last_checkpoint(session, run.id)
+    if first is None:
+        return CentroidsRead(centroids=None)
+    found = export.centroids(services.artifacts.read(first.path))
     return CentroidsRead(centroids=found.tolist())
 
 

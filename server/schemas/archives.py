@@ -59,9 +59,12 @@ class HistoryRead(Wire):
 
 
 class CentroidsRead(Wire):
-    """Where the cells of a CVT archive are, from 0 to 1 along each axis on its own scale."""
+    """Where the cells of a CVT archive are, from 0 to 1 along each axis on its own scale.
 
-    centroids: list[list[float]]
+    Null before the first checkpoint.
+    """
+
+    centroids: list[list[float]] | None
 
 
 class ResultsRead(Wire):

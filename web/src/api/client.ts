@@ -119,9 +119,7 @@ export function readHistory(id: string, features: string[]) {
 
 /** Where the cells of a CVT archive are; null before its first checkpoint. */
 export async function readCentroids(id: string): Promise<number[][] | null> {
-  const asked = client.GET(`${ROOT}/runs/{run_id}/archive/centroids`, run(id));
-  if ((await asked).response.status === 404) return null;
-  return (await success(asked)).centroids;
+  return (await success(client.GET(`${ROOT}/runs/{run_id}/archive/centroids`, run(id)))).centroids;
 }
 
 export async function readResults(id: string): Promise<Results> {

@@ -593,7 +593,7 @@ export interface paths {
         };
         /**
          * Read Centroids
-         * @description The cells of a CVT archive, once its first checkpoint is there.
+         * @description The cells of a CVT archive; null until its first checkpoint is there.
          */
         get: operations["read_centroids_api_v1_runs__run_id__archive_centroids_get"];
         put?: never;
@@ -1745,10 +1745,12 @@ export interface components {
         /**
          * CentroidsRead
          * @description Where the cells of a CVT archive are, from 0 to 1 along each axis on its own scale.
+         *
+         *     Null before the first checkpoint.
          */
         CentroidsRead: {
             /** Centroids */
-            centroids: number[][];
+            centroids: number[][] | null;
         };
         /** Children */
         Children: {
