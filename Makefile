@@ -43,12 +43,13 @@ check: install web
 
 # What is about bits is compiled as the product is; the rest without optimising, see conftest.
 # The tests of the server fork, which a process with JAX in it must not: the last call has
-# them, and the product whole in groups, real processes and a browser, which mostly wait.
+# them, and the product whole, real processes and a browser, which mostly wait. Who gets which
+# tests is in tests/conftest.py.
 test: install web
 	$(STYLE)
-	$(SHARED) --dist loadfile -m "not optimised" tests/engine tests/examples
-	MICROCOSMOS_TEST_OPTIMISED=1 $(SHARED) --dist loadfile -m optimised tests/engine
-	$(BIN)/pytest -n 3 --dist loadgroup --ignore=tests/engine --ignore=tests/examples
+	$(SHARED) -m "not optimised" tests/engine tests/examples
+	MICROCOSMOS_TEST_OPTIMISED=1 $(SHARED) -m optimised tests/engine
+	$(BIN)/pytest -n 3 --ignore=tests/engine --ignore=tests/examples
 
 SHARED = $(BIN)/pytest -n auto --maxprocesses 4
 

@@ -3,8 +3,7 @@
 Starting a product and compiling its programs take longer than most tests. So tests share:
 `shared_address` has small runs of each kind, and computes what else is submitted there;
 at `idle.product` nobody computes. A test that needs a list of runs of its own, or ends the
-server, has an `address` of its own. Those that share are one group and the others another,
-which two processes may take (`--dist loadgroup`).
+server, has an `address` of its own, and is in alone/: two processes share the folders.
 """
 
 import os
@@ -36,8 +35,6 @@ SETTINGS = {
 }
 WINDOW = {"width": 1280, "height": 900}
 PATIENCE_S = 120
-ALONE = 3
-"""The turn of tests that have a product of their own."""
 
 
 class Shared(NamedTuple):
@@ -59,20 +56,15 @@ class Idle(NamedTuple):
     services: Services
 
 
-@pytest.hookimpl(tryfirst=True)  # Before groups are read.
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """What needs no worker first: the runs that all share are computed meanwhile."""
-    for item in items:
-        if item.path.parent == HERE:
-            group = "products of their own" if turn(item) == ALONE else "shared products"
-            item.add_marker(pytest.mark.xdist_group(group))
     items.sort(key=turn)
 
 
 def turn(item: pytest.Item) -> int:
-    if item.path.parent != HERE:
+    if HERE not in item.path.parents:
         return 0
-    return 2 if needs(item, "shared") else 1 if needs(item, "idle") else ALONE
+    return 2 if needs(item, "shared") else 1 if needs(item, "idle") else 3
 
 
 def needs(item: pytest.Item, fixture: str) -> bool:

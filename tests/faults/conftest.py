@@ -30,16 +30,6 @@ SPEC = {
 }
 """The smallest run that is still a run."""
 
-HERE = Path(__file__).parent
-
-
-@pytest.hookimpl(tryfirst=True)  # Before groups are read.
-def pytest_collection_modifyitems(items):
-    """Most disturb the same installation, so that one process has them all."""
-    for item in items:
-        if item.path.parent == HERE:
-            item.add_marker(pytest.mark.xdist_group("faults"))
-
 
 @pytest.fixture(scope="session")
 def installation(tmp_path_factory):

@@ -22,13 +22,15 @@ SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_AR
 """What an installation of its own has of its own, unless it is told otherwise."""
 
 
-def wait_until(condition: Callable[[], Any], seconds: float, what: str) -> Any:
-    """What the condition gives as soon as it gives anything."""
+def wait_until(
+    condition: Callable[[], Any], seconds: float, what: str, every: float = 0.1
+) -> Any:
+    """What the condition gives as soon as it gives anything, asked `every` so many seconds."""
     deadline = time.monotonic() + seconds
     while not (found := condition()):
         if time.monotonic() > deadline:
             raise TimeoutError(f"waited {seconds:g} s in vain until {what}")
-        time.sleep(0.02)
+        time.sleep(every)
     return found
 
 
@@ -137,7 +139,8 @@ class Installation:
             there = found["status"] == "running" and found["generation"] >= generation
             return found["attempt"] if there and found["attempt"] > after else 0
 
-        return wait_until(there, seconds, f"run {run} reaches generation {generation}")
+        what = f"run {run} reaches generation {generation}"
+        return wait_until(there, seconds, what, every=0.03)  # Generations are that short.
 
     def archive(self, run: str) -> bytes:
         """The file that people download."""
