@@ -29,11 +29,13 @@ def until_now(run: Run) -> ColumnElement[bool]:
     return and_(Elite.run_id == run.id, Elite.generation <= run.generation)
 
 
-def at(run: Run, generation: int, names: Sequence[str] = ()) -> Select[*tuple[Any, ...]]:
-    """The last of each cell that is not after a generation."""
+def at(
+    run: Run, generation: int, names: Sequence[str] = (), after: int = -1
+) -> Select[*tuple[Any, ...]]:
+    """The last of each cell that is not after a generation, of those that came `after` one."""
     last = (
         select(Elite.cell, func.max(Elite.generation).label("generation"))
-        .where(Elite.run_id == run.id, Elite.generation <= generation)
+        .where(Elite.run_id == run.id, Elite.generation.between(after + 1, generation))
         .group_by(Elite.cell)
         .subquery()
     )

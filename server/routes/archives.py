@@ -34,16 +34,19 @@ def read_archive(
     session: SessionDep,
     generation: Annotated[int | None, Query(ge=0)] = None,
     features: str = "",
+    after: Annotated[int | None, Query(ge=0)] = None,
 ) -> ArchiveRead:
     """The elite of each cell, now or as of a generation.
 
     With `features`, names with commas between them, what was recorded of the elites under
-    those names too: an archive can be looked at along any of them.
+    those names too: an archive can be looked at along any of them. With `after`, a generation,
+    only the elites that entered later, for who knows the others.
     """
     _refuse_without(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
     recorded = of_elites.recorded(session, run)
     names = _asked(features, recorded)
+    known = -1 if after is None else min(after, run.generation)
     kind, cells = of_elites.kind(run)
     return ArchiveRead(
         generation=as_of,
@@ -51,7 +54,7 @@ def read_archive(
         cells=cells,
         axes=of_elites.axes(run),
         recorded=recorded,
-        **_columns(session.execute(elites.at(run, as_of, names)).all(), names),
+        **_columns(session.execute(elites.at(run, as_of, names, known)).all(), names),
     )
 
 

@@ -79,7 +79,7 @@ def chromium() -> str:
     return found
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser(chromium: str) -> Iterator[Browser]:
     with launched(chromium) as browser:
         yield browser
@@ -112,7 +112,7 @@ def address(product: Installation) -> str:
     return product.url
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def shared(
     chromium: str, common: dict[str, str], tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Shared]:
@@ -124,7 +124,7 @@ def shared(
     place.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def idle(
     request: pytest.FixtureRequest,
     chromium: str,

@@ -1,14 +1,16 @@
 """Pictures of every page into docs/pictures/page: `make pictures`, or `make pictures DATA=…`.
 
-Each page in two themes and at three widths, over a data folder with finished runs, or a fresh
-one, in which the demonstration and the smallest preset of each other experiment are carried
-out first. Fails where something is cut off, too wide or drawn over something else.
+Each page in two themes and at three widths, over a data folder with finished runs. In a new one
+the demonstration, the smallest preset of each other experiment, a sweep and the run of the
+README are carried out first. Fails where something is cut off, too wide or drawn over something
+else.
 """
 
 import io
 import os
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
@@ -18,23 +20,34 @@ from drive import ROOT, Installation
 from looks import THEMES, WIDTHS, faults
 from PIL import Image
 from places import GUIDED, NOWHERE, hold_still, places, visit
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, Page, TimeoutError
 
 FOLDER = ROOT / "docs" / "pictures" / "page"
 COLOURS = 256
 AREA = 1280 * 1300
-"""Pixels of a picture from the top of its page: what one sees before scrolling far."""
+"""Pixels of a picture: what one sees before scrolling far."""
 HOUR = 3600
+SWEEP = {
+    "name": "Thin and thick",
+    "spec": {
+        "experiment": "quality-diversity",
+        "world": {"width": 32, "height": 32},
+        "body": {"nodes": 16},
+        "search": {"generations": 60, "batch": 16},
+    },
+    "seeds": 3,
+    "grid": {"world.viscosity": [0.05, 0.2, 0.8]},
+}
 
 
 def main() -> None:
-    given = os.environ.get("DATA")
-    with tempfile.TemporaryDirectory() as folder:
-        settings = {"WORKERS": "0"} if given else {}
-        place = Installation(Path(given or folder).resolve(), settings)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(os.environ.get("DATA") or temporary).resolve()
+        new = not folder.exists() or not any(folder.iterdir())
+        place = Installation(folder)
         place.start()
         try:
-            if not given:
+            if new:
                 carry_out(place)
             with launched() as browser:
                 wrong = take_all(browser, place.url)
@@ -47,11 +60,16 @@ def main() -> None:
 
 
 def carry_out(place: Installation) -> None:
-    """The demonstration that a new folder begins with, and the others' first presets."""
+    """After the demonstration of a new folder: first presets, a sweep, and the README's run."""
     experiments = place.http.get("/api/v1/experiments").raise_for_status().json()
-    for one in experiments:
-        if one["experiment"] != "quality-diversity" and one["presets"]:
-            place.submit(one["presets"][0]["spec"])
+    presets = {one["experiment"]: one["presets"] for one in experiments}
+    for experiment, known in presets.items():
+        if experiment != "quality-diversity" and known:
+            place.submit(known[0]["spec"])
+    place.http.post("/api/v1/sweeps", json=SWEEP).raise_for_status()
+    standard = next(one for one in presets["quality-diversity"] if one["name"] == "standard")
+    search = standard["spec"]["search"] | {"generations": 120}
+    place.submit(standard["spec"] | {"search": search})
     for run in place.http.get("/api/v1/runs").raise_for_status().json()["items"]:
         place.wait(run["id"], "finished", seconds=HOUR)
         print(f"{run['experiment']} is finished", flush=True)
@@ -77,17 +95,36 @@ def take_all(browser: Browser, address: str) -> list[str]:
                 hold_still(page)
                 page.wait_for_timeout(1500)  # What moves in by itself has done so.
                 wrong += [f"{name}: {fault}" for fault in faults(page)]
-                save(page.screenshot(full_page=True), name)
+                save(photographed(page, width, height), name)
                 print(name, flush=True)
             context.close()
     return wrong
 
 
+def photographed(page: Page, width: int, height: int) -> bytes:
+    """The page in a window so high that one sees all of it, or far down."""
+    whole = page.evaluate("document.documentElement.scrollHeight")
+    high = max(height, min(whole, AREA // width))
+    page.set_viewport_size({"width": width, "height": high})
+    page.wait_for_timeout(300)  # What is as large as the window allows has been drawn again.
+    await_motions(page)
+    png = page.screenshot()
+    page.set_viewport_size({"width": width, "height": height})
+    return png
+
+
+def await_motions(page: Page) -> None:
+    """Until a gallery asks for no more; what is being rendered it asks for every second."""
+    if page.locator("[data-gallery]").count():
+        with suppress(TimeoutError):
+            while True:
+                page.wait_for_event("request", lambda one: "/motion" in one.url, timeout=3000)
+
+
 def save(png: bytes, name: str) -> None:
-    """Keep a picture in few colours, which these pages have, and without what is far below."""
+    """Keep a picture in few colours, which these pages have."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
-    top = picture.crop((0, 0, picture.width, min(picture.height, AREA // picture.width)))
-    few = top.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    few = picture.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     few.save(FOLDER / f"{name}.png", optimize=True)
 
 

@@ -37,6 +37,8 @@ def places(address: str, among: Collection[str] | None = None) -> list[Place]:
             Place("workers", "/workers"),
             Place("shares", "/shares"),
             Place("commons", "/commons"),
+            Place("settings", "/settings"),
+            *swept(http),
             *compared(known),
             *(Place(f"run-{name}", f"/runs/{run['id']}") for name, run in runs.items()),
             *searched(http, runs.get("quality-diversity")),
@@ -51,6 +53,12 @@ def finished(http: httpx.Client) -> list[dict[str, Any]]:
     """Finished runs, newest first."""
     page = http.get("/runs", params={"limit": 100}).raise_for_status().json()
     return [run for run in page["items"] if run["status"] == "finished"]
+
+
+def swept(http: httpx.Client) -> Iterator[Place]:
+    """The newest sweep, with every run."""
+    for sweep in http.get("/sweeps").raise_for_status().json()["items"][:1]:
+        yield Place("sweep", f"/sweeps/{sweep['id']}?each=1")
 
 
 def compared(known: list[dict[str, Any]]) -> Iterator[Place]:

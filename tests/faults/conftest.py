@@ -32,9 +32,14 @@ SPEC = {
 
 
 @pytest.fixture(scope="session")
-def installation(tmp_path_factory):
+def compiled(tmp_path_factory):
+    """The folder where all installations keep their compiled programs."""
+    return tmp_path_factory.mktemp("compiled")
+
+
+def installations(tmp_path_factory, compiled):
     """Makes installations, each in a data folder of its own; they are gone afterwards."""
-    made, compiled = [], tmp_path_factory.mktemp("compiled")
+    made = []
 
     def make(**environment):
         cache = {"JAX_COMPILATION_CACHE_DIR": str(compiled)}
@@ -47,10 +52,15 @@ def installation(tmp_path_factory):
         place.close()
 
 
-@pytest.fixture(scope="session")
-def place(installation):
+installation = pytest.fixture(installations)
+installation_of_file = pytest.fixture(installations, scope="module")
+installation_of_folder = pytest.fixture(installations, scope="package")
+
+
+@pytest.fixture(scope="package")
+def place(installation_of_folder):
     """A running installation with two workers, which all tests may disturb."""
-    place = installation(WORKERS="2")
+    place = installation_of_folder(WORKERS="2")
     place.start()
     return place
 
@@ -60,7 +70,7 @@ def spec():
     return SPEC
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def undisturbed(place, spec):
     """What a run comes to that nothing disturbs: its archive, and what the API tells of it."""
     run = place.submit(spec)

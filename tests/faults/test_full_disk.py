@@ -33,7 +33,7 @@ def fill(folder):
 
 
 def test_a_full_disk_leaves_the_last_checkpoint_and_the_run_says_so(
-    installation, spec, small_disk, undisturbed
+    small_disk, installation, spec, undisturbed
 ):
     place = installation(MICROCOSMOS_ARTIFACTS_URL=str(small_disk))
     place.start()

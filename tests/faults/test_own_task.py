@@ -30,9 +30,9 @@ SMALL = {
 
 
 @pytest.fixture(scope="module")
-def own_place(installation):
+def own_place(installation_of_file):
     """An installation whose worker has nothing of anybody's own."""
-    place = installation(WORKERS="1")
+    place = installation_of_file(WORKERS="1")
     place.start()
     wait_until(lambda: place.http.get("/api/v1/workers").json(), 60, "its worker lives")
     return place

@@ -19,7 +19,7 @@ def elsewhere():
 
 
 def test_the_same_bytes_come_from_postgresql_and_a_redis_server_whatever_happens(
-    installation, spec, undisturbed, elsewhere
+    elsewhere, installation, spec, undisturbed
 ):
     """`undisturbed` is of SQLite and the embedded Redis."""
     place = installation(**elsewhere)
@@ -32,4 +32,3 @@ def test_the_same_bytes_come_from_postgresql_and_a_redis_server_whatever_happens
     assert place.wait(run, "finished")["attempt"] == 4
     assert place.archive(run) == undisturbed.archive
     assert place.told(run) == undisturbed.told
-    place.close()

@@ -158,6 +158,25 @@ def test_an_archive_has_the_features_of_its_elites_that_are_asked_for(
     assert then["features"] == {"energy": [0.1 + 0.2]}
 
 
+def test_an_archive_tells_only_what_entered_after_a_generation(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 0.5}, features=SLIM), 1.0)
+    attempt.record(report(2, {5: 2.0, 7: 0.1}, features=SLIM), 1.0)
+    attempt.record(report(3, {5: 3.0}, features=SLIM), 1.0)
+
+    def read(**asked):
+        found = api.get(f"runs/{run_id}/archive", params=asked | {"features": "energy"}).json()
+        assert len(found["features"]["energy"]) == len(found["cell"])
+        return dict(zip(found["cell"], found["elite_generation"], strict=True))
+
+    assert read() == {3: 1, 5: 3, 7: 2}
+    assert read(after=1) == {5: 3, 7: 2}
+    assert read(after=1, generation=2) == {5: 2, 7: 2}
+    assert read(after=3) == {}
+    assert read(after=2**62) == {}
+    assert api.get(f"runs/{run_id}/archive", params={"after": -1}).status_code == 422
+
+
 def test_features_that_were_not_recorded_are_refused_with_those_that_were(
     api, services, run_id, report
 ):

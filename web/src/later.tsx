@@ -31,8 +31,7 @@ export function later<P extends object>(
 function Gone() {
   return (
     <p class="banner wrong" role="alert">
-      This part of the page could not be loaded.{" "}
-      <button onClick={() => location.reload()}>Reload</button>
+      This part of the page could not be loaded. <button onClick={() => location.reload()}>Reload</button>
     </p>
   );
 }

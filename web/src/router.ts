@@ -22,8 +22,7 @@ export interface Place {
 }
 
 const PAGES = ["new", "compare", "workers", "shares", "commons", "settings"] as const;
-const isPage = (name: string): name is (typeof PAGES)[number] =>
-  (PAGES as readonly string[]).includes(name);
+const isPage = (name: string): name is (typeof PAGES)[number] => (PAGES as readonly string[]).includes(name);
 
 export function routeOf(path: string): Route {
   const [first, second, ...rest] = path.split("/").filter(Boolean);

@@ -33,10 +33,7 @@ function elite(fitness: number, ...descriptors: number[]): Elite {
 
 const NONE = new Map();
 const over = (archive: Archive, elites: Elites, names: [string, string], features = NONE) =>
-  project(elites, [
-    axisOf(names[0], archive, elites, features),
-    axisOf(names[1], archive, elites, features),
-  ]);
+  project(elites, [axisOf(names[0], archive, elites, features), axisOf(names[1], archive, elites, features)]);
 
 describe("the axes of a map", () => {
   it("are the archive's first two, and fitness where there is but one", () => {
@@ -54,16 +51,35 @@ describe("the axes of a map", () => {
   });
 
   it("have round ends around values, whole bins for whole numbers, decades on a log scale", () => {
-    const elites = new Map([[0, elite(0.31, 0)], [1, elite(1.18, 0)]]);
+    const elites = new Map([
+      [0, elite(0.31, 0)],
+      [1, elite(1.18, 0)],
+    ]);
     const fitness = axisOf("fitness", archiveOf(1), elites, NONE);
     expect(fitness.low).toBeLessThanOrEqual(0.31);
     expect(fitness.high).toBeGreaterThanOrEqual(1.18);
     expect(fitness.high - fitness.low).toBeLessThan(1.3);
-    const nodes = new Map([["nodes", new Map([["c0.31", 3], ["c1.18", 9]])]]);
+    const nodes = new Map([
+      [
+        "nodes",
+        new Map([
+          ["c0.31", 3],
+          ["c1.18", 9],
+        ]),
+      ],
+    ]);
     expect(axisOf("nodes", archiveOf(1), elites, nodes)).toMatchObject({ low: 3, high: 10, bins: 7 });
     const log = archiveOf(1);
     log.recorded[3]!.scale = "log10";
-    const turning = new Map([["turning", new Map([["c0.31", 0.02], ["c1.18", 30]])]]);
+    const turning = new Map([
+      [
+        "turning",
+        new Map([
+          ["c0.31", 0.02],
+          ["c1.18", 30],
+        ]),
+      ],
+    ]);
     const axis = axisOf("turning", log, elites, turning);
     log.recorded[3]!.scale = "linear";
     expect([axis.low, axis.high]).toEqual([0.01, 100]);
@@ -82,7 +98,12 @@ describe("an archive on a map", () => {
 
   it("of three axes shows the best of those that fall together, and counts the others", () => {
     // Cells of a 2 × 4 × 3 grid: 12 k + 3 j + i.
-    const elites = new Map([[3, elite(1, 0, 2, 0)], [4, elite(5, 0, 2, 0.5)], [5, elite(2, 0, 2, 1)], [20, elite(3, 1, 9, 1)]]);
+    const elites = new Map([
+      [3, elite(1, 0, 2, 0)],
+      [4, elite(5, 0, 2, 0.5)],
+      [5, elite(2, 0, 2, 1)],
+      [20, elite(3, 1, 9, 1)],
+    ]);
     const { tiles, bins } = over(archiveOf(3), elites, ["a", "b"]);
     expect([...tiles.keys()]).toEqual([1, 6]);
     expect(tiles.get(1)).toMatchObject({ cell: 4, behind: 2 });
@@ -99,7 +120,14 @@ describe("an archive on a map", () => {
   });
 
   it("of Voronoi cells shows each cell around its centroid", () => {
-    const cells = voronoiLayout([[0.2, 0.2], [0.8, 0.2], [0.5, 0.9]], Delaunay);
+    const cells = voronoiLayout(
+      [
+        [0.2, 0.2],
+        [0.8, 0.2],
+        [0.5, 0.9],
+      ],
+      Delaunay,
+    );
     const elites = new Map([[2, elite(1, 0.99, 1)]]);
     const axis = (name: string) => axisOf(name, archiveOf(2, "cvt"), elites, NONE);
     const { tiles, layout } = project(elites, [axis("a"), axis("b")], [], cells);
@@ -110,7 +138,11 @@ describe("an archive on a map", () => {
   });
 
   it("shows what passes the slices of the axes that it folds", () => {
-    const elites = new Map([[3, elite(1, 0, 2, 0)], [4, elite(5, 0, 2, 0.5)], [5, elite(2, 0, 2, 1)]]);
+    const elites = new Map([
+      [3, elite(1, 0, 2, 0)],
+      [4, elite(5, 0, 2, 0.5)],
+      [5, elite(2, 0, 2, 1)],
+    ]);
     const axis = (name: string) => axisOf(name, archiveOf(3), elites, NONE);
     const through = (from: number, to: number) =>
       project(elites, [axis("a"), axis("b")], [{ axis: axis("c"), from, to }]).tiles.get(1);
@@ -120,7 +152,10 @@ describe("an archive on a map", () => {
   });
 
   it("along a feature leaves out whom it is not known of", () => {
-    const elites = new Map([[0, elite(1, 0, 1)], [1, elite(2, 0, 1)]]);
+    const elites = new Map([
+      [0, elite(1, 0, 1)],
+      [1, elite(2, 0, 1)],
+    ]);
     const features = new Map([["turning", new Map([["c2", 0.5]])]]);
     const { tiles } = over(archiveOf(2), elites, ["turning", "fitness"], features);
     expect([...tiles.values()].map(({ cell }) => cell)).toEqual([1]);
@@ -168,7 +203,10 @@ describe("why a run ended", () => {
   const run = { generations: 50, spec: { search: { stop: { evaluations: 5000 } } } } as unknown as Run;
   it.each([
     [null, "It ended with the last of its 50 generations."],
-    ["evaluations after generation 12", "It ended after generation 12: its budget of 5,000 evaluations was used up."],
+    [
+      "evaluations after generation 12",
+      "It ended after generation 12: its budget of 5,000 evaluations was used up.",
+    ],
     ["device_hours after generation 3", "It ended early: device hours after generation 3."],
   ])("%j is told as %j", (ended, sentence) => {
     expect(endingOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
@@ -185,7 +223,11 @@ describe("a strip of genes", () => {
 });
 
 describe("the colours of a map", () => {
-  const elites = new Map([[0, elite(1, 0.1, 1)], [1, elite(10, 0.9, 1)], [2, elite(100, 0.5, 1)]]);
+  const elites = new Map([
+    [0, elite(1, 0.1, 1)],
+    [1, elite(10, 0.9, 1)],
+    [2, elite(100, 0.5, 1)],
+  ]);
   const { tiles } = over(archiveOf(2), elites, ["a", "b"]);
 
   it("go from the least to the greatest value, on a log scale by decades", () => {
@@ -209,7 +251,15 @@ describe("the colours of a map", () => {
   });
 
   it("tell an unknown value from an empty cell and from any known one", () => {
-    const features = new Map([["turning", new Map([["c1", 0.5], ["c10", 0.7]])]]);
+    const features = new Map([
+      [
+        "turning",
+        new Map([
+          ["c1", 0.5],
+          ["c10", 0.7],
+        ]),
+      ],
+    ]);
     const measure = colourMeasure("turning", archiveOf(2), features, 5);
     const colours = binColours(tiles, 4, colouringOf(measure, "viridis", tiles), 7, 8);
     expect(colours[2]).toBe(8);

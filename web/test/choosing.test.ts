@@ -32,8 +32,17 @@ const elite = { fitness: 1, descriptors: [], generation: 1, creature: "c", told:
 const tile = (cell: number, behind = 0) => ({ cell, elite, behind });
 const projection: Projection = {
   layout,
-  tiles: new Map([[0, tile(100)], [5, tile(101, 1)], [15, tile(103)]]),
-  bins: new Map([[100, 0], [101, 5], [102, 5], [103, 15]]),
+  tiles: new Map([
+    [0, tile(100)],
+    [5, tile(101, 1)],
+    [15, tile(103)],
+  ]),
+  bins: new Map([
+    [100, 0],
+    [101, 5],
+    [102, 5],
+    [103, 15],
+  ]),
 };
 
 describe("a box on the map", () => {
@@ -77,7 +86,13 @@ describe("a key on the map", () => {
 });
 
 describe("a token", () => {
-  const caller = (scope: Caller["scope"]): Caller => ({ name: "ada", scope, token: "t", expires_at: null, needed: true });
+  const caller = (scope: Caller["scope"]): Caller => ({
+    name: "ada",
+    scope,
+    token: "t",
+    expires_at: null,
+    needed: true,
+  });
 
   it.each<[Caller["scope"], owner: string | null | undefined, RegExp | null]>([
     ["read", undefined, /may only look/],

@@ -26,7 +26,11 @@ describe("the difference between specs", () => {
   });
 
   it("has fields that only one of them has", () => {
-    const other = { ...one, search: { batch: 16, stop: { evaluations: 5 } }, axes: [...one.axes, { name: "b" }] };
+    const other = {
+      ...one,
+      search: { batch: 16, stop: { evaluations: 5 } },
+      axes: [...one.axes, { name: "b" }],
+    };
     expect(differences([one, other])).toEqual([
       { path: "search.stop", values: [null, undefined] },
       { path: "search.stop.evaluations", values: [undefined, 5] },
@@ -35,7 +39,11 @@ describe("the difference between specs", () => {
   });
 
   it("takes a list of plain values as one value, and as many specs as there are", () => {
-    const values = [[1, 2], [1, 2], [2, 1]];
+    const values = [
+      [1, 2],
+      [1, 2],
+      [2, 1],
+    ];
     const specs = values.map((tiles) => ({ ...one, tiles }));
     expect(differences(specs)).toEqual([{ path: "tiles", values }]);
   });
@@ -98,12 +106,24 @@ describe("what a run is called", () => {
 
   it("is its preset's name whatever its seed, and the spec is read once", () => {
     const reads = vi.fn();
-    const spec = { experiment: "gaits", get swimmers() { reads(); return ["a"]; }, seed: 7 };
-    const presets = [{ name: "one", spec: { experiment: "gaits", swimmers: ["b"], seed: 0 } },
-      { name: "two", spec: { experiment: "gaits", swimmers: ["a"], seed: 0 } }];
+    const spec = {
+      experiment: "gaits",
+      get swimmers() {
+        reads();
+        return ["a"];
+      },
+      seed: 7,
+    };
+    const presets = [
+      { name: "one", spec: { experiment: "gaits", swimmers: ["b"], seed: 0 } },
+      { name: "two", spec: { experiment: "gaits", swimmers: ["a"], seed: 0 } },
+    ];
     const experiments = [{ experiment: "gaits", presets }] as unknown as Experiment[];
     const gaits = { ...run, experiment: "gaits", spec } as unknown as Run;
-    expect([titleOf(gaits, experiments), titleOf({ ...gaits }, experiments)]).toEqual(["Gaits, two", "Gaits, two"]);
+    expect([titleOf(gaits, experiments), titleOf({ ...gaits }, experiments)]).toEqual([
+      "Gaits, two",
+      "Gaits, two",
+    ]);
     expect(reads).toHaveBeenCalledTimes(1);
   });
 });

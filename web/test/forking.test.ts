@@ -37,7 +37,7 @@ const CREATURE = {
 
 vi.mock("../src/api/client", () => ({
   readRun: async (id: string) => ({ id, spec: RUNS[id] }),
-  readArchive: async (_: string, __: string[], generation?: number) =>
+  readArchive: async (_: string, __: string[], { generation }: { generation?: number }) =>
     generation === 0
       ? { cell: [], creature: [], generation }
       : { cell: [2, 3, 5, 9], creature: ["x", "y", "z", "x"], generation: Math.min(generation ?? 8, 8) },
@@ -58,11 +58,26 @@ function patched(document: Json | undefined, patch: Json): Json {
 
 describe("a merge patch", () => {
   it.each<[string, from: Spec, to: Spec, patch: Spec]>([
-    ["says nothing of what is the same", { a: 1, b: { c: [1, { d: null }] } }, { b: { c: [1, { d: null }] }, a: 1 }, {}],
-    ["names only what differs within parts", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1, c: 4 }, d: 3 }, { a: { c: 4 } }],
+    [
+      "says nothing of what is the same",
+      { a: 1, b: { c: [1, { d: null }] } },
+      { b: { c: [1, { d: null }] }, a: 1 },
+      {},
+    ],
+    [
+      "names only what differs within parts",
+      { a: { b: 1, c: 2 }, d: 3 },
+      { a: { b: 1, c: 4 }, d: 3 },
+      { a: { c: 4 } },
+    ],
     ["takes away by null", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1 } }, { a: { c: null }, d: null }],
     ["replaces lists whole", { a: [1, { b: 2 }] }, { a: [1, { b: 2 }, 3] }, { a: [1, { b: 2 }, 3] }],
-    ["puts a part in the place of a value", { a: null, b: [1] }, { a: { c: 1 }, b: { d: 2 } }, { a: { c: 1 }, b: { d: 2 } }],
+    [
+      "puts a part in the place of a value",
+      { a: null, b: [1] },
+      { a: { c: 1 }, b: { d: 2 } },
+      { a: { c: 1 }, b: { d: 2 } },
+    ],
     ["empties a part", { a: { b: 1 } }, { a: {} }, { a: { b: null } }],
     ["puts an empty part where there was none", { a: 1 }, { a: {} }, { a: {} }],
   ])("%s", (_, from, to, patch) => {
@@ -121,22 +136,49 @@ describe("a fork", () => {
 
   it.each([
     [`fork=${RUN}`, [["fork", RUN]], ALL],
-    [`fork=${RUN}&creature=${SHA}`, [["fork", RUN], ["creature", SHA]], ONE],
-    [`fork=${RUN}&cells=2-3,9`, [["fork", RUN], ["cells", "2-3,9"]], { ...ALL, cells: [9, 2, 3] }],
-    [`fork=${RUN}&at=0`, [["fork", RUN], ["at", "0"]], { ...ALL, at: 0 }],
+    [
+      `fork=${RUN}&creature=${SHA}`,
+      [
+        ["fork", RUN],
+        ["creature", SHA],
+      ],
+      ONE,
+    ],
+    [
+      `fork=${RUN}&cells=2-3,9`,
+      [
+        ["fork", RUN],
+        ["cells", "2-3,9"],
+      ],
+      { ...ALL, cells: [9, 2, 3] },
+    ],
+    [
+      `fork=${RUN}&at=0`,
+      [
+        ["fork", RUN],
+        ["at", "0"],
+      ],
+      { ...ALL, at: 0 },
+    ],
     [`begin=${SHA}`, [["begin", SHA]], { ...ONE, run: null }],
   ])("is named by the address %s", (text, address, fork) => {
     expect(addressed(new URLSearchParams(text))).toEqual(address);
     expect(addressOf({ ...base, fork })).toEqual(address);
   });
 
-  it.each(["from", "from.region.speed", "search.origin", "name", "generation"])("shows %s beside it", (field) => {
-    expect(isAboutOrigin(field)).toBe(true);
-  });
+  it.each(["from", "from.region.speed", "search.origin", "name", "generation"])(
+    "shows %s beside it",
+    (field) => {
+      expect(isAboutOrigin(field)).toBe(true);
+    },
+  );
 
-  it.each(["search.batch", "genome.max_nodes", "control", "search.generations"])("leaves %s in the form", (field) => {
-    expect(isAboutOrigin(field)).toBe(false);
-  });
+  it.each(["search.batch", "genome.max_nodes", "control", "search.generations"])(
+    "leaves %s in the form",
+    (field) => {
+      expect(isAboutOrigin(field)).toBe(false);
+    },
+  );
 });
 
 describe("what an address of a fork names", () => {
@@ -162,7 +204,13 @@ describe("what an address of a fork names", () => {
   });
 
   it("is the creature's own world where its run was no search", async () => {
-    const base = await load([["fork", "table"], ["creature", SHA]], EXPERIMENTS);
+    const base = await load(
+      [
+        ["fork", "table"],
+        ["creature", SHA],
+      ],
+      EXPERIMENTS,
+    );
     expect(base).toMatchObject({ kind: "creature", fork: { run: null, creature: SHA } });
     expect(base.spec).toMatchObject({ world: { width: 96 }, search: { origin: [SHA] } });
     await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("fills no archive");

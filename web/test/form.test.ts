@@ -84,11 +84,7 @@ const SCHEMA: Schema = {
     experiment: { const: "quality-diversity", type: "string" },
     world: { $ref: "#/$defs/World", default: {} },
     body: {
-      oneOf: [
-        { $ref: "#/$defs/Chain" },
-        { $ref: "#/$defs/Line" },
-        { $ref: "#/$defs/Known" },
-      ],
+      oneOf: [{ $ref: "#/$defs/Chain" }, { $ref: "#/$defs/Line" }, { $ref: "#/$defs/Known" }],
     },
     swimmers: { type: "array", items: { enum: ["worm", "ray"], type: "string" }, minItems: 1 },
     viscosities: {
@@ -109,8 +105,7 @@ const SCHEMA: Schema = {
 };
 
 const FORM = formOf(SCHEMA);
-const part = (section: Section, path: string) =>
-  section.fields.find((field) => field.path === path) as Field;
+const part = (section: Section, path: string) => section.fields.find((field) => field.path === path) as Field;
 const WORLD = part(FORM, "world") as Section;
 
 describe("a form", () => {
@@ -155,7 +150,13 @@ describe("a form", () => {
     expect(chain.fresh).toEqual({ builder: "chain", stretch: 1, nodes: 32 });
     expect(chain.help).toBe("A straight filament.");
     expect(chain.fields.map(({ path }) => path)).toEqual(["body.stretch", "body.nodes"]);
-    expect(union.parts.get("line")!.fresh).toEqual({ builder: "line", points: [[0, 0], [1, 1]] });
+    expect(union.parts.get("line")!.fresh).toEqual({
+      builder: "line",
+      points: [
+        [0, 0],
+        [1, 1],
+      ],
+    });
     expect(union.parts.get("ray")!.fresh).toEqual({ builder: "ray" });
     expect(partOf(union, { body: { builder: "worm" } })).toBe(union.parts.get("worm"));
     expect(partOf(union, { body: { builder: "unheard of" } })).toBeNull();
@@ -213,7 +214,11 @@ describe("a spec under a form", () => {
 
   const at = (...fields: string[]) => {
     const whole = { ...spec, world: { width: 32, steric: null }, body: { builder: "chain" } };
-    return messagesByPath(fields.map((field) => ({ field, message: field })), FORM, whole);
+    return messagesByPath(
+      fields.map((field) => ({ field, message: field })),
+      FORM,
+      whole,
+    );
   };
 
   it("is changed by path, and never in place", () => {
@@ -258,9 +263,7 @@ describe("a spec under a form", () => {
       axes: [],
     };
     expect(complaints(FORM, whole)).toEqual([]);
-    expect(complaints(FORM, withValue(whole, path, value)).map((one) => one.message)).toEqual([
-      message,
-    ]);
+    expect(complaints(FORM, withValue(whole, path, value)).map((one) => one.message)).toEqual([message]);
   });
 
   it.each([

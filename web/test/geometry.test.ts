@@ -1,12 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Axis } from "../src/api/types";
-import {
-  cellAt,
-  cellOf,
-  placeOf,
-  rectangle,
-  ticks,
-} from "../src/view/archive/geometry";
+import { cellAt, cellOf, placeOf, rectangle, ticks } from "../src/view/archive/geometry";
 import { type Direction, gridLayout, nextBin } from "../src/view/archive/layout";
 
 const SHAPE = [4, 3] as const;

@@ -34,7 +34,13 @@ describe("looking at runs", () => {
   beforeEach(() => void vi.useFakeTimers());
   afterEach(() => void vi.useRealTimers());
   const generations = {
-    generation: [1], evaluations: [1], seconds: [1], qd_score: [1], coverage: [1], best: [1], summary: {},
+    generation: [1],
+    evaluations: [1],
+    seconds: [1],
+    qd_score: [1],
+    coverage: [1],
+    best: [1],
+    summary: {},
   } as unknown as Generations;
   const watched = () => [...current().watching.keys()];
 

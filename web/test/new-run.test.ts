@@ -87,7 +87,11 @@ describe("a creature", () => {
   it("is refined where that was chosen", () => {
     const file = creature({ encoding: "cppn", control: {} }) as unknown as Json;
     const base = ofFound(readDocument(file, true), "", EXPERIMENTS);
-    expect(base).toMatchObject({ kind: "creature", foreign: true, spec: { experiment: "refinement", creature: file } });
+    expect(base).toMatchObject({
+      kind: "creature",
+      foreign: true,
+      spec: { experiment: "refinement", creature: file },
+    });
     expect(base.spec.steps).toBe(20);
   });
 });
@@ -176,7 +180,9 @@ describe("a draft", () => {
     expect(addressOf({ kind: "pasted", name: "spec.json" })).toBeNull();
     expect(addressOf({ kind: "run", name: "a", foreign: true })).toBeNull();
     expect(await load([["preset", "gaits/demo"]], EXPERIMENTS)).toEqual(base);
-    await expect(load([["preset", "gaits/none"]], EXPERIMENTS)).rejects.toThrow(/gaits\/paper.*got gaits\/none/);
+    await expect(load([["preset", "gaits/none"]], EXPERIMENTS)).rejects.toThrow(
+      /gaits\/paper.*got gaits\/none/,
+    );
     expect(titleOfBase(base)).toBe("preset “demo”");
   });
 });
@@ -250,8 +256,17 @@ describe("a body that is drawn", () => {
   const fork: DrawnBody = {
     name: "fork",
     nodes: 4,
-    positions: [[0, 0], [2, 0], [4, 1], [4, -1]],
-    edges: [[0, 1], [1, 2], [1, 3]],
+    positions: [
+      [0, 0],
+      [2, 0],
+      [4, 1],
+      [4, -1],
+    ],
+    edges: [
+      [0, 1],
+      [1, 2],
+      [1, 3],
+    ],
     whole: true,
   };
 
@@ -267,9 +282,21 @@ describe("a body that is drawn", () => {
   });
 
   it("is seen again on the other side of its periodic world", () => {
-    const within = { ...fork, positions: [[1, 1], [3, 3]] };
+    const within = {
+      ...fork,
+      positions: [
+        [1, 1],
+        [3, 3],
+      ],
+    };
     expect(tilesOf(within, 10, 10).map(String)).toEqual(["0,0"]);
-    const across = { ...fork, positions: [[8, 1], [12, -1]] };
+    const across = {
+      ...fork,
+      positions: [
+        [8, 1],
+        [12, -1],
+      ],
+    };
     expect(tilesOf(across, 10, 10).map(String).sort()).toEqual(["-10,0", "-10,10", "0,0", "0,10"]);
   });
 });

@@ -52,8 +52,15 @@ function rebuilt(field: Field, document: Json, made: Json): Json {
   }
   if (field.kind === "rows") {
     const items = valueAt(document, field.path) as Json[];
-    const start = withValue(made, field.path, items.map(() => ({})));
-    return into(items.map((_, i) => field.row(i)), start);
+    const start = withValue(
+      made,
+      field.path,
+      items.map(() => ({})),
+    );
+    return into(
+      items.map((_, i) => field.row(i)),
+      start,
+    );
   }
   return withValue(made, field.path, retyped(field, valueAt(document, field.path)));
 }

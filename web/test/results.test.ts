@@ -31,9 +31,7 @@ describe("an axis", () => {
 
   it("names as many round values as there is room for", () => {
     const wide = { log: true, low: 0.0009, high: 2.2 };
-    expect(ticksOf(wide, 12)).toEqual([
-      0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2,
-    ]);
+    expect(ticksOf(wide, 12)).toEqual([0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2]);
     expect(ticksOf(wide, 5)).toEqual([0.001, 0.01, 0.1, 1]);
     expect(ticksOf(wide, 2)).toEqual([0.001, 0.1]);
     expect(ticksOf({ log: false, low: 0, high: 1.07 }, 6)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
@@ -87,11 +85,7 @@ describe("a sweep of gaits", () => {
       [1, 0.5],
     ]);
     expect(worm!.points[1]!.href).toBe("/creatures/ab");
-    expect(worm!.points[1]!.says).toEqual([
-      "Worm at ν = 1",
-      "0.5 cells a cycle",
-      "Reynolds number 2",
-    ]);
+    expect(worm!.points[1]!.says).toEqual(["Worm at ν = 1", "0.5 cells a cycle", "Reynolds number 2"]);
   });
 
   it("marks what limits or warnings make doubtful, and what did not finish", () => {
@@ -118,9 +112,7 @@ describe("a sweep of gaits", () => {
   });
 
   it("has the same axes before its results and after", () => {
-    expect(sweepAxes(spec, []).x).toEqual(
-      expect.objectContaining({ scale: sweepAxes(spec, rows).x.scale }),
-    );
+    expect(sweepAxes(spec, []).x).toEqual(expect.objectContaining({ scale: sweepAxes(spec, rows).x.scale }));
   });
 });
 
@@ -167,7 +159,11 @@ describe("a course", () => {
   });
 
   it("has a line for each picture that a filament folds into", () => {
-    const told = { "loss of 3": [0.1, 0.05, 0.02], "loss of 7": [0.1, 0.04, 0.01], loss: [0.1, 0.045, 0.015] };
+    const told = {
+      "loss of 3": [0.1, 0.05, 0.02],
+      "loss of 7": [0.1, 0.04, 0.01],
+      loss: [0.1, 0.045, 0.015],
+    };
     const { lines } = courseOf(run("folding"), curves(told));
     expect(lines.map(({ name }) => name)).toEqual(["3", "7"]);
     expect(lines[1]!.points.map(({ y }) => y)).toEqual([0.1, 0.04, 0.01]);

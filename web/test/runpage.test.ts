@@ -37,7 +37,10 @@ describe("how curves are looked at", () => {
   it("keeps what was measured faintly behind the smooth line", () => {
     const [score] = dressed(scoresOf, curvesOf([1, 3]), [], { ...plain, smooth: 5 });
     expect(score!.series.map(({ faint }) => faint ?? false)).toEqual([true, false]);
-    expect(score!.series.map(({ y }) => y)).toEqual([[1, 3], [1, 2]]);
+    expect(score!.series.map(({ y }) => y)).toEqual([
+      [1, 3],
+      [1, 2],
+    ]);
   });
 
   it("puts other runs beside, each in its colour and at its own places", () => {
@@ -55,7 +58,10 @@ describe("how curves are looked at", () => {
 
   it("leaves out on a log scale what is not above zero", () => {
     const series = [{ name: "a", colour: "", y: [0, -1, 2] }];
-    expect(tableOf(series, [1, 2, 3], true)).toEqual([[1, 2, 3], [null, null, 2]]);
+    expect(tableOf(series, [1, 2, 3], true)).toEqual([
+      [1, 2, 3],
+      [null, null, 2],
+    ]);
     expect(tableOf(series, [1, 2, 3], false)[1]).toEqual([0, -1, 2]);
   });
 });
@@ -127,7 +133,10 @@ describe("a spec that is read", () => {
     title: name,
     spec: { ...spec, seed: 0, ...other },
   });
-  const presets = [preset("far", { axes: [], search: {} }), preset("near", { search: { batch: 16, stop: null } })];
+  const presets = [
+    preset("far", { axes: [], search: {} }),
+    preset("near", { search: { batch: 16, stop: null } }),
+  ];
 
   it("is told by the preset that it is nearest to, whatever the seed", () => {
     const found = nearestPreset(spec, presets)!;
@@ -170,7 +179,11 @@ describe("species over time", () => {
   it("grow from nothing and shrink to nothing", () => {
     expect(lifeOf(stack.areas[0]!)).toEqual([0, 2]);
     expect(lifeOf({ from: [0, 0, 0, 0, 0], to: [0, 0, 1, 0, 0] })).toEqual([1, 3]);
-    const path = pathOf(stack.areas[0]!, (i) => 10 * i, (v) => 8 - v);
+    const path = pathOf(
+      stack.areas[0]!,
+      (i) => 10 * i,
+      (v) => 8 - v,
+    );
     expect(path).toBe("M0.0 0.0L10.0 3.0L20.0 8.0L20.0 8.0L10.0 8.0L0.0 8.0Z");
   });
 
@@ -186,7 +199,13 @@ describe("species over time", () => {
 });
 
 describe("what a run is doing before its figures tell", () => {
-  const run = { status: "running", generation: 0, device: "cpu, a processor", created_at: "2026-01-01T00:00:00Z", started_at: "2026-01-01T00:01:00Z" } as Run;
+  const run = {
+    status: "running",
+    generation: 0,
+    device: "cpu, a processor",
+    created_at: "2026-01-01T00:00:00Z",
+    started_at: "2026-01-01T00:01:00Z",
+  } as Run;
 
   it("is said, and for how long", () => {
     expect(doingOf(run)).toContain("most of a minute on a CPU");

@@ -25,7 +25,10 @@ describe("what a form asks to publish", () => {
 
   it("takes names apart and counts days from now", () => {
     const now = Date.parse("2026-03-01T00:00:00Z");
-    const asked = askedIn(form({ ...plain, title: "Eel", credit: "Ada, , Bob ", term: "7", listed: "on" }), now);
+    const asked = askedIn(
+      form({ ...plain, title: "Eel", credit: "Ada, , Bob ", term: "7", listed: "on" }),
+      now,
+    );
     expect(asked).toMatchObject({ title: "Eel", credit: ["Ada", "Bob"], listed: true });
     expect(asked.expires_at).toBe("2026-03-08T00:00:00.000Z");
   });

@@ -23,7 +23,10 @@ const ARCHIVE: Archive = {
   features: {},
   cell: [0, 5],
   fitness: [1, 2],
-  descriptors: [[0, 0], [1, 1]],
+  descriptors: [
+    [0, 0],
+    [1, 1],
+  ],
   elite_generation: [1, 2],
   creature: ["aa", "bb"],
 };
@@ -77,8 +80,14 @@ const creatures = (state: State) =>
 describe("events", () => {
   it("change the cells that they name and no others", () => {
     const next = reduce(opened, elites(3, 5, "cc"));
-    expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
-    expect(creatures(opened)).toEqual([[0, "aa"], [5, "bb"]]);
+    expect(creatures(next)).toEqual([
+      [0, "aa"],
+      [5, "cc"],
+    ]);
+    expect(creatures(opened)).toEqual([
+      [0, "aa"],
+      [5, "bb"],
+    ]);
   });
 
   it("make a run's numbers and curves longer, each generation once", () => {
@@ -171,8 +180,14 @@ describe("an answer", () => {
   const known = after({ type: "answer", run: late, sent: 0 });
   const answers: [string, (sent: number) => Action][] = [
     ["to a question for a run", (sent) => ({ type: "answer", run: late, sent })],
-    ["to a question for a list", (sent) => ({ type: "list", asked: "", page: { items: [late], next: null }, known: 0, sent })],
-    ["to a question for more", (sent) => ({ type: "more", asked: "", page: { items: [late], next: null }, cursor: null, sent })],
+    [
+      "to a question for a list",
+      (sent) => ({ type: "list", asked: "", page: { items: [late], next: null }, known: 0, sent }),
+    ],
+    [
+      "to a question for more",
+      (sent) => ({ type: "more", asked: "", page: { items: [late], next: null }, cursor: null, sent }),
+    ],
   ];
 
   it.each(answers)("%s does not undo what an event told meanwhile", (_, answer) => {
@@ -194,7 +209,11 @@ describe("an answer", () => {
   it("is overtaken by generations, rewinds, resets and newer answers too", () => {
     const run = { ...late, generation: 5 };
     const rewind = { type: "rewind", event: { run: "a", generation: 1 } } as const;
-    for (const action of [{ type: "generation", event: generation(7) }, rewind, { type: "reset" }] as Action[]) {
+    for (const action of [
+      { type: "generation", event: generation(7) },
+      rewind,
+      { type: "reset" },
+    ] as Action[]) {
       const state = reduce(known, action);
       expect(reduce(state, { type: "answer", run, sent: known.heard }).runs).toEqual(state.runs);
     }
@@ -221,7 +240,13 @@ describe("what is said here of a run", () => {
 
   it("outlives lists that were asked for before it, and before the server had heard it", () => {
     const list = (sent: number): Action => {
-      return { type: "list", asked: "", page: { items: [{ ...RUN, name: "old" }], next: null }, known: 0, sent };
+      return {
+        type: "list",
+        asked: "",
+        page: { items: [{ ...RUN, name: "old" }], next: null },
+        known: 0,
+        sent,
+      };
     };
     expect(reduce(said, list(known.heard)).runs.get("a")!.name).toBe("new");
     const done = reduce(said, { type: "done", run: { ...RUN, name: "new" }, sent: said.heard });
@@ -233,7 +258,10 @@ describe("a snapshot", () => {
   it("keeps what events told of later generations while it was on its way", () => {
     const later = reduce(reduce(opened, elites(3, 5, "cc")), elites(2, 0, "old"));
     const next = reduce(later, snapshot(later));
-    expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
+    expect(creatures(next)).toEqual([
+      [0, "aa"],
+      [5, "cc"],
+    ]);
   });
 
   it("that comes first keeps what events told since the run was opened", () => {
@@ -241,7 +269,10 @@ describe("a snapshot", () => {
     const waiting = after({ type: "run", run: RUN }, open, elites(3, 5, "cc"), told);
     expect(waiting.details.get("a")).toMatchObject({ archive: null, curves: null });
     const next = reduce(waiting, snapshot(waiting));
-    expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
+    expect(creatures(next)).toEqual([
+      [0, "aa"],
+      [5, "cc"],
+    ]);
     expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
   });
 
@@ -306,7 +337,10 @@ describe("a reset", () => {
     const fresh = [elites(3, 5, "cc"), { type: "generation", event: generation(3) }] as Action[];
     const waiting = fresh.reduce(reduce, shown);
     const next = reduce(waiting, snapshot(waiting));
-    expect(creatures(next)).toEqual([[0, "aa"], [5, "cc"]]);
+    expect(creatures(next)).toEqual([
+      [0, "aa"],
+      [5, "cc"],
+    ]);
     expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
   });
 });
@@ -321,7 +355,10 @@ describe("long runs", () => {
     expect(next.generation.length).toBe(LONGEST / 2 + 1);
     expect(next.generation.at(-1)).toBe(LONGEST);
     const told = next.summary.rare!.flatMap((value, i) => (value === null ? [] : [[i, value]]));
-    expect(told).toEqual([[4, 7], [LONGEST / 2, LONGEST - 1]]);
+    expect(told).toEqual([
+      [4, 7],
+      [LONGEST / 2, LONGEST - 1],
+    ]);
     expect(next.summary.inserted!.length).toBe(LONGEST / 2 + 1);
   });
 
@@ -372,7 +409,10 @@ describe("curves of runs that are looked at beside others", () => {
   it("grow with every generation, told before or after the snapshot", () => {
     expect(told(after(watch(1), third, curves))!.generation).toEqual([1, 2, 3]);
     const later = told(after(watch(1), curves, third))!;
-    expect([later.evaluations, later.seconds]).toEqual([[16, 32, 48], [1, 2, 6]]);
+    expect([later.evaluations, later.seconds]).toEqual([
+      [16, 32, 48],
+      [1, 2, 6],
+    ]);
   });
 
   it("are cut by a rewind, and no snapshot from before it counts", () => {

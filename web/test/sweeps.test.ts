@@ -106,10 +106,7 @@ describe("the bands of a sweep", () => {
       [0, 1],
       [3, 4],
     ]);
-    expect(plot!.series.filter(({ edge }) => !edge).map(({ name }) => name)).toEqual([
-      "case 0",
-      "case 1",
-    ]);
+    expect(plot!.series.filter(({ edge }) => !edge).map(({ name }) => name)).toEqual(["case 0", "case 1"]);
   });
 
   it("have their own runs behind them where those are asked for", () => {

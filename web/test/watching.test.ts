@@ -23,7 +23,10 @@ const header = {
   nodes: 3,
   every: 5,
   steps: 5,
-  edges: [[0, 1], [1, 2]],
+  edges: [
+    [0, 1],
+    [1, 2],
+  ],
   joints: [[0, 1]],
   size: [2, 1],
   vorticity: { scale: 1 },
@@ -32,7 +35,10 @@ const header = {
 } as unknown as Header;
 // An elbow that is straight at the start and turns by a right angle to the left.
 const positions = [0, 0, 1, 0, 2, 0, 0, 0, 1, 0, 1, 1.5];
-const [angles, lengths] = [[0.25, 0.5], [1, 1, 1.25, 1]];
+const [angles, lengths] = [
+  [0.25, 0.5],
+  [1, 1, 1.25, 1],
+];
 const planes = [1, 2, 3, 4, 10, 20, 30, 40, 50, 60, 70, 80, 0, 255];
 
 function bytes(head: object, floats: number[], levels: number[]): ArrayBuffer {
@@ -241,7 +247,14 @@ const base64 = (values: number[]) =>
 
 describe("a family tree", () => {
   const person = (creature: string, distance: number, parents: string[] = [], fitness = 1): Relative => ({
-    creature, distance, parents, fitness, kept: true, operator: "neat", generation: 1, credit: [],
+    creature,
+    distance,
+    parents,
+    fitness,
+    kept: true,
+    operator: "neat",
+    generation: 1,
+    credit: [],
   });
   const me = person("me", 0, ["a", "b"]);
   const ancestors: Ancestors = {
@@ -252,8 +265,15 @@ describe("a family tree", () => {
 
   it("stands in columns, the oldest first, joined as parent and child", () => {
     const tree = treeOf(me, ancestors, { total: 1, items: [person("child", 1, ["me"])] });
-    expect(tree.columns.map(({ title }) => title)).toEqual(["Grandparents", "Parents", "This creature", "Children"]);
-    const lines = tree.lines.map(([parent, child]) => `${parent.relative.creature} ${child.relative.creature}`);
+    expect(tree.columns.map(({ title }) => title)).toEqual([
+      "Grandparents",
+      "Parents",
+      "This creature",
+      "Children",
+    ]);
+    const lines = tree.lines.map(
+      ([parent, child]) => `${parent.relative.creature} ${child.relative.creature}`,
+    );
     expect(lines.sort()).toEqual(["a me", "b me", "me child", "old a", "old b"]);
   });
 
@@ -276,7 +296,10 @@ describe("facts", () => {
     const groups = groupsOf(creature);
     expect(groups.map(({ title }) => title)).toEqual(["Result", "Network", "Flow"]);
     expect(groups.flatMap(({ rows }) => rows).map(([name]) => name)).toEqual([
-      "Fitness", "Displacement", "Connections", "Mach number",
+      "Fitness",
+      "Displacement",
+      "Connections",
+      "Mach number",
     ]);
   });
 

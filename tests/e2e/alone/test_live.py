@@ -25,7 +25,7 @@ def test_no_update_is_lost_while_the_server_is_started_again(
 ):
     run = product.submit(SPEC)
     page.add_init_script(GUIDED)
-    page.goto(f"{product.url}/runs/{run}")
+    page.goto(f"{product.url}/runs/{run}?colour=turning")  # Which is asked for as it grows.
     page.evaluate("window.neverReloaded = true")
     product.reach(run, 3)
     expect(connection(page)).to_have_attribute("title", "Live", timeout=FAST)

@@ -77,8 +77,7 @@ export function revokeToken(id: string) {
 }
 
 /** Whether the token is right; the browser keeps it where no script can read it. */
-export const signIn = (token: string) =>
-  success(client.POST(`${ROOT}/session`, { body: { token } }));
+export const signIn = (token: string) => success(client.POST(`${ROOT}/session`, { body: { token } }));
 export const signOut = () => success(client.DELETE(`${ROOT}/session`));
 export async function extendRun(id: string, generations: number): Promise<Run> {
   const asked = client.POST(`${ROOT}/runs/{run_id}/extend`, { ...run(id), body: { generations } });
@@ -103,9 +102,16 @@ export async function readRun(id: string): Promise<Run> {
   return (await success(client.GET(`${ROOT}/runs/{run_id}`, run(id)))) as Run;
 }
 
-/** The archive now or after a generation, with columns of the features that are named. */
-export function readArchive(id: string, features: string[] = [], generation?: number) {
-  const query = { ...(features.length > 0 && { features: features.join(",") }), generation };
+/**
+ * The archive now or as of a generation, with columns of the features that are named; only what
+ * entered later than `after`, where that is given.
+ */
+export function readArchive(
+  id: string,
+  features: string[] = [],
+  { generation, after }: { generation?: number; after?: number } = {},
+) {
+  const query = { ...(features.length > 0 && { features: features.join(",") }), generation, after };
   const params = { path: { run_id: id }, query };
   return success(client.GET(`${ROOT}/runs/{run_id}/archive`, { params }));
 }

@@ -533,7 +533,8 @@ export interface paths {
          * @description The elite of each cell, now or as of a generation.
          *
          *     With `features`, names with commas between them, what was recorded of the elites under
-         *     those names too: an archive can be looked at along any of them.
+         *     those names too: an archive can be looked at along any of them. With `after`, a generation,
+         *     only the elites that entered later, for who knows the others.
          */
         get: operations["read_archive_api_v1_runs__run_id__archive_get"];
         put?: never;
@@ -3668,6 +3669,7 @@ export interface operations {
             query?: {
                 generation?: number | null;
                 features?: string;
+                after?: number | null;
             };
             header?: never;
             path: {

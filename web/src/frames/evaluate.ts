@@ -27,7 +27,10 @@ export function evaluate(network: Network, inputs: Float64Array[]): Values {
   const visit = (neuron: Neuron) => {
     const place = network.neurons.indexOf(neuron);
     const links = arriving.get(neuron.id) ?? [];
-    values.set(neuron.id, neuron.role === "input" ? inputs[place]! : computed(neuron, links, values, inputs[0]!.length));
+    values.set(
+      neuron.id,
+      neuron.role === "input" ? inputs[place]! : computed(neuron, links, values, inputs[0]!.length),
+    );
   };
   inOrder(network).forEach(visit);
   return values;

@@ -25,10 +25,14 @@ function graph(sizes: number[], genes: Float32Array, control: Spec, inputs: stri
     const role = layer === last ? "output" : "hidden";
     const activation = layer === last ? "identity" : String(control.activation);
     ids[layer]!.forEach((id, place) => {
-      const row = [...genes.subarray(used, (used += sizes[layer - 1]! + 1))].map((gene) => gene * Number(control.scale));
+      const row = [...genes.subarray(used, (used += sizes[layer - 1]! + 1))].map(
+        (gene) => gene * Number(control.scale),
+      );
       const label = role === "output" ? outputs[place]! : "";
       neurons.push(neuronOf(id, role, label, activation, row[0]!, layer));
-      ids[layer - 1]!.forEach((source, i) => links.push({ source, target: id, weight: row[i + 1]!, enabled: true }));
+      ids[layer - 1]!.forEach((source, i) =>
+        links.push({ source, target: id, weight: row[i + 1]!, enabled: true }),
+      );
     });
   }
   return { neurons, links, depth: last };

@@ -38,9 +38,7 @@ export function sightOf(control: Spec): Sight {
 /** One period of the timer, or a whole life where it does not repeat; `energy` is felt everywhere. */
 export function picturesOf(network: Network, control: Spec, steps: number, energy = 0): Pictures {
   const sight = sightOf(control);
-  return sight.recurrent
-    ? remembered(network, sight, steps, energy)
-    : atOnce(network, sight, steps, energy);
+  return sight.recurrent ? remembered(network, sight, steps, energy) : atOnce(network, sight, steps, energy);
 }
 
 /** Where in the pictures a step of the life stands, from 0 to 1; where a timer repeats, its phase. */

@@ -53,11 +53,7 @@ function courseOf({ header }: Replay, items: number, at: (frame: number) => numb
   return { items, values };
 }
 
-function lessStart(
-  asked: Course,
-  done: Course,
-  change: (value: number, from: number) => number,
-): Shape {
+function lessStart(asked: Course, done: Course, change: (value: number, from: number) => number): Shape {
   const start = done.values.slice(0, done.items);
   const changed = ({ items, values }: Course): Course => ({
     items,

@@ -31,7 +31,10 @@ export function useUnknown(): boolean {
 
 /** Why we may not make anything here, or not change what somebody made; null where we may. */
 export const useRefusal = (thing?: Owned): string | null =>
-  refusalOf(useLive((state) => state.caller), thing);
+  refusalOf(
+    useLive((state) => state.caller),
+    thing,
+  );
 
 /** Names of tokens need not differ: where they are the same, the server has the last word. */
 export function refusalOf(caller: Caller | null, thing?: Owned): string | null {

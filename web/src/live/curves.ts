@@ -44,12 +44,7 @@ export function mergeCurves(generations: Generations, known: Curves): Curves {
   const news = filtered(known, (i) => later[i]!);
   return {
     ...columns((name) => [...generations[name], ...news[name]]),
-    summary: joined(
-      generations.summary,
-      generations.generation.length,
-      news.summary,
-      news.generation.length,
-    ),
+    summary: joined(generations.summary, generations.generation.length, news.summary, news.generation.length),
   };
 }
 

@@ -39,11 +39,7 @@ export function withCurvePoint(detail: Detail, event: GenerationEvent): Detail {
   return { ...detail, curves: detail.curves && appendCurves(detail.curves, event), news };
 }
 
-export function replaced(
-  detail: Detail,
-  archive: Archive | null,
-  generations: Generations,
-): Detail {
+export function replaced(detail: Detail, archive: Archive | null, generations: Generations): Detail {
   const elites = archive ? mergeElites(archive, detail.news.elites) : detail.elites;
   return { ...detail, archive, elites, curves: mergeCurves(generations, detail.news.curves) };
 }

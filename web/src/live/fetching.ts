@@ -1,6 +1,6 @@
 /** What components fetch: once when they appear, and again when the store asks for it. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Archive, Experiment, History, Results, Run } from "../api/types";
@@ -89,21 +89,35 @@ async function readCurves(id: string): Promise<true> {
   return true;
 }
 
-/** What was recorded of the elites under some names: by name, then by creature. */
+/**
+ * What was recorded of the elites under some names: by name, then by creature. Of an archive that
+ * changes, only what is new is asked for; who has left stays known.
+ */
 export function useFeatures(id: string, names: string[], elites: Elites): Features {
   const epoch = useLive((state) => epochOf(state, id));
   const asked = names.join(",");
   const present = usePaced(asked ? elites : null);
-  const { value } = useFetched(
-    async () => (asked ? columnsOf(await api.readArchive(id, asked.split(","))) : NONE),
-    [id, epoch, asked, present],
-  );
+  const of = `${id} ${epoch} ${asked}`;
+  const known = useRef<{ of: string; after?: number; features: Features }>({ of, features: NONE });
+  const { value } = useFetched(async () => {
+    if (!asked) return NONE;
+    const { after, features } = known.current.of === of ? known.current : { features: NONE };
+    const archive = await api.readArchive(id, asked.split(","), { after });
+    known.current = { of, after: archive.generation, features: joined(features, columnsOf(archive)) };
+    return known.current.features;
+  }, [of, present]);
   return value ?? NONE;
 }
 
 type Features = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
 const NONE: Features = new Map();
+
+function joined(known: Features, added: Features): Features {
+  const column = ([name, values]: [string, ReadonlyMap<string, number>]) =>
+    [name, new Map([...(known.get(name) ?? []), ...values])] as const;
+  return new Map([...added].map(column));
+}
 
 function columnsOf({ creature, features }: Pick<Archive, "creature" | "features">): Features {
   const columns = Object.entries(features).map(([name, values]) => {

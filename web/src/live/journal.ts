@@ -37,11 +37,7 @@ export function useLog({ id, ...run }: Run): Journal {
 }
 
 /** What is known, with the newest entries; with nothing known, all of them or the last ones. */
-export async function continued(
-  id: string,
-  known: readonly LogEntry[],
-  whole: boolean,
-): Promise<LogEntry[]> {
+export async function continued(id: string, known: readonly LogEntry[], whole: boolean): Promise<LogEntry[]> {
   // Entries of the attempt at hand are dropped again where newer ones say the same.
   const kept = known.filter(({ attempt }) => attempt < known.at(-1)!.attempt);
   const after = kept.at(-1)?.id ?? (whole ? 0 : undefined);

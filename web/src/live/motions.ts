@@ -1,4 +1,4 @@
-/** Motions of many creatures: a few asked for at a time, those that were wanted last kept. */
+/** Motions of many creatures: a few asked for at a time, those that are seen kept. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -7,12 +7,13 @@ import { poll } from "./polling";
 
 /** The renderer makes one replay after another: a hovered cell waits behind these, not a wall. */
 const AT_ONCE = 8;
-/** More than a screen has room for. */
-const KEPT = 800;
+/** So many that are not seen any more are kept: who scrolls back finds them. */
+const SPARE = 200;
 /** A wall that is scrolled asks for nothing until it rests. */
 const REST_MS = 150;
 
 const kept = new Map<string, Motion>();
+let seen: ReadonlySet<string> = new Set();
 /** What is being asked for, and how to stop asking. */
 const underway = new Map<string, () => void>();
 let waiting: string[] = [];
@@ -37,6 +38,7 @@ export function useMotions(shas: readonly string[]): ReadonlyMap<string, Motion>
 }
 
 function want(shas: readonly string[]): void {
+  seen = new Set(shas);
   for (const sha of shas) {
     const motion = kept.get(sha);
     if (motion) keep(sha, motion);
@@ -74,12 +76,12 @@ function stop(): void {
   underway.clear();
 }
 
-/** As the newest; the oldest beyond what is kept goes. */
+/** As the newest; of those that are not seen the oldest goes where there are too many. */
 function keep(sha: string, motion: Motion): void {
   kept.delete(sha);
   kept.set(sha, motion);
   for (const oldest of kept.keys()) {
-    if (kept.size <= KEPT) break;
-    kept.delete(oldest);
+    if (kept.size <= seen.size + SPARE) break;
+    if (!seen.has(oldest)) kept.delete(oldest);
   }
 }

@@ -40,6 +40,9 @@ export function usePages<T>(read: (cursor?: string) => Promise<Page<T>>, key: (i
     error,
     more: next ? () => void load(next) : null,
     put: (changed) =>
-      setPage((old) => old && { ...old, items: old.items.map((item) => (key(item) === key(changed) ? changed : item)) }),
+      setPage(
+        (old) =>
+          old && { ...old, items: old.items.map((item) => (key(item) === key(changed) ? changed : item)) },
+      ),
   };
 }

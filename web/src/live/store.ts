@@ -13,23 +13,8 @@ import type {
   RunEvent,
   RunPage,
 } from "../api/types";
-import {
-  type Detail,
-  NOTHING,
-  cut,
-  doubted,
-  replaced,
-  withChanges,
-  withCurvePoint,
-} from "./detail";
-import {
-  type Watching,
-  cutWatched,
-  doubtedWatched,
-  watched,
-  withHistory,
-  withNext,
-} from "./watched";
+import { type Detail, NOTHING, cut, doubted, replaced, withChanges, withCurvePoint } from "./detail";
+import { type Watching, cutWatched, doubtedWatched, watched, withHistory, withNext } from "./watched";
 import { type Pace, rateOf, withEvent, withPoint } from "./pace";
 import { answered, done, heardOf, said, told } from "./standing";
 

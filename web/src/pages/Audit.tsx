@@ -25,8 +25,8 @@ export function AuditCard({ sha, query }: Props) {
       </div>
       {!asked && (
         <p class="quiet small">
-          Simulates the creature again: at twice the resolution and half the step, with another delta
-          kernel, with its gait made reciprocal. Swimming that does not survive is the solver’s.
+          Simulates the creature again: at twice the resolution and half the step, with another delta kernel,
+          with its gait made reciprocal. Swimming that does not survive is the solver’s.
         </p>
       )}
       {asked && !audit && !error && (

@@ -23,9 +23,7 @@ export function CommonsPage() {
       {shares?.length === 0 && (
         <section class="empty card">
           <h2>Nothing is listed yet</h2>
-          <p>
-            Publish a creature from its page, or an archive from its run’s, and choose to list it.
-          </p>
+          <p>Publish a creature from its page, or an archive from its run’s, and choose to list it.</p>
         </section>
       )}
       <ul class="commons">

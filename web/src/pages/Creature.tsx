@@ -105,8 +105,7 @@ export function Whole({ creature, query }: { creature: Creature; query: URLSearc
 const swims = ({ identity }: Creature) => identity.genome.encoding !== "fold";
 
 /** Whether it has genes that evolve, and so a fitness to climb. */
-const searched = (creature: Creature) =>
-  swims(creature) && creature.identity.genome.encoding !== "gait";
+const searched = (creature: Creature) => swims(creature) && creature.identity.genome.encoding !== "gait";
 
 function Difference({ replay, task }: { replay: Replay; task: Spec }) {
   const { recorded, replayed, difference } = replay.header.fitness;
@@ -122,4 +121,3 @@ function Difference({ replay, task }: { replay: Replay; task: Spec }) {
     </p>
   );
 }
-

@@ -48,9 +48,7 @@ export function Family({ creature, query }: Props) {
         </p>
       )}
       {tree && tree.kin.length > 1 && <FamilyTree {...{ tree, hrefOf }} self={sha} />}
-      {credited.length > 0 && (
-        <p class="quiet small">Its ancestors are by {credited.join(", ")}.</p>
-      )}
+      {credited.length > 0 && <p class="quiet small">Its ancestors are by {credited.join(", ")}.</p>}
       {tree && (lost || tree.hidden > 0) && (
         <p class="quiet small">
           {lost && "Dashed: never an elite, so only the name was kept. "}

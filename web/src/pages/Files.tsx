@@ -24,8 +24,8 @@ export function Files({ run }: { run: Run }) {
         )}
       </p>
       <p class="quiet">
-        {hasArchive(run) ? "Archive files are" : "results.h5 is"} of the last checkpoint.{" "}
-        Created {moment(run.created_at)}, attempt {run.attempt}, version {run.version}
+        {hasArchive(run) ? "Archive files are" : "results.h5 is"} of the last checkpoint. Created{" "}
+        {moment(run.created_at)}, attempt {run.attempt}, version {run.version}
         {run.device && `, on ${run.device}`}.
       </p>
     </section>

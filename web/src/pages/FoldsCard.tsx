@@ -86,8 +86,8 @@ function Fold({ run, row, target }: { run: Run; row: ResultRow; target: Target }
       <Rendering {...rendering} what="Simulating this filament again to record how it folds …" />
       {replay && <FoldPlayer replay={replay} target={target} />}
       <p class="quiet small">
-        Loss {number(Number(row.first))} before it learnt, {number(Number(row.least))} at best;
-        without a filament it would be {number(Number(row.empty))}.{" "}
+        Loss {number(Number(row.first))} before it learnt, {number(Number(row.least))} at best; without a
+        filament it would be {number(Number(row.empty))}.{" "}
         <a href={hrefOf(run)(row.creature!)}>
           Open the creature <code>{short(row.creature!)}</code>
         </a>

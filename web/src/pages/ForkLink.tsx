@@ -21,7 +21,11 @@ export function ForkLink({ run, creature, cells, at = null, title, inline = fals
   const which = { creature, cells, at: at === null ? null : String(at) };
   const address = run ? forked(run, which) : [["begin", creature!]];
   return (
-    <a class={inline ? "" : "button"} href={`/new?${new URLSearchParams(address as string[][])}`} title={title}>
+    <a
+      class={inline ? "" : "button"}
+      href={`/new?${new URLSearchParams(address as string[][])}`}
+      title={title}
+    >
       Fork
     </a>
   );

@@ -1,13 +1,7 @@
 /** Everything a creature can be kept as; films are made when somebody wants them. */
 
 import { useEffect, useState } from "preact/hooks";
-import {
-  type Picture,
-  creatureFileUrl,
-  creatureH5Url,
-  pictureUrl,
-  proveRendering,
-} from "../api/client";
+import { type Picture, creatureFileUrl, creatureH5Url, pictureUrl, proveRendering } from "../api/client";
 import { share } from "../api/place";
 import { poll } from "../live/polling";
 import { tell } from "../live/toasts";
@@ -25,7 +19,9 @@ export function Keep({ sha }: { sha: string }) {
     <p class="links pictures" role="group" aria-label="Keep it as">
       <span class="quiet small">Keep it as</span>
       {!share && (
-        <button onClick={() => void copyText(`${location.origin}/creatures/${sha}`, "Link copied.")}>Copy link</button>
+        <button onClick={() => void copyText(`${location.origin}/creatures/${sha}`, "Link copied.")}>
+          Copy link
+        </button>
       )}
       <a
         class="button"

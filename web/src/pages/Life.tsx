@@ -21,8 +21,7 @@ export function Life({ run, title }: { run: Run; title: string }) {
 }
 
 /** What a goal ended, a longer run would end at too. */
-const extendable = (run: Run) =>
-  run.status === "finished" && "search" in run.spec && !run.summary?.["ended"];
+const extendable = (run: Run) => run.status === "finished" && "search" in run.spec && !run.summary?.["ended"];
 
 function Extend({ run }: { run: Run }) {
   const { open, setOpen, button, first: field } = useOpening<HTMLInputElement>();

@@ -82,7 +82,9 @@ function Told({ exact, device, recorded_device, fitness, figures }: Measurement)
       </p>
       {figures.length > 0 && (
         <details>
-          <summary>{figures.length === 1 ? "One number differs" : `${figures.length} numbers differ`}</summary>
+          <summary>
+            {figures.length === 1 ? "One number differs" : `${figures.length} numbers differ`}
+          </summary>
           <table class="plain-table">
             <thead>
               <tr>

@@ -89,9 +89,7 @@ function Begun({ experiments, query }: BegunProps) {
         preset={chosen.presets.find(({ name }) => preset === `${chosen.experiment}/${name}`) ?? null}
         estimates={costs}
         onPreset={(one, of) => desk.begin(ofPreset(one, of))}
-        onExperiment={(one) =>
-          one.presets[0] ? desk.begin(ofPreset(one.presets[0], one)) : setPicked(one)
-        }
+        onExperiment={(one) => (one.presets[0] ? desk.begin(ofPreset(one.presets[0], one)) : setPicked(one))}
       />
       {!work && <p class="quiet loading">Loading …</p>}
       {work && own && (

@@ -41,7 +41,8 @@ function SpeciesCard({ run }: { run: Run }) {
 
 function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
   const best = useMemo(
-    () => [...elites.values()].reduce((a, b) => (b.fitness > (a?.fitness ?? -Infinity) ? b : a), null as Best),
+    () =>
+      [...elites.values()].reduce((a, b) => (b.fitness > (a?.fitness ?? -Infinity) ? b : a), null as Best),
     [elites],
   );
   const sha = best?.creature ?? null;

@@ -5,10 +5,7 @@ import { later } from "../later";
 import { useRefusal } from "../live/caller";
 import type { Props } from "./PublishDialog";
 
-const PublishDialog = later(
-  async () => (await import("./PublishDialog")).PublishDialog,
-  "section",
-);
+const PublishDialog = later(async () => (await import("./PublishDialog")).PublishDialog, "section");
 
 export function Publish(props: Props) {
   const [opened, setOpened] = useState(0);

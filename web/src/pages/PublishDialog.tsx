@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Share, ShareAsked } from "../api/types";
+import { Options } from "../view/Choice";
 import { copyText } from "./copying";
 
 export interface Props {
@@ -88,21 +89,13 @@ function Asking({ of, title, file, onDone, onEnd }: AskingProps) {
       <label>
         Licence
         <select name="licence" defaultValue={file?.licence ?? LICENCES[0][0]}>
-          {licences.map(([name, words]) => (
-            <option key={name} value={name}>
-              {words}
-            </option>
-          ))}
+          <Options of={licences} />
         </select>
       </label>
       <label>
         Expires
         <select name="term" value={term} onChange={(event) => setTerm(event.currentTarget.value)}>
-          {TERMS.map(([name, words]) => (
-            <option key={name} value={name}>
-              {words}
-            </option>
-          ))}
+          <Options of={TERMS} />
         </select>
       </label>
       {term === "date" && (
@@ -134,7 +127,9 @@ function Asking({ of, title, file, onDone, onEnd }: AskingProps) {
 /** What the form asks for; an empty field is left to the server. */
 export function askedIn(form: FormData, now = Date.now()): ShareAsked {
   const text = (name: string) => String(form.get(name) ?? "").trim();
-  const credit = text("credit").split(",").map((name) => name.trim());
+  const credit = text("credit")
+    .split(",")
+    .map((name) => name.trim());
   return {
     ...(text("title") && { title: text("title") }),
     credit: credit.filter(Boolean),

@@ -31,10 +31,7 @@ import { ON } from "./wishes";
 
 const GaitsRun = later(async () => (await import("./GaitsRun")).GaitsRun, "section");
 const LearningRun = later(async () => (await import("./LearningRun")).LearningRun, "section");
-const PopulationCards = later(
-  async () => (await import("./PopulationCards")).PopulationCards,
-  "section",
-);
+const PopulationCards = later(async () => (await import("./PopulationCards")).PopulationCards, "section");
 const ScalingRun = later(async () => (await import("./ScalingRun")).ScalingRun, "section");
 
 interface Props {
@@ -66,7 +63,12 @@ export function RunPage({ id, query }: Props) {
         {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
       </nav>
       <header class="page-head">
-        <Name of={run} title={title} fixed={!!refusal || !!run.deleted_at} onName={(name) => void say(id, { name })}>
+        <Name
+          of={run}
+          title={title}
+          fixed={!!refusal || !!run.deleted_at}
+          onName={(name) => void say(id, { name })}
+        >
           <h1>
             {title} <code>{short(run.id)}</code>
           </h1>
@@ -110,9 +112,7 @@ function Whole({ run, query, error, detail }: WholeProps) {
       {learns(run) && <LearningRun run={run} query={query} />}
       {run.experiment === "scaling" && <ScalingRun run={run} query={query} />}
       {hasArchive(run) && <ArchiveRun run={run} detail={detail} query={query} />}
-      {run.experiment === "neuroevolution" && (
-        <PopulationCards run={run} elites={detail?.elites ?? NOBODY} />
-      )}
+      {run.experiment === "neuroevolution" && <PopulationCards run={run} elites={detail?.elites ?? NOBODY} />}
       <div class="run-columns record">
         <div class="stack">
           <LogCard run={run} query={query} />
@@ -144,7 +144,12 @@ function Sections({ run }: { run: Run }) {
     ],
   };
   const sections: [id: string, name: string][] = [
-    ...(hasArchive(run) ? ([["archive", "Archive"], ["curves", "Curves"]] as [string, string][]) : []),
+    ...(hasArchive(run)
+      ? ([
+          ["archive", "Archive"],
+          ["curves", "Curves"],
+        ] as [string, string][])
+      : []),
     ...(kinds[run.experiment] ?? []),
     ["log", "Log"],
     ["spec", "Spec"],

@@ -41,11 +41,7 @@ function Choosing({ run, label, fits, onChoose, onClose }: Props & { onClose: ()
     onChoose(id);
   };
   return (
-    <form
-      class="run-choice"
-      onSubmit={choose}
-      onKeyDown={(event) => event.key === "Escape" && onClose()}
-    >
+    <form class="run-choice" onSubmit={choose} onKeyDown={(event) => event.key === "Escape" && onClose()}>
       {none ? (
         <span class={error ? "wrong-text" : "quiet"} role="status">
           {none}

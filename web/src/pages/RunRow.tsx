@@ -54,7 +54,9 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         {run.status === "running" && run.generation === 0 && (
           <span class="row-note quiet">compiling and computing its first generation</span>
         )}
-        {run.purge_at && <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>}
+        {run.purge_at && (
+          <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>
+        )}
         {run.waiting && <span class="row-note why">{run.waiting}</span>}
         {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
         {run.warning && <span class="row-note warning-text">{run.warning}</span>}

@@ -74,9 +74,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       {empty && (isFiltered(query) ? <NoneFound /> : !query.deleted && <Empty />)}
       {query.sweep && <OfSweep sweep={query.sweep} />}
       {swept && <SweepRows page={sweeps!} onMore={most < MANY ? () => setMost(MANY) : null} />}
-      {listed.length > 0 && (
-        <Table {...{ query, listed, experiments, chosen }} onChoose={choose} />
-      )}
+      {listed.length > 0 && <Table {...{ query, listed, experiments, chosen }} onChoose={choose} />}
       <datalist id={TAGS_ID}>
         {tags.map((tag) => (
           <option key={tag} value={tag} />
@@ -106,10 +104,7 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
           {COLUMNS.map(({ title, key, falling = false }) => (
             <th key={title} scope="col" aria-sort={key ? ariaSort(query.sort, key) : undefined}>
               {key ? (
-                <button
-                  class="sort"
-                  onClick={() => setQuery({ sort: nextSort(query.sort, key, falling) })}
-                >
+                <button class="sort" onClick={() => setQuery({ sort: nextSort(query.sort, key, falling) })}>
                   {title}
                 </button>
               ) : (
@@ -162,8 +157,7 @@ function OfSweep({ sweep }: { sweep: string }) {
   if (sweep === ALONE) return null;
   return (
     <p class="banner why">
-      Runs of <a href={`/sweeps/${sweep}`}>one sweep</a>: its page has their curves and figures
-      together.
+      Runs of <a href={`/sweeps/${sweep}`}>one sweep</a>: its page has their curves and figures together.
     </p>
   );
 }
@@ -173,9 +167,7 @@ function NoneFound() {
     <section class="empty card">
       <h2>No run is like that</h2>
       <p>Change what is asked for above, or look at all of them.</p>
-      <button onClick={() => setQuery(ALL)}>
-        Show all runs
-      </button>
+      <button onClick={() => setQuery(ALL)}>Show all runs</button>
     </section>
   );
 }
@@ -185,8 +177,8 @@ function Empty() {
     <section class="empty card">
       <h2>No runs yet</h2>
       <p>
-        A run evolves swimmers: from random bodies that twitch to an archive of the best swimmer of
-        every kind. The demo takes minutes on a laptop.
+        A run evolves swimmers: from random bodies that twitch to an archive of the best swimmer of every
+        kind. The demo takes minutes on a laptop.
       </p>
       <a class="button primary" href="/new">
         Start the first run

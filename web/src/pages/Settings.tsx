@@ -59,8 +59,12 @@ function You({ caller: { name, scope, expires_at, needed } }: { caller: Caller }
       </p>
       {!needed && (
         <p class="quiet">
-          The server answers nobody but this machine, and asks for no token. From elsewhere it is
-          reached safely through <code>ssh -L {PORT}:127.0.0.1:{PORT} HOST</code>.
+          The server answers nobody but this machine, and asks for no token. From elsewhere it is reached
+          safely through{" "}
+          <code>
+            ssh -L {PORT}:127.0.0.1:{PORT} HOST
+          </code>
+          .
         </p>
       )}
     </section>

@@ -27,7 +27,11 @@ export function SharedPage({ slug, sha, query }: Props) {
   if (!share) {
     return (
       <main>
-        {error ? <NotThere what="Nothing to see here" reason={error} /> : <p class="quiet loading">Loading …</p>}
+        {error ? (
+          <NotThere what="Nothing to see here" reason={error} />
+        ) : (
+          <p class="quiet loading">Loading …</p>
+        )}
       </main>
     );
   }
@@ -129,8 +133,7 @@ function OneArchive({ share, id, query }: ArchiveProps) {
           <FileLink url={api.archiveUrl(id, "csv")} name="archive.csv" />
         </p>
         <p class="quiet">
-          As they were after generation {count(share.generation ?? 0)}. Computed by version{" "}
-          {run.version}
+          As they were after generation {count(share.generation ?? 0)}. Computed by version {run.version}
           {run.device && `, on ${run.device}`}.
         </p>
       </section>

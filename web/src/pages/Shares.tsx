@@ -60,14 +60,28 @@ function Row({ share, onChange }: { share: Share; onChange: (share: Share) => vo
   const live = state === "live";
   return (
     <tr class={live ? "" : "quiet"}>
-      <th scope="row">{live ? <a href={`/s/${slug}`} target="_blank">{title}</a> : title}</th>
+      <th scope="row">
+        {live ? (
+          <a href={`/s/${slug}`} target="_blank">
+            {title}
+          </a>
+        ) : (
+          title
+        )}
+      </th>
       <td data-label="What">
-        {run ? <a href={`/runs/${run}`}>archive, generation {generation}</a> : <a href={`/creatures/${creature}`}>creature</a>}
+        {run ? (
+          <a href={`/runs/${run}`}>archive, generation {generation}</a>
+        ) : (
+          <a href={`/creatures/${creature}`}>creature</a>
+        )}
       </td>
       <td data-label="Licence">{licence.slice(0, 40)}</td>
       <td data-label="Published">{moment(share.created_at)}</td>
       <td data-label="Expires">{share.expires_at ? moment(share.expires_at) : "never"}</td>
-      <td data-label="Seen by">{live ? (share.listed ? "everybody" : "who has the link") : `nobody: ${state}`}</td>
+      <td data-label="Seen by">
+        {live ? (share.listed ? "everybody" : "who has the link") : `nobody: ${state}`}
+      </td>
       <td>
         {live && (
           <span class="actions">

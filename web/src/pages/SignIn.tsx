@@ -24,8 +24,8 @@ export function SignInPage() {
       <form class="card sign-in" onSubmit={submit}>
         <h1>Sign in</h1>
         <p class="quiet">
-          This server asks for a token. Whoever runs it can make one for you; the first one was shown
-          when it was started.
+          This server asks for a token. Whoever runs it can make one for you; the first one was shown when it
+          was started.
         </p>
         <label>
           Token

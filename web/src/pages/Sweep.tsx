@@ -89,7 +89,15 @@ function chosenOf(query: URLSearchParams, count: number): number[] {
   return all.filter((place) => named.includes(place));
 }
 
-function Bands({ shown, query, curves }: { shown: Shown[]; query: URLSearchParams; curves: Whole["curves"] }) {
+function Bands({
+  shown,
+  query,
+  curves,
+}: {
+  shown: Shown[];
+  query: URLSearchParams;
+  curves: Whole["curves"];
+}) {
   const log = query.get("log") === "1";
   const plots = bandsOf(shown, curves);
   if (shown.length === 0) return <p class="quiet">Choose a case to see its curves.</p>;
@@ -152,7 +160,8 @@ function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
 function InBin({ sweep }: { sweep: Sweep }) {
   const { id, deleted, total } = sweep;
   const refusal = useRefusal(sweep);
-  const which = total === 0 ? "Its runs are" : deleted === 1 ? "One of its runs is" : `${deleted} of its runs are`;
+  const which =
+    total === 0 ? "Its runs are" : deleted === 1 ? "One of its runs is" : `${deleted} of its runs are`;
   return (
     <p class="banner warning" role="status">
       {which} in the bin. {!refusal && <button onClick={() => void restore(id)}>Restore</button>}

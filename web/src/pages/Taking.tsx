@@ -15,8 +15,8 @@ export function Taking({ share, sha }: { share: Share; sha: string }) {
         <button onClick={() => void copyText(command, "Command copied.")}>Copy the command</button>
       </div>
       <p>
-        Download the JSON file above and drop it on any page of your Microcosmos, or run this where
-        it runs. Name, ancestors, licence and credit come along, and it can be measured again there.
+        Download the JSON file above and drop it on any page of your Microcosmos, or run this where it runs.
+        Name, ancestors, licence and credit come along, and it can be measured again there.
       </p>
       <pre class="command" tabIndex={0}>
         {command}

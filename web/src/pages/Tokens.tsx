@@ -62,10 +62,7 @@ function NewToken({ onMade }: { onMade: (made: TokenMade) => void }) {
       </label>
       <label>
         May
-        <select
-          value={scope}
-          onChange={({ currentTarget }) => setScope(currentTarget.value as TokenScope)}
-        >
+        <select value={scope} onChange={({ currentTarget }) => setScope(currentTarget.value as TokenScope)}>
           <option value="read">look (read)</option>
           <option value="write">look and make (write)</option>
           <option value="admin">everything (admin)</option>
@@ -98,8 +95,7 @@ function Secret({ made, onDone }: { made: TokenMade; onDone: () => void }) {
   return (
     <div class="banner secret" role="status">
       <p>
-        The token of <strong>{made.name}</strong>. It is shown only now: keep it where passwords are
-        kept.
+        The token of <strong>{made.name}</strong>. It is shown only now: keep it where passwords are kept.
       </p>
       <code tabIndex={0}>{made.secret}</code>
       <span class="actions">

@@ -12,8 +12,8 @@ export function Welcome() {
   if (guided() || !first) return null;
   return (
     <p class="banner welcome">
-      New here? {first.demonstration ? "The demonstration" : "A run"} fills an archive with the best
-      swimmer of every kind. <a href={`/runs/${first.id}`}>Let it explain itself in a minute.</a>
+      New here? {first.demonstration ? "The demonstration" : "A run"} fills an archive with the best swimmer
+      of every kind. <a href={`/runs/${first.id}`}>Let it explain itself in a minute.</a>
     </p>
   );
 }

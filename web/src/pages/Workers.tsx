@@ -34,8 +34,8 @@ function Nobody() {
     <section class="empty card">
       <h2>No worker is alive</h2>
       <p>
-        Runs wait until somebody computes them. Start a worker with <code>make run</code>, or beside a
-        running server with <code>python -m worker.supervisor</code>.
+        Runs wait until somebody computes them. Start a worker with <code>make run</code>, or beside a running
+        server with <code>python -m worker.supervisor</code>.
       </p>
     </section>
   );

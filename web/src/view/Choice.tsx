@@ -1,8 +1,10 @@
 /** One of several words, which have a title each: from a list, or from a row of buttons. */
 
+type Choices<T extends string = string> = readonly (readonly [name: T, title: string])[];
+
 interface Props {
   title: string;
-  choices: readonly (readonly [name: string, title: string])[];
+  choices: Choices;
   value: string;
   onChange: (name: string) => void;
 }
@@ -12,19 +14,26 @@ export function Choice({ title, choices, value, onChange }: Props) {
     <label class="compact">
       {title}
       <select value={value} onChange={(event) => onChange(event.currentTarget.value)}>
-        {choices.map(([name, words]) => (
-          <option key={name} value={name}>
-            {words}
-          </option>
-        ))}
+        <Options of={choices} />
       </select>
     </label>
   );
 }
 
+/** What a list has to choose from. */
+export const Options = ({ of }: { of: Choices }) => (
+  <>
+    {of.map(([name, words]) => (
+      <option key={name} value={name}>
+        {words}
+      </option>
+    ))}
+  </>
+);
+
 interface SegmentsProps<T extends string> {
   label: string;
-  choices: readonly (readonly [name: T, title: string])[];
+  choices: Choices<T>;
   value: T;
   onChoose: (name: T) => void;
 }

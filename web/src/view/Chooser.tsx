@@ -52,8 +52,7 @@ export function Chooser({ experiments, chosen, preset, estimates, onExperiment, 
         ))}
         {chosen.presets.length === 0 && (
           <p class="quiet begins">
-            It begins at a creature: drop or open a creature file here, or press Refine on a
-            creature’s page.
+            It begins at a creature: drop or open a creature file here, or press Refine on a creature’s page.
           </p>
         )}
       </fieldset>

@@ -69,8 +69,7 @@ export function CostDetails({ estimate }: { estimate: Estimate }) {
     <section class="card cost-details" aria-labelledby="cost-title">
       <h2 id="cost-title">What it will cost</h2>
       <p>
-        <b>{words(about(estimate) ?? "Time")}</b>{" "}
-        <span class="quiet">{basis(estimate)}.</span>
+        <b>{words(about(estimate) ?? "Time")}</b> <span class="quiet">{basis(estimate)}.</span>
       </p>
       <p>
         <b>{bytes(memory_bytes)}</b>{" "}

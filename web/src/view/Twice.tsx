@@ -14,12 +14,7 @@ export function Twice({ verb, what, onDo }: Props) {
   const keep = () => setOpen(false);
   if (!open) {
     return (
-      <button
-        ref={button}
-        class="slim danger"
-        aria-label={`${verb} ${what}`}
-        onClick={() => setOpen(true)}
-      >
+      <button ref={button} class="slim danger" aria-label={`${verb} ${what}`} onClick={() => setOpen(true)}>
         {verb}
       </button>
     );

@@ -34,8 +34,14 @@ function distance([ax, ay]: number[], [bx, by]: number[]): number {
 
 /** Shifts by whole worlds in which some of the body is seen: the world is periodic. */
 export function tilesOf({ positions }: DrawnBody, width: number, height: number): [number, number][] {
-  const [left, right] = reach(positions.map(([x]) => x!), width);
-  const [low, high] = reach(positions.map(([, y]) => y!), height);
+  const [left, right] = reach(
+    positions.map(([x]) => x!),
+    width,
+  );
+  const [low, high] = reach(
+    positions.map(([, y]) => y!),
+    height,
+  );
   const tiles: [number, number][] = [];
   for (let i = left; i <= right; i++) {
     for (let j = low; j <= high; j++) tiles.push([i * width, j * height]);

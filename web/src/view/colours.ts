@@ -74,14 +74,8 @@ export function css([red, green, blue]: Rgb): string {
 }
 
 /** `colour(t)` for `count` values of t over [low, high], packed as canvas pixels (ABGR). */
-export function table(
-  colour: (t: number) => Rgb,
-  count: number,
-  [low, high]: [number, number],
-): Uint32Array {
-  return Uint32Array.from({ length: count }, (_, i) =>
-    pixel(colour(low + ((high - low) * i) / (count - 1))),
-  );
+export function table(colour: (t: number) => Rgb, count: number, [low, high]: [number, number]): Uint32Array {
+  return Uint32Array.from({ length: count }, (_, i) => pixel(colour(low + ((high - low) * i) / (count - 1))));
 }
 
 /** A colour as a canvas' image has it. */

@@ -78,10 +78,7 @@ interface Group {
 /** Under which heading a feature stands; others are about the swimming as a whole. */
 const GROUPS: [title: string, names: string[]][] = [
   ["Control", ["bending_effort", "stretching_effort", "power", "efficiency"]],
-  [
-    "Shape",
-    ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes"],
-  ],
+  ["Shape", ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes"]],
   ["Network", ["hidden_nodes", "connections"]],
   ["Flow", ["reynolds", "sperm", "mach", "limited", "impulse"]],
 ];

@@ -49,7 +49,9 @@ export function useArchiveView(
   const elites = useMemo(() => (at !== null && walk ? walk(at) : live), [at, walk, live]);
   // Axes follow what is there now: they must not move while the past is played.
   const axes = useMemo(() => axesOf([x, y], archive, live, features), [x, y, archive, live, features]);
-  const asked = hiddenAxes(archive, x, y).map(({ name }) => query.get(`only.${name}`)).join();
+  const asked = hiddenAxes(archive, x, y)
+    .map(({ name }) => query.get(`only.${name}`))
+    .join();
   const slices = useMemo(
     () => hiddenAxes(archive, x, y).map(({ name }) => sliceOf(axisOf(name, archive, live, features), query)),
     [x, y, archive, live, features, asked],

@@ -62,7 +62,10 @@ export function Beginning({ desk, work, experiments, file }: Props) {
 
 /** Whom the run begins from, with a way to them. */
 function Begins({ fork: { run, creature, cells, at, creatures } }: { fork: Forking }) {
-  const then = new URLSearchParams({ ...(cells && { cells: written(cells) }), ...(at !== null && { at: String(at) }) });
+  const then = new URLSearchParams({
+    ...(cells && { cells: written(cells) }),
+    ...(at !== null && { at: String(at) }),
+  });
   const place = creature ? `/creatures/${creature}${run ? `?run=${run}` : ""}` : `/runs/${run}?${then}`;
   const which = creature ? ` ${short(creature)}` : "";
   return (

@@ -137,8 +137,7 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
   );
 }
 
-const startOf = (runs: number) =>
-  runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`;
+const startOf = (runs: number) => (runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`);
 
 /** What a refused sweep says of the spec itself stands beside its fields. */
 const ofSpec = (errors: readonly FieldError[]): FieldError[] =>

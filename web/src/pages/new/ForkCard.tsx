@@ -15,8 +15,8 @@ export function ForkCard({ name, errors, onName }: Props) {
     <section class="card sweep-card" aria-labelledby="fork-title">
       <h2 id="fork-title">Fork</h2>
       <p class="help">
-        The creatures are evaluated first, as they are, in this spec’s world, body and task; all
-        others come of them.
+        The creatures are evaluated first, as they are, in this spec’s world, body and task; all others come
+        of them.
       </p>
       {name !== null && (
         <div class="sweep-entries">

@@ -25,8 +25,8 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
     <section class="card sweep-card" aria-labelledby="sweep-title">
       <h2 id="sweep-title">Seeds and sweep</h2>
       <p class="help">
-        Several runs at once: the same spec with other seeds, or with other values of any fields. They
-        are summed up on one page, with median and spread.
+        Several runs at once: the same spec with other seeds, or with other values of any fields. They are
+        summed up on one page, with median and spread.
       </p>
       <div class="sweep-entries">
         {seeded && (

@@ -56,7 +56,10 @@ export function usePresetCosts({ presets }: Experiment): ReadonlyMap<Preset, Est
       setKnown((old) => new Map(old).set(preset, estimate));
     for (const preset of presets.filter((one) => !known.has(one))) {
       // Without an answer a preset shows no cost; the spec's own estimate tells what is wrong.
-      api.estimateRun(preset.spec).then((estimate) => learn(preset, estimate), () => {});
+      api.estimateRun(preset.spec).then(
+        (estimate) => learn(preset, estimate),
+        () => {},
+      );
     }
   }, [presets]);
   return known;

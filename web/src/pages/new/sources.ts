@@ -70,7 +70,7 @@ async function forkOf(
 
 /** The elites that live in some cells, or in all, or lived there after a generation. */
 async function elitesOf(run: string, cells: string | null, at: number | null): Promise<Forking> {
-  const { cell, creature, generation } = await api.readArchive(run, [], at ?? undefined);
+  const { cell, creature, generation } = await api.readArchive(run, [], { generation: at ?? undefined });
   const chosen = cells === null ? () => true : among(cells);
   const places = [...cell.keys()].filter((i) => chosen(cell[i]!));
   if (places.length === 0) throw new Error("nobody lives there to begin from.");

@@ -38,10 +38,7 @@ export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk
   const [revision, setRevision] = useState(0);
   const [problem, setProblem] = useState<string | null>(null);
   const shown = useRef(work ? String(wanted) : null);
-  const changed = useMemo(
-    () => (work ? new Set(changedPaths(work.spec, work.base.spec)) : NONE),
-    [work],
-  );
+  const changed = useMemo(() => (work ? new Set(changedPaths(work.spec, work.base.spec)) : NONE), [work]);
   const put = (next: Work) => {
     const address = addressOf(next.base);
     shown.current = String(address);

@@ -155,9 +155,7 @@ export function Members({ cases }: { cases: Shown[] }) {
                     {count(member.generation)} / {count(member.generations)}
                   </td>
                   {figures.map((figure) => (
-                    <td key={figure}>
-                      {writerOf(figure)(summary.finals[figure]?.values[i] ?? null)}
-                    </td>
+                    <td key={figure}>{writerOf(figure)(summary.finals[figure]?.values[i] ?? null)}</td>
                   ))}
                 </tr>
               )),

@@ -143,7 +143,10 @@ export function binByKey(key: Direction, from: number | null, tiles: Tiles, layo
 
 /** The outline of the bin that is looked at, above the picture. */
 function Mark({ layout, bin }: { layout: Layout; bin: number }) {
-  const points = layout.outline(bin).map((spot) => spot.join()).join(" ");
+  const points = layout
+    .outline(bin)
+    .map((spot) => spot.join())
+    .join(" ");
   return (
     <svg class="map-mark" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
       <polygon class="around" points={points} />

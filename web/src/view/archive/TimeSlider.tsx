@@ -66,9 +66,7 @@ export function TimeSlider({ last, at, ready, onMove }: Props) {
         disabled={last === 0}
         onInput={(event) => scrub(event.currentTarget.valueAsNumber)}
       />
-      <output class="moment">
-        {at !== null && !ready ? "Loading …" : `generation ${count(shown)}`}
-      </output>
+      <output class="moment">{at !== null && !ready ? "Loading …" : `generation ${count(shown)}`}</output>
       <button class="small-button" disabled={at === null} onClick={() => scrub(last)}>
         Newest
       </button>

@@ -58,12 +58,7 @@ export function measureOf(name: string, archive: Archive, features: Features): M
   return { ...told, valueOf: ({ creature }) => column?.get(creature) ?? null };
 }
 
-export function axisOf(
-  name: string,
-  archive: Archive,
-  elites: Elites,
-  features: Features,
-): MapAxis {
+export function axisOf(name: string, archive: Archive, elites: Elites, features: Features): MapAxis {
   const measure = measureOf(name, archive, features);
   const own = archive.axes.findIndex((axis) => axis.name === name);
   if (own >= 0) {

@@ -23,14 +23,23 @@ export function gridLayout(shape: Shape): Layout {
     },
     outline: (bin) => {
       const { x, y, w, h } = rectangle(bin, shape, 1, 1);
-      return [[x, y], [x + w, y], [x + w, y + h], [x, y + h]];
+      return [
+        [x, y],
+        [x + w, y],
+        [x + w, y + h],
+        [x, y + h],
+      ];
     },
   };
 }
 
 /** The cells around points, as far as the map goes. */
 export function voronoiLayout(points: Spot[], tessellate: typeof Delaunay): Layout {
-  const delaunay = tessellate.from(points, ([x]) => x, ([, y]) => y);
+  const delaunay = tessellate.from(
+    points,
+    ([x]) => x,
+    ([, y]) => y,
+  );
   const cells = delaunay.voronoi([0, 0, 1, 1]);
   let last = 0; // Where the search for the next place begins: most often nearby.
   return {

@@ -38,9 +38,7 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
   const drawn = width > 0;
   const { over, log } = look;
   const form = series
-    .map(({ name, colour, dots, dash, faint, edge }) =>
-      [name, colour, dots, dash, faint, edge].join(" "),
-    )
+    .map(({ name, colour, dots, dash, faint, edge }) => [name, colour, dots, dash, faint, edge].join(" "))
     .join();
   const table = useMemo(() => tableOf(series, x, log), [x, log, ...series.flatMap(partsOf)]);
   const changed = [drawn, theme, form, over, log, write];

@@ -53,11 +53,7 @@ export function dressed(
 }
 
 /** Plots of several runs of which none is the first. */
-export function overlaid(
-  plotsOf: (curves: Curves) => Plot[],
-  runs: readonly Other[],
-  look: Look,
-): Plot[] {
+export function overlaid(plotsOf: (curves: Curves) => Plot[], runs: readonly Other[], look: Look): Plot[] {
   const plots = runs.map((run) => besideOf(plotsOf, run, look));
   return plotsOf(NO_CURVES).map((plot) => ({ ...plot, series: alike(plot, plots) }));
 }
@@ -91,7 +87,10 @@ function inOneColour(series: Series, k: number): Series {
 function faded(series: Series, curves: Curves, { smooth }: Look): Series[] {
   if (smooth === 1 || series.dots) return [series];
   const mean = smoothed(series, curves.generation, smooth);
-  return [{ ...series, faint: true }, { ...series, y: mean }];
+  return [
+    { ...series, faint: true },
+    { ...series, y: mean },
+  ];
 }
 
 const smoothed = ({ y, dots }: Series, generation: readonly number[], window: number) =>

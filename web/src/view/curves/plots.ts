@@ -117,8 +117,7 @@ function one({ summary }: Curves, name: string, colour: string, dots: boolean): 
 
 /** The first generation has the compiling in it, beside which the others would be nothing. */
 function withoutFirst(curves: Curves): Curves {
-  const later = (column: Column) =>
-    column.map((value, i) => (curves.generation[i]! > 1 ? value : null));
+  const later = (column: Column) => column.map((value, i) => (curves.generation[i]! > 1 ? value : null));
   const columns = Object.entries(curves.summary).map(([name, column]) => [name, later(column)]);
   return { ...curves, summary: Object.fromEntries(columns) };
 }

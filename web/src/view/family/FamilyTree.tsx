@@ -18,7 +18,13 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
   const known = tree.kin.map(({ relative }) => relative.fitness ?? 0);
   const most = Math.max(1e-12, ...known.map(Math.abs));
   return (
-    <div class="scroll" tabIndex={0} role="group" aria-label="Family tree" ref={(box) => void box?.scrollTo(box.scrollWidth, 0)}>
+    <div
+      class="scroll"
+      tabIndex={0}
+      role="group"
+      aria-label="Family tree"
+      ref={(box) => void box?.scrollTo(box.scrollWidth, 0)}
+    >
       <div class="family" style={px({ width: tree.width, height: tree.height + HEAD })}>
         <svg width={tree.width} height={tree.height + HEAD} aria-hidden="true">
           {tree.lines.map(([parent, child]) => (
@@ -32,8 +38,15 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
         ))}
         <ul>
           {tree.kin.map(({ relative, x, y }) => (
-            <li key={relative.creature} style={px({ left: x, top: HEAD + y - TALL / 2, width: WIDE, height: TALL })}>
-              <Name {...{ relative, most }} own={relative.creature === self} href={hrefOf(relative.creature)} />
+            <li
+              key={relative.creature}
+              style={px({ left: x, top: HEAD + y - TALL / 2, width: WIDE, height: TALL })}
+            >
+              <Name
+                {...{ relative, most }}
+                own={relative.creature === self}
+                href={hrefOf(relative.creature)}
+              />
             </li>
           ))}
         </ul>
@@ -70,9 +83,24 @@ function Name({ relative, most, own, href }: NameProps) {
       )}
     </>
   );
-  if (own) return <span class="family-name own" title={title}>{inside}</span>;
-  if (!kept) return <span class="family-name lost" title={title}>{inside}</span>;
-  if (href === null) return <span class="family-name" title={title}>{inside}</span>;
+  if (own)
+    return (
+      <span class="family-name own" title={title}>
+        {inside}
+      </span>
+    );
+  if (!kept)
+    return (
+      <span class="family-name lost" title={title}>
+        {inside}
+      </span>
+    );
+  if (href === null)
+    return (
+      <span class="family-name" title={title}>
+        {inside}
+      </span>
+    );
   return (
     <a class="family-name" href={href} title={title} aria-label={title}>
       {inside}

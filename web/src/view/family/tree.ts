@@ -19,8 +19,9 @@ export interface Tree {
   hidden: number;
 }
 
-export const [WIDE, HIGH] = [94, 34];
-const GAP = 28;
+/** Parents, oneself and children fit on a phone. */
+export const [WIDE, HIGH] = [92, 34];
+const GAP = 20;
 /** Children, or ancestors of one generation, that are drawn. */
 const MOST = 8;
 

@@ -39,8 +39,8 @@ export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
     <section class="card json-view">
       <label for="spec-json">The spec as JSON</label>
       <p id="spec-json-about" class="help">
-        Change it here, or replace it by a spec, a run as the API gives it, or a creature file. What
-        is left out has its default.
+        Change it here, or replace it by a spec, a run as the API gives it, or a creature file. What is left
+        out has its default.
       </p>
       <textarea
         id="spec-json"

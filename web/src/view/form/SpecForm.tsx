@@ -176,11 +176,7 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
         </Part>
       ))}
       {items.length < rows.most && (
-        <button
-          type="button"
-          class="plain"
-          onClick={() => state.change(rows.path, [...items, rows.fresh])}
-        >
+        <button type="button" class="plain" onClick={() => state.change(rows.path, [...items, rows.fresh])}>
           Add to {lower(rows.title)}
         </button>
       )}

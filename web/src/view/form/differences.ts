@@ -34,7 +34,6 @@ export function countWithin(paths: Iterable<string>, part: string): number {
 /** The preset that a spec equals, its seed aside. */
 export function equalPreset(spec: Spec, experiments: Experiment[]): Preset | null {
   const own = experiments.find(({ experiment }) => experiment === spec.experiment);
-  const same = (preset: Preset) =>
-    changedPaths(spec, preset.spec).every((path) => path === "seed");
+  const same = (preset: Preset) => changedPaths(spec, preset.spec).every((path) => path === "seed");
   return own?.presets.find(same) ?? null;
 }

@@ -18,9 +18,7 @@ export function withValue(document: Json, path: string, value: Json): Json {
   if (path === "") return value;
   const [key, ...rest] = path.split(".") as [string, ...string[]];
   if (Array.isArray(document)) {
-    return document.map((item, i) =>
-      String(i) === key ? withValue(item, rest.join("."), value) : item,
-    );
+    return document.map((item, i) => (String(i) === key ? withValue(item, rest.join("."), value) : item));
   }
   const parts = (document ?? {}) as Spec;
   return { ...parts, [key]: withValue(parts[key] ?? null, rest.join("."), value) };
@@ -53,11 +51,7 @@ export function complaint(field: NumberField, value: Json): string | null {
  * Messages by the path of what shows them: the field that is named, else what is around it.
  * `descriptors[0].low` and `descriptors.0.low` are the same place.
  */
-export function messagesByPath(
-  errors: FieldError[],
-  form: Section,
-  document: Json,
-): Map<string, string[]> {
+export function messagesByPath(errors: FieldError[], form: Section, document: Json): Map<string, string[]> {
   const shown = new Set(placesOf(form, document));
   const messages = new Map<string, string[]>();
   for (const { field, message } of errors) {

@@ -151,13 +151,7 @@ function followingOf(schema: Schema, root: Schema): string[] {
     .map(([key]) => key);
 }
 
-function fieldOf(
-  property: Schema,
-  root: Schema,
-  key: string,
-  path: string,
-  follows: boolean,
-): Field {
+function fieldOf(property: Schema, root: Schema, key: string, path: string, follows: boolean): Field {
   const schema = resolve(property, root);
   const inner = notNull(schema, root);
   const nullable = inner !== schema || follows;
@@ -180,11 +174,14 @@ function fieldOf(
       return { ...common, kind: "flag" };
     case "integer":
     case "number":
-      return numberOf({ ...inner, ...unitsBy(schema) }, {
-        ...common,
-        nullable,
-        unit: text(schema.unit ?? inner.unit),
-      });
+      return numberOf(
+        { ...inner, ...unitsBy(schema) },
+        {
+          ...common,
+          nullable,
+          unit: text(schema.unit ?? inner.unit),
+        },
+      );
     default:
       return { ...common, kind: "text" };
   }

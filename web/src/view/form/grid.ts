@@ -60,7 +60,14 @@ function listOf(text: string): Json[] | null {
   }
 }
 
-const FLAGS: Record<string, boolean> = { true: true, on: true, yes: true, false: false, off: false, no: false };
+const FLAGS: Record<string, boolean> = {
+  true: true,
+  on: true,
+  yes: true,
+  false: false,
+  off: false,
+  no: false,
+};
 const NOTHING = ["null", "none", "auto"];
 
 function valueOf(field: Leaf, word: string): Json {

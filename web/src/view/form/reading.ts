@@ -73,7 +73,9 @@ export function specOf(creature: Creature): Spec {
     control,
     ...(room && { genome: room }),
     task,
-    ...((NUMBERS.includes(genome.encoding) || isOwn(genome.encoding)) && { search: { emitters: [{ operator: "iso+line" }] } }),
+    ...((NUMBERS.includes(genome.encoding) || isOwn(genome.encoding)) && {
+      search: { emitters: [{ operator: "iso+line" }] },
+    }),
   };
 }
 

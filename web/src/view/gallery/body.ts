@@ -54,8 +54,7 @@ export function traceBody(
   const after = Math.min(frames - 1, before + 1);
   const t = time - before;
   const scale = (0.42 * side) / reach;
-  const place = (values: Float32Array, a: number, b: number) =>
-    (1 - t) * values[a]! + t * values[b]!;
+  const place = (values: Float32Array, a: number, b: number) => (1 - t) * values[a]! + t * values[b]!;
   const x0 = left + side / 2 - scale * place(middles, 2 * before, 2 * after);
   const y0 = top + side / 2 + scale * place(middles, 2 * before + 1, 2 * after + 1);
   context.beginPath();

@@ -13,12 +13,7 @@ export function GeneStrip({ values }: { values: Float32Array }) {
   const summary = `${count(values.length)} genes, mean size ${number(size)}`;
   return (
     <figure class="genes">
-      <svg
-        viewBox={`0 -1 ${bars.length} 2`}
-        preserveAspectRatio="none"
-        role="img"
-        aria-label={summary}
-      >
+      <svg viewBox={`0 -1 ${bars.length} 2`} preserveAspectRatio="none" role="img" aria-label={summary}>
         <path class="positive" d={pathOf(bars, (value) => Math.max(0, value))} />
         <path class="negative" d={pathOf(bars, (value) => Math.min(0, value))} />
         <path class="zero" d={`M0,0H${bars.length}`} />

@@ -49,7 +49,10 @@ export function layoutOf({ neurons, links, depth }: Network): Layout {
     .map(({ source, target }) => ({ source: byId.get(source)!, target: byId.get(target)! }));
   forceSimulation(spots)
     .force("link", forceLink(springs).distance(pitch).strength(0.05))
-    .force("column", forceX<Spot>((spot) => pitch * spot.neuron.depth))
+    .force(
+      "column",
+      forceX<Spot>((spot) => pitch * spot.neuron.depth),
+    )
     .force("middle", forceY<Spot>(height / 2).strength(0.02))
     .force("apart", forceCollide(ROW / 2))
     .stop()

@@ -57,9 +57,7 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
   };
   const spot = ({ x: at, y: value }: Point, k: number): [number, number] => [
     room.left + place(x.scale, at) * (room.right - room.left),
-    value === null
-      ? room.top + 10 + 12 * k
-      : room.bottom - place(y.scale, value) * (room.bottom - room.top),
+    value === null ? room.top + 10 + 12 * k : room.bottom - place(y.scale, value) * (room.bottom - room.top),
   ];
   const drawn = lines.map((line, k) => ({ line, spots: line.points.map((p) => spot(p, k)) }));
   const look = lit ?? lines.find(({ points }) => points.includes(near!))?.name ?? null;
@@ -147,11 +145,7 @@ function Legend({ lines, of, onLight }: LegendProps) {
   return (
     <figcaption class="xy-legend">
       {lines.map((line) => (
-        <span
-          key={line.name}
-          onPointerEnter={() => onLight(line.name)}
-          onPointerLeave={() => onLight(null)}
-        >
+        <span key={line.name} onPointerEnter={() => onLight(line.name)} onPointerLeave={() => onLight(null)}>
           <svg viewBox="0 0 26 10" aria-hidden="true">
             <path
               d="M1 5h24"

@@ -71,11 +71,7 @@ interface CheckProps {
 function Check({ label, checked, onChange }: CheckProps) {
   return (
     <label class="compact">
-      <input
-        type="checkbox"
-        checked={checked}
-        onChange={(event) => onChange(event.currentTarget.checked)}
-      />
+      <input type="checkbox" checked={checked} onChange={(event) => onChange(event.currentTarget.checked)} />
       {label}
     </label>
   );

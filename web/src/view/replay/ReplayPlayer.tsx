@@ -44,7 +44,11 @@ export function ReplayPlayer({ films, ...given }: Props) {
   const names = useMemo(() => fieldsOf(films.map(({ replay }) => replay)), [films]);
   const name = names.includes(look.field!) ? look.field! : names[0]!;
   const field = useMemo(() => {
-    return fieldOf(name, films.map(({ replay }) => replay), theme);
+    return fieldOf(
+      name,
+      films.map(({ replay }) => replay),
+      theme,
+    );
   }, [films, name, theme]);
   useClock(moment.playing, (seconds) => {
     moment.move((moment.time + (seconds * look.speed * PACE) / every) % Math.max(1, last));

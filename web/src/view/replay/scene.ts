@@ -60,9 +60,7 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
 function tiles(mean: Point, camera: Point, [width, height]: [number, number]): Point[] {
   const i = Math.round((camera[0] - mean[0]) / width);
   const j = Math.round((camera[1] - mean[1]) / height);
-  return [-1, 0, 1].flatMap((di) =>
-    [-1, 0, 1].map((dj): Point => [(i + di) * width, (j + dj) * height]),
-  );
+  return [-1, 0, 1].flatMap((di) => [-1, 0, 1].map((dj): Point => [(i + di) * width, (j + dj) * height]));
 }
 
 function drawGrid(

@@ -50,7 +50,9 @@ const finished = (row: ResultRow) => row.status === "ok" && measure(row, "displa
 const doubtful = (row: ResultRow) => Number(row.limited) > 0 || Boolean(row.warnings);
 
 function doubtsOf(row: ResultRow): string[] {
-  const said = String(row.warnings ?? "").split("; ").filter(Boolean);
+  const said = String(row.warnings ?? "")
+    .split("; ")
+    .filter(Boolean);
   if (said.length > 0 || !doubtful(row)) return said;
   return [`limited in ${percent(Number(row.limited))} of node steps`];
 }

@@ -72,9 +72,7 @@ export function Tags({ run, name, fixed, known, onPick, onAdd, onRemove }: TagsP
           )}
         </span>
       ))}
-      {open && (
-        <InPlace label={`New tag of ${name}`} value="" limit={50} list={known} onDone={done} />
-      )}
+      {open && <InPlace label={`New tag of ${name}`} value="" limit={50} list={known} onDone={done} />}
       {!open && !fixed && run.tags.length < TAGS && (
         <button
           ref={button}
@@ -107,9 +105,7 @@ export function Note({ run, name, fixed, onNote, onRemove }: NoteProps) {
   };
   if (fixed) return run.note ? <span class="note quiet small">{run.note}</span> : null;
   if (open) {
-    return (
-      <InPlace label={`Note on ${name}`} value={run.note ?? ""} limit={10_000} long onDone={done} />
-    );
+    return <InPlace label={`Note on ${name}`} value={run.note ?? ""} limit={10_000} long onDone={done} />;
   }
   return (
     <button

@@ -48,8 +48,7 @@ export const ALL = { q: null, status: null, experiment: null, tag: null, sweep: 
 export const ALONE = "none";
 const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
 
-const listOf = (address: URLSearchParams, key: string) =>
-  (address.get(key) ?? "").split(",").filter(Boolean);
+const listOf = (address: URLSearchParams, key: string) => (address.get(key) ?? "").split(",").filter(Boolean);
 
 /** Whether anything is left out. */
 export const isFiltered = ({ sort: _, deleted: __, ...filters }: RunQuery) => Object.keys(filters).length > 0;

@@ -116,7 +116,10 @@ function readingOf(stack: Stack, { i, height }: Place): { number: number | null;
   const found = height === null ? null : speciesAt(stack, i, height);
   if (found) {
     const [number, size] = found;
-    return { number, text: `${when}: species ${number}, ${count(size)} members, of ${living.length} species` };
+    return {
+      number,
+      text: `${when}: species ${number}, ${count(size)} members, of ${living.length} species`,
+    };
   }
   const sizes = living
     .map(({ number, from, to }): [number, number] => [number, to[i]! - from[i]!])

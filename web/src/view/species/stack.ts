@@ -57,5 +57,4 @@ export function lifeOf({ from, to }: Pick<Area, "from" | "to">): [first: number,
   return [Math.max(0, alive.indexOf(true) - 1), Math.min(to.length - 1, alive.lastIndexOf(true) + 1)];
 }
 
-const range = (first: number, last: number) =>
-  Array.from({ length: last - first + 1 }, (_, k) => first + k);
+const range = (first: number, last: number) => Array.from({ length: last - first + 1 }, (_, k) => first + k);

@@ -55,9 +55,7 @@ export function sectionsOf(spec: Spec, changed: readonly Difference[]): Section[
 
 /** `descriptors.0.bins` as `Descriptors 1, bins`. */
 export function nameOf(parts: readonly string[]): string {
-  const text = parts
-    .map((part) => (/^\d+$/.test(part) ? ` ${Number(part) + 1}` : `, ${part}`))
-    .join("");
+  const text = parts.map((part) => (/^\d+$/.test(part) ? ` ${Number(part) + 1}` : `, ${part}`)).join("");
   return words(text.replace(/^, /, "").trim());
 }
 
