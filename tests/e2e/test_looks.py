@@ -1,5 +1,6 @@
 """On every page nothing is cut off or drawn over something else, and axe finds nothing."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -26,9 +27,8 @@ def test_every_page_fits_its_window_and_axe_finds_nothing(
         assert visit(shared_page, address, place), f"there is no page at {place.path}"
         wrong += [f"{place.name}, {said}" for said in complaints_of(shared_page)]
     assert wrong == []
-    nothing = [said for said in complaints if "status of 404" in said]
-    assert len(nothing) <= 2, "of the address where nothing was shared: its page, its share"
-    complaints[:] = [said for said in complaints if said not in nothing]
+    # Where nothing was shared, 404 is the page's status and the share's.
+    complaints[:] = [said for said in complaints if not re.search("404.*/nothing$", said)]
 
 
 def every_place(shared: Any, idle: Any) -> Iterator[tuple[str, Place]]:
