@@ -6,9 +6,23 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 from small import CENTROIDS
+from written import Written
 
 FAST, SLOW = 10_000, 120_000
 GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
+
+FLASH_MS = 1200
+WHERE_DRAWN_DIFFERENTLY = """before => {
+  const canvas = document.querySelector(".map-plot canvas");
+  const {width, height} = canvas;
+  const copy = new OffscreenCanvas(width, height).getContext("2d");
+  copy.drawImage(canvas, 0, 0);
+  const {data} = copy.getImageData(0, 0, width, height);
+  const drawn = Array.from(new Uint32Array(data.buffer));
+  const apart = drawn.flatMap((pixel, k) => before && pixel !== before[k] ? [k] : []);
+  return {drawn, apart: apart.map(k => [(k % width) / width, Math.floor(k / width) / height])};
+}"""
+"""The pixels of the map, and where it looks otherwise than before, as shares of its sides."""
 
 CHANGED = "before => before !== document.querySelector('[data-gallery] canvas').toDataURL()"
 
@@ -124,6 +138,54 @@ def test_the_gallery_moves_and_is_walked_by_keys(shared_page: Page, searched: st
     sha = page.locator("#map-reading code").inner_text()
     page.keyboard.press("Enter")
     page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
+
+
+@pytest.mark.parametrize("motion", ["no-preference", "reduce"])
+def test_a_cell_that_changes_live_flashes_once(idle_page: Page, idle, motion: str):
+    """Its outline, and nothing else; not for whom movement disturbs."""
+    page, run = idle_page, Written(idle.services, seed=41)
+    run.begin("worker 1")
+    run.go_on(1, 3)
+    page.add_init_script(GUIDED)
+    page.emulate_media(reduced_motion=motion)
+    page.clock.install()
+    page.goto(f"{idle.product.url}/runs/{run.id}")
+    elites = page.get_by_text(re.compile(r"^\d+ elites$"))
+    expect(elites).to_have_text("3 elites", timeout=FAST)
+    page.clock.run_for(2 * FLASH_MS)
+    page.clock.pause_at(page.evaluate("Date.now() + 10"))
+    run.go_on(4, 4)
+    expect(elites).to_have_text("4 elites", timeout=FAST)
+    page.clock.run_for(FLASH_MS // 4)
+    drawn = page.evaluate(WHERE_DRAWN_DIFFERENTLY)["drawn"]
+    page.clock.run_for(FLASH_MS)
+    flashed = page.evaluate(WHERE_DRAWN_DIFFERENTLY, drawn)["apart"]
+    if motion == "reduce":
+        assert flashed == []
+        return
+    assert flashed
+    the_map(page).press("ArrowRight")  # To the best one, who has just come.
+    left, top, right, bottom = box_of(corners_of_the_marked(page))
+    pixel = 0.005
+    assert box_of(flashed) == pytest.approx((left, top, right, bottom), abs=pixel)
+    inside = [
+        at
+        for at in flashed
+        if left + pixel < at[0] < right - pixel and top + pixel < at[1] < bottom - pixel
+    ]
+    assert inside == [], "its colour is to be seen all the while"
+
+
+def corners_of_the_marked(page: Page) -> list[list[float]]:
+    """Of the cell that is marked, as shares of the map's sides."""
+    points = page.locator(".map-mark polygon").first.get_attribute("points", timeout=FAST)
+    assert points
+    return [[float(share) for share in corner.split(",")] for corner in points.split()]
+
+
+def box_of(points: list[list[float]]) -> tuple[float, float, float, float]:
+    xs, ys = zip(*points, strict=True)
+    return min(xs), min(ys), max(xs), max(ys)
 
 
 def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, shared_page: Page):
