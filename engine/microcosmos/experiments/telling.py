@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from .. import search
-from ..search.emitters.population import Population
 from .state import ENDS, Plan, State
 
 
@@ -38,9 +37,7 @@ def _divergences(status: np.ndarray) -> dict[str, int]:
 def _species(state: State) -> dict[str, str]:
     """Members of each species, by its number, where a population of its own is divided."""
     for kept in state.emitters:
-        if isinstance(kept, Population):
-            alive = np.asarray(kept.species.alive)
-            rows = (np.asarray(kept.species.number), np.asarray(kept.species.members))
-            pairs = zip(*(row[alive].tolist() for row in rows), strict=True)
+        if isinstance(kept, search.emitters.Divided):
+            pairs = kept.sizes().items()
             return {"species": " ".join(f"{number}:{members}" for number, members in pairs)}
     return {}

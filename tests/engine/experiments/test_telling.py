@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from microcosmos.build import build
+from microcosmos.search import tensorneat
 from microcosmos.spec import parse
 
 POPULATION = {
@@ -65,6 +67,24 @@ def test_every_member_of_a_generation_is_in_one_of_the_species_that_are_told(pop
         assert sum(told.values()) == 24
         of = np.asarray(species.number)[np.asarray(species.of)]
         assert told == {int(number): int((of == number).sum()) for number in np.unique(of)}
+
+
+@pytest.mark.skipif(
+    not tensorneat.available(), reason="tensorneat is not installed: make tensorneat"
+)
+@pytest.mark.filterwarnings("ignore")
+def test_species_of_tensorneat_are_told_of_the_generation_that_was_measured(carry_out):
+    """As its own table of species counts them."""
+    backend = {"backend": "tensorneat", "preset": "tensorneat", "threshold": 0.3}
+    with jax.numpy_rank_promotion("allow"):
+        states, reports = carry_out(build(parse(POPULATION | {"neat": backend})))
+    assert sizes(reports[0]) == {0: 24}, "at first there is one"
+    for state, report in zip(states[1:], reports, strict=True):
+        arrays = state.emitters[0].arrays
+        table = zip(arrays["species.species_keys"], arrays["species.member_count"], strict=True)
+        assert sizes(report) == {int(key): int(count) for key, count in table if count > 0}
+        assert sum(sizes(report).values()) == 24
+    assert max(len(sizes(report)) for report in reports) > 1
 
 
 def test_a_population_taken_up_again_tells_the_same_species(population):

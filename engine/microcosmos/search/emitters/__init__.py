@@ -4,7 +4,7 @@ from . import population
 from .cma_mae import CmaMae
 from .cma_mega import CmaMega
 from .elites import newcomers
-from .emitter import NO_PARENT, OPERATORS, Children, Emitter, Outcome, emit, tell
+from .emitter import NO_PARENT, OPERATORS, Children, Divided, Emitter, Outcome, emit, tell
 from .lamarckian import Lamarckian
 from .learner import Learner, Slopes
 from .neat import Neat
@@ -17,6 +17,7 @@ __all__ = [
     "Children",
     "CmaMae",
     "CmaMega",
+    "Divided",
     "Emitter",
     "IsoLine",
     "Lamarckian",

@@ -66,6 +66,15 @@ class Outcome(eqx.Module):
 
 
 @runtime_checkable
+class Divided(Protocol):
+    """What an emitter keeps, where that is a population divided into species."""
+
+    def sizes(self) -> dict[int, int]:
+        """Members of each species of the last children, by its number."""
+        ...
+
+
+@runtime_checkable
 class Emitter(Protocol):
     """A source of children in a fixed number of slots; its state is arrays."""
 

@@ -29,6 +29,12 @@ class Population(eqx.Module):
     age: Int[Array, ""]
     """Generations that were emitted."""
 
+    def sizes(self) -> dict[int, int]:
+        """Members of each living species, by its number."""
+        alive = np.asarray(self.species.alive)
+        rows = (np.asarray(self.species.number), np.asarray(self.species.members))
+        return dict(zip(*(row[alive].tolist() for row in rows), strict=True))
+
 
 @dataclass(frozen=True)
 class Neat:
