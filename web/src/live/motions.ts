@@ -8,7 +8,7 @@ import { poll } from "./polling";
 /** The renderer makes one replay after another: a hovered cell waits behind these, not a wall. */
 const AT_ONCE = 8;
 /** So many that are not seen any more are kept: who scrolls back finds them. */
-const SPARE = 200;
+const SPARE = 100;
 /** A wall that is scrolled asks for nothing until it rests. */
 const REST_MS = 150;
 
