@@ -54,7 +54,7 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
 
 
 def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | None) -> RunRead:
-    generations, evaluations = _rates(curve)
+    generations, evaluations = _rates(run, curve)
     left = max(0, run.generations - run.generation)
     columns = {column.key: getattr(run, column.key) for column in Run.__table__.columns}
     columns |= {"error": run.error if run.status == FAILED else None, "owner": owner}
@@ -85,18 +85,18 @@ def progress(run: Run) -> float:
     return 1.0 if run.status == FINISHED else min(1.0, run.generation / run.generations)
 
 
-def _rates(curve: list[Generation]) -> tuple[float | None, float | None]:
-    """Generations and evaluations a second between the last two points.
-
-    The first one had to compile.
+def _rates(run: Run, curve: list[Generation]) -> tuple[float | None, float | None]:
+    """Generations and evaluations a second: at present, and since the first generation for a
+    run that nobody carries out. The first one had to compile.
     """
     names = ("generation", "evaluations", "seconds")
-    first, last = ([getattr(row, name) for name in names] for row in _ends(curve))
+    first, last = ([getattr(row, name) for name in names] for row in _ends(run, curve))
     generations, evaluations, seconds = (b - a for a, b in zip(first, last, strict=True))
     return (generations / seconds, evaluations / seconds) if seconds > 0 else (None, None)
 
 
-def _ends(curve: list[Generation]) -> tuple[Generation, Generation]:
-    start = Generation(generation=0, evaluations=0, seconds=0.0)
-    before, last = [start, start, *curve][-2:]
-    return before, last
+def _ends(run: Run, curve: list[Generation]) -> tuple[Generation, Generation]:
+    begin = Generation(generation=0, evaluations=0, seconds=0.0)
+    if len(curve) < 2:
+        return begin, [begin, *curve][-1]
+    return curve[-2 if run.status == RUNNING else 0], curve[-1]

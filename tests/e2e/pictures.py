@@ -106,6 +106,7 @@ def photographed(page: Page, width: int, height: int) -> bytes:
     whole = page.evaluate("document.documentElement.scrollHeight")
     high = max(height, min(whole, AREA // width))
     page.set_viewport_size({"width": width, "height": high})
+    page.evaluate("scrollTo(0, 0)")  # A replay that was held still was scrolled to.
     page.wait_for_timeout(300)  # What is as large as the window allows has been drawn again.
     await_motions(page)
     png = page.screenshot()
@@ -122,9 +123,10 @@ def await_motions(page: Page) -> None:
 
 
 def save(png: bytes, name: str) -> None:
-    """Keep a picture in few colours, which these pages have."""
+    """Keep a picture in few colours, none of them far from its own, however few pixels it has."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
-    few = picture.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    method, still = Image.Quantize.MAXCOVERAGE, Image.Dither.NONE
+    few = picture.quantize(COLOURS, method=method, dither=still)
     few.save(FOLDER / f"{name}.png", optimize=True)
 
 

@@ -261,8 +261,8 @@ def test_what_the_state_forbids_is_a_conflict_that_says_why(api, services, run_i
 def test_progress_is_what_was_recorded(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
     attempt.use("a device")
-    for generation in range(1, 4):
-        attempt.record(report(generation), 2.0)
+    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
+        attempt.record(report(generation), seconds)
     run = api.get(f"runs/{run_id}").json()
     assert run["generation"] == 3
     assert run["progress"] == 3 / run["generations"]
@@ -271,6 +271,22 @@ def test_progress_is_what_was_recorded(api, services, run_id, report):
     assert run["eta_seconds"] == (run["generations"] - 3) * 16 / 8
     assert run["sparkline"] == [10, 20, 30]
     assert run["device"] == "a device"
+
+
+def test_of_a_run_that_is_done_the_rate_is_that_of_all_but_the_first_generation(
+    api, services, run_id, report
+):
+    attempt = claim(services, run_id, "worker")
+    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
+        attempt.record(report(generation), seconds)
+    attempt.finish()
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 32 / 8
+
+
+def test_a_single_generation_has_a_rate_with_its_compilation(api, services, run_id, report):
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
+    claim(services, run_id, "worker").record(report(1), 20.0)
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 16 / 20
 
 
 def test_curves_are_columns_of_all_or_some_generations(api, services, run_id, report):

@@ -5,10 +5,7 @@ import { setQuery } from "../router";
 import { Choice } from "../view/Choice";
 import { AXES, type Look, OVER, WINDOWS } from "../view/curves/look";
 
-const MEANS = WINDOWS.map((size): [string, string] => [
-  String(size),
-  size === 1 ? "none" : `mean of ${size} generations`,
-]);
+const MEANS = WINDOWS.map((size): [string, string] => [String(size), size === 1 ? "none" : `over ${size}`]);
 
 export function CurveChoices({ look: { over, smooth, log } }: { look: Look }) {
   return (

@@ -14,11 +14,11 @@ import { say } from "../live/saying";
 import { freedomOf } from "../view/coupling";
 import { Doing, doingOf } from "../view/Doing";
 import { endingOf } from "../view/ending";
-import { count, short, titleOf } from "../view/format";
+import { count, number, short, titleOf } from "../view/format";
 import { NotFree } from "../view/NotFree";
 import { NotThere } from "../view/NotThere";
 import { type Figure, figuresOf, generationsOf } from "../view/results/figures";
-import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
+import { Actions, Badge, Progress, timeOf } from "../view/RunBits";
 import { Name } from "../view/runs/Said";
 import { ArchiveRun } from "./ArchiveRun";
 import { Files } from "./Files";
@@ -194,7 +194,7 @@ function Banners({ run }: { run: Run }) {
 
 const searching = (run: Run): Figure[] => [
   ["Evaluations", count(run.evaluations)],
-  ["Evaluations/s", rateOf(run)],
+  ["Evaluations/s", number(run.evaluations_per_second)],
 ];
 
 function Standing({ run }: { run: Run }) {

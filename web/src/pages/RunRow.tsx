@@ -7,10 +7,10 @@ import { useLive } from "../live/live";
 import { addTag, removeNote, removeTag, say } from "../live/saying";
 import { setQuery } from "../router";
 import { freedomOf } from "../view/coupling";
-import { DASH, moment, short, titleOf } from "../view/format";
+import { DASH, moment, number, short, titleOf } from "../view/format";
 import { NotFree } from "../view/NotFree";
 import { keyFigureOf } from "../view/results/figures";
-import { Actions, Badge, Progress, rateOf, timeOf } from "../view/RunBits";
+import { Actions, Badge, Progress, timeOf } from "../view/RunBits";
 import { Name, Note, Tags } from "../view/runs/Said";
 import { Sparkline } from "../view/Sparkline";
 import { ON } from "./wishes";
@@ -88,7 +88,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         {time.text}
         {run.status === "running" && time.text !== DASH && <span class="quiet"> left</span>}
       </td>
-      <td data-label="Evaluations/s">{rateOf(run)}</td>
+      <td data-label="Evaluations/s">{number(run.evaluations_per_second)}</td>
       <td data-label="Result" class="with-spark">
         <span>
           {figure} <span class="quiet small">{figureName}</span>

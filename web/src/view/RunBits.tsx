@@ -1,7 +1,7 @@
 /** The small parts that say how a run is doing. */
 
 import type { Run } from "../api/types";
-import { DASH, duration, number } from "./format";
+import { DASH, duration } from "./format";
 
 const WISHES = { pause: "pausing", cancel: "cancelling" };
 
@@ -38,10 +38,6 @@ export function timeOf(run: Run): { label: string; text: string } {
   if (!run.started_at || !run.finished_at) return { label: "Time", text: DASH };
   const seconds = (Date.parse(run.finished_at) - Date.parse(run.started_at)) / 1000;
   return { label: "Took", text: duration(seconds) };
-}
-
-export function rateOf(run: Run): string {
-  return run.status === "running" ? number(run.evaluations_per_second) : DASH;
 }
 
 interface Wishes {

@@ -106,7 +106,7 @@ export function Gallery(props: Props) {
         />
       </label>
       <div class="gallery-frame">
-        <Rail class="gallery-y" by={-scroll[1]} length={wall[1]} upright>
+        <Rail class="gallery-y" by={-scroll[1]} length={wall[1]} shown={shown.height} upright>
           <Vertical axis={axes[1]} />
         </Rail>
         <div
@@ -130,7 +130,7 @@ export function Gallery(props: Props) {
           <canvas ref={canvas} style={{ width: `${shown.width}px`, height: `${shown.height}px` }} />
           <div style={{ width: `${wall[0]}px`, height: `${wall[1]}px` }} />
         </div>
-        <Rail class="gallery-x" by={-scroll[0]} length={wall[0]}>
+        <Rail class="gallery-x" by={-scroll[0]} length={wall[0]} shown={shown.width}>
           <Horizontal axis={axes[0]} />
         </Rail>
       </div>
@@ -152,18 +152,21 @@ interface RailProps {
   /** How far the wall is scrolled, in pixels. */
   by: number;
   length: number;
+  /** How much of it the window shows: its name stands in the middle of that. */
+  shown: number;
   upright?: boolean;
   children: ComponentChildren;
 }
 
 /** An axis that scrolls with the wall. */
-function Rail({ class: name, by, length, upright = false, children }: RailProps) {
+function Rail({ class: name, by, length, shown, upright = false, children }: RailProps) {
   const style = upright
     ? { height: `${length}px`, transform: `translateY(${by}px)` }
     : { width: `${length}px`, transform: `translateX(${by}px)` };
+  const middle = `${shown / 2 - by}px`;
   return (
     <div class={`rail ${name}`}>
-      <div style={style}>{children}</div>
+      <div style={{ ...style, "--middle": middle }}>{children}</div>
     </div>
   );
 }

@@ -1,8 +1,12 @@
 /** All figures of a run's result, in the order that one wants. */
 
+import { Fragment } from "preact";
 import type { ResultRow, Value } from "../../api/types";
 import { short } from "../format";
 import { type Column, type Order, columnsOf, sortRows } from "./columns";
+
+/** What is doubtful about a row. */
+const NOTE = "warnings";
 
 interface Props {
   rows: ResultRow[];
@@ -13,8 +17,8 @@ interface Props {
 
 export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
   const columns = columnsOf(rows);
-  // One form alone is named above the plot.
-  const shown = columns.filter(({ name }) => name !== "form" || several(rows, name));
+  // Warnings are sentences and have a line of their own; one form alone is named above the plot.
+  const shown = columns.filter(({ name }) => name !== NOTE && (name !== "form" || several(rows, name)));
   const watchable = rows.some((row) => row.creature !== null);
   return (
     <div class="scroll">
@@ -29,22 +33,31 @@ export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
         </thead>
         <tbody>
           {sortRows(rows, order).map((row, i) => (
-            <tr key={row.creature ?? i} class={rowClass(row)}>
-              {watchable && (
-                <td>
-                  {row.creature && (
-                    <a href={hrefOf(row.creature)}>
-                      <code>{short(row.creature)}</code>
-                    </a>
-                  )}
-                </td>
+            <Fragment key={row.creature ?? i}>
+              <tr class={rowClass(row)}>
+                {watchable && (
+                  <td>
+                    {row.creature && (
+                      <a href={hrefOf(row.creature)}>
+                        <code>{short(row.creature)}</code>
+                      </a>
+                    )}
+                  </td>
+                )}
+                {shown.map((column) => (
+                  <td key={column.name} class={column.numeric ? "numeric" : ""}>
+                    <Cell column={column} value={row[column.name] ?? null} />
+                  </td>
+                ))}
+              </tr>
+              {row[NOTE] && (
+                <tr class="note">
+                  <td colSpan={shown.length + Number(watchable)}>
+                    <span class="warning-text">{row[NOTE]}</span>
+                  </td>
+                </tr>
               )}
-              {shown.map((column) => (
-                <td key={column.name} class={column.numeric ? "numeric" : ""}>
-                  <Cell column={column} value={row[column.name] ?? null} />
-                </td>
-              ))}
-            </tr>
+            </Fragment>
           ))}
         </tbody>
       </table>
@@ -75,13 +88,6 @@ function several(rows: ResultRow[], name: string): boolean {
 
 function Cell({ column, value }: { column: Column; value: Value }) {
   const text = column.write(value);
-  if (column.name === "warnings" && value) {
-    return (
-      <span class="long warning-text" title={text}>
-        {text}
-      </span>
-    );
-  }
   const mark = markOf(column.name, value);
   return mark ? <span class={`mark-word ${mark}`}>{text}</span> : <>{text}</>;
 }
@@ -93,6 +99,6 @@ function markOf(name: string, value: Value): "wrong" | "warned" | null {
   return doubtful ? "warned" : null;
 }
 
-function rowClass({ status }: ResultRow): string {
-  return status !== undefined && status !== "ok" ? "failed" : "";
+function rowClass({ status, [NOTE]: note }: ResultRow): string {
+  return `${status !== undefined && status !== "ok" ? "failed" : ""} ${note ? "noted" : ""}`;
 }
