@@ -123,7 +123,7 @@ def await_motions(page: Page) -> None:
 
 
 def save(png: bytes, name: str) -> None:
-    """Keep a picture in few colours, none of them far from its own, however few pixels it has."""
+    """Keep a picture in few colours, each of them close to what it stands for."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     method, still = Image.Quantize.MAXCOVERAGE, Image.Dither.NONE
     few = picture.quantize(COLOURS, method=method, dither=still)
