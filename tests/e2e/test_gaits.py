@@ -4,6 +4,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 FAST, SLOW = 10_000, 120_000
+WIDTH = 1280
 
 
 @pytest.mark.e2e
@@ -51,15 +52,31 @@ def sort_the_table(page: Page) -> None:
     page.get_by_role("button", name="Viscosity").click()
     heading = page.get_by_role("columnheader", name=re.compile("^Viscosity"))
     expect(heading).to_have_attribute("aria-sort", "descending")
-    rows = page.locator("table.results tbody tr")
+    rows = page.locator("table.results tbody tr:not(.note)")
     expect(rows).to_have_count(8)
     expect(rows.first).to_contain_text("1")
     expect(rows.last).to_contain_text("0.1")
+    read_the_warnings(page)
     with page.expect_download() as download:
         page.get_by_role("link", name="Download CSV").click()
     lines = download.value.path().read_text().splitlines()
     assert lines[0].startswith("form,swimmer,viscosity,displacement")
     assert len(lines) == 9
+
+
+def read_the_warnings(page: Page) -> None:
+    """Each is below its row, all of it in the window."""
+    api = page.url.partition("?")[0].replace("/runs/", "/api/v1/runs/")
+    rows = page.request.get(f"{api}/results").json()["rows"]
+    warnings = {row["creature"][:8]: row["warnings"] for row in rows if row["warnings"]}
+    assert warnings
+    for creature, warning in warnings.items():
+        row = page.get_by_role("row").filter(has=page.get_by_role("link", name=creature))
+        note = row.first.locator("xpath=following-sibling::tr[1]").locator("span")
+        expect(note).to_have_text(warning)
+        box = note.bounding_box()
+        assert box
+        assert 0 <= box["x"] < box["x"] + box["width"] <= WIDTH
 
 
 def open_a_point(page: Page) -> str:
