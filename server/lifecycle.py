@@ -4,11 +4,11 @@ Every change is one guarded UPDATE, so that of two that come at once only one ha
 """
 
 import logging
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Any, NoReturn
 from uuid import UUID
 
-from sqlalchemy import case, or_, update
+from sqlalchemy import case, or_, select, update
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
@@ -26,13 +26,20 @@ from .models import (
     RUNNING,
     Run,
 )
-from .progress import read_run
+from .progress import read_runs
+from .schemas import RunRead
 from .services import Services
 
 log = logging.getLogger(__name__)
 
 KEPT = Run.deleted_at.is_(None)
 """The condition that a run does not lie in the bin."""
+
+FIGURES = {
+    *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "diverged"),
+    *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting"),
+}
+"""What may be another each time that a run is read; events of generations tell it too."""
 
 ATTEMPTS = 3
 """So many attempts without a new checkpoint end a run."""
@@ -163,20 +170,35 @@ def lost(session: Session, lease: float) -> Any:
     return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
 
 
-def announce(services: Services, run_id: UUID, *, without: Collection[str] = ()) -> None:
-    """Tell everybody how a run stands, after what changed it was committed.
+def announce(services: Services, *run_ids: UUID, without: Collection[str] = ()) -> None:
+    """Tell everybody how some runs stand, after what changed them was committed.
 
     Said again and again, it is said `without` what never changes and may be long.
 
+    Who reads first may speak last, of what is past by then. So whoever has spoken looks again,
+    and tells what has changed meanwhile: the last word on a run is how it stands.
+
     What changed stands even where nobody can be told: an event is a courtesy.
     """
+    said: dict[UUID, dict[str, Any]] = {}
     try:
-        with services.sessions.read() as session:
-            run = session.get(Run, run_id)
-            told = read_run(services, session, run) if run else None
+        while news := [
+            run for run in _read(services, run_ids) if _facts(run) != said.get(run.id)
+        ]:
+            for run in news:
+                data = run.model_dump(mode="json", exclude=set(without))
+                services.events.publish("run", run.id, data)
+                said[run.id] = _facts(run)
     except SQLAlchemyError as error:
-        log.warning("no event of run %s: %s", run_id, error)
-        return
-    if told:
-        data = told.model_dump(mode="json", exclude=set(without))
-        services.events.publish("run", run_id, data)
+        log.warning("no event of runs %s: %s", ", ".join(map(str, run_ids)), error)
+
+
+def _read(services: Services, run_ids: Sequence[UUID]) -> list[RunRead]:
+    with services.sessions.read() as session:
+        runs = session.scalars(select(Run).where(Run.id.in_(run_ids))).all()
+        return read_runs(services, session, runs)
+
+
+def _facts(run: RunRead) -> dict[str, Any]:
+    """What no event but a run's own tells."""
+    return run.model_dump(exclude=FIGURES)

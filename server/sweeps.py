@@ -10,14 +10,13 @@ from uuid import UUID
 
 from redis import RedisError
 from sqlalchemy import ColumnElement, and_, or_, select
-from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from . import owners
+from . import lifecycle, owners
 from .lifecycle import KEPT, Conflict
 from .models import STATUSES, Run, Sweep
 from .problems import Refused
-from .progress import progress, read_runs
+from .progress import progress
 from .schemas import CaseRead, FieldError, Left, SweepPage, SweepRead
 from .services import Services
 
@@ -119,7 +118,7 @@ def steer(
                     changed.append(change(session, run).id)
                 except Conflict as refusal:
                     left.append(_left(session, run, refusal))
-        announce_runs(services, [run_id for run_id in some if run_id in changed])
+        lifecycle.announce(services, *(run_id for run_id in some if run_id in changed))
     announce(services, sweep_id)
     return changed, left
 
@@ -143,19 +142,6 @@ def requeue(services: Services, run_ids: Sequence[UUID]) -> None:
 
 def several(ids: Sequence[UUID]) -> list[Sequence[UUID]]:
     return [ids[first : first + AT_ONCE] for first in range(0, len(ids), AT_ONCE)]
-
-
-def announce_runs(services: Services, run_ids: Sequence[UUID]) -> None:
-    """Tell everybody how some runs stand, read all at once."""
-    try:
-        with services.sessions.read() as session:
-            runs = session.scalars(select(Run).where(Run.id.in_(run_ids))).all()
-            told = read_runs(services, session, runs)
-    except SQLAlchemyError as error:
-        log.warning("no event of %d runs: %s", len(run_ids), error)
-        return
-    for run in told:
-        services.events.publish("run", run.id, run.model_dump(mode="json"))
 
 
 def announce(services: Services, sweep_id: UUID) -> None:

@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 from small import TINY
 from sqlalchemy import insert
 
-from server import sweeps
+from server import lifecycle
 from server.models import FINISHED, Generation, Run
 
 FAST = 10_000
@@ -27,7 +27,7 @@ def compute(services: Any, run: str, qd_scores: list[float]) -> None:
             for name, figure in (known | told).items():
                 setattr(row, name, figure)
         row.status = FINISHED
-    sweeps.announce_runs(services, [UUID(run)])
+    lifecycle.announce(services, UUID(run))
 
 
 @pytest.mark.e2e

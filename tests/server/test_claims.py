@@ -260,7 +260,7 @@ def test_what_was_committed_stands_where_nobody_can_be_told(
         raise OperationalError("", {}, Exception("away"))
 
     attempt = claim(services, run_id, "worker")
-    monkeypatch.setattr(lifecycle, "read_run", away)
+    monkeypatch.setattr(lifecycle, "read_runs", away)
     attempt.record(report(1), 1.0)
     attempt.finish()
     assert row().status == "finished"

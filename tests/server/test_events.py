@@ -9,7 +9,7 @@ from uuid import uuid4
 import httpx
 import pytest
 
-from server import events, hub
+from server import events, hub, lifecycle
 from server.claims import claim
 
 
@@ -88,6 +88,34 @@ def test_what_people_ask_for_is_told_too(address, api, run_id):
         api.post(f"runs/{run_id}/pause")
         api.post(f"runs/{run_id}/resume")
         assert [data["status"] for _, _, data in take(found, 2)] == ["paused", "queued"]
+
+
+def test_the_last_word_on_a_run_is_how_it_stands(services, run_id, monkeypatch):
+    """Whoever read it first is slow to tell, and is overtaken by whoever changed it next."""
+    told, publish = [], services.events.publish
+
+    def be_overtaken(kind, run, data):
+        monkeypatch.setattr(services.events, "publish", note)
+        claim(services, run_id, "worker")
+        note(kind, run, data)
+
+    def note(kind, run, data):
+        told.append(data["status"])
+        publish(kind, run, data)
+
+    monkeypatch.setattr(services.events, "publish", be_overtaken)
+    lifecycle.announce(services, run_id)
+    assert told == ["running", "queued", "running"]
+
+
+def test_what_has_not_changed_is_told_once(services, run_id, report, monkeypatch):
+    told = []
+    attempt = claim(services, run_id, "worker")
+    monkeypatch.setattr(services.events, "publish", lambda *event: told.append(event))
+    attempt.record(report(1), 1.0)
+    told.clear()
+    lifecycle.announce(services, run_id, without=["spec"])
+    assert len(told) == 1
 
 
 def test_a_stream_of_one_run_tells_nothing_of_others(address, services):
