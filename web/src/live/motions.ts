@@ -74,12 +74,19 @@ function stop(): void {
   waiting = [];
   for (const end of underway.values()) end();
   underway.clear();
+  seen = new Set();
+  trim();
 }
 
-/** As the newest; of those that are not seen the oldest goes where there are too many. */
+/** As the newest. */
 function keep(sha: string, motion: Motion): void {
   kept.delete(sha);
   kept.set(sha, motion);
+  trim();
+}
+
+/** Of those that are not seen the oldest go where there are too many. */
+function trim(): void {
   for (const oldest of kept.keys()) {
     if (kept.size <= seen.size + SPARE) break;
     if (!seen.has(oldest)) kept.delete(oldest);
