@@ -24,6 +24,7 @@ from playwright.sync_api import Browser, Page, TimeoutError
 
 FOLDER = ROOT / "docs" / "pictures" / "page"
 COLOURS = 256
+GALLERY = "[data-gallery]"
 AREA = 1280 * 1300
 """Pixels of a picture: what one sees before scrolling far."""
 HOUR = 3600
@@ -110,13 +111,16 @@ def photographed(page: Page, width: int, height: int) -> bytes:
     page.wait_for_timeout(300)  # What is as large as the window allows has been drawn again.
     await_motions(page)
     png = page.screenshot()
+    if page.locator(GALLERY).count():  # At the beginning of its loop every body is straight.
+        page.wait_for_timeout(1700)
+        png = max(png, page.screenshot(), key=len)
     page.set_viewport_size({"width": width, "height": height})
     return png
 
 
 def await_motions(page: Page) -> None:
     """Until a gallery asks for no more; what is being rendered it asks for every second."""
-    if page.locator("[data-gallery]").count():
+    if page.locator(GALLERY).count():
         with suppress(TimeoutError):
             while True:
                 page.wait_for_event("request", lambda one: "/motion" in one.url, timeout=3000)
