@@ -21,6 +21,11 @@ from rich.table import Table
 SAMPLES = 30
 SHARE, BYTES, NODES = 0.05, 1_000_000, 50
 HOVER_S = 2.0
+PARTS = {
+    "usedSize": "objects of scripts",
+    "backingStorageSize": "arrays behind them, as of replays",
+    "embedderHeapUsedSize": "the document's own",
+}
 MOVE = """
 (query) => {
   history.pushState(null, "", location.pathname + query);
@@ -48,9 +53,14 @@ class Sample:
     """What a page holds on to."""
 
     seconds: float
-    heap: int
+    parts: Sequence[float]
+    """Bytes of each of `PARTS`."""
     nodes: int
     generation: int
+
+    @property
+    def heap(self) -> float:
+        return sum(self.parts)
 
 
 def leave_open(place: Installation, console: Console, minutes: float) -> bool:
@@ -102,11 +112,9 @@ def hover_somewhere(page: Page) -> None:
 def sample(session: CDPSession, seconds: float, generation: int) -> Sample:
     session.send("HeapProfiler.collectGarbage")
     usage = session.send("Runtime.getHeapUsage")
-    # Objects of scripts, the arrays behind them, which replays are, and the document's own.
-    parts = ("usedSize", "backingStorageSize", "embedderHeapUsedSize")
-    heap = sum(usage.get(part, 0) for part in parts)
+    parts = [usage.get(part, 0.0) for part in PARTS]
     nodes = session.send("Memory.getDOMCounters")["nodes"]
-    return Sample(seconds, int(heap), nodes, generation)
+    return Sample(seconds, parts, nodes, generation)
 
 
 def judged(samples: Sequence[Sample], console: Console) -> bool:
@@ -125,6 +133,9 @@ def judged(samples: Sequence[Sample], console: Console) -> bool:
     table.add_row("minutes", *(f"to {third[-1].seconds / 60:.1f}" for third in thirds), "", "")
     table.add_row("generation", *(f"to {third[-1].generation}" for third in thirds), "", "")
     table.add_row("heap, MB", *(f"{one / 1e6:.2f}" for one in (*heaps, most_heap)), said[0])
+    for i, part in enumerate(PARTS.values()):
+        medians = (statistics.median(one.parts[i] for one in third) for third in thirds)
+        table.add_row(f"  {part}", *(f"{one / 1e6:.2f}" for one in medians), "", "")
     table.add_row("nodes", *(f"{one:.0f}" for one in (*nodes, most_nodes)), said[1])
     console.print(table)
     return all(good)
