@@ -15,6 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 
+import numpy as np
 from browser import launched, overhear
 from drive import ROOT, Installation
 from looks import THEMES, WIDTHS, faults
@@ -127,10 +128,16 @@ def await_motions(page: Page) -> None:
 
 
 def save(png: bytes, name: str) -> None:
-    """Keep a picture in few colours, each of them close to what it stands for."""
+    """Keep a picture in few colours, each the very one that most of its pixels have."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     method, still = Image.Quantize.MAXCOVERAGE, Image.Dither.NONE
     few = picture.quantize(COLOURS, method=method, dither=still)
+    pixels, places = np.asarray(picture).reshape(-1, 3), np.asarray(few).ravel()
+    palette = np.zeros((COLOURS, 3), np.uint8)
+    for place in np.unique(places):
+        there, counts = np.unique(pixels[places == place], axis=0, return_counts=True)
+        palette[place] = there[counts.argmax()]
+    few.putpalette(palette.tobytes())
     few.save(FOLDER / f"{name}.png", optimize=True)
 
 
