@@ -4,8 +4,8 @@ export default defineConfig({
   build: { target: "es2022", assetsDir: "assets", reportCompressedSize: true },
   server: { host: "127.0.0.1", proxy: { "/api": "http://127.0.0.1:8000" } },
   test: {
-    include: ["test/**/*.test.ts"],
+    include: ["src/**/*.test.ts"],
     environment: "node",
-    globalSetup: ["test/experiments.mjs"],
+    globalSetup: ["scripts/experiments.mjs"],
   },
 });

@@ -55,7 +55,7 @@ SAMPLES = {
     "cividis": "00224e002e6a1a386f32436d434e6c535a6d61656f6f70737d7c788c88789b9476aba072bcae6ccdbb63dec958f0d846fee838",  # noqa: E501
     "magma": "1a10422f11634710785d177f7521818b2981a1307eb83779cf4070e34e65f2625df97b5dfd9668feb078feca8dfde3a5fcfdbf",  # noqa: E501
 }
-"""The page's colours from dark to light (`web/src/view/colours.ts`): perceptually uniform, to
+"""The page's colours from dark to light (`web/src/ui/colours.ts`): perceptually uniform, to
 most colour-blind people too."""
 
 
