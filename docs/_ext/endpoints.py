@@ -1,4 +1,4 @@
-"""The reference of the HTTP API: a page for each tag of web/openapi.json, and one of the types."""
+"""Reference of the HTTP API: a page for each tag of web/openapi.json, and one for the types."""
 
 import json
 from collections import defaultdict
