@@ -7,7 +7,7 @@ LOCK := $(shell nvidia-smi -L >/dev/null 2>&1 && echo requirements-cuda.lock || 
 INSTALLED := $(VENV)/installed-$(LOCK)
 # Node comes from the registry where the machine has none.
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
-WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
+WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print) docs/glossary.md
 
 .PHONY: run install web test test-all test-long check peers bench acceptance validate pictures docs \
 	release-check lock
