@@ -26,6 +26,8 @@ from server.reconcile import reconcile
 from server.renderings import save
 from server.submission import submit
 
+pytestmark = pytest.mark.postgresql
+
 
 def rows(services):
     """How many rows each table has."""

@@ -14,6 +14,8 @@ from server.claims import Claim, Fenced, claim
 from server.db import ago
 from server.models import Creature, Elite, Generation, Run
 
+pytestmark = pytest.mark.postgresql
+
 
 def count(services, table):
     with services.sessions.read() as session:

@@ -9,6 +9,8 @@ from sqlalchemy import update
 from server.claims import claim
 from server.models import Run
 
+pytestmark = pytest.mark.postgresql
+
 
 @pytest.fixture
 def add(api, services, spec):

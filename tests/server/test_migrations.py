@@ -3,12 +3,15 @@
 import json
 from concurrent.futures import ThreadPoolExecutor
 
+import pytest
 from alembic import command
 from sqlalchemy import inspect, text
 
 from server import migrations
 from server.claims import claim
 from server.db import connect
+
+pytestmark = pytest.mark.postgresql
 
 
 def test_migrated_tables_are_those_of_the_models(services):

@@ -10,6 +10,8 @@ from server.db import ago
 from server.models import Run, Worker
 from server.reconcile import job_died, job_stopped, reconcile
 
+pytestmark = pytest.mark.postgresql
+
 
 def put(services, table, **values):
     with services.sessions.write.begin() as session:
