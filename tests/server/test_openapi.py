@@ -47,8 +47,8 @@ HERE = settings(
 
 
 @pytest.fixture
-def database_url(tmp_path) -> str:
-    return f"sqlite:///{tmp_path / 'test.sqlite'}"
+def database() -> str:
+    return "sqlite"
 
 
 @pytest.fixture

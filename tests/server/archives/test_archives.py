@@ -158,6 +158,7 @@ def test_an_archive_has_the_features_of_its_elites_that_are_asked_for(
     assert then["features"] == {"energy": [0.1 + 0.2]}
 
 
+@pytest.mark.postgresql
 def test_an_archive_tells_only_what_entered_after_a_generation(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1, {5: 1.0, 3: 0.5}, features=SLIM), 1.0)

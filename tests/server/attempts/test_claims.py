@@ -16,6 +16,8 @@ from server.runs import lifecycle
 from server.storage.artifacts import Artifacts
 from server.tables import Creature, Elite, Generation, Run
 
+pytestmark = pytest.mark.postgresql
+
 
 def count(services, table):
     with services.sessions.read() as session:

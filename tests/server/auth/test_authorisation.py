@@ -108,8 +108,8 @@ def whole(row: str) -> str:
 
 
 @pytest.fixture
-def database_url(tmp_path) -> str:
-    return f"sqlite:///{tmp_path / 'test.sqlite'}"
+def database() -> str:
+    return "sqlite"
 
 
 @pytest.fixture

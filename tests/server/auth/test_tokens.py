@@ -28,6 +28,12 @@ def required(serve, admin):
 
 
 @pytest.fixture
+def settings(services, tmp_path):
+    """Those of the server, with a data folder where nothing is yet."""
+    return services.settings.model_copy(update={"data": tmp_path})
+
+
+@pytest.fixture
 def client():
     """Clients by the secrets that they send."""
     made = []

@@ -26,6 +26,8 @@ from server.tables import (
     Run,
 )
 
+pytestmark = pytest.mark.postgresql
+
 
 def rows(services):
     """How many rows each table has."""

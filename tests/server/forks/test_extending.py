@@ -2,6 +2,8 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
+import pytest
+
 from server.attempts.begin import claim
 
 
@@ -35,6 +37,7 @@ def test_a_finished_run_is_queued_again_and_goes_on_where_it_ended(
     assert "Extended by 3 generations to 403: queued again." in texts
 
 
+@pytest.mark.postgresql
 def test_of_two_that_extend_at_once_one_is_told_that_it_is_queued(
     api, services, run_id, report, row
 ):

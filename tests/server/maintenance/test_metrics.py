@@ -12,6 +12,13 @@ SAMPLE = re.compile(r'^(\w+)(?:\{((?:\w+="(?:[^"\\]|\\.)*",?)*)\})? (\S+)$')
 
 
 @pytest.fixture
+def address(serve):
+    """A server whose requests nobody has counted yet."""
+    with serve() as address:
+        yield address
+
+
+@pytest.fixture
 def scrape(address):
     """A function that reads all samples: by name and labels, their values."""
 

@@ -11,6 +11,8 @@ from server.core.database import ago
 from server.maintenance.reconcile import job_died, job_stopped, reconcile
 from server.tables import Run, Worker
 
+pytestmark = pytest.mark.postgresql
+
 
 def put(services, table, **values):
     with services.sessions.write.begin() as session:

@@ -9,6 +9,8 @@ from sqlalchemy import update
 from server.attempts.begin import claim
 from server.tables import Run
 
+pytestmark = pytest.mark.postgresql
+
 
 @pytest.fixture
 def add(api, services, spec):

@@ -138,6 +138,7 @@ def test_the_newest_entries_are_told_and_those_that_follow_one(api, services, ru
     assert after["entries"] == whole[3:5]
 
 
+@pytest.mark.postgresql
 def test_the_log_of_no_run_is_not_found_and_a_limit_has_to_make_sense(api, run_id):
     assert api.get(f"runs/{uuid4()}/log").status_code == 404
     for wrong in ({"limit": 0}, {"after": -1}, {"after": 1 << 63}):

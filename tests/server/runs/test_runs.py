@@ -142,6 +142,7 @@ def test_a_run_must_fit_the_largest_live_worker(api, services, spec):
     assert capped["memory_limit_bytes"] == services.settings.max_bytes
 
 
+@pytest.mark.postgresql
 def test_the_same_key_at_once_gives_one_run(api, services, spec):
     headers = {"Idempotency-Key": "a key"}
     with ThreadPoolExecutor(8) as pool:
@@ -303,6 +304,7 @@ def test_curves_are_columns_of_all_or_some_generations(api, services, run_id, re
     assert some["generation"] == [1, 11, 21, 30, 40]
 
 
+@pytest.mark.postgresql
 def test_many_that_steer_at_once_do_not_wait_for_each_other(api, run_id):
     with ThreadPoolExecutor(24) as pool:
         answers = list(pool.map(lambda _: api.post(f"runs/{run_id}/cancel"), range(24)))

@@ -172,6 +172,7 @@ def test_a_write_that_fails_half_way_leaves_nothing(services, post, monkeypatch)
         assert not session.scalars(select(Sweep.id)).all()
 
 
+@pytest.mark.postgresql
 def test_the_same_key_at_once_gives_one_sweep(api, services, spec):
     headers = {"Idempotency-Key": "a key"}
     asked = {"spec": spec, "seeds": 2}

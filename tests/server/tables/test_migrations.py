@@ -3,12 +3,15 @@
 import json
 from concurrent.futures import ThreadPoolExecutor
 
+import pytest
 from alembic import command
 from sqlalchemy import inspect, text
 
 from server.attempts.begin import claim
 from server.core.database import connect
 from server.tables import migrations
+
+pytestmark = pytest.mark.postgresql
 
 
 def test_migrated_tables_are_those_of_the_models(services):
