@@ -22,4 +22,4 @@ USER microcosmos
 ENV MICROCOSMOS_DATA=/data
 VOLUME /data
 EXPOSE 8000
-CMD ["python", "-m", "server"]
+CMD ["python", "-m", "server.main"]
