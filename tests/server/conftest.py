@@ -24,13 +24,12 @@ from sqlalchemy import make_url, select
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
 from microcosmos.spec import identity as identity_of
-from server import migrations
 from server.app import create_app
-from server.models import Base, Run
-from server.redis_embedded import prepare
-from server.services import Services, connect
+from server.local.redis_embedded import prepare
+from server.runs.submission import submit
+from server.services.services import Services, connect
 from server.settings import Settings
-from server.submission import submit
+from server.tables import Base, Run, migrations
 
 POSTGRESQL = "postgresql://127.0.0.1:5432/postgres"
 

@@ -13,8 +13,8 @@ import pytest
 
 from microcosmos.archive import creature, creature_h5, file
 from microcosmos.build import build
-from microcosmos.figures.reading import read
 from microcosmos.spec import Refinement, parse
+from microcosmos.viz.figures.reading import read
 
 BEFORE = Path(__file__).with_name("before")
 WRITTEN = {name: (BEFORE / f"{name}.h5").read_bytes() for name in ("search", "refinement")}

@@ -11,11 +11,11 @@ import pytest
 
 from microcosmos import search, units
 from microcosmos.archive import creature
+from microcosmos.audit.reproducibility import check
 from microcosmos.build import build
 from microcosmos.experiments.gaits import Gaits
-from microcosmos.render import check
-from microcosmos.render.replay import FRAMES, interval
 from microcosmos.spec import EXPERIMENTS, parse
+from microcosmos.viz.replay import FRAMES, interval
 
 SPEC = {
     "experiment": "gaits",
