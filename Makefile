@@ -7,9 +7,10 @@ LOCK := $(shell nvidia-smi -L >/dev/null 2>&1 && echo requirements-cuda.lock || 
 INSTALLED := $(VENV)/installed-$(LOCK)
 # Node comes from the registry where the machine has none.
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
-WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print)
+WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print) docs/glossary.md
 
-.PHONY: run install web test check peers bench acceptance validate pictures lock
+.PHONY: run install web test test-all test-long check peers bench acceptance validate pictures docs \
+	release-check lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -41,17 +42,37 @@ check: install web
 	$(STYLE)
 	$(BIN)/pytest -m fast tests/engine
 
-# What is about bits is compiled as the product is; the rest without optimising, see conftest.
-# The tests of the server fork, which a process with JAX in it must not: the last call has
-# them, and the product whole, real processes and a browser, which mostly wait. Who gets which
-# tests is in tests/conftest.py.
+# `make test` is everything essential; `make test-all` adds the tests marked `long` (see
+# tests/README.md). What is about bits is compiled as the product is; the rest without
+# optimising, see tests/engine/conftest.py. The tests of the server fork, which a process with
+# JAX in it must not: the last part has them, and the product whole, real processes and a
+# browser, which mostly wait.
 test: install web
-	$(STYLE)
-	$(SHARED) -m "not optimised" tests/engine tests/examples
-	MICROCOSMOS_TEST_OPTIMISED=1 $(SHARED) -m optimised tests/engine
-	$(BIN)/pytest -n 3 --ignore=tests/engine --ignore=tests/examples
+	@rm -f $(TIMES)
+	$(call part,style,$(STYLE))
+	$(call part,engine,$(ENGINE) -m "not optimised and not long" tests/engine tests/examples)
+	$(call part,bits,$(BITS) -m "optimised and not long")
+	$(call part,server,$(SERVER) -m "not long")
+	@cat $(TIMES)
 
-SHARED = $(BIN)/pytest -n auto --maxprocesses 4
+test-all: test test-long
+
+test-long: install web
+	@rm -f $(TIMES)
+	$(call part,long engine,$(ENGINE) -m "not optimised and long" tests/engine tests/examples)
+	$(call part,long bits,$(BITS) -m "optimised and long")
+	$(call part,long server,$(SERVER) -m long)
+	@cat $(TIMES)
+
+ENGINE = $(BIN)/pytest -q -n auto --maxprocesses 4
+BITS = MICROCOSMOS_TEST_OPTIMISED=1 $(ENGINE) tests/engine
+SERVER = $(BIN)/pytest -q -n 3 --ignore=tests/engine --ignore=tests/examples
+TIMES := $(VENV)/times
+# A named part of the tests; its time is printed at the end. Status 5 is that of no test.
+define part
+	@begun=$$(date +%s); { $(2); } || [ $$? = 5 ] || exit 1; \
+	echo "$(1): $$(( $$(date +%s) - begun )) s" >> $(TIMES)
+endef
 
 # What benchmarks compare with; not needed for anything else.
 peers: install
@@ -78,6 +99,20 @@ pictures: install web
 validate: install
 	$(BIN)/python -m validation
 
+# The documentation site; the server shows it at /help from its next start on.
+docs: install
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-docs.lock
+	$(BIN)/sphinx-build -q -W --keep-going docs docs/_build
+
+# The wheel in an environment that has nothing else, with the newest versions of what it needs.
+release-check: install
+	rm -rf dist && $(BIN)/python -m pip wheel -q --disable-pip-version-check --no-build-isolation --no-deps -w dist .
+	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && $(PYTHON) -m venv $$folder/venv \
+	&& $$folder/venv/bin/pip install -q --disable-pip-version-check dist/*.whl && cd $$folder \
+	&& venv/bin/python -c 'import microcosmos as mc; mc.evolve; print(mc.__version__, mc.__file__)' \
+	&& JAX_PLATFORMS=cpu venv/bin/microcosmos evolve demo --out demo.h5 \
+	&& JAX_PLATFORMS=cpu venv/bin/microcosmos replay demo.best.json --check
+
 # TensorNEAT is under the GPL-3, and no part of this. Of what it asks for, its NEAT needs SymPy
 # beside what is installed; the rest (Brax, MuJoCo, Gymnax ...) is for its own tasks.
 .PHONY: tensorneat
@@ -96,5 +131,6 @@ lock:
 	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra shapes -o requirements.lock
 	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra shapes --extra cuda -c requirements.lock -o requirements-cuda.lock
 	$(COMPILE) --group pyproject.toml:server -c requirements.lock -o requirements-server.lock
+	$(COMPILE) --group pyproject.toml:docs -c requirements.lock -o requirements-docs.lock
 	$(COMPILE) --group pyproject.toml:peers -c requirements.lock -o requirements-peers.lock
 	$(COMPILE) --group pyproject.toml:node -o requirements-node.lock

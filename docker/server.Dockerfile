@@ -5,6 +5,7 @@ WORKDIR /web
 COPY web/package.json web/package-lock.json web/.npmrc ./
 RUN npm ci --no-audit --no-fund
 COPY web/ ./
+COPY docs/glossary.md /docs/
 RUN npm run build
 
 FROM python:3.12-slim-bookworm
@@ -21,4 +22,4 @@ USER microcosmos
 ENV MICROCOSMOS_DATA=/data
 VOLUME /data
 EXPOSE 8000
-CMD ["python", "-m", "server"]
+CMD ["python", "-m", "server.main"]

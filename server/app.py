@@ -5,24 +5,48 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
 
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
 
 from microcosmos.version import VERSION
 
-from . import migrations, problems, request_log, tokens
-from .access import Door
-from .description import describe
-from .discretion import Discretion
-from .guard import Guard
-from .hub import Hub
-from .metrics import Counting, Requests
-from .readers import quarantine
-from .reconcile import reconciling
-from .routes import api, health, metrics, page, share_page
-from .services import Services, connect
+from .archives import result_routes as results_api
+from .archives import routes as archives_api
+from .auth import bootstrap
+from .auth import routes as tokens_api
+from .auth import session_routes as session_api
+from .auth.authorize import Door
+from .auth.expiry import watch
+from .auth.middleware import Guard
+from .core import errors, page, request_log
+from .core.openapi import PROBLEMS, describe
+from .core.security_headers import Discretion
+from .core.shutdown import told_to_stop
+from .creatures import network_routes as networks_api
+from .creatures import routes as creatures_api
+from .creatures.sandbox import quarantine
+from .events import routes as events_api
+from .events.fanout import Hub
+from .maintenance import health, metrics_routes
+from .maintenance.metrics import Counting, Requests
+from .maintenance.reconcile import reconciling
+from .renderings import measurement_routes as measurements_api
+from .renderings import routes as renderings_api
+from .runs import curve_routes as generations_api
+from .runs import log_routes as journal_api
+from .runs import queue_routes as queue_api
+from .runs import routes as runs_api
+from .runs import tag_routes as tags_api
+from .runs import target_routes as targets_api
+from .services.services import Services, connect
 from .settings import Settings
-from .shutdown import told_to_stop
-from .tokens.watching import watch
+from .shares import archive_routes as shared_archives_api
+from .shares import creature_routes as shared_api
+from .shares import page as share_page
+from .shares import routes as shares_api
+from .specs import routes as experiments_api
+from .sweeps import routes as sweeps_api
+from .tables import migrations
+from .workers import routes as workers_api
 
 
 def create() -> FastAPI:
@@ -41,7 +65,7 @@ def create_app(services: Services) -> FastAPI:
         lifespan=_life,
     )
     app.state.services = services
-    problems.install(app)
+    errors.install(app)
     request_log.discreet()
     describe(app)
     app.state.door = door = Door(services)
@@ -49,7 +73,32 @@ def create_app(services: Services) -> FastAPI:
     app.add_middleware(Discretion)
     app.state.requests = requests = Requests()
     app.add_middleware(Counting, requests=requests)
-    for router in (api, health.router, metrics.router, share_page.router, page.router):
+    api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
+    for noun in (
+        experiments_api,
+        runs_api,
+        sweeps_api,
+        generations_api,
+        journal_api,
+        archives_api,
+        results_api,
+        targets_api,
+        creatures_api,
+        networks_api,
+        renderings_api,
+        measurements_api,
+        shares_api,
+        shared_api,
+        shared_archives_api,
+        events_api,
+        workers_api,
+        queue_api,
+        tags_api,
+        tokens_api,
+        session_api,
+    ):
+        api.include_router(noun.router)
+    for router in (api, health.router, metrics_routes.router, share_page.router, page.router):
         app.include_router(router)
     return app
 
@@ -58,7 +107,7 @@ def create_app(services: Services) -> FastAPI:
 async def _life(app: FastAPI) -> AsyncIterator[None]:
     services: Services = app.state.services
     await asyncio.to_thread(migrations.upgrade, services.sessions)
-    await asyncio.to_thread(tokens.refuse_without_admin, services)
+    await asyncio.to_thread(bootstrap.refuse_without_admin, services)
     app.state.hub = hub = Hub(services.settings.redis_url, services.events.stream)
     await hub.begin()
     tasks = [asyncio.create_task(task) for task in (hub.run(), watch(hub, services))]

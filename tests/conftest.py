@@ -1,6 +1,11 @@
-"""How processes share the tests: by file, and those of one product by folder.
+"""The marker `long`, and how processes share the tests.
 
-pytest-xdist's own groups (`--dist loadgroup`) are not there with pytest 9.2.
+`make test` runs what is not long; `make test-all` runs everything. A test is long if it says
+so with `pytest.mark.long`, if it drives a browser (one walk through the page excepted), or if
+it repeats on PostgreSQL what runs on SQLite too and is not marked `postgresql`.
+
+Processes share the tests by file, and those of one product by folder: pytest-xdist's own
+groups (`--dist loadgroup`) are not there with pytest 9.2.
 """
 
 from collections import Counter
@@ -10,6 +15,27 @@ from xdist.scheduler import LoadScopeScheduling
 
 SHARING = ("tests/faults", "tests/e2e")
 """Folders, and those in them, whose tests share running products."""
+
+
+WALK = "tests/e2e/test_walk.py"
+"""The one test in a browser that is not long."""
+
+
+def is_long(item: pytest.Item) -> bool:
+    """Whether only `make test-all` runs a test."""
+    if item.get_closest_marker("long"):
+        return True
+    if item.nodeid.startswith("tests/e2e"):
+        return not item.nodeid.startswith(WALK)
+    values = getattr(item, "callspec", None)
+    repeated = values and values.params.get("database") == "postgresql"
+    return bool(repeated and not item.get_closest_marker("postgresql"))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_itemcollected(item: pytest.Item) -> None:
+    if is_long(item):
+        item.add_marker("long")
 
 
 def share(nodeid: str) -> str:

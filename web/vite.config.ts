@@ -2,10 +2,14 @@ import { defineConfig } from "vitest/config";
 
 export default defineConfig({
   build: { target: "es2022", assetsDir: "assets", reportCompressedSize: true },
-  server: { host: "127.0.0.1", proxy: { "/api": "http://127.0.0.1:8000" } },
+  server: {
+    host: "127.0.0.1",
+    fs: { allow: [".."] }, // docs/glossary.md
+    proxy: { "/api": "http://127.0.0.1:8000" },
+  },
   test: {
-    include: ["test/**/*.test.ts"],
+    include: ["src/**/*.test.ts"],
     environment: "node",
-    globalSetup: ["test/experiments.mjs"],
+    globalSetup: ["scripts/experiments.mjs"],
   },
 });

@@ -11,11 +11,12 @@ from uuid import UUID
 
 from sqlalchemy.exc import OperationalError
 
-from server.claims import Claim, Fenced, claim
-from server.models import CANCEL, PAUSE
-from server.reports import Report
-from server.services import Services
+from server.attempts.begin import claim
+from server.attempts.claim import Claim, Fenced
+from server.attempts.report import Report
+from server.services.services import Services
 from server.settings import Settings
+from server.tables import CANCEL, PAUSE
 
 from . import stop
 

@@ -14,7 +14,7 @@ from microcosmos.plugins import Broken, Missing
 from microcosmos.spec import field_path, parse
 
 from .attempt import Attempt
-from .own import load
+from .plugins import load
 
 
 def carry_out(attempt: Attempt) -> None:

@@ -8,9 +8,9 @@ import sys
 
 from rq.worker import Worker
 
-from server import workers
-from server.services import Services, connect
+from server.services.services import Services, connect
 from server.settings import Settings
+from server.workers import registry
 
 PARTS = ("worker", "renderer", "auditor")
 
@@ -22,7 +22,7 @@ def alive(services: Services, part: str, host: str) -> bool:
     """
     if part == "worker":
         with services.sessions.read() as session:
-            names = [found.name for found in workers.live(session, services.settings.lease)]
+            names = [found.name for found in registry.live(session, services.settings.lease)]
         return any(name.rpartition("-")[0] == host for name in names)
     keys = Worker.redis_worker_namespace_prefix + f"{part}-{host}-*"
     return any(True for _ in services.redis.scan_iter(keys))

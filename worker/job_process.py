@@ -10,8 +10,8 @@ from rq.queue import Queue
 from rq.serializers import JSONSerializer
 from rq.worker import Worker
 
-from server.processes import die_with_parent
-from server.queue import open_redis
+from server.core.processes import die_with_parent
+from server.queue.jobs import open_redis
 from server.settings import Settings
 
 from . import log, stop

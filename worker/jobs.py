@@ -8,12 +8,12 @@ import os
 from functools import cache
 from uuid import UUID
 
-from server import renderings
-from server.models import REPLAY
-from server.services import Services, connect
+from server.renderings import storage as renderings
+from server.services.services import Services, connect
 from server.settings import Settings
+from server.tables import REPLAY
 
-from . import own
+from . import plugins
 from .attempt import claimed
 
 WORKER = "MICROCOSMOS_WORKER"
@@ -40,7 +40,7 @@ def prepared() -> None:
     from microcosmos.device import prepare
 
     prepare()
-    own.load(services().settings)
+    plugins.load(services().settings)
 
 
 def render(creature: str, kind: str = REPLAY) -> None:

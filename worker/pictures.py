@@ -3,14 +3,14 @@
 import json
 from collections.abc import Callable
 
-from microcosmos import render
-from microcosmos.render.movie import gif, mp4
-from microcosmos.render.preview import preview
-from microcosmos.render.reading import Replay, read_replay
-from microcosmos.render.strip import strip
-from server import renderings
-from server.models import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
-from server.services import Services
+from microcosmos import audit, viz
+from microcosmos.viz.film import gif, mp4
+from microcosmos.viz.preview import preview
+from microcosmos.viz.replay_file import Replay, read_replay
+from microcosmos.viz.strip import strip
+from server.renderings import storage as renderings
+from server.services.services import Services
+from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
 
 PICTURES: dict[str, Callable[[Replay], bytes]] = {
     STRIP: strip,
@@ -26,11 +26,11 @@ def make(services: Services, creature: str, kind: str) -> bytes:
         return PICTURES[kind](read_replay(_replay(services, creature)))
     file = renderings.creature(services, creature)
     if kind == AUDIT:
-        return json.dumps(render.audit(file), allow_nan=False).encode()
+        return json.dumps(audit.audit(file), allow_nan=False).encode()
     if kind == MEASUREMENT:
-        return json.dumps(render.measurement(file), allow_nan=False).encode()
+        return json.dumps(audit.measurement(file), allow_nan=False).encode()
     if kind == REPLAY:
-        return render.record(file)
+        return viz.record(file)
     known = ", ".join((REPLAY, AUDIT, MEASUREMENT, *PICTURES))
     raise ValueError(f"`kind` of a rendering must be one of {known}; got {kind!r}")
 
@@ -39,6 +39,6 @@ def _replay(services: Services, creature: str) -> bytes:
     """The replay that is kept, made first if need be."""
     data = renderings.kept(services, creature, REPLAY)
     if data is None:
-        data = render.record(renderings.creature(services, creature))
+        data = viz.record(renderings.creature(services, creature))
         renderings.save(services, creature, REPLAY, data)
     return data

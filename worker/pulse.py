@@ -9,12 +9,13 @@ from uuid import UUID
 
 from sqlalchemy.exc import SQLAlchemyError
 
-from server import leases, workers
-from server.db import Sessions
-from server.leases import Lease
+from server.attempts import leases
+from server.attempts.leases import Lease
+from server.core.database import Sessions
+from server.workers import registry
 
 from .device import Device
-from .own import Told
+from .plugins import Told
 from .usage import Gauge, usage
 
 BEATS = 4
@@ -80,7 +81,7 @@ class Pulse(threading.Thread):
         self._due.set()
         self.gauge.end()
         self.join()
-        workers.retire(self._sessions, self._worker)
+        registry.retire(self._sessions, self._worker)
 
     def beat(self) -> None:
         watch, own = self._watch, self._own()
@@ -88,7 +89,7 @@ class Pulse(threading.Thread):
         if watch:
             lease = leases.heartbeat(self._sessions, watch.run, self._worker)
             self._judge(watch, lease)
-        workers.report(
+        registry.report(
             self._sessions,
             self._worker,
             self._device.name,

@@ -11,8 +11,8 @@ from rq.job import Job
 from rq.serializers import JSONSerializer
 from rq.worker import SimpleWorker
 
-from server.queue import Jobs
-from server.services import connect
+from server.queue.jobs import Jobs
+from server.services.services import connect
 from server.settings import Settings
 
 from . import log, loop, stop

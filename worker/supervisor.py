@@ -17,13 +17,13 @@ from rq.serializers import JSONSerializer
 from rq.worker import SpawnWorker
 from sqlalchemy.exc import SQLAlchemyError
 
-from server import services
-from server.reconcile import job_died, job_stopped
-from server.services import Services
+from server.estimates.position import in_line
+from server.maintenance.reconcile import job_died, job_stopped
+from server.services import services
+from server.services.services import Services
 from server.settings import Settings
-from server.waiting import in_line
 
-from . import device, log, loop, own, processor, stop
+from . import device, log, loop, plugins, processor, stop
 from .pulse import BEATS, Pulse
 
 SHORTEST_LEASE = 2
@@ -144,7 +144,7 @@ def supervise(settings: Settings, index: int) -> None:
     lease = max(SHORTEST_LEASE, round(settings.lease))
     worker = Supervisor(shared.jobs.evolving, name, worker_ttl=lease, serializer=JSONSerializer)
     worker.services, worker.lease, worker.environment = shared, lease, found.environment
-    shelf = own.Shelf(settings, settings.lease / BEATS)
+    shelf = plugins.Shelf(settings, settings.lease / BEATS)
     told = lambda: shelf.last  # noqa: E731
     worker.pulse = Pulse(shared.sessions, name, found, settings.lease, told)
     stop.listen(worker.pass_on, interrupt=True)

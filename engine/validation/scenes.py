@@ -6,7 +6,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import bodies, coupling, creatures, filaments, groups, world
+from microcosmos import bodies, coupling, filaments, groups, world
+from microcosmos.bodies import swimmers
 from microcosmos.build import build_rods
 
 LITERAL = world.Form(projection=coupling.unprojected, theta_feedback=0.0, forcing_iterations=1)
@@ -53,7 +54,7 @@ def held(body: bodies.Body, steps: int, dtype: Any) -> filaments.Rest:
     return rest(body, np.zeros((steps, len(body.joints))), dtype)
 
 
-def stroke(swimmer: creatures.Swimmer, period: int, periods: int, dtype: Any) -> filaments.Rest:
+def stroke(swimmer: swimmers.Swimmer, period: int, periods: int, dtype: Any) -> filaments.Rest:
     """A swimmer's gait, growing over the first period."""
     time = np.arange(period * periods) / period
     angle, length = swimmer.gait(time)

@@ -7,7 +7,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import bodies, creatures, filaments
+from microcosmos import bodies, filaments
+from microcosmos.bodies import swimmers
 from microcosmos.build import build_rods
 
 from .precision import precision
@@ -49,7 +50,7 @@ def circle(nodes: int, iterations: int, dtype: Any) -> tuple[float, float]:
 
 def branched(noise: float, iterations: int, dtype: Any, seed: int = 0) -> tuple[float, float]:
     """Errors of a ring with hairs whose nodes start off their places by `noise` cells."""
-    body = creatures.cilia().body
+    body = swimmers.cilia().body
     moved = np.random.default_rng(seed).normal(size=body.positions.shape)
     return errors(body, projected(body, body.positions + noise * moved, iterations, dtype))
 

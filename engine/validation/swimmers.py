@@ -6,7 +6,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import creatures, filaments, fluid, world
+from microcosmos import filaments, fluid, world
+from microcosmos.bodies import swimmers
 
 from . import scenes, stokes
 from .precision import Precision, precision
@@ -19,7 +20,7 @@ def worm_against_stokes(
     viscosity: float, period: int, dtype: Any, *, samples: int = 50
 ) -> tuple[float, float]:
     """Cells in the second cycle of a worm, and in Stokes flow by the same shapes."""
-    swimmer, size = creatures.worm(), (64, 64)
+    swimmer, size = swimmers.worm(), (64, 64)
     box, start = scenes.immersed(swimmer.body, viscosity, dtype, size=size)
     gait = scenes.stroke(swimmer, period, 2, dtype)
     cycle = scenes.recorded(box, start, gait)[-period - 1 :]
@@ -29,7 +30,7 @@ def worm_against_stokes(
 
 def scallop_share(dtype: Any, *, period: int = 400, **options: Any) -> float:
     """Displacement over path in the second cycle of a reciprocal swimmer at ν = 2."""
-    swimmer = creatures.ray()
+    swimmer = swimmers.ray()
     box, start = scenes.immersed(swimmer.body, 2.0, dtype, **options)
     gait = scenes.stroke(swimmer, period, 2, dtype)
     cycle = scenes.recorded(box, start, gait)[-period - 1 :]
@@ -78,7 +79,7 @@ def check_scallop(name: Precision = "float32") -> Found:
 
 
 def check_impulse(
-    names: tuple[str, ...] = tuple(creatures.SWIMMERS),
+    names: tuple[str, ...] = tuple(swimmers.SWIMMERS),
     viscosities: tuple[float, ...] = (0.05, 2.0),
     period: int = 600,
     name: Precision = "float32",
@@ -86,7 +87,7 @@ def check_impulse(
 ) -> Found:
     """Over two cycles, with or without the limits that creatures live with."""
     rows = []
-    for swimmer in (creatures.SWIMMERS[one]() for one in names):
+    for swimmer in (swimmers.SWIMMERS[one]() for one in names):
         for viscosity in viscosities:
             with precision(name) as dtype:
                 limit = scenes.limits(viscosity, dtype) if limits else world.Limits()

@@ -22,8 +22,8 @@ from browser import executable, launched, overhear
 from drive import ROOT, Installation
 from small import submit_small_runs
 
-from server.redis_embedded import prepare
-from server.services import Services, connect
+from server.local.redis_embedded import prepare
+from server.services.services import Services, connect
 from server.settings import Settings
 
 HERE = Path(__file__).parent

@@ -9,8 +9,8 @@ from playwright.sync_api import Page, expect
 from small import TINY
 from sqlalchemy import insert
 
-from server import lifecycle
-from server.models import FINISHED, Generation, Run
+from server.runs import lifecycle
+from server.tables import FINISHED, Generation, Run
 
 FAST = 10_000
 

@@ -8,9 +8,10 @@ from uuid import UUID
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, identity, parse
-from server.claims import Claim, claim
-from server.services import Services
-from server.submission import submit
+from server.attempts.begin import claim
+from server.attempts.claim import Claim
+from server.runs.submission import submit
+from server.services.services import Services
 
 GENERATIONS = 12
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from microcosmos.archive.creature import parse
-from microcosmos.render import check
+from microcosmos.audit.reproducibility import check
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TINY = {"body": {"nodes": 8}, "task": {"steps": 20}}

@@ -105,7 +105,7 @@ def purity(file: dict) -> float:
     from microcosmos import search
     from microcosmos.archive import creature
     from microcosmos.build import build_task
-    from microcosmos.render.replay import actuator_of
+    from microcosmos.viz.replay import actuator_of
 
     scene = creature.scene_of(creature.parse(file))
     task = build_task(scene, room=creature.room(file))

@@ -77,6 +77,6 @@ def blinded(file: dict) -> dict:
 
 def collected(file: dict) -> float:
     """The energy that a creature collects, measured anew."""
-    from microcosmos.render import check
+    from microcosmos.audit.reproducibility import check
 
     return check(file).repeated["energy"]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from microcosmos.archive import creature
-from server.warming import example
+from server.creatures.probe import example
 
 JSON = "application/json"
 

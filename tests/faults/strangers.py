@@ -96,10 +96,13 @@ def complaint(case: Case, status: int, text: str) -> str | None:
 def memory(place: Installation) -> int:
     """Bytes in the memory of the server and of all who read files for it."""
     total = 0
-    for process in place.named("server"):
+    for process in place.named("server.main"):
         # A reader may end while it is looked at.
         try:
-            if process.cmdline()[1:] in (["-m", "server"], ["-m", "server.quarantine"]):
+            if process.cmdline()[1:] in (
+                ["-m", "server.main"],
+                ["-m", "server.creatures.sandbox_process"],
+            ):
                 total += process.memory_info().rss
         except (psutil.Error, OSError):
             continue

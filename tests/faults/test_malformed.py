@@ -91,7 +91,7 @@ def test_the_kernel_ends_readers_that_take_their_time(deed):
 
 
 def test_a_reader_that_was_killed_is_replaced(place):
-    place.signal("server.quarantine", signal.SIGKILL)
+    place.signal("server.creatures.sandbox_process", signal.SIGKILL)
     body = malformed.written(malformed.good())
     answers = [place.http.post("/api/v1/creatures", content=body) for _ in range(3)]
     assert {answer.status_code for answer in answers} <= {200, 503}

@@ -67,10 +67,10 @@ def test_a_setting_that_cannot_work_is_named_with_the_reason(refused, name, valu
 
 def test_a_server_whose_tokens_are_none_of_an_admin_does_not_listen(tmp_path, refused):
     settings = {"MICROCOSMOS_DATA": str(tmp_path / "data")}
-    command = [sys.executable, "-m", "server.tokens", "create", "reader", "--scope", "read"]
+    command = [sys.executable, "-m", "server.auth", "create", "reader", "--scope", "read"]
     subprocess.run(command, cwd=ROOT, env=os.environ | settings, check=True)
     said = refused(MICROCOSMOS_AUTH="required", PORT=str(free_port()))
-    assert "none is live: make one with `python -m server.tokens create" in said
+    assert "none is live: make one with `python -m server.auth create" in said
 
 
 def test_nothing_outlives_a_root_that_was_killed_and_the_next_start_goes_on(
@@ -88,7 +88,7 @@ def test_nothing_outlives_a_root_that_was_killed_and_the_next_start_goes_on(
 
 def test_a_killed_server_is_started_again(place, undisturbed):
     children = psutil.Process(place.process.pid).children()
-    server = next(child for child in children if child.cmdline()[1:] == ["-m", "server"])
+    server = next(child for child in children if child.cmdline()[1:] == ["-m", "server.main"])
     server.kill()
     wait_until(lambda: "server     died (signal SIGKILL)" in place.output.read_text(), 10, "")
     wait_until(place.answers, 30, "the server answers again")

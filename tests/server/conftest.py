@@ -8,7 +8,8 @@ import struct
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from functools import cache, cached_property
 from types import SimpleNamespace
 from typing import Any
 from uuid import UUID, uuid4
@@ -18,26 +19,24 @@ import psycopg
 import pytest
 import uvicorn
 from psycopg import sql
-from sqlalchemy import make_url, select, text
+from sqlalchemy import make_url, select
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
 from microcosmos.spec import identity as identity_of
-from server import migrations
 from server.app import create_app
-from server.db import connect as connect_database
-from server.models import Base, Run
-from server.redis_embedded import prepare
-from server.services import Services, connect
+from server.local.redis_embedded import prepare
+from server.runs.submission import submit
+from server.services.services import Services, connect
 from server.settings import Settings
-from server.submission import submit
+from server.tables import Base, Run, migrations
 
 POSTGRESQL = "postgresql://127.0.0.1:5432/postgres"
 
 
-@pytest.fixture(scope="session")
-def postgresql() -> Iterator[str | None]:
-    """A database that is ours alone, dropped at the end; None where there can be none."""
+@contextmanager
+def own_postgresql() -> Iterator[str]:
+    """A database of PostgreSQL for this process alone, dropped at the end."""
     if given := os.environ.get("MICROCOSMOS_TEST_DATABASE_URL"):
         yield given
         return
@@ -46,8 +45,7 @@ def postgresql() -> Iterator[str | None]:
         connection = psycopg.connect(POSTGRESQL, autocommit=True, connect_timeout=2)
         connection.execute(sql.SQL("CREATE DATABASE {}").format(sql.Identifier(name)))
     except psycopg.Error:
-        yield None
-        return
+        pytest.skip("no PostgreSQL on 127.0.0.1:5432 where we may create a database")
     database = sql.Identifier(name)
     with connection:
         # What a test wrote need not outlive the machine: nothing waits for the disk.
@@ -58,32 +56,10 @@ def postgresql() -> Iterator[str | None]:
         connection.execute(sql.SQL("DROP DATABASE {} WITH (FORCE)").format(database))
 
 
-@pytest.fixture(scope="session")
-def migrated(tmp_path_factory) -> Callable[[Services], None]:
-    """Brings a database up to date; a new one of SQLite starts as a copy of a migrated one."""
-    template = tmp_path_factory.mktemp("template") / "migrated.sqlite"
-    sessions = connect_database(f"sqlite:///{template}")
-    migrations.upgrade(sessions)
-    sessions.engine.dispose()
-    current = set[str]()
-
-    def bring(services: Services) -> None:
-        if services.sessions.engine.dialect.name == "sqlite":
-            shutil.copyfile(template, services.sessions.engine.url.database)
-        elif services.settings.database not in current:
-            migrations.upgrade(services.sessions)
-            current.add(services.settings.database)
-
-    return bring
-
-
 @pytest.fixture(params=["sqlite", "postgresql"])
-def database_url(request, tmp_path, postgresql) -> str:
-    if request.param == "sqlite":
-        return f"sqlite:///{tmp_path / 'test.sqlite'}"
-    if postgresql is None:
-        pytest.skip("no PostgreSQL on 127.0.0.1:5432 where we may create a database")
-    return postgresql
+def database(request) -> str:
+    """The database of a test: `make test` runs it on SQLite alone, unless it is marked."""
+    return request.param
 
 
 @pytest.fixture(scope="session")
@@ -103,47 +79,79 @@ def redis_url(tmp_path_factory) -> Iterator[str]:
     process.wait()
 
 
-@pytest.fixture
-def settings(tmp_path, database_url, redis_url) -> Settings:
-    """Reconciling is left to the tests, but for the pass with which a server begins."""
-    return Settings(
-        data=tmp_path,
-        database_url=database_url,
-        redis_url=redis_url,
-        redis_prefix=f"test-{uuid4().hex[:12]}:",
-        artifacts_url="",
-        max_bytes=1 << 30,
-        host="127.0.0.1",
-        token=None,
-        auth="local",
-        lease=20.0,
-        grace=15.0,
-        reconcile_interval=3600.0,
-    )
+class Installation:
+    """An installation for all tests on one database; its server starts when one is needed."""
 
+    def __init__(self, settings: Settings, stack: ExitStack):
+        self.services = connect(settings)
+        migrations.upgrade(self.services.sessions)
+        self._stack = stack
+        stack.callback(self.services.close)
 
-@pytest.fixture
-def services(settings, migrated) -> Iterator[Services]:
-    """What a worker would have: the same database, Redis and files as the server."""
-    services = connect(settings)
-    migrated(services)
-    yield services
-    with services.sessions.write.begin() as session:
-        for left in session.scalars(select(Run.id)):
-            services.jobs.forget(str(left))
-        if session.connection().dialect.name == "postgresql":  # The next test has it too.
+    @cached_property
+    def address(self) -> str:
+        return self._stack.enter_context(running(self.services.settings))
+
+    def clean(self) -> None:
+        """Leave nothing to the next test: no row, no key, no file."""
+        with self.services.sessions.write.begin() as session:
+            for left in session.scalars(select(Run.id)):
+                self.services.jobs.forget(str(left))
             for table in reversed(Base.metadata.sorted_tables):
-                session.execute(text(f"DELETE FROM {table.name}"))
-    empty_redis(services)
-    services.close()
+                session.execute(table.delete())
+        empty_redis(self.services)
+        shutil.rmtree(self.services.settings.artifacts, ignore_errors=True)
+
+
+@pytest.fixture(scope="session")
+def installations(tmp_path_factory, redis_url) -> Iterator[Callable[[str], Installation]]:
+    """The installation on a database; its reconciler makes the first pass alone."""
+    with ExitStack() as stack:
+
+        @cache
+        def install(database: str) -> Installation:
+            data = tmp_path_factory.mktemp(database)
+            settings = Settings(
+                data=data,
+                database_url=stack.enter_context(own_postgresql())
+                if database == "postgresql"
+                else f"sqlite:///{data / 'test.sqlite'}",
+                redis_url=redis_url,
+                redis_prefix=f"test-{uuid4().hex[:12]}:",
+                artifacts_url="",
+                max_bytes=1 << 30,
+                host="127.0.0.1",
+                token=None,
+                auth="local",
+                lease=20.0,
+                grace=15.0,
+                reconcile_interval=3600.0,
+            )
+            return Installation(settings, stack)
+
+        yield install
+
+
+@pytest.fixture
+def installation(installations, database) -> Iterator[Installation]:
+    installation = installations(database)
+    yield installation
+    installation.clean()
+
+
+@pytest.fixture
+def services(installation) -> Services:
+    """What a worker would have: the same database, Redis and files as the server."""
+    return installation.services
 
 
 def empty_redis(services: Services) -> None:
     """Remove everything that is ours, as FLUSHALL would."""
     for queue in (*services.jobs.evolving, services.jobs.renderings, services.jobs.audits):
         queue.delete(delete_jobs=True)
-    for key in services.redis.scan_iter(f"*{services.settings.redis_prefix[:-1]}*"):
-        services.redis.delete(key)
+    pattern = f"*{services.settings.redis_prefix[:-1]}*"
+    if keys := list(services.redis.scan_iter(pattern, count=1000)):
+        services.redis.delete(*keys)
 
 
 @pytest.fixture
@@ -191,9 +199,9 @@ def serve(services) -> Callable[[], Any]:
 
 
 @pytest.fixture
-def address(serve) -> Iterator[str]:
-    with serve() as address:
-        yield address
+def address(installation) -> str:
+    """The server that all tests share."""
+    return installation.address
 
 
 @pytest.fixture

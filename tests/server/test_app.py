@@ -9,7 +9,7 @@ import time
 import httpx
 import pytest
 
-from server.routes import page
+from server.core import page
 
 
 def test_a_server_that_can_work_says_so(address):
@@ -99,7 +99,7 @@ def test_sigterm_ends_a_server_with_open_streams_at_once(services, tmp_path, eve
         "MICROCOSMOS_REDIS_PREFIX": settings.redis_prefix,
     }
     address = f"http://127.0.0.1:{port}"
-    with subprocess.Popen([sys.executable, "-m", "server"], env=environment) as process:
+    with subprocess.Popen([sys.executable, "-m", "server.main"], env=environment) as process:
         try:
             eventually(lambda: answers(f"{address}/healthz"))
             with httpx.stream("GET", f"{address}/api/v1/events") as stream:

@@ -23,8 +23,8 @@ from redis.backoff import ConstantBackoff
 from redis.retry import Retry
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
-from server.__main__ import GRACE
-from server.redis_embedded import find_binary, free_port
+from server.local.redis_embedded import find_binary, free_port
+from server.main import GRACE
 from server.settings import Settings
 from worker.health import PARTS
 from worker.supervisor import PATIENCE
@@ -82,7 +82,12 @@ def started(service):
 
 def test_every_module_that_is_started_exists(ours):
     modules = {module for one in ours.values() for module in started(one)}
-    assert {"server", "server.migrations", "worker.supervisor", "worker.health"} <= modules
+    assert {
+        "server.main",
+        "server.tables.migrations",
+        "worker.supervisor",
+        "worker.health",
+    } <= modules
     for name in modules:
         spec = importlib.util.find_spec(name)
         assert spec, name

@@ -20,10 +20,12 @@ from schemathesis.specs.openapi.checks import (
 )
 
 from microcosmos.archive import creature, file
-from server import creatures, renderings, tokens
 from server.app import create_app
-from server.claims import claim
-from server.models import REPLAY
+from server.attempts.begin import claim
+from server.auth import tokens
+from server.creatures import storage as creatures
+from server.renderings import storage as renderings
+from server.tables import REPLAY
 
 EXAMPLES = int(os.environ.get("EXAMPLES", "8"))
 """Requests to each operation, right ones and wrong ones; `EXAMPLES=500` looks longer."""
@@ -45,8 +47,8 @@ HERE = settings(
 
 
 @pytest.fixture
-def database_url(tmp_path) -> str:
-    return f"sqlite:///{tmp_path / 'test.sqlite'}"
+def database() -> str:
+    return "sqlite"
 
 
 @pytest.fixture

@@ -5,11 +5,11 @@ from types import SimpleNamespace
 import pytest
 
 from microcosmos.spec import EXPERIMENTS
-from server import migrations, redis_embedded
-from server.models import Run
-from server.services import connect
+from server.local import redis_embedded
+from server.runs.submission import submit
+from server.services.services import connect
 from server.settings import Settings
-from server.submission import submit
+from server.tables import Run, migrations
 
 
 @pytest.fixture(scope="session")

@@ -8,9 +8,9 @@ from fsspec.implementations.local import LocalFileSystem
 from sqlalchemy import update
 from sqlalchemy.exc import OperationalError
 
-from server import lifecycle
-from server.artifacts import Artifacts
-from server.models import Run
+from server.runs import lifecycle
+from server.storage.artifacts import Artifacts
+from server.tables import Run
 from worker import attempt, stop
 from worker.attempt import claimed
 

@@ -8,7 +8,7 @@ import pytest
 from rq.serializers import JSONSerializer
 from rq.worker import SimpleWorker
 
-from server import workers
+from server.workers import registry
 from worker.health import alive, main
 
 HOST = "somewhere"
@@ -16,7 +16,7 @@ HOST = "somewhere"
 
 def test_a_worker_is_alive_while_it_tells_of_itself(services):
     assert not alive(services, "worker", HOST)
-    workers.report(services.sessions, f"{HOST}-17", "a device", 1, "idle")
+    registry.report(services.sessions, f"{HOST}-17", "a device", 1, "idle")
     assert alive(services, "worker", HOST)
     assert not alive(services, "worker", "some")
     assert not alive(services, "renderer", HOST)
@@ -24,7 +24,7 @@ def test_a_worker_is_alive_while_it_tells_of_itself(services):
     object.__setattr__(services.settings, "lease", 0.0)
     assert not alive(services, "worker", HOST), "a lease without a word is over"
     object.__setattr__(services.settings, "lease", patient)
-    workers.retire(services.sessions, f"{HOST}-17")
+    registry.retire(services.sessions, f"{HOST}-17")
     assert not alive(services, "worker", HOST)
 
 

@@ -9,8 +9,9 @@ import pytest
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, Gaits, identity
-from server import creatures, renderings
-from server.models import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
+from server.creatures import storage as creatures
+from server.renderings import storage as renderings
+from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
 from worker import pictures
 
 FRAMES, NODES, SIZE = 7, 3, (24, 16)
@@ -73,8 +74,9 @@ def asked(monkeypatch):
         calls.append(("measurement", file["sha256"]))
         return {"exact": True}
 
+    monkeypatch.setattr(pictures, "viz", SimpleNamespace(record=record))
     monkeypatch.setattr(
-        pictures, "render", SimpleNamespace(record=record, audit=audit, measurement=measurement)
+        pictures, "audit", SimpleNamespace(audit=audit, measurement=measurement)
     )
     return calls
 

@@ -3,9 +3,9 @@
 import pytest
 from sqlalchemy import select, update
 
-from server import workers
-from server.claims import claim
-from server.models import CANCELLED, Run, Worker
+from server.attempts.begin import claim
+from server.tables import CANCELLED, Run, Worker
+from server.workers import registry
 from worker.device import Device
 from worker.pulse import PATIENCE, Pulse
 
@@ -30,7 +30,7 @@ def test_a_worker_tells_its_device_its_memory_and_its_run(services, pulse, run_i
     pulse.watch(run_id, lambda: killed.append(run_id))
     pulse.beat()
     with services.sessions.read() as session:
-        found = workers.live(session, 20)[0]
+        found = registry.live(session, 20)[0]
     assert (found.name, found.device, found.memory_bytes) == ("worker", "some device", 8 << 30)
     assert (found.status, found.run_id) == ("busy", run_id)
     assert not killed

@@ -5,7 +5,7 @@ import time
 import pytest
 from rq.serializers import JSONSerializer
 
-from server.renderings import RenderingFailed, order
+from server.renderings.storage import RenderingFailed, order
 from worker.renderer import Renderer, take_up
 
 CREATURE = "ab" * 32

@@ -7,8 +7,8 @@ import sys
 import pytest
 from rq.serializers import JSONSerializer
 
-from server import process_tree
-from server.claims import claim
+from server.attempts.begin import claim
+from server.local import process_tree
 from worker import supervisor
 from worker.device import Device
 from worker.pulse import Pulse

@@ -6,7 +6,7 @@ from threading import Event
 
 import pytest
 
-from server import workers
+from server.workers import registry
 from worker import usage
 from worker.device import MIB, Device, memory
 from worker.pulse import Pulse
@@ -74,7 +74,7 @@ def test_a_beat_tells_what_was_seen_last(services):
     pulse.gauge.last = Usage(5, 0.25)
     pulse.beat()
     with services.sessions.read() as session:
-        (found,) = workers.live(session, 20)
+        (found,) = registry.live(session, 20)
     assert (found.kind, found.memory_used_bytes, found.load) == ("gpu", 5, 0.25)
 
 

@@ -10,10 +10,10 @@ from uuid import UUID
 import numpy as np
 from sqlalchemy import insert, select
 
-from server import services
-from server.models import FINISHED, Elite, Generation, Run
-from server.services import Services
+from server.services import services
+from server.services.services import Services
 from server.settings import Settings
+from server.tables import FINISHED, Elite, Generation, Run
 
 GENERATIONS = 200
 

@@ -2,7 +2,7 @@
 
 import json
 
-from server.routes.experiments import built_in
+from server.specs.routes import built_in
 
 
 def main() -> None:

@@ -1,6 +1,6 @@
 """Write what the engine says that networks compute, for the page's tests to be held against.
 
-`.venv/bin/python web/scripts/networks.py > web/test/fixtures/networks.json`. A test of the
+`.venv/bin/python web/scripts/networks.py > web/src/decode/networks.fixture.json`. A test of the
 engine makes the same numbers anew and compares, so that the file cannot grow stale.
 """
 

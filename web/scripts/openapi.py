@@ -3,7 +3,7 @@
 import json
 
 from server.app import create_app
-from server.services import connect
+from server.services.services import connect
 from server.settings import Settings
 
 

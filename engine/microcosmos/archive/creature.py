@@ -10,7 +10,7 @@ from pydantic import Field, StringConstraints, ValidationError, model_validator
 
 from ..spec import Part, Scene, Task, field_path
 from ..spec import identity as identity_of
-from ..spec.own import Own
+from ..spec.plugins import Own
 from .genomes import Network
 from .identity import Identity
 from .naming import FORMAT, LICENCE, canonical, name

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..spec import shape
 from . import file as hdf5
-from . import strict
+from . import hdf5_guard
 from .creature import parse, scene_of
 from .encoding import decode
 from .file import Tree
@@ -60,13 +60,13 @@ def load(data: bytes) -> dict[str, Any]:
     """
     try:
         with h5py.File(BytesIO(data), "r") as file:
-            told = strict.texts(file, ATTRIBUTES - (LATER - set(file.attrs)))
+            told = hdf5_guard.texts(file, ATTRIBUTES - (LATER - set(file.attrs)))
             if told["format"] != FORMAT:
                 raise ValueError(f"`format` must be {FORMAT}, got {told['format']:.60}")
             parts = {part: json.loads(told[part]) for part in PARTS if part in told}
-            identity = json.loads(strict.text(file, "identity"))
+            identity = json.loads(hdf5_guard.text(file, "identity"))
             found = parse({"identity": identity, "sha256": told["sha256"], **parts})
-            strict.refuse_other(file, _tree(found))
+            hdf5_guard.refuse_other(file, _tree(found))
     except (OSError, RuntimeError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"a creature's HDF5 file must be HDF5: {error}") from error
     expected = _attributes(found)

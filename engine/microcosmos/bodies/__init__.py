@@ -1,6 +1,7 @@
 """Bodies as NumPy data; JAX-free, so that a spec can be checked anywhere."""
 
 from .assembly import placed, together
+from .bounds import refuse_outside
 from .branching import star, tree
 from .chain import chain
 from .checks import MIN_GAP
@@ -8,7 +9,6 @@ from .circle import arc, ring
 from .colouring import Colour, colour
 from .curve import polyline, svg
 from .graph import Body
-from .inside import refuse_outside
 from .network import from_graph, graph
 from .refine import Refined, subdivided
 from .shape import from_edges

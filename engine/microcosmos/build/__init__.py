@@ -1,13 +1,13 @@
 """From a spec to the objects that carry it out: the only place where pydantic meets JAX."""
 
+from .cells import build_axes, build_niches
 from .creatures import build_block, build_point, build_stroke_block, frame
 from .emitters import build_emitters, build_rates
 from .encodings import build_controls, build_encoding
 from .experiments import build, build_plan
 from .folding import build_descent, build_pictures
-from .niches import build_axes, build_niches
-from .own import build_measures, features_of
 from .peers import scoring_function, to_repertoire
+from .plugins import build_measures, features_of
 from .scene import (
     build_energy,
     build_limits,

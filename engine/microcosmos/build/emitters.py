@@ -8,8 +8,8 @@ from ..genomes import Encoding
 from ..search import emitters, qdax, tensorneat
 from ..search.emitters.tensorneat import TensorNeat
 from ..spec import emitters as words
-from .niches import build_niches
-from .own import features_of
+from .cells import build_niches
+from .plugins import features_of
 
 
 def build_emitters(chosen: spec.Evolution, encoding: Encoding) -> tuple[search.Emitter, ...]:

@@ -5,7 +5,7 @@ from functools import singledispatch
 import numpy as np
 
 from .. import bodies, genomes, spec
-from .own import build_act
+from .plugins import build_act
 
 TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
 LENGTHS = {"log": genomes.scaled, "raw": genomes.added}

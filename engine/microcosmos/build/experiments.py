@@ -11,17 +11,17 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import device, neat, search, spec
-from ..archive.origin import counters, genes_of
-from ..experiments import Experiment, again
+from ..archive.initial import counters, genes_of
+from ..experiments import Experiment, reevaluation
 from ..experiments.evolution import Evolution, Programs
 from ..experiments.learning import Lessons
 from ..experiments.state import Again, Limits, Origin, Plan
 from ..search.emitters.tensorneat import TensorNeat
+from .cells import build_niches
 from .creatures import build_block, build_disturbed_block, frame
 from .emitters import build_emitters
 from .folding import build_folding
-from .niches import build_niches
-from .own import features_of, own_of
+from .plugins import features_of, own_of
 from .refinement import build_refinement
 from .scene import build_encoding, build_task
 from .tables import build_gaits, build_scaling
@@ -86,13 +86,13 @@ def build_lessons(
     return tuple(lessons(words, emitter) for words, emitter in pairs)
 
 
-def build_repeats(chosen: spec.Evolution, plan: Plan) -> again.Programs | None:
+def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs | None:
     """What evaluates elites again, where they are."""
     asked = plan.again
     if asked is None:
         return None
-    return again.Programs(
-        disturb=jax.jit(lambda g, s: again.disturb(asked, plan.key, plan.cells, g, s)),
+    return reevaluation.Programs(
+        disturb=jax.jit(lambda g, s: reevaluation.disturb(asked, plan.key, plan.cells, g, s)),
         evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
         add=jax.jit(search.reevaluation.add),
         correct=jax.jit(search.reevaluation.corrected),

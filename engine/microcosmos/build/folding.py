@@ -4,8 +4,9 @@ import json
 
 import numpy as np
 
-from .. import device, fields, pictures, search, spec
+from .. import device, fields, search, spec
 from ..experiments import folding
+from ..spec import targets
 from .creatures import frame
 from .scene import build_task
 
@@ -43,4 +44,4 @@ def build_descent(chosen: spec.Folding) -> search.folding.Descent:
 def build_pictures(chosen: spec.Folding) -> np.ndarray:
     """(fold, x, y) pictures on the lattice."""
     size = (chosen.world.width, chosen.world.height)
-    return np.stack([pictures.field(one.ink, size, chosen.size) for one in chosen.targets])
+    return np.stack([targets.field(one.ink, size, chosen.size) for one in chosen.targets])

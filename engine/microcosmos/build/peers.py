@@ -10,9 +10,9 @@ from .. import search, spec
 from ..archive.file import load
 from ..genomes import Genotype
 from ..search import qdax
+from .cells import build_niches
 from .experiments import build_evolution, room_of
-from .niches import build_niches
-from .own import features_of
+from .plugins import features_of
 from .scene import build_task
 
 

@@ -10,9 +10,9 @@ from .. import device, search, spec
 from ..archive import creature
 from ..experiments import refinement
 from ..spec.refinement import parsed
+from .cells import build_niches
 from .creatures import build_block, frame
-from .niches import build_niches
-from .own import features_of, own_of
+from .plugins import features_of, own_of
 from .scene import build_task
 
 

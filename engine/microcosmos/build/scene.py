@@ -5,20 +5,10 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from .. import (
-    bodies,
-    coupling,
-    fields,
-    filaments,
-    fluid,
-    groups,
-    search,
-    spec,
-    world,
-)
-from ..bodies.extent import reach
+from .. import bodies, coupling, fields, filaments, fluid, groups, search, spec, world
+from ..bodies.reach import reach
 from .encodings import build_encoding
-from .own import build_measures, strokes_of
+from .plugins import build_measures, strokes_of
 
 PROJECTIONS = {
     "none": coupling.unprojected,

@@ -7,7 +7,7 @@ from typing import Any
 import jax.numpy as jnp
 
 from .. import bodies, device, filaments, spec, units, world
-from ..bodies.extent import reach
+from ..bodies.reach import reach
 from ..experiments import gaits, scaling, timing
 from ..spec.scaling import SPACING
 from .creatures import build_point, build_stroke_block, frame

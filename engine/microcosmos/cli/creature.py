@@ -44,12 +44,12 @@ def audit(
 ) -> None:
     """Does a creature swim by the fluid, or by the way it is computed?"""
     load_modules(module)
+    from ..archive.atomic import write_whole
     from ..archive.creature import CreatureError, parse
-    from ..archive.store import write_whole
     from ..device import prepare
 
     prepare(cache=CACHE)
-    from ..render import audit as examined
+    from ..audit.physics import audit as examined
 
     try:
         found = examined(parse(file.read_bytes()))
@@ -76,12 +76,12 @@ def gradient(
 ) -> None:
     """How far can the gradient of a creature's fitness, or of a feature, be trusted?"""
     load_modules(module)
+    from ..archive.atomic import write_whole
     from ..archive.creature import CreatureError, parse
-    from ..archive.store import write_whole
     from ..device import prepare
 
     prepare(cache=CACHE)
-    from ..render import gradient_health
+    from ..audit.derivatives import gradient_health
 
     try:
         parts = tuple(by or ["genes"])
@@ -96,7 +96,7 @@ def gradient(
 
 def _check(file: Path) -> None:
     from ..archive.creature import parse
-    from ..render import check
+    from ..audit.reproducibility import check
 
     result = check(parse(file.read_bytes()))
     for name, repeated in result.repeated.items():
@@ -111,9 +111,9 @@ def _check(file: Path) -> None:
 
 
 def _record(file: Path, out: Path) -> None:
+    from ..archive.atomic import write_whole
     from ..archive.creature import parse
-    from ..archive.store import write_whole
-    from ..render import record
+    from ..viz.replay import record
 
     write_whole(out, record(parse(file.read_bytes())))
     print(out)

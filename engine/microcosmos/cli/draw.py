@@ -81,7 +81,7 @@ def archive(
     palette: Palette = "viridis",
 ) -> None:
     """The map of an archive: bins, or the cells of a tessellation."""
-    from ..figures import drawing
+    from ..viz.figures import drawing
 
     how = drawing.Print(width, dpi, caption, latex, palette)
     _written(drawing.archive, file, _beside(file, out, "archive"), how, _names(axes), colour)
@@ -103,7 +103,7 @@ def curves(
     latex: Tex = False,
 ) -> None:
     """How runs went: seeds of one spec as a median with a band, other specs as other bands."""
-    from ..figures import drawing
+    from ..viz.figures import drawing
 
     *given, out = files
     if not given:
@@ -136,7 +136,7 @@ def sheet(
     from ..device import prepare
 
     prepare(cache=CACHE)
-    from ..figures import drawing
+    from ..viz.figures import drawing
 
     how = drawing.Print(width, dpi, caption, latex, palette)
     with Progress(console=console, transient=True) as bar:
@@ -167,7 +167,7 @@ def lineage(
     palette: Palette = "viridis",
 ) -> None:
     """The descent of an archive's elites, and the ancestors of one of them."""
-    from ..figures import drawing
+    from ..viz.figures import drawing
 
     how = drawing.Print(width, dpi, caption, latex, palette)
     _written(drawing.tree, file, _beside(file, out, "lineage"), how, cell)
@@ -195,21 +195,21 @@ def _draw(file: Path, out: Path) -> None:
     """A creature file is simulated first; the file of a run holds its table or its archive."""
     data = file.read_bytes()
     if data.startswith(HDF5) and "archive" in load(data)[0]:
-        from ..figures import drawing
+        from ..viz.figures import drawing
 
         drawing.archive(file, out, drawing.Print(), None, "fitness")
         return
     if data.startswith(HDF5):
-        from ..render import figures
+        from ..viz.figures import experiments
 
-        figures.save(figures.of(data), out)
+        experiments.save(experiments.of(data), out)
         return
-    from ..render import export
+    from ..viz.files import export
 
     if data[:1] == b"{":
         from ..archive.creature import parse
         from ..device import prepare
-        from ..render import record
+        from ..viz.replay import record
 
         prepare(cache=CACHE)
         data = record(parse(data))

@@ -9,7 +9,7 @@ import typer
 from .app import app, fail
 
 if TYPE_CHECKING:
-    from ..networks import Network
+    from ..viz.networks import Network
 
 ZIP = b"PK"
 """How a TensorNEAT genome begins."""
@@ -43,7 +43,7 @@ def network(
         if out is None:
             sys.stdout.buffer.write(data)
         else:
-            from ..archive.store import write_whole
+            from ..archive.atomic import write_whole
 
             write_whole(out, data)
             print(out)
@@ -53,7 +53,7 @@ def network(
 
 def _read(file: Path) -> "Network":
     from ..archive.creature import parse
-    from ..networks import load_tensorneat, of_creature
+    from ..viz.networks import load_tensorneat, of_creature
 
     data = file.read_bytes()
     if data[:2] == ZIP:
@@ -62,7 +62,7 @@ def _read(file: Path) -> "Network":
 
 
 def _rendered(network: "Network", form: str) -> bytes:
-    from .. import networks
+    from ..viz import networks
 
     if form == "tensorneat":
         return networks.dump_tensorneat(networks.write_tensorneat(network))

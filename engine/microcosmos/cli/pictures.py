@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from .. import pictures
-from ..archive.store import write_whole
+from ..archive.atomic import write_whole
 from ..spec import picture as target
+from ..spec import targets
 from .app import app, console, fail
 
 MNIST = "https://ossci-datasets.s3.amazonaws.com/mnist/"
@@ -39,12 +39,12 @@ def picture(
         fail("picture needs a FILE or --text, and not both")
     try:
         if text is not None:
-            ink, own = pictures.text(text, font), text
+            ink, own = targets.text(text, font), text
         elif file is not None and number is not None:
-            ink, own = pictures.mnist(file, number), f"{file.name} {number}"
+            ink, own = targets.mnist(file, number), f"{file.name} {number}"
         else:
             assert file is not None
-            ink, own = pictures.png(file), file.stem
+            ink, own = targets.png(file), file.stem
         print(target((name or own)[:64], ink).model_dump_json())
     except (ValueError, ImportError, OSError) as error:
         fail(str(error))

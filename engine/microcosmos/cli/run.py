@@ -18,7 +18,7 @@ from rich.progress import (
 
 from ..spec import Spec, estimate
 from .app import CACHE, app, console, fail
-from .beginning import From, begun, refuse_without_files
+from .fork import From, begun, refuse_without_files
 from .modules import Modules, load_modules
 from .specs import lasting, presets, read_spec
 
@@ -81,7 +81,8 @@ def carry_on(
     origin: Sequence[Mapping[str, Any]] = (),
 ) -> bool:
     """Carry the run on behind a progress bar; the first Ctrl-C asks it to stop."""
-    from .. import experiments, local
+    from .. import experiments
+    from ..build import local
 
     wishes: list[int] = []
 

@@ -6,7 +6,7 @@ import typer
 
 from . import overrides
 from .app import app
-from .following import ended
+from .monitor import ended
 from .remote import RUNS, Json, Token, Url, reaching, say, show
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 import httpx
 
 from ..version import VERSION
-from . import errors, plain
+from . import errors, jsonable
 
 API = "/api/v1/"
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -69,7 +69,7 @@ class Connection:
         body: dict[str, Any] = {}
         if document is not None:
             kind = {"Content-Type": "application/json"}
-            body = {"headers": kind, "content": plain.dumps(document)}
+            body = {"headers": kind, "content": jsonable.dumps(document)}
         return self.json(self.ask(method, path, key=key, params=params, **body))
 
     def json(self, answer: httpx.Response) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 
 import microcosmos
 
-from ..archive.store import write_whole
+from ..archive.atomic import write_whole
 from .connection import Connection
 from .picture import Picture
 from .replay import Replay

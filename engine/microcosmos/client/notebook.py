@@ -5,8 +5,8 @@ from html import escape
 from importlib import import_module
 from typing import Any, Self
 
-from . import drawing, words
-from .following import Standing
+from . import drawing, formatting
+from .polling import Standing
 
 OFTEN = 0.5
 """Seconds between two states of the display."""
@@ -59,13 +59,13 @@ def html(standing: Standing) -> str:
     colour = COLOURS.get(record["status"], "#2f7ec0")
     done = f"{record['generation']}/{record['generations']} {record.get('unit', 'generations')}"
     figures = [
-        f"{escape(name)} <b>{escape(value)}</b>" for name, value in words.figures(record)
+        f"{escape(name)} <b>{escape(value)}</b>" for name, value in formatting.figures(record)
     ]
-    told = " · ".join(filter(None, [done, *figures, words.pace(record)]))
+    told = " · ".join(filter(None, [done, *figures, formatting.pace(record)]))
     trouble = " ".join(filter(None, [record.get("warning"), standing.trouble]))
     return (
-        f"<div><b>{escape(words.titled(record))}</b> "
-        f'<span style="color:{colour}">{escape(words.standing(record))}</span></div>'
+        f"<div><b>{escape(formatting.titled(record))}</b> "
+        f'<span style="color:{colour}">{escape(formatting.standing(record))}</span></div>'
         f'<progress max="1" value="{record["progress"]:.4f}" style="width:{3 * WIDTH}px">'
         f"</progress><div>{told}</div>{_curves(standing, colour)}"
         f'<div style="color:#b7791f">{escape(trouble)}</div>'
@@ -74,7 +74,8 @@ def html(standing: Standing) -> str:
 
 def _curves(standing: Standing, colour: str) -> str:
     pictures = [
-        _curve(title, standing.curves.get(name, []), colour) for title, name in words.FIGURES
+        _curve(title, standing.curves.get(name, []), colour)
+        for title, name in formatting.FIGURES
     ]
     return f'<div style="display:flex;gap:12px">{"".join(pictures)}</div>'
 

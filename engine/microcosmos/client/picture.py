@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..archive.store import write_whole
+from ..archive.atomic import write_whole
 
 
 class Picture:

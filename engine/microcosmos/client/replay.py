@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..archive.store import write_whole
-from ..render import reading
+from ..archive.atomic import write_whole
+from ..viz import replay_file
 
 PLAYER = Path(__file__).with_name("player.html")
 LIMIT = 1_200_000
@@ -28,7 +28,7 @@ class Replay:
     def __init__(self, data: bytes):
         self.data = data
         """The file, as docs/formats.md has it."""
-        self.motion = reading.read_replay(data)
+        self.motion = replay_file.read_replay(data)
         """Its arrays: `positions`, `vorticity`, `drive`, `edges` …"""
 
     @property
@@ -82,7 +82,7 @@ class Replay:
         return path
 
 
-def thinning(motion: reading.Replay) -> tuple[int, int]:
+def thinning(motion: replay_file.Replay) -> tuple[int, int]:
     """Every which frame is shown, and of every how many cells a mean, to stay small."""
     width, height = motion.size
     cells = -(-max(width, height) // FLUID)
@@ -101,7 +101,7 @@ def coarse(levels: np.ndarray, cells: int) -> np.ndarray:
     return np.rint(squares.mean((2, 4), dtype=np.float32)).astype(np.int8)
 
 
-def note(motion: reading.Replay, frames: int, grid: tuple[int, ...]) -> str:
+def note(motion: replay_file.Replay, frames: int, grid: tuple[int, ...]) -> str:
     """What was left out, in words."""
     said = []
     if frames > 1:

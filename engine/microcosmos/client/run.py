@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any, Self
 from uuid import uuid4
 
-from . import files, following, forking, watching
+from . import files, forking, polling, watching
 from .archive import Archive
 from .columns import Columns
 from .creature import Creature
 from .errors import NotFound
-from .kin import entries
+from .lineage import entries
 from .progress import bar
 from .record import Record
 from .sharing import Share, publish
@@ -39,7 +39,7 @@ class Run(Record):
 
     @property
     def ended(self) -> bool:
-        return self.status in following.ENDED
+        return self.status in polling.ENDED
 
     @property
     def spec(self) -> dict[str, Any]:
@@ -76,7 +76,7 @@ class Run(Record):
 
     def wait(self, timeout: float | None = None) -> str:
         """The state in which it has ended; `TimeoutError` after so many seconds."""
-        self.record = following.wait(self._connection, self.id, timeout)
+        self.record = polling.wait(self._connection, self.id, timeout)
         return self.status
 
     def watch(self) -> str:

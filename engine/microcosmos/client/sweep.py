@@ -5,8 +5,8 @@ from typing import Any, Self
 
 from . import watching
 from .columns import frame
-from .following import ENDED
 from .pages import items
+from .polling import ENDED
 from .record import Record
 from .run import Run
 

@@ -8,8 +8,8 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from . import drawing, words
-from .following import Standing
+from . import drawing, formatting
+from .polling import Standing
 
 COLOURS = {"finished": "green", "failed": "red", "cancelled": "yellow", "paused": "yellow"}
 HEIGHT = 4
@@ -43,9 +43,9 @@ class Terminal:
 
 def drawn(standing: Standing, width: int) -> RenderableType:
     record = standing.record
-    head = Text(words.titled(record) + "  ")
-    head.append(words.standing(record), COLOURS.get(record["status"], "cyan"))
-    figures = "   ".join(f"{name} {value}" for name, value in words.figures(record))
+    head = Text(formatting.titled(record) + "  ")
+    head.append(formatting.standing(record), COLOURS.get(record["status"], "cyan"))
+    figures = "   ".join(f"{name} {value}" for name, value in formatting.figures(record))
     parts: list[RenderableType] = [head, _bar(standing, width), Text(figures)]
     parts += _curves(standing, width)
     for trouble in (record.get("warning"), standing.trouble):
@@ -59,7 +59,7 @@ def _bar(standing: Standing, width: int) -> RenderableType:
     record = standing.record
     share = f"{100 * record['progress']:.0f} %"
     done = f"{record['generation']}/{record['generations']} {record.get('unit', 'generations')}"
-    told = [share, done, words.pace(record)]
+    told = [share, done, formatting.pace(record)]
     room = width - sum(len(text) + 2 for text in told)
     bar = ProgressBar(total=1.0, completed=record["progress"], width=max(4, min(LONGEST, room)))
     table = Table.grid(padding=(0, 2))
@@ -77,7 +77,7 @@ def _curves(standing: Standing, width: int) -> list[RenderableType]:
     """Side by side, as many as there is room and something to tell."""
     known = [
         (title, standing.curves[name])
-        for title, name in words.FIGURES
+        for title, name in formatting.FIGURES
         if sum(value is not None for value in standing.curves.get(name, [])) > 1
     ]
     if not known:

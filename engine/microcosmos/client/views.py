@@ -4,8 +4,8 @@ import sys
 import time
 from typing import Any, Protocol, Self
 
-from . import words
-from .following import Standing
+from . import formatting
+from .polling import Standing
 
 SELDOM = 30.0
 """Seconds between two plain lines, unless something changes."""
@@ -65,6 +65,12 @@ def line(standing: Standing) -> str:
     """How a run stands, on one line."""
     record = standing.record
     done = f"{record['generation']}/{record['generations']} {record.get('unit', 'generations')}"
-    figures = [f"{name} {value}" for name, value in words.figures(record)]
-    parts = [words.titled(record), words.standing(record), done, *figures, words.pace(record)]
+    figures = [f"{name} {value}" for name, value in formatting.figures(record)]
+    parts = [
+        formatting.titled(record),
+        formatting.standing(record),
+        done,
+        *figures,
+        formatting.pace(record),
+    ]
     return "  ".join(filter(None, [*parts, standing.trouble]))

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from .connection import Connection
-from .following import Standing, follow, follow_sweep
+from .polling import Standing, follow, follow_sweep
 from .views import View, fitting
 
 

@@ -15,7 +15,7 @@ from .finding import Finding, ok, problem, warning
 QUERY = "SELECT version_num FROM alembic_version"
 OLDEST = (3, 35)
 """The first SQLite that answers an UPDATE with its rows."""
-MIGRATIONS = Path(__file__).parents[3] / "server" / "migrations" / "versions"
+MIGRATIONS = Path(__file__).parents[3] / "server" / "tables" / "migrations" / "versions"
 """Where they are in a checkout; an installed library has none."""
 CHOSEN = "correct MICROCOSMOS_DATABASE_URL; without it SQLite in the data folder is used"
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from ..archive.report import Elite, Report, Row
 from ..search import Stopped
-from .agreement import OtherDevice
-from .report import Elite, Report, Row
+from .resume_check import OtherDevice
 
 __all__ = ["Elite", "Experiment", "OtherDevice", "Report", "Row", "Stopped"]
 

@@ -17,7 +17,7 @@ from .. import neat, search
 from ..archive import file
 from ..genomes import Genotype
 from ..version import VERSION
-from .agreement import OtherDevice, devices_of
+from .resume_check import OtherDevice, devices_of
 from .state import CURVES, ENDS, FATES, Diverged, Lineage, Origin, Plan, State, prolonged, start
 
 __all__ = ["OtherDevice", "restore", "save"]

@@ -14,12 +14,12 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import search
+from ..archive.report import Report
 from ..genomes import Genotype
-from . import again, archive_file, lineage, origin
-from .origin import Programs
-from .report import Report
+from . import archive_file, lineage, offspring, reevaluation
+from .offspring import Programs
 from .state import CURVES, ENDS, KEPT, Diverged, Plan, State, start
-from .telling import told
+from .summary import told
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,12 @@ class Evolution:
 
     plan: Plan
     programs: Programs
-    repeats: again.Programs | None = None
+    repeats: reevaluation.Programs | None = None
     """What evaluates elites again, if they are."""
 
     def init(self) -> State:
         """Before the first generation; raises `ValueError` where origins are lacking."""
-        origin.refuse_lacking(self.plan)
+        offspring.refuse_lacking(self.plan)
         return start(self.plan)
 
     def done(self, state: State) -> bool:
@@ -52,7 +52,7 @@ class Evolution:
         Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
         """
         programs, spent = self.programs, state.device_seconds
-        brood = origin.born(self.plan, programs, state, stop)
+        brood = offspring.born(self.plan, programs, state, stop)
         children, taught, began = brood.children, brood.taught, brood.began
         evaluation = search.evaluate_blocks(
             programs.evaluate_block, children.genotypes, block=self.plan.block, stop=stop
@@ -87,9 +87,9 @@ class Evolution:
         )
         state = replace(state, ended=_ended(self.plan, state))
         corrected = (np.nan, np.nan, np.nan)
-        if self.repeats and again.due(self.plan, state):
-            state = again.evaluate(self.plan, self.repeats, state, stop)
-            corrected = again.figures(self.repeats, state)
+        if self.repeats and reevaluation.due(self.plan, state):
+            state = reevaluation.evaluate(self.plan, self.repeats, state, stop)
+            corrected = reevaluation.figures(self.repeats, state)
         row = np.array([*_figures(state), clipped, *corrected])
         state = replace(state, curves=np.concatenate([state.curves, row[None]]))
         report = _report(state, news.elites)

@@ -10,12 +10,12 @@ import numpy as np
 
 from .. import search
 from ..archive import file, naming
+from ..archive.report import Report, Row
 from ..genomes import Encoding, Vector
 from ..version import VERSION
 from . import table_file
 from .archive_file import filled, leaves
 from .lineage import identity
-from .report import Report, Row
 from .table_file import Table
 
 

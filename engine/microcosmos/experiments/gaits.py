@@ -9,9 +9,9 @@ import numpy as np
 
 from .. import search, units
 from ..archive import naming
+from ..archive.report import Report, Row
 from ..version import VERSION
 from . import table_file
-from .report import Report, Row
 from .table_file import Table
 
 

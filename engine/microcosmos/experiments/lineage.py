@@ -10,9 +10,9 @@ import numpy as np
 
 from .. import search
 from ..archive import naming
+from ..archive.report import Elite
 from ..genomes import Encoding, Genotype, take
 from ..version import VERSION
-from .report import Elite
 from .state import Lineage, Plan, State
 
 NOBODY = np.zeros(32, np.uint8)

@@ -15,12 +15,12 @@ import numpy as np
 
 from .. import search
 from ..archive import file, naming
+from ..archive.report import Report, Row
 from ..genomes import Encoding, Genotype, Vector, take
 from ..search.gradients import genes_of, with_genes
 from ..version import VERSION
 from . import table_file, trials
 from .lineage import identity
-from .report import Report, Row
 from .table_file import Table
 from .trials import SHRINK
 

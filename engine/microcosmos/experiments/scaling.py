@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from .. import search
+from ..archive.report import Report, Row, Value
 from . import table_file
-from .report import Report, Row, Value
 from .table_file import Table
 
 LINEAR_FROM = 16_000

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..archive import file
+from ..archive.report import Row
 from ..version import VERSION
-from .agreement import devices_of
-from .report import Row
+from .resume_check import devices_of
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from .. import coupling, filaments, fluid, world
+from ..archive.report import Value
 from ..search import Stopped
-from .report import Value
 
 TOLD = 1000
 """Steps that times are told for."""

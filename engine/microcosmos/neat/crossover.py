@@ -6,7 +6,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Int, PRNGKeyArray
 
 from ..genomes import CPPN
-from .chance import draws, left
+from .rng import draws, left
 from .rows import match
 
 DISABLED = 0.75

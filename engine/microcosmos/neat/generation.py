@@ -8,11 +8,11 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
-from .chance import below, draws
 from .crossover import crossover
 from .mutation import Novelty, mutate
 from .numbering import Counters, number
 from .offspring import Standing, allot, allowed, recorded, shares, standing
+from .rng import below, draws
 from .rows import NONE, apart
 from .settings import Settings
 from .species import Species, divide, no_species

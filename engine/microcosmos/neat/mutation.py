@@ -12,8 +12,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
-from .chance import Chance, draws, left
 from .rates import Rates, bounded, one_of
+from .rng import Chance, draws, left
 from .rows import NONE, apart
 from .structure import add_connection, add_node, delete_connection, delete_node
 

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array
 
 from ..genomes import ACTIVATIONS
-from .chance import LARGEST, Chance
+from .rng import LARGEST, Chance
 
 Draw = Callable[[Array], Array]
 """Numbers that are equally likely between 0 and 1 → random numbers around zero."""

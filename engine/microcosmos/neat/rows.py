@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Int
 
 from ..genomes import CPPN
-from .chance import Chance, below
+from .rng import Chance, below
 
 NONE = -1
 """Stands for the row or the number of a gene that is not there."""

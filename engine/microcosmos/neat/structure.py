@@ -6,19 +6,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Int
 
 from ..genomes import CPPN
-from . import reach
-from .chance import Chance, below, left
+from . import acyclicity
 from .rates import Rates, bounded, one_of
-from .rows import (
-    NONE,
-    apart,
-    choose,
-    connect,
-    drop_connection,
-    drop_node,
-    put,
-    ranked,
-)
+from .rng import Chance, below, left
+from .rows import NONE, apart, choose, connect, drop_connection, drop_node, put, ranked
 
 
 def add_connection(
@@ -95,20 +86,20 @@ def _free_pair(
     if rates.blind:
         source, _ = choose(network.node_used, chance[0])
         target, exists = choose(is_target, chance[1])
-        return source, target, exists & reach.held(free, target)[source]
-    many = jnp.where(is_target, reach.sizes(free), 0)
+        return source, target, exists & acyclicity.held(free, target)[source]
+    many = jnp.where(is_target, acyclicity.sizes(free), 0)
     rank = below(jnp.sum(many), chance[0])
     target = ranked(many, rank)
     before = jnp.sum(jnp.where(jnp.arange(len(many)) < target, many, 0))
-    return ranked(reach.held(free, target), rank - before), target, jnp.any(many > 0)
+    return ranked(acyclicity.held(free, target), rank - before), target, jnp.any(many > 0)
 
 
-def _free_sources(network: CPPN, recurrent: bool) -> reach.Sets:
+def _free_sources(network: CPPN, recurrent: bool) -> acyclicity.Sets:
     """For each node those that it could be joined from."""
     used, nodes = network.connection_used, network.node_used.shape[0]
-    joined = reach.neighbours(network.target, network.source, used, nodes)
-    free = reach.without(reach.members(network.node_used), joined)
+    joined = acyclicity.neighbours(network.target, network.source, used, nodes)
+    free = acyclicity.without(acyclicity.members(network.node_used), joined)
     if recurrent:
         return free
-    onward = reach.neighbours(network.source, network.target, used, nodes)
-    return reach.without(free, reach.closure(onward))
+    onward = acyclicity.neighbours(network.source, network.target, used, nodes)
+    return acyclicity.without(free, acyclicity.closure(onward))

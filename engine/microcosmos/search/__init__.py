@@ -19,10 +19,10 @@ from .evaluation import (
     motion_of,
     simulate,
 )
-from .features import FEATURES, Seen, motion, observe
 from .health import Health, gradient_health
 from .insertion import Elites, Inserted, clipped, digest, insert, insert_program, no_elites
-from .own import Measure, Motion
+from .measures import FEATURES, Seen, motion, observe
+from .plugin_measures import Measure, Motion
 from .slopes import slopes, slopes_program
 from .strokes import STROKE_FEATURES, Conditions, Watched, impulse, stroke_program, swim, watch
 

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import KDTree
 
-from ..archive.store import write_whole
+from ..archive.atomic import write_whole
 
 METHOD = "lloyd/1"
 """Part of the name on disk; to be counted up where the same numbers give other centroids."""

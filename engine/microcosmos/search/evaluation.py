@@ -19,8 +19,8 @@ from .. import units
 from ..filaments import Rest
 from ..genomes import Drive, Encoding, Genotype
 from ..world import Measures, State, World, flow, rollout
-from .features import FEATURES, Seen, motion, observe
-from .own import Measure, seen_as
+from .measures import FEATURES, Seen, motion, observe
+from .plugin_measures import Measure, seen_as
 
 STATUSES = ("ok", "non-finite", "supersonic")
 """Why an evaluation counts or does not, by status code."""

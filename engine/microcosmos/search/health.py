@@ -19,7 +19,7 @@ from ..genomes import Drive
 from ..world import State
 from . import gradients
 from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
-from .features import Seen
+from .measures import Seen
 from .reevaluation import Disturbance, Spread, disturbance, moved
 
 STEPS = {"float64": (1e-3, 1e-4, 1e-5, 1e-6), "float32": (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)}

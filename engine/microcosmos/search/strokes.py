@@ -12,7 +12,7 @@ from .. import units
 from ..filaments import Rest
 from ..world import Limits, Measures, State, World, centre, flow, rollout
 from .evaluation import Evaluation, Task, mapped
-from .features import MOTION, Seen, motion, observe
+from .measures import MOTION, Seen, motion, observe
 
 STROKE_FEATURES = (
     *MOTION,

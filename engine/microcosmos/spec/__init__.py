@@ -14,7 +14,7 @@ from .fields import Energy, Steric
 from .folding import Digit, Folding, Picture, picture
 from .gaits import FORMS, Gaits
 from .neuroevolution import Neuroevolution
-from .own import Own, Used, used
+from .plugins import Own, Used, used
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement
 from .scaling import Scaling

@@ -7,9 +7,10 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from .. import bodies, creatures, plugins
+from .. import bodies, plugins
+from ..bodies import swimmers
 from .base import Part, unit
-from .own import Own, OwnName, completed
+from .plugins import Own, OwnName, completed
 from .sources import PAPER, RODS, after
 
 SUPPORT = 4.0
@@ -296,7 +297,7 @@ def _nodes(body: Elastic) -> float:
 @lru_cache(maxsize=64)
 def _shape(body: Body) -> bodies.Body:
     if isinstance(body, Known):
-        return creatures.SWIMMERS[body.builder]().body
+        return swimmers.SWIMMERS[body.builder]().body
     measures = {name: getattr(body, name) for name in type(body).model_fields}
     if measures.pop("builder") == "graph":
         nodes, edges = (np.array(measures.pop(name)) for name in ("nodes", "edges"))

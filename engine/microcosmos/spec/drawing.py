@@ -5,7 +5,8 @@ from functools import singledispatch
 
 import numpy as np
 
-from .. import bodies, pictures
+from .. import bodies
+from . import targets
 from .body import Body, made_elsewhere, shape
 from .evolution import Evolution
 from .experiments import Spec
@@ -76,7 +77,7 @@ def _(spec: Refinement) -> Drawing:
 def _(spec: Folding) -> Drawing:
     alone = _alone(spec.world, spec.body)
     shown = spec.targets[:MOST_PICTURES]
-    found = tuple((target.name, pictures.fitted(target.ink, PIXELS)) for target in shown)
+    found = tuple((target.name, targets.fitted(target.ink, PIXELS)) for target in shown)
     return replace(alone, pictures=found, picture_size=spec.size)
 
 

@@ -10,7 +10,7 @@ from .. import bodies, plugins
 from .base import LATER, Part, unit
 from .body import Body, made_elsewhere, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
-from .own import Own, OwnName, completed
+from .plugins import Own, OwnName, completed
 
 TRAITS = {
     "rest_angle": (-3.0, 3.0),

@@ -13,7 +13,7 @@ from .base import Part
 from .folding import Folding
 from .gaits import Gaits
 from .neuroevolution import Neuroevolution
-from .own import CONTEXT
+from .plugins import CONTEXT
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement
 from .scaling import Scaling

@@ -5,7 +5,6 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from .. import pictures
 from . import reverse
 from .base import Part, unit
 from .body import Body, Walk, made_elsewhere, resolved
@@ -14,6 +13,8 @@ from .coupling import Coupling
 from .scene import Fold, Scene
 from .search import Task
 from .sources import ADAM, DIGITS, PAPER, after, source
+from .targets import MOST, decoded, encoded
+from .targets import digit as handwritten
 from .world import World
 
 
@@ -33,7 +34,7 @@ class Digit(Part):
     @property
     def ink(self) -> np.ndarray:
         """Rows from the top, 1 is ink."""
-        return pictures.digit(self.digit)
+        return handwritten(self.digit)
 
 
 class Picture(Part):
@@ -42,17 +43,17 @@ class Picture(Part):
     kind: Literal["picture"]
     name: str = Field(min_length=1, max_length=64)
     """What it is called."""
-    width: int = Field(ge=1, le=pictures.MOST, json_schema_extra=unit("pixels"))
+    width: int = Field(ge=1, le=MOST, json_schema_extra=unit("pixels"))
     """Pixels of a row."""
-    height: int = Field(ge=1, le=pictures.MOST, json_schema_extra=unit("pixels"))
+    height: int = Field(ge=1, le=MOST, json_schema_extra=unit("pixels"))
     """Rows."""
-    pixels: str = Field(max_length=2 * pictures.MOST**2)
+    pixels: str = Field(max_length=2 * MOST**2)
     """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
 
     @property
     def ink(self) -> np.ndarray:
         """Rows from the top, 1 is ink."""
-        return pictures.decoded(self.pixels, self.width, self.height)
+        return decoded(self.pixels, self.width, self.height)
 
     @model_validator(mode="after")
     def refuse_malformed(self) -> Self:
@@ -68,7 +69,7 @@ class Picture(Part):
 def picture(name: str, ink: np.ndarray) -> Picture:
     """A target of ink (row, column) from 0 to 1, rows from the top."""
     height, width = ink.shape
-    pixels = pictures.encoded(ink)
+    pixels = encoded(ink)
     return Picture(kind="picture", name=name, width=width, height=height, pixels=pixels)
 
 

@@ -10,7 +10,7 @@ from .base import Part, unit
 from .body import Body, Known, OwnBody, Swimmer, made_elsewhere, resolved
 from .coupling import Coupling
 from .fields import Steric
-from .own import OR_OWN, Own, version
+from .plugins import OR_OWN, Own, version
 from .scene import Gait, Scene, refuse_too_large
 from .search import Task
 from .sources import PAPER, source

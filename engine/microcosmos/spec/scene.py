@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from ..bodies.extent import reach
+from ..bodies.reach import reach
 from .base import Part, unit
 from .body import SUPPORT, Body, Chain, Swimmer, made_elsewhere, shape
 from .control import Control, Sight
@@ -21,7 +21,7 @@ from .encodings import (
     lengthening,
     refuse_unfit,
 )
-from .own import OR_OWN, MaybeOwn, Own, completed, left_out
+from .plugins import OR_OWN, MaybeOwn, Own, completed, left_out
 from .search import Task
 from .world import World
 

@@ -5,10 +5,10 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
-from . import features
+from . import measures
 from .base import LATER, Part, unit
 from .emitters import BY_SLOPES, GROWING, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
-from .own import OR_OWN, MaybeOwn, Own, completed, left_out
+from .plugins import OR_OWN, MaybeOwn, Own, completed, left_out
 from .sources import AGAIN, CVT, MAP_ELITES, PAPER, after, source
 
 Fitness = Literal["displacement", "energy", "displacement+energy"]
@@ -46,14 +46,14 @@ def _by_name(schema: dict[str, Any]) -> None:
 def _end(schema: dict[str, Any]) -> None:
     """An end of an axis; the unit too is the measure's."""
     _by_name(schema)
-    schema["units"] = {name: one.unit for name, one in features.FEATURES.items()}
+    schema["units"] = {name: one.unit for name, one in measures.FEATURES.items()}
     schema["unit_of"] = "name"
 
 
 class Descriptor(Part):
     """One axis of the archive."""
 
-    name: Annotated[features.Name, *OR_OWN]
+    name: Annotated[measures.Name, *OR_OWN]
     """What is measured; ends and scale are the measure's own unless they are given."""
     low: float = Field(default=0.0, ge=-1e30, le=1e30, json_schema_extra=_end)
     """Lower end of the axis, in raw units; what is below counts in the first bin."""
@@ -61,7 +61,7 @@ class Descriptor(Part):
     """Upper end of the axis, in raw units; what is above counts in the last bin."""
     bins: int = Field(default=20, ge=1, le=1024)
     """Cells along the axis."""
-    scale: features.Scale = Field(default="linear", json_schema_extra=_by_name)
+    scale: measures.Scale = Field(default="linear", json_schema_extra=_by_name)
     """Whether bins are equally wide in the logarithm or in the raw value."""
 
     own: MaybeOwn = left_out()
@@ -72,7 +72,7 @@ class Descriptor(Part):
     def complete(cls, given: Any, info: ValidationInfo) -> Any:
         """What is left out is the measure's own."""
         given, declared = completed(given, ("descriptor",), "name", info)
-        known = isinstance(given, dict) and features.FEATURES.get(str(given.get("name")))
+        known = isinstance(given, dict) and measures.FEATURES.get(str(given.get("name")))
         usual = declared.axis if declared else known
         if not usual:
             return given

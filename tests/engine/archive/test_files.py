@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from microcosmos.archive import export, file
-from microcosmos.archive.store import write_whole
+from microcosmos.archive.atomic import write_whole
 
 pytestmark = pytest.mark.fast
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies
-from microcosmos.bodies.extent import reach
+from microcosmos.bodies.reach import reach
 
 
 @pytest.mark.fast

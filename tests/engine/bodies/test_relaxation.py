@@ -5,7 +5,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import bodies, creatures, filaments
+from microcosmos import bodies, filaments
+from microcosmos.bodies import swimmers
 from microcosmos.build import build_rods
 
 project = jax.jit(filaments.project, static_argnames="iterations")
@@ -14,7 +15,7 @@ project = jax.jit(filaments.project, static_argnames="iterations")
 @pytest.fixture
 def urchin():
     """A ring of 40 nodes with six branches of eight."""
-    return creatures.cilia(body_nodes=40, hairs=6, hair_nodes=8).body
+    return swimmers.cilia(body_nodes=40, hairs=6, hair_nodes=8).body
 
 
 def disturbed(body, noise, dtype):

@@ -11,15 +11,15 @@ from rich.console import Console
 from microcosmos.client import (
     NoAnswer,
     drawing,
-    following,
+    formatting,
     maps,
     notebook,
+    polling,
     terminal,
     views,
-    words,
 )
 from microcosmos.client.columns import Columns, array
-from microcosmos.client.following import Standing
+from microcosmos.client.polling import Standing
 
 CURVES = {
     "generation": [1, 2, 3],
@@ -186,12 +186,12 @@ def test_without_pandas_it_is_said_what_to_install(monkeypatch):
     [(0.4, "0 s"), (75, "1 min 15 s"), (3720, "1 h 2 min"), (90000, "1 d 1 h"), (None, "")],
 )
 def test_durations_have_two_units(seconds, words_):
-    assert words.lasting(seconds) == words_
+    assert formatting.lasting(seconds) == words_
 
 
 def test_a_sweep_is_watched_through_an_outage(fake, monkeypatch):
     """As a run is: laptops sleep, servers start again."""
-    monkeypatch.setattr(following, "POLL", 0.0)
+    monkeypatch.setattr(polling, "POLL", 0.0)
     sweep = {"id": "5eed", "name": None, "total": 2}
     states = [
         {"queued": 2},
@@ -211,7 +211,7 @@ def test_a_sweep_is_watched_through_an_outage(fake, monkeypatch):
     monkeypatch.setattr(connection, "read", read)
     shown = [
         (standing.record["status"], standing.trouble)
-        for standing in following.follow_sweep(connection, "5eed")
+        for standing in polling.follow_sweep(connection, "5eed")
     ]
     lost = ("running", "No server answers.")
     assert shown == [("queued", None), ("running", None), lost, lost, ("failed", None)]

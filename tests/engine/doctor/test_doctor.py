@@ -13,7 +13,7 @@ import pytest
 from microcosmos.doctor import database, devices, disk, examination, memory, redis, versions
 from microcosmos.doctor.finding import GIB, Finding, problem
 
-MIGRATIONS = Path(__file__).parents[3] / "server" / "migrations" / "versions"
+MIGRATIONS = Path(__file__).parents[3] / "server" / "tables" / "migrations" / "versions"
 
 
 def levels(findings):

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from microcosmos import fields, render, search
+from microcosmos import fields, search, viz
 from microcosmos.archive import creature
 from microcosmos.archive.table import read_table
 from microcosmos.build import build, build_descent
-from microcosmos.render import figures, read_replay
 from microcosmos.spec import parse
+from microcosmos.viz.figures import experiments
+from microcosmos.viz.replay_file import read_replay
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +48,7 @@ def test_every_filament_is_a_creature_whose_replay_ends_at_its_loss(course):
     for number, row in enumerate(state.table.rows):
         file = creature.document(json.loads(row.identity), row.measured, row.provenance)
         assert creature.parse(file)["sha256"] == row.creature
-        replay = read_replay(render.record(file))
+        replay = read_replay(viz.record(file))
         density = fields.splat(jnp.asarray(replay.positions[-1]), task.world.size, 1.0)
         loss = np.mean((fields.saturated(density) - state.folds.picture[number]) ** 2)
         np.testing.assert_allclose(loss, row.values["least"], rtol=1e-3)
@@ -61,14 +62,14 @@ def test_the_best_is_the_creature_with_the_least_loss(folding, course):
 
 def test_the_figure_shows_moments_pictures_and_losses(folding, course):
     state = course[0][-1]
-    figure = figures.of(folding.save(state))
+    figure = experiments.of(folding.save(state))
     titles = [axes.get_title() for axes in figure.axes]
     assert sum(bool(title) for title in titles) == 2
     assert len(figure.axes) == 2 * 4 + 1
     losses = figure.axes[-1].get_lines()
     np.testing.assert_array_equal(losses[1].get_ydata(), state.losses[:, 1])
     with pytest.raises(ValueError, match="without"):
-        figures.of(folding.save(folding.init()))
+        experiments.of(folding.save(folding.init()))
 
 
 def test_a_step_that_is_not_finite_begins_anew_from_the_best(folding):

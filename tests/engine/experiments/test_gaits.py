@@ -11,10 +11,10 @@ import pytest
 
 from microcosmos import search, units
 from microcosmos.archive import creature
+from microcosmos.audit.reproducibility import check
 from microcosmos.experiments.gaits import Gaits
-from microcosmos.render import check
-from microcosmos.render.replay import FRAMES, interval
 from microcosmos.spec import EXPERIMENTS
+from microcosmos.viz.replay import FRAMES, interval
 
 
 @pytest.fixture(scope="module")

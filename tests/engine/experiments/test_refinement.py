@@ -10,8 +10,8 @@ from pydantic import ValidationError
 
 import microcosmos
 from microcosmos.archive import creature
+from microcosmos.audit.reproducibility import check
 from microcosmos.build import build_niches
-from microcosmos.render import check
 from microcosmos.search import FEATURES
 from microcosmos.spec import parse
 

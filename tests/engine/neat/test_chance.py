@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos.neat import chance
+from microcosmos.neat import rng
 
 KEYS, PLACES = 4000, 60
 
@@ -14,7 +14,7 @@ KEYS, PLACES = 4000, 60
 def drawn():
     """Numbers, (key, place)."""
     keys = jax.random.split(jax.random.key(0), KEYS)
-    return np.asarray(jax.jit(jax.vmap(lambda k: chance.draws((PLACES,), key=k)[0]))(keys))
+    return np.asarray(jax.jit(jax.vmap(lambda k: rng.draws((PLACES,), key=k)[0]))(keys))
 
 
 def test_every_interval_is_drawn_equally_often(drawn):
@@ -35,11 +35,11 @@ def test_places_are_uncorrelated_and_so_are_keys(drawn):
 def test_what_a_draw_leaves_is_a_draw_again(drawn):
     for low, high in ((0.0, 0.25), (0.25, 0.9)):
         inside = drawn[(drawn >= low) & (drawn < high)]
-        rest = np.asarray(chance.left(jnp.asarray(inside), low, high))
+        rest = np.asarray(rng.left(jnp.asarray(inside), low, high))
         assert rest.mean() == pytest.approx(0.5, abs=4 * 0.29 / len(rest) ** 0.5)
         assert rest.std() == pytest.approx(12**-0.5, rel=0.01)
 
 
 def test_whole_numbers_stay_below_their_limit():
-    for total, drawn, expected in ((7, chance.LARGEST, 6), (0, chance.LARGEST, 0), (7, 0, 0)):
-        assert chance.below(jnp.asarray(total), jnp.float32(drawn)) == expected
+    for total, drawn, expected in ((7, rng.LARGEST, 6), (0, rng.LARGEST, 0), (7, 0, 0)):
+        assert rng.below(jnp.asarray(total), jnp.float32(drawn)) == expected

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from microcosmos import genomes, neat
-from microcosmos.neat import reach
+from microcosmos.neat import acyclicity
 
 INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 32
 
@@ -181,14 +181,16 @@ def test_reach_is_what_powers_of_the_adjacency_matrix_say():
         joined = np.zeros((nodes, nodes), bool)
         joined[source, target] = True
         source, target = np.nonzero(joined)
-        sets = reach.neighbours(
+        sets = acyclicity.neighbours(
             *map(jnp.asarray, (source, target, np.ones(len(source), bool))), nodes
         )
-        closed = reach.closure(sets)
+        closed = acyclicity.closure(sets)
         ways = (
             np.linalg.matrix_power((joined | np.eye(nodes, dtype=bool)).astype(float), nodes)
             > 0
         )
         for node in range(nodes):
-            np.testing.assert_array_equal(reach.held(closed, jnp.asarray(node)), ways[node])
-        np.testing.assert_array_equal(reach.sizes(closed), ways.sum(1))
+            np.testing.assert_array_equal(
+                acyclicity.held(closed, jnp.asarray(node)), ways[node]
+            )
+        np.testing.assert_array_equal(acyclicity.sizes(closed), ways.sum(1))

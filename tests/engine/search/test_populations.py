@@ -7,10 +7,11 @@ import jax
 import numpy as np
 import pytest
 
-from microcosmos import genomes, networks
+from microcosmos import genomes
 from microcosmos.search.populations import cppns
+from microcosmos.viz import networks
 
-FILE = Path(__file__).parents[1] / "networks" / "tensorneat" / "ff_bias.npz"
+FILE = Path(__file__).parents[1] / "viz" / "networks" / "tensorneat" / "ff_bias.npz"
 
 
 def test_all_at_once_equals_one_by_one():

@@ -8,8 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import genomes, neat, networks
+from microcosmos import genomes, neat
 from microcosmos.search import tensorneat
+from microcosmos.viz import networks
 
 needs_package = pytest.mark.skipif(
     not tensorneat.available(), reason="tensorneat is not installed: make tensorneat"

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from microcosmos.spec import EXPERIMENTS
-from microcosmos.spec.features import FEATURES
+from microcosmos.spec.measures import FEATURES
 
 pytestmark = pytest.mark.fast
 

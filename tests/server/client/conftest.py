@@ -9,8 +9,8 @@ from microcosmos.client import Client
 
 
 @pytest.fixture
-def database_url(tmp_path) -> str:
-    return f"sqlite:///{tmp_path / 'test.sqlite'}"
+def database() -> str:
+    return "sqlite"
 
 
 @pytest.fixture

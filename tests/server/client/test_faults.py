@@ -23,7 +23,7 @@ from microcosmos.client import (
     files,
     streaming,
 )
-from server.claims import claim
+from server.attempts.begin import claim
 
 
 class Relay:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from microcosmos.client import Client, NoAnswer, following
+from microcosmos.client import Client, NoAnswer, polling
 from microcosmos.client.errors import Refused
-from server.claims import claim
+from server.attempts.begin import claim
 
 
 class Kept:
@@ -19,7 +19,7 @@ class Kept:
 
     def __exit__(self, *_: object) -> None: ...
 
-    def show(self, standing: following.Standing) -> None:
+    def show(self, standing: polling.Standing) -> None:
         record = standing.record
         curve = list(standing.curves["generation"])
         self.shown.append((record["status"], record["generation"], curve))
@@ -32,7 +32,7 @@ def worked(services, run_id, report):
     attempt = claim(services, run_id, "worker")
     left = [1, 2, 3, None]
 
-    def go_on(standing: following.Standing) -> None:
+    def go_on(standing: polling.Standing) -> None:
         reached = (standing.curves["generation"] or [0])[-1]
         if left and reached == 4 - len(left):
             generation = left.pop(0)
@@ -60,10 +60,10 @@ def test_where_no_stream_comes_through_it_is_asked_for(client, run, worked, monk
         raise Refused("no streams here")
         yield
 
-    monkeypatch.setattr(following, "events", none)
-    monkeypatch.setattr(following, "POLL", 0.01)
+    monkeypatch.setattr(polling, "events", none)
+    monkeypatch.setattr(polling, "POLL", 0.01)
     view = Kept(worked)
-    for standing in following.follow(client.connection, run.id):
+    for standing in polling.follow(client.connection, run.id):
         view.show(standing)
     assert view.shown[-1] == ("finished", 3, [1, 2, 3])
 
@@ -71,7 +71,7 @@ def test_where_no_stream_comes_through_it_is_asked_for(client, run, worked, monk
 def test_a_server_that_is_away_for_a_while_is_waited_for(
     serve, services, run, worked, monkeypatch
 ):
-    monkeypatch.setattr(following, "POLL", 0.01)
+    monkeypatch.setattr(polling, "POLL", 0.01)
     with serve() as address:
         client = Client(address, patience=0.0)
         ask, broken = client.connection.read, []
@@ -82,7 +82,7 @@ def test_a_server_that_is_away_for_a_while_is_waited_for(
                 raise NoAnswer("No server answers.")
             return ask(path, **asked)
 
-        found = following.follow(client.connection, run.id)
+        found = polling.follow(client.connection, run.id)
         view = Kept()
         view.show(next(found))
         monkeypatch.setattr(client.connection, "read", read)
@@ -97,7 +97,7 @@ def test_a_server_that_is_away_for_a_while_is_waited_for(
 
 def test_what_was_never_there_is_an_error_at_once():
     with pytest.raises(NoAnswer, match="make run"):
-        next(following.follow(Client("127.0.0.1:9").connection, "x"))
+        next(polling.follow(Client("127.0.0.1:9").connection, "x"))
 
 
 def test_a_rewound_run_forgets_what_came_after(client, services, run, run_id, report):
@@ -106,7 +106,7 @@ def test_a_rewound_run_forgets_what_came_after(client, services, run, run_id, re
         attempt.record(report(generation), 1.0)
         if generation == 1:
             attempt.save(1, b"state")
-    found = following.follow(client.connection, run.id)
+    found = polling.follow(client.connection, run.id)
     assert next(found).curves["generation"] == [1, 2, 3]
     while (standing := next(found)).curves["generation"] == [1, 2, 3]:
         claim(services, run_id, "worker")

@@ -1,9 +1,7 @@
 /** Every request of the page. Answers other than success are thrown as `Problem`. */
 
-import createClient from "openapi-fetch";
-import { BASE, placed, share } from "./place";
-import { problemOf } from "./problem";
-import type { paths } from "./schema";
+import { share } from "./address";
+import { ROOT, client, success, whenReady } from "./http";
 import type {
   Ancestors,
   Audit,
@@ -27,28 +25,10 @@ import type {
   SweepSummary,
   TokenCreate,
 } from "./types";
-import { noteStatus } from "./unknown";
 
-const ROOT = "/api/v1";
 export const EVENTS_URL = `${ROOT}/events`;
 
 export type Wish = "pause" | "resume" | "cancel";
-
-const client = createClient<paths>({ baseUrl: "" });
-if (share) client.use({ onRequest: ({ request }) => new Request(placed(request.url), request) });
-
-interface Answer<T> {
-  data?: T;
-  error?: unknown;
-  response: Response;
-}
-
-async function success<T>(asked: Promise<Answer<T>>): Promise<T> {
-  const { data, error, response } = await asked;
-  noteStatus(response.status);
-  if (!response.ok) throw problemOf(response.status, error);
-  return data as T;
-}
 
 const run = (id: string) => ({ params: { path: { run_id: id } } });
 
@@ -246,45 +226,20 @@ export function importCreature(file: Blob) {
 }
 
 /** The replay's bytes, or null while the renderer is still at work on it. */
-export async function readReplay(sha: string): Promise<ArrayBuffer | null> {
+export function readReplay(sha: string): Promise<ArrayBuffer | null> {
   const params = { path: { sha } };
-  const asked = client.GET(`${ROOT}/creatures/{sha}/replay`, { params, parseAs: "arrayBuffer" });
-  const bytes = (await success(asked as Promise<Answer<unknown>>)) as ArrayBuffer;
-  return (await asked).response.status === 202 ? null : bytes;
+  return whenReady(client.GET(`${ROOT}/creatures/{sha}/replay`, { params, parseAs: "arrayBuffer" }));
 }
 
 /** The motion's bytes, or null while the renderer is still at work on the replay. */
-export async function readMotion(sha: string): Promise<ArrayBuffer | null> {
+export function readMotion(sha: string): Promise<ArrayBuffer | null> {
   const params = { path: { sha } };
-  const asked = client.GET(`${ROOT}/creatures/{sha}/motion`, { params, parseAs: "arrayBuffer" });
-  const bytes = (await success(asked as Promise<Answer<unknown>>)) as ArrayBuffer;
-  return (await asked).response.status === 202 ? null : bytes;
+  return whenReady(client.GET(`${ROOT}/creatures/{sha}/motion`, { params, parseAs: "arrayBuffer" }));
 }
 
 /** The audit, or null while the renderer is still at work on it. */
-export async function readAudit(sha: string): Promise<Audit | null> {
-  const asked = client.GET(`${ROOT}/creatures/{sha}/audit`, { params: { path: { sha } } });
-  const audit = (await success(asked as Promise<Answer<unknown>>)) as Audit;
-  return (await asked).response.status === 202 ? null : audit;
-}
-
-/** True once a rendering is there, null while it is made; nothing of it is read. */
-export async function proveRendering(url: string): Promise<true | null> {
-  return (await proved(url)).status === 202 ? null : true;
-}
-
-/** Throws the reason where a file cannot be had; nothing of it is read. */
-export async function proveFile(url: string): Promise<void> {
-  await proved(url);
-}
-
-async function proved(url: string): Promise<Response> {
-  const stop = new AbortController();
-  const response = await fetch(url, { signal: stop.signal });
-  noteStatus(response.status);
-  if (!response.ok) throw problemOf(response.status, await response.json().catch(() => null));
-  stop.abort();
-  return response;
+export function readAudit(sha: string): Promise<Audit | null> {
+  return whenReady(client.GET(`${ROOT}/creatures/{sha}/audit`, { params: { path: { sha } } }));
 }
 
 /** A share, as whoever has its address sees it. */
@@ -309,12 +264,10 @@ export function revoke(slug: string): Promise<Share> {
 }
 
 /** The motion of the creature whose picture stands for a share; null while it is made. */
-export async function readCover({ slug, cover }: Share): Promise<ArrayBuffer | null> {
+export function readCover({ slug, cover }: Share): Promise<ArrayBuffer | null> {
   const params = { path: { slug, sha: cover } };
   const path = `${ROOT}/shares/{slug}/creatures/{sha}/motion` as const;
-  const asked = client.GET(path, { params, parseAs: "arrayBuffer" });
-  const bytes = (await success(asked as Promise<Answer<unknown>>)) as ArrayBuffer;
-  return (await asked).response.status === 202 ? null : bytes;
+  return whenReady(client.GET(path, { params, parseAs: "arrayBuffer" }));
 }
 
 /** Has a creature evaluated again by the program that measured it. */
@@ -330,12 +283,3 @@ export async function readMeasurement(sha: string): Promise<Measurement | "never
   const found = (await success(asked)) as Measurement;
   return status === 202 ? null : found;
 }
-
-export const archiveUrl = (id: string, kind: "h5" | "csv") => `${BASE}/runs/${id}/archive.${kind}`;
-export const resultsUrl = (id: string) => `${BASE}/runs/${id}/results.csv`;
-export type Picture = "strip.png" | "film.gif" | "film.mp4";
-export const pictureUrl = (sha: string, kind: Picture) => `${BASE}/creatures/${sha}/${kind}`;
-export type Form = "svg" | "dot" | "py" | "npz";
-export const networkUrl = (sha: string, form: Form) => `${BASE}/creatures/${sha}/network.${form}`;
-export const creatureFileUrl = (sha: string) => `${BASE}/creatures/${sha}?download=1&ancestors=1`;
-export const creatureH5Url = (sha: string) => `${BASE}/creatures/${sha}/creature.h5`;

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..experiments import EXPERIMENTS, Experiment
-from ..features import FEATURES
+from ..measures import FEATURES
 from .fields import Field, Part, experiment, parts
 
 HEAD = """# Every field of a spec

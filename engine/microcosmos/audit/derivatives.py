@@ -1,0 +1,61 @@
+"""Derivatives of a creature file's measures, and how far they can be trusted."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from .. import search
+from ..archive import creature
+from ..build import build_task
+from ..device import compiler_options
+from ..viz.replay import actuator_of
+
+By = tuple[str, ...]
+
+
+def gradient(
+    file: Mapping[str, Any],
+    of: tuple[str, ...] = ("fitness",),
+    by: By = ("genes",),
+    *,
+    horizon: int | None = None,
+    segment: int | None = None,
+) -> tuple[dict[str, float], dict[str, dict[str, np.ndarray]]]:
+    """Measures of a creature, and for each its derivatives by parts of the creature.
+
+    Names are those of `search.gradients.parts` and of the features. With `horizon` the life
+    ends after so many steps; with `segment` so many steps are kept in memory at once and the
+    others done twice. Raises `creature.CreatureError` for a file that is not sound and
+    `ValueError` for unknown names.
+    """
+    task, actuator = _creature(file, jnp.dtype("float32"))
+    values = search.gradients.parts(task, actuator, by)
+
+    def both(values):
+        return search.gradients.value_and_jacobian(
+            task, actuator, values, of, horizon=horizon, segment=segment
+        )
+
+    found, rows = jax.device_get(jax.jit(both, compiler_options=compiler_options())(values))
+    slopes = {name: {part: rows[part][i] for part in rows} for i, name in enumerate(of)}
+    return dict(zip(of, found.tolist(), strict=True)), slopes
+
+
+def gradient_health(
+    file: Mapping[str, Any], of: str = "fitness", by: By = ("genes",), *, starts: int = 8
+) -> search.Health:
+    """The report on a creature file's gradient; raises as `gradient` does."""
+    return search.gradient_health(lambda dtype: _creature(file, dtype), of, by, starts=starts)
+
+
+def _creature(file: Mapping[str, Any], dtype: Any) -> tuple[search.Task, search.Actuator]:
+    file = creature.parse(file)
+    scene = creature.scene_of(file)
+    actuator = jax.tree.map(
+        lambda x: jnp.asarray(x, dtype if jnp.issubdtype(x.dtype, jnp.floating) else x.dtype),
+        actuator_of(file, scene),
+    )
+    return build_task(scene, dtype, room=creature.room(file)), actuator

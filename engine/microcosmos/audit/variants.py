@@ -1,0 +1,117 @@
+"""The same creature doing the same where it should, or should not, make a difference."""
+
+from dataclasses import replace
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from .. import bodies, build, search, spec, world
+from ..bodies.reach import reach
+from ..filaments import Rest
+from ..genomes import Drive
+
+
+def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, np.ndarray]:
+    """The body as it was made, and which of the scene's joints and edges it has.
+
+    Raises `ValueError` where it is no body that could be built.
+    """
+    body, start, rods = spec.shape(scene.body), driven.start, driven.world.rods
+    there = driven.world.present
+    nodes = np.ones(len(body.positions), bool) if there is None else np.asarray(there)
+    edges: np.ndarray = np.all(nodes[body.edges], axis=1)
+    joints: np.ndarray = np.all(edges[body.joints], axis=1)
+    numbers, edge_numbers = np.cumsum(nodes) - 1, np.cumsum(edges) - 1
+    return (
+        bodies.Body(
+            positions=np.asarray(start.positions, float)[nodes],
+            edges=numbers[body.edges[edges]],
+            joints=edge_numbers[body.joints[joints]],
+            rest_length=body.rest_length[edges],
+            rest_angle=body.rest_angle[joints],
+            stretch=np.asarray(rods.stretch, float)[edges],
+            shear=np.asarray(rods.shear, float)[edges],
+            bend=np.asarray(rods.bend, float)[joints],
+            arc=body.arc[nodes],
+            member=body.member[nodes],
+            crossing=body.crossing,
+        ),
+        joints,
+        edges,
+    )
+
+
+def refine(
+    scene: spec.Scene, rest: Rest, body: bodies.Body | None = None
+) -> tuple[search.Task, Rest]:
+    """The same body doing the same on cells half as wide in steps half as long.
+
+    Lengths in cells, times in steps and the viscosity in cells² a step double, speeds stay.
+    The chain has twice the joints: twice the sweeps relax a bend in the same time. Repulsion
+    keeps its width in cells: it then reaches half as far.
+    """
+    body = spec.shape(scene.body) if body is None else body
+    half = bodies.subdivided(body)
+    place, form = scene.world, scene.coupling
+    wide = place.model_copy(
+        update={
+            "width": 2 * place.width,
+            "height": 2 * place.height,
+            "viscosity": 2 * place.viscosity,
+            "energy": None,
+        }
+    )
+    fine = form.model_copy(
+        update={
+            "constraint_iterations": 2 * form.constraint_iterations,
+            "max_displacement": form.displacement_limit(place.viscosity),
+            "max_force": form.force_limit(place.viscosity),
+            "nu_c": None if form.nu_c is None else 2 * form.nu_c,
+        }
+    )
+    box = build.build_world(wide, fine, half.body)
+    middle = np.array([wide.width, wide.height]) / 2
+    positions = half.body.positions - half.body.positions[half.nodes].mean(0) + middle
+    start = world.at_rest(box, jnp.asarray(positions, jnp.float32))
+    angle = np.tile(half.body.rest_angle, (2 * len(rest.angle), 1))
+    angle[:, half.joints] = _between(np.asarray(rest.angle))
+    length = _between(np.asarray(rest.length))[:, half.edges]
+    task = search.Task(box, start, None, length=2 * reach(body))
+    return task, Rest(jnp.asarray(angle, jnp.float32), jnp.asarray(length, jnp.float32))
+
+
+def other_delta(scene: spec.Scene) -> str:
+    """A delta that the creature was not measured with."""
+    return "roma" if scene.coupling.kernel == "peskin" else "peskin"
+
+
+def with_other_delta(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
+    """The scene with another delta, nothing else changed."""
+    return _with(scene, body, kernel=other_delta(scene))
+
+
+def tireless(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
+    """The scene with actuators that keep their strength: a body that yields lags behind its
+    rest shape, and moves by a shape that is not reciprocal although the gait is."""
+    return _with(scene, body, nu_c=None)
+
+
+def reciprocal(rest: Rest) -> Rest:
+    """The first half of the rest shapes, then the same shapes back again."""
+    steps = len(rest.angle)
+    there = np.arange(steps)
+    times = np.minimum(there, steps - 1 - there)
+    return Rest(jnp.asarray(rest.angle)[times], jnp.asarray(rest.length)[times])
+
+
+def _with(scene: spec.Scene, body: bodies.Body | None, **form: Any) -> search.Task:
+    coupling = scene.coupling.model_copy(update=form)
+    changed = scene.model_copy(update={"coupling": coupling})
+    return replace(build.build_task(changed, body=body), encoding=None)
+
+
+def _between(values: np.ndarray) -> np.ndarray:
+    """Values at twice as many times: each, and the mean of it and the next."""
+    after = np.concatenate([values[1:], values[-1:]])
+    return np.stack([values, 0.5 * (values + after)], 1).reshape(-1, values.shape[1])

@@ -1,0 +1,77 @@
+"""A run without a server: evolve a spec into an archive file, and take it up again."""
+
+import json
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..archive.atomic import write_whole
+from ..experiments import Experiment, Report, Stopped
+from ..search import never
+from ..spec import Archive, Refinement, Spec
+from . import build
+
+
+def evolve(
+    spec: Spec,
+    archive: Path,
+    *,
+    stop: Callable[[], bool] = never,
+    tell: Callable[[Report], None] = lambda report: None,
+    checkpoint_seconds: float = 60.0,
+    other_device: bool = False,
+    origin: Sequence[Mapping[str, Any]] = (),
+) -> bool:
+    """Carry a run on until it is done or `stop()` says so; whether it is done.
+
+    The archive file is the checkpoint: where it exists, the run goes on from it and ends
+    with the same bytes as without the interruption. The best creature is written beside
+    it. `origin` are the creature files that `search.origin` names; to go on takes none.
+    Raises `ValueError` where the file is of another spec or, without `other_device`, of
+    another kind of device.
+    """
+    experiment = build(spec, origin) if origin else build(spec)
+    if archive.exists():
+        state = experiment.restore(archive.read_bytes(), other_device=other_device)
+    else:
+        state = experiment.init()
+    saved = time.monotonic()
+    try:
+        while not experiment.done(state):
+            state, report = experiment.advance(state, stop)
+            tell(report)
+            if time.monotonic() - saved >= checkpoint_seconds:
+                keep(experiment, state, archive)
+                saved = time.monotonic()
+    except Stopped:
+        pass
+    keep(experiment, state, archive)
+    return experiment.done(state)
+
+
+def refine(
+    file: Mapping[str, Any], archive: Archive | None = None, **options: Any
+) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """A creature made fitter by gradient steps within its cell of `archive`, and each step.
+
+    `options` are those of `spec.Refinement`. The new creature file has the old one as its
+    parent. Raises `ValueError` for a file that is not sound.
+    """
+    chosen = Refinement(creature=dict(file), archive=archive or Archive(), **options)
+    experiment = build(chosen)
+    state = experiment.init()
+    while not experiment.done(state):
+        state, _ = experiment.advance(state)
+    refined = experiment.best(state)
+    assert refined is not None
+    return refined, [dict(row.values) for row in state.table.rows]
+
+
+def keep(experiment: Experiment, state: Any, archive: Path) -> None:
+    """Write the archive file and, beside it, the creature file of its best elite."""
+    write_whole(archive, experiment.save(state))
+    best = experiment.best(state)
+    if best is not None:
+        path = archive.with_suffix(".best.json")
+        write_whole(path, json.dumps(best, indent=1).encode())

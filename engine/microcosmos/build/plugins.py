@@ -1,0 +1,95 @@
+"""From names of one's own to the functions that carry them out, which are checked."""
+
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
+
+from .. import genomes, plugins, search, spec
+from ..bodies import swimmers
+
+
+def build_measures(scene: spec.Scene) -> tuple[search.Measure, ...]:
+    """What is measured of a scene's creatures beside the usual features, by name."""
+    task, found = scene.task, dict(scene.own)
+    kinds = dict.fromkeys(found, "descriptor")
+    if task.own is not None:
+        found[task.fitness], kinds[task.fitness] = task.own, "fitness"
+    return tuple(_measure(kinds[name], name, found[name]) for name in sorted(found))
+
+
+def features_of(scene: spec.Scene) -> tuple[str, ...]:
+    """What is recorded of a scene's creatures, in this order."""
+    return search.FEATURES + tuple(measure.name for measure in build_measures(scene))
+
+
+def own_of(scene: spec.Scene) -> dict[str, Any]:
+    """Versions of the measures of one's own that creatures are recorded with."""
+    return {name: own.model_dump(mode="json") for name, own in sorted(scene.own.items())}
+
+
+def _measure(kind: str, name: str, own: spec.Own) -> search.Measure:
+    plugin = plugins.find((kind,), name, own.source)
+
+    def of(motion: search.Motion) -> Array:
+        found = _array(name, plugin(motion, settings=own.settings))
+        if found.shape != ():
+            raise plugins.Broken(f"{name} must give one number, got shape {found.shape}")
+        return found.astype(motion.path.dtype)
+
+    return search.Measure(name, of)
+
+
+def build_act(control: spec.OwnControl, controls: genomes.Controls) -> Any:
+    """What an encoding of one's own makes of genes."""
+    name, own = control.encoding, control.own
+    plugin = plugins.find(("encoding",), name, own.source)
+    needed = (len(controls.joint_nodes), len(controls.edges))
+
+    def act(genes: Array, clock: genomes.Clock) -> tuple[Array, Array]:
+        found = plugin(genes, clock, settings=own.settings)
+        if not isinstance(found, tuple | list) or len(found) != 2:
+            raise plugins.Broken(f"{name} must give what joints and what edges do, got another")
+        angle, length = (_array(name, one) for one in found)
+        shapes = tuple((len(clock.phase), count) for count in needed)
+        if (angle.shape, length.shape) != shapes:
+            raise plugins.Broken(
+                f"{name} must give shapes {shapes[0]} for joints and {shapes[1]} for edges, "
+                f"got {angle.shape} and {length.shape}"
+            )
+        return angle, length
+
+    return act
+
+
+def swimmer_of(gait: spec.Gait) -> swimmers.Swimmer:
+    """A known swimmer, or one of one's own."""
+    if gait.own is None:
+        return swimmers.SWIMMERS[gait.swimmer]()
+    plugin = plugins.find(("gait",), gait.swimmer, gait.own.source)
+    found = plugin(settings=gait.own.settings)
+    if not isinstance(found, swimmers.Swimmer):
+        raise plugins.Broken(f"{gait.swimmer} must give a `creatures.Swimmer`, got another")
+    return found
+
+
+def strokes_of(gait: spec.Gait, time: np.ndarray) -> tuple[swimmers.Swimmer, Any, Any]:
+    """A swimmer and how its rest angles and rest lengths deviate at these times."""
+    swimmer = swimmer_of(gait)
+    angle, length = swimmer.gait(time)
+    shapes = (len(time), len(swimmer.body.joints)), (len(time), len(swimmer.body.edges))
+    if (np.shape(angle), np.shape(length)) != shapes:
+        raise plugins.Broken(
+            f"{gait.swimmer} must deviate by shapes {shapes[0]} and {shapes[1]}, got "
+            f"{np.shape(angle)} and {np.shape(length)}"
+        )
+    return swimmer, angle, length
+
+
+def _array(name: str, value: Any) -> Array:
+    """What is a number, or numbers."""
+    try:
+        return jnp.asarray(value)
+    except (TypeError, ValueError) as error:
+        raise plugins.Broken(f"{name} must give numbers, got {type(value).__name__}") from error

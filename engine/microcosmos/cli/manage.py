@@ -1,0 +1,153 @@
+"""Runs on a server: paused, extended, forked, deleted."""
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+import typer
+
+from . import overrides
+from .app import app
+from .monitor import ended
+from .remote import RUNS, Id, Ids, Json, Token, Url, about, found, reaching, say, show, title
+from .submit import Name, Set, Watch, tell
+
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")]
+
+
+@app.command(rich_help_panel=RUNS)
+def extend(
+    id: Id,
+    generations: Annotated[int, typer.Argument(min=1, help="So many more.")],
+    watch: Watch = False,
+    json: Json = False,
+    url: Url = None,
+    token: Token = None,
+) -> None:
+    """Let a run go on for more generations."""
+    with reaching(url, token) as client:
+        run = client.run(id).extend(generations)
+        tell(run, json)
+        if watch:
+            raise typer.Exit(ended(run))
+
+
+@app.command(rich_help_panel=RUNS)
+def fork(
+    id: Id,
+    elite: Annotated[
+        list[str] | None, typer.Option(metavar="SHA", help="Begin with this creature.")
+    ] = None,
+    cells: Annotated[
+        str | None, typer.Option(metavar="N,N,...", help="Begin with who is in these cells.")
+    ] = None,
+    region: Annotated[
+        list[str] | None,
+        typer.Option(metavar="AXIS=LOW:HIGH", help="Begin with who is within."),
+    ] = None,
+    whole: Annotated[
+        bool, typer.Option("--all", help="Begin with the whole archive: the default.")
+    ] = False,
+    generation: Annotated[
+        int | None, typer.Option(min=0, help="The archive as it was then.")
+    ] = None,
+    settings: Set = None,
+    name: Name = None,
+    watch: Watch = False,
+    json: Json = False,
+    url: Url = None,
+    token: Token = None,
+) -> None:
+    """Begin a new run with elites of another, in another world if you like."""
+    chosen: dict[str, Any] = {
+        "creatures": elite or None,
+        "cells": _numbers(cells),
+        "region": overrides.region(region) if region else None,
+    }
+    named = [how for how, what in chosen.items() if what is not None]
+    if len(named) + whole > 1:
+        raise typer.BadParameter("fork needs one of --elite, --cells, --region and --all")
+    patch = overrides.patch(settings or [])
+    with reaching(url, token) as client:
+        run = client.run(id).fork(**chosen, generation=generation, spec=patch, name=name)
+        tell(run, json)
+        if watch:
+            raise typer.Exit(ended(run))
+
+
+@app.command(rich_help_panel=RUNS)
+def pause(ids: Ids, url: Url = None, token: Token = None) -> None:
+    """Stop runs or sweeps for a while; nothing is lost."""
+    _each(ids, url, token, lambda one: one.pause())
+
+
+@app.command(rich_help_panel=RUNS)
+def resume(ids: Ids, url: Url = None, token: Token = None) -> None:
+    """Let runs or sweeps go on that were paused."""
+    _each(ids, url, token, lambda one: one.resume())
+
+
+@app.command(rich_help_panel=RUNS)
+def cancel(ids: Ids, url: Url = None, token: Token = None) -> None:
+    """End runs or sweeps for good; what they have is kept."""
+    _each(ids, url, token, lambda one: one.cancel())
+
+
+@app.command(rich_help_panel=RUNS)
+def delete(ids: Ids, yes: Yes = False, url: Url = None, token: Token = None) -> None:
+    """Put runs or sweeps into the bin; for a day `restore` takes them back."""
+    with reaching(url, token) as client:
+        for one in [found(client, id) for id in ids]:
+            if not yes and not typer.confirm(f"{about(one)}. Delete?", err=True):
+                say(f"{title(one)} stays.")
+                continue
+            record = one.delete().record
+            if record.get("total"):  # Of a sweep.
+                say(f"{about(one)}; these stay: cancel them first")
+            if record.get("deleted", True):
+                undo = f"microcosmos restore {one.id[:8]}"
+                say(f"{title(one)} is in the bin; to take it back: {undo}")
+
+
+@app.command(rich_help_panel=RUNS)
+def restore(ids: Ids, url: Url = None, token: Token = None) -> None:
+    """Take runs or sweeps back from the bin."""
+    with reaching(url, token) as client:
+        for one in [found(client, id, deleted=True) for id in ids]:
+            say(f"{title(one.restore())} is back.")
+
+
+@app.command(rich_help_panel=RUNS)
+def sweep(
+    id: Id,
+    runs: Annotated[bool, typer.Option("--runs", help="A row for each run.")] = False,
+    json: Json = False,
+    url: Url = None,
+    token: Token = None,
+) -> None:
+    """What the runs of a sweep have come to: median and quarters of each case."""
+    from .sweeps import cases, members
+
+    with reaching(url, token) as client:
+        one = client.sweep(id)
+        rows = members(one) if runs else cases(one)
+    if json:
+        show(rows)
+    else:
+        from .sweeps import table
+
+        table(rows)
+
+
+def _each(ids: list[str], url: str | None, token: str | None, do: Callable[[Any], Any]) -> None:
+    with reaching(url, token) as client:
+        for one in [found(client, id) for id in ids]:
+            say(about(do(one)))
+
+
+def _numbers(text: str | None) -> list[int] | None:
+    if text is None:
+        return None
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise typer.BadParameter(f"--cells needs numbers, as 3,17; got {text!r}") from None

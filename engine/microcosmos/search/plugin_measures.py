@@ -1,0 +1,66 @@
+"""What measures of one's own are made of."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..filaments import Rest
+from ..world import State, World, centre, edges_there, mean
+from .measures import Seen
+
+Scalar = Float[Array, ""]
+
+
+class Motion(eqx.Module):
+    """The life of one creature; moments are its start and the end of every step."""
+
+    path: Float[Array, "moment 2"]
+    """Mean place of its nodes, in cells, not wrapped around the world."""
+    heading: Float[Array, "moment"]
+    """Mean direction of its edges, in rad."""
+    rest: Rest
+    """What was asked for in each step: `angle` (time, joint) in rad, `length` (time, edge)."""
+    curvature: Float[Array, "time joint"]
+    """In 1/cells."""
+    pace: Float[Array, "time"]
+    """Mean speed of nodes, in cells a step."""
+    power: Float[Array, "time"]
+    """What the body spends on the fluid."""
+    start: Float[Array, "node 2"]
+    """Places of nodes at the start, in cells."""
+    end: Float[Array, "node 2"]
+    """And at the end."""
+    viscosity: Scalar
+    measures: dict[str, Scalar]
+    """What is measured of everybody, by the names of `spec.features`."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A number that is measured beside the usual ones."""
+
+    name: str
+    of: Callable[[Motion], Scalar]
+
+
+def seen_as(
+    world: World, start: State, end: State, seen: Seen, measures: dict[str, Any]
+) -> Motion:
+    """A simulation as measures of one's own see it."""
+    first = mean(start.angles, edges_there(world))
+    return Motion(
+        path=jnp.concatenate([centre(world, start)[None], seen.centre]),
+        heading=jnp.concatenate([first[None], seen.heading]),
+        rest=seen.rest,
+        curvature=seen.curvature,
+        pace=seen.pace,
+        power=seen.power,
+        start=start.positions,
+        end=end.positions,
+        viscosity=world.viscosity,
+        measures=measures,
+    )

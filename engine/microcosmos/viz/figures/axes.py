@@ -1,0 +1,122 @@
+"""Along what an archive is drawn: its own descriptors, or anything else that was measured."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...archive.export import unit as place_on
+from ...spec.measures import FEATURES
+from .reading import Archive
+
+BINS = 24
+"""Bins of an axis that is not a grid's, as the page has them."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One measure from end to end; places on it run from 0 to 1 on its own scale."""
+
+    name: str
+    label: str
+    """Its title and unit."""
+    low: float
+    high: float
+    logarithmic: bool
+    bins: int
+
+    def places(self, values: np.ndarray) -> np.ndarray:
+        """From 0 to 1; what is beyond an end is at it."""
+        scale = "log10" if self.logarithmic else "linear"
+        own = {"low": self.low, "high": self.high, "scale": scale}
+        return np.clip(place_on(np.asarray(values, np.float64), own), 0, 1)
+
+    def values(self, places: np.ndarray) -> np.ndarray:
+        """What `places` came from."""
+        low, high = self.low, self.high
+        if self.logarithmic:
+            return 10 ** (np.log10(low) + places * (np.log10(high) - np.log10(low)))
+        return low + places * (high - low)
+
+    @property
+    def edges(self) -> np.ndarray:
+        """The borders of the bins."""
+        return self.values(np.linspace(0, 1, self.bins + 1))
+
+
+def label(archive: Archive, name: str) -> str:
+    """The title and unit of a measure; one of one's own has those that it was declared with."""
+    known = archive.own.get(name) or FEATURES.get(name)
+    if known is None:
+        return name.replace("_", " ").capitalize()
+    return known.title + (f" [{known.unit}]" if known.unit else "")
+
+
+def fitness_label(archive: Archive) -> str:
+    """What fitness is, and its unit."""
+    task = archive.spec.task
+    if task.fitness == "displacement+energy":
+        return f"Displacement + {task.energy_weight:g} × energy [cells]"
+    return label(archive, task.fitness)
+
+
+def chosen(archive: Archive, names: list[str] | None) -> list[Axis]:
+    """The axes of that name; for none, the archive's first two or its only one."""
+    own = {axis.name: axis for axis in archive.axes}
+    names = names or list(own)[:2]
+    if not 1 <= len(names) <= 2 or len(set(names)) < len(names):
+        raise ValueError(f"`axes` must be one or two that differ, got {', '.join(names)}.")
+    for name in names:
+        if name not in archive.features:
+            raise ValueError(
+                f"`axes` must be of {', '.join(own)} (the archive's own) or what else was "
+                f"measured ({', '.join(n for n in archive.features if n not in own)}); "
+                f"got {name!r}."
+            )
+    return [
+        _own(archive, own[name]) if name in own else _other(archive, name) for name in names
+    ]
+
+
+def _own(archive: Archive, axis: Any) -> Axis:
+    bins = axis.bins if archive.centroids is None else BINS
+    return Axis(
+        axis.name, label(archive, axis.name), axis.low, axis.high, axis.scale == "log10", bins
+    )
+
+
+def _other(archive: Archive, name: str) -> Axis:
+    """From end to end of what there is, rounded outwards."""
+    known, values = FEATURES.get(name), archive.features[name].astype(float)
+    title = label(archive, name)
+    if known is not None and known.scale == "log10":
+        found = np.log10(np.clip(values, known.low, None))
+        low, high = np.floor(found.min() + 1e-9), np.ceil(found.max() - 1e-9)
+        return Axis(name, title, 10.0**low, 10.0 ** max(high, low + 1), True, BINS)
+    step = _round(max(np.ptp(values), 1e-9 * abs(values.max()), 1e-12) / 8)
+    low = step * np.floor(values.min() / step + 1e-9)
+    high = max(step * np.ceil(values.max() / step - 1e-9), low + step)
+    return Axis(name, title, float(low), float(high), False, BINS)
+
+
+def _round(least: float) -> float:
+    """The next 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(least))
+    return next(m * power for m in (1, 2, 5, 10) if m * power >= least * (1 - 1e-9))
+
+
+def dress(panel: Any, axes: list[Axis]) -> None:
+    """Ends, scale and label of each axis of a panel; decades where it is logarithmic."""
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+    for axis, which in zip(axes, "xy", strict=False):
+        getattr(panel, f"set_{which}scale")("log" if axis.logarithmic else "linear")
+        getattr(panel, f"set_{which}lim")(axis.low, axis.high)
+        getattr(panel, f"set_{which}label")(axis.label)
+        ruler = getattr(panel, f"{which}axis")
+        if axis.logarithmic:
+            ruler.set_major_locator(LogLocator(10, numticks=9))
+            ruler.set_minor_locator(LogLocator(10, subs=tuple(range(2, 10)), numticks=50))
+            ruler.set_minor_formatter(NullFormatter())
+        else:
+            ruler.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))

@@ -1,0 +1,165 @@
+"""Captions that state the spec: what was searched, in which world, how long, on what."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...spec import Chain
+from ...spec.body import Known, OwnBody, shape
+from ...spec.emitters import PopulationEmitter
+from .axes import Axis, chosen
+from .groups import Group
+from .reading import Archive, Search
+from .regions import Layout
+
+FITNESS = {
+    "displacement": "Fitness is the displacement of the mean node",
+    "energy": "Fitness is the energy collected",
+}
+
+
+NAMES = {"best": "best fitness", "mean": "mean fitness", "qd_score": "QD score"}
+"""Of curves, where the words of the column are others."""
+
+
+def of_archive(found: Archive, names: list[str] | None) -> str:
+    """What the map shows, then the run."""
+    along = chosen(found, names)
+    filled, cells = len(found.cells), found.spec.archive.cells
+    fittest = "the ring marks the fittest" if len(along) == 2 else "the fittest has"
+    best = f"({found.fitness.max():.3g})" if len(along) == 2 else f"{found.fitness.max():.3g}"
+    first = (
+        f"Archive of {filled:,} elites in {cells:,} cells ({100 * filled / cells:.1f} %) over "
+        f"{_over(along)}; {fittest} {best}."
+    )
+    if len(along) < len(found.axes) or {a.name for a in along} != {a.name for a in found.axes}:
+        first += " Of elites that share a place the fittest is shown."
+    return " ".join([first, run(found)])
+
+
+def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
+    """What is shown and what bands are, then the run; of several specs the first, and how
+    others differ.
+    """
+    several = any(len(group.runs) > 1 for group in groups)
+    first = _listed([NAMES.get(name, name.replace("_", " ")) for name in shown])
+    first = first[0].upper() + first[1:]
+    if several:
+        first += ": median over seeds (thick), band between the quartiles, single runs (thin)"
+    if any(len({len(run.curves["best"]) for run in group.runs}) > 1 for group in groups):
+        first += "; medians and bands as far as all seeds went"
+    named = "; ".join(
+        f"{group.label}: {_seeds(group.seeds)}" for group in groups if group.label
+    )
+    compared = [f"Runs differ in {named}."] if named else []
+    common = run(groups[0].runs[0], seeds=() if named else groups[0].seeds)
+    common = f"Otherwise as in the first: {common}" if named else common
+    return " ".join([first + ".", *compared, common])
+
+
+def of_sheet(found: Archive, plan: Layout, moments: int) -> str:
+    """What a region shows, then the run."""
+    first = (
+        f"The fittest elite of each of {len(plan.regions)} regions over {_over(plan.axes)}, "
+        f"at {moments} moments of its {found.spec.task.steps:,} steps, pale at the start, at "
+        f"the end in the colour of its fitness; numbers give its fitness, thin lines the way "
+        f"of its mean node. All bodies are at one scale."
+    )
+    return " ".join([first, run(found)])
+
+
+def of_lineage(found: Archive, cell: int | None, ancestors: int) -> str:
+    """Whose ancestors are shown, then the run."""
+    row = found.row(cell)
+    who = "fittest elite" if cell is None else f"elite of cell {cell}"
+    first = (
+        f"Descent of {len(found.cells):,} elites (grey) and the {ancestors} ancestors of the "
+        f"{who} (ring; fitness {found.fitness[row]:.3g}), coloured by fitness."
+    )
+    if np.any(found.lineage["parents"][:, 1]):
+        first += " Dashed lines lead from second parents."
+    return " ".join([first, run(found)])
+
+
+def run(found: Archive, seeds: Sequence[int] | None = None) -> str:
+    """The spec and the machine, in three sentences."""
+    spec = found.spec
+    seeds = [spec.seed] if seeds is None else seeds
+    told = f", {_seeds(seeds)}" if seeds else ""
+    columns = found.curves
+    done, evaluations = len(columns["evaluations"]), int(columns["evaluations"][-1])
+    method = "NEAT" if spec.experiment == "neuroevolution" else "MAP-Elites"
+    return (
+        f"{method} ({_emitters(spec)}), {done:,} generations of {spec.search.batch} "
+        f"({evaluations:,} evaluations{told}). {_fitness(spec)} over {spec.task.steps:,} "
+        f"steps; {_body(spec)}, {_control(spec)}, in a periodic world of {spec.world.width} × "
+        f"{spec.world.height} cells{_fluid(spec)}. "
+        f"Microcosmos {found.version} on {_device(found.devices)}."
+    )
+
+
+def _fitness(spec: Search) -> str:
+    task = spec.task
+    if task.own:
+        return f"Fitness is “{task.own.title}” ({task.fitness})"
+    both = f"Fitness is displacement + {task.energy_weight:g} × energy collected"
+    return FITNESS.get(
+        task.fitness, both if "+" in task.fitness else f"Fitness is {task.fitness}"
+    )
+
+
+def _emitters(spec: Search) -> str:
+    names = [
+        "a population of its own" if isinstance(one, PopulationEmitter) else one.operator
+        for one in spec.emitters
+    ]
+    plural = "emitters" if len(names) > 1 else "emitter"
+    return names[0] if names[0].startswith("a ") else f"{plural} {', '.join(names)}"
+
+
+def _body(spec: Search) -> str:
+    body = spec.body
+    if isinstance(body, OwnBody):  # Whose nodes are known to those alone who have its module.
+        return f"the body “{body.own.title}” ({body.builder})"
+    nodes = len(shape(body).positions)
+    if isinstance(body, Chain):
+        return f"a filament of {nodes} nodes"
+    whose = f"the body of a {body.builder}" if isinstance(body, Known) else f"a {body.builder}"
+    return f"{whose} of {nodes} nodes"
+
+
+def _control(spec: Search) -> str:
+    control = spec.control
+    name = control.encoding
+    said = {"cppn": "CPPN", "cppn-body": "CPPN for body and control"}.get(
+        name, f"{name} encoding"
+    )
+    timer = getattr(control, "timer", "sine-cosine")
+    period = f"period {control.period:g} steps" if timer == "sine-cosine" else "linear timer"
+    return f"controlled by a {said} ({period})"
+
+
+def _fluid(spec: Search) -> str:
+    if not spec.world.fluid:
+        return " without a fluid"
+    said = f", ν = {spec.world.viscosity:g} cells²/step"
+    return said if spec.coupling.force_free else said + " (coupling not force-free)"
+
+
+def _device(devices: Sequence[str]) -> str:
+    """Platform and model; the software beside them is told by the version."""
+    said = [", ".join(device.split(", ")[:2]) for device in devices]
+    return " and ".join(dict.fromkeys(said))
+
+
+def _seeds(seeds: Sequence[int]) -> str:
+    return ("seed " if len(seeds) == 1 else "seeds ") + ", ".join(map(str, seeds))
+
+
+def _listed(words: Sequence[str]) -> str:
+    *others, last = words
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def _over(axes: Sequence[Axis]) -> str:
+    return " and ".join(axis.label[0].lower() + axis.label[1:] for axis in axes)

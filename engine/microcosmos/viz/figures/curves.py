@@ -1,0 +1,116 @@
+"""How runs went: QD score, coverage and the best fitness, with bands over seeds."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .axes import fitness_label
+from .groups import Group, spread
+from .plotting import COLOURS
+from .style import GREY, blank, lettered
+
+SHOWN = ("best", "coverage", "qd_score")
+
+DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (4, 1, 1, 1)))
+"""Of lines whose colours have all been used, and of those that print in grey."""
+
+
+def curves(
+    groups: Sequence[Group],
+    *,
+    shown: Sequence[str] = SHOWN,
+    against: str = "evaluations",
+    width: float = 178.0,
+) -> Any:
+    """A panel for each of `shown`: of each group the median over its seeds, the band between
+    the quartiles, and every run as a thin line.
+
+    `against` is evaluations or generations.
+    """
+    names = _known(shown, groups)
+    figure = blank(width, max(45.0, 0.72 * width / len(shown)) + 7 * (len(groups) > 1))
+    panels = figure.subplots(1, len(shown), squeeze=False)[0]
+    for panel, name in zip(panels, names, strict=True):
+        for number, group in enumerate(groups):
+            _group(panel, group, name, against, number)
+        _dress(panel, name, against, groups)
+    lettered(panels)
+    if len(groups) > 1:
+        handles, labels = panels[0].get_legend_handles_labels()
+        place = "outside upper center"
+        figure.legend(handles, labels, loc=place, ncols=min(3, len(groups)), frameon=False)
+    return figure
+
+
+def _known(shown: Sequence[str], groups: Sequence[Group]) -> Sequence[str]:
+    runs = [run for group in groups for run in group.runs]
+    there = [name for name in runs[0].curves if all(name in run.curves for run in runs)]
+    if not shown:
+        raise ValueError(f"`shown` must be one or more of {', '.join(there)}, got none.")
+    for name in shown:
+        if name not in there:
+            raise ValueError(f"`shown` must be of {', '.join(there)}, got {name!r}.")
+    return shown
+
+
+def _group(panel: Any, group: Group, name: str, against: str, number: int) -> None:
+    colour, dash = COLOURS[number % len(COLOURS)], DASHES[number % len(DASHES)]
+    values = [_scaled(run.curves[name], name) for run in group.runs]
+    places = [_places(run.curves, against) for run in group.runs]
+    if len(values) > 1:
+        for x, y in zip(places, values, strict=True):
+            panel.plot(x, y, color=colour, lw=0.4, alpha=0.55, label="_run")
+    low, middle, high = spread(values)
+    along = np.median(np.stack([x[: len(middle)] for x in places]), axis=0)
+    if len(values) > 1:
+        panel.fill_between(along, low, high, color=colour, alpha=0.22, lw=0, label="_quartiles")
+    panel.plot(along, middle, color=colour, lw=1.2, ls=dash, label=_name(group))
+
+
+def _name(group: Group) -> str:
+    seeds = f"n = {len(group.runs)}"
+    return f"{group.label} ({seeds})" if group.label else seeds
+
+
+def _scaled(values: np.ndarray, name: str) -> np.ndarray:
+    """Shares in per cent."""
+    return 100 * values if name in ("coverage", "corrected_coverage", "hit_rate") else values
+
+
+def _places(columns: dict[str, np.ndarray], against: str) -> np.ndarray:
+    if against not in ("evaluations", "generations"):
+        raise ValueError(f"`against` must be evaluations or generations, got {against!r}.")
+    evaluations = columns["evaluations"]
+    return evaluations if against == "evaluations" else np.arange(1, len(evaluations) + 1)
+
+
+def _dress(panel: Any, name: str, against: str, groups: Sequence[Group]) -> None:
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    panel.set_xlabel({"generations": "Generation"}.get(against, "Evaluations"))
+    panel.set_ylabel(_label(name, groups))
+    panel.set_xlim(left=0)
+    panel.xaxis.set_major_locator(MaxNLocator(4, integer=True))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.0f}"))
+    panel.set_axisbelow(True)
+    panel.grid(color=GREY, alpha=0.18, lw=0.4)
+    for side in ("top", "right"):
+        panel.spines[side].set_visible(False)
+
+
+def _label(name: str, groups: Sequence[Group]) -> str:
+    """What a panel shows; the unit of fitness only where all runs have the same."""
+    labels = {fitness_label(run) for group in groups for run in group.runs}
+    fitness = labels.pop() if len(labels) == 1 else "Fitness"
+    title, _, unit = fitness.partition(" [")
+    unit = f" [{unit}" if unit else ""
+    return {
+        "best": f"Best {title[0].lower()}{title[1:]}{unit}",
+        "mean": f"Mean {title[0].lower()}{title[1:]}{unit}",
+        "coverage": "Coverage [%]",
+        "qd_score": f"QD score{unit}",
+        "corrected_qd_score": f"Corrected QD score{unit}",
+        "corrected_coverage": "Corrected coverage [%]",
+        "hit_rate": "Repeats in their own cell [%]",
+    }.get(name, name.replace("_", " ").capitalize())

@@ -1,0 +1,95 @@
+"""Each figure for print from files to files: read, drawn, captioned, written."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import caption, curves, groups, lineage, maps, regions, saving, sheet
+from .family import family
+from .reading import Archive, read
+from .style import millimetres, styled
+
+
+@dataclass(frozen=True)
+class Print:
+    """How a figure is printed."""
+
+    width: str = "single"
+    """`single`, `double`, or so many mm, cm or in."""
+    dpi: int = 300
+    under: bool = False
+    """Whether the caption stands under the figure too."""
+    tex: bool = False
+    """Whether the caption is written for LaTeX as well."""
+    palette: str = "viridis"
+
+    def publish(self, figure, out: Path, text: str) -> list[Path]:
+        """Writes a figure with its caption, and says what was written."""
+        return saving.publish(figure, out, text, under=self.under, tex=self.tex, dpi=self.dpi)
+
+
+def archive(
+    file: Path, out: Path, how: Print, axes: list[str] | None, colour: str
+) -> list[Path]:
+    """The map of an archive file."""
+    saving.kind(out)
+    found = open_archive(file)
+    with styled():
+        width = millimetres(how.width)
+        figure = maps.archive(found, axes=axes, colour=colour, colours=how.palette, width=width)
+        return how.publish(figure, out, caption.of_archive(found, axes))
+
+
+def progress(
+    files: Sequence[Path], out: Path, how: Print, shown: Sequence[str], against: str
+) -> list[Path]:
+    """The curves of one run or several."""
+    saving.kind(out)
+    found = groups.grouped([open_archive(file) for file in files])
+    with styled():
+        width = millimetres(how.width)
+        figure = curves.curves(found, shown=shown, against=against, width=width)
+        return how.publish(figure, out, caption.of_curves(found, shown))
+
+
+def contact(
+    file: Path,
+    out: Path,
+    how: Print,
+    axes: list[str] | None,
+    grid: tuple[int, int],
+    moments: int,
+    tell: Callable[[int, int], None] = lambda done, of: None,
+) -> list[Path]:
+    """The contact sheet of an archive file; `grid` has columns and rows."""
+    from . import motions  # Which simulates, with JAX.
+
+    saving.kind(out)
+    found, columns, rows = open_archive(file), *grid
+    plan = regions.layout(found, axes=axes, columns=columns, rows=rows)
+    cells = [int(found.cells[region.elite]) for region in plan.regions]
+    moved = motions.motions(file.read_bytes(), cells, lambda done: tell(done, len(cells)))
+    with styled():
+        look = {"colours": how.palette, "width": millimetres(how.width), "moments": moments}
+        figure = sheet.sheet(found, plan, moved, **look)
+        return how.publish(figure, out, caption.of_sheet(found, plan, moments))
+
+
+def tree(file: Path, out: Path, how: Print, cell: int | None) -> list[Path]:
+    """The descent of an archive's elites, and of one of them."""
+    saving.kind(out)
+    found = open_archive(file)
+    related = family(found)
+    ancestors = len(related.ancestors(int(related.tips[found.row(cell)]))) - 1
+    with styled():
+        width = millimetres(how.width)
+        figure = lineage.lineage(found, cell=cell, colours=how.palette, width=width)
+        return how.publish(figure, out, caption.of_lineage(found, cell, ancestors))
+
+
+def open_archive(file: Path) -> Archive:
+    """The archive in a file; what is wrong with it is told with its name."""
+    try:
+        return read(file.read_bytes())
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from error

@@ -1,0 +1,99 @@
+"""The figure of a folding: each filament on its way, the picture it folds into, and losses."""
+
+from functools import partial
+from math import ceil
+from typing import Any
+
+import jax
+import numpy as np
+
+from ... import search, spec
+from ...archive import file
+from ...build import build_descent
+from ...device import compiler_options
+from ...genomes import Vector
+from .plotting import COLOURS, GREY, blank, tidy
+
+MOMENTS = {"early": 0.1, "middle": 0.4, "late": 1.0}
+"""Shares of a life at which filaments are shown."""
+
+COLUMNS = 10
+"""Filaments side by side at most."""
+
+
+def folds(data: bytes) -> Any:
+    """Rows early, middle and late in the life of every filament, a row of pictures, and how
+    the losses fell. `data` is the run's file, finished or not; the filaments are those with the
+    least loss so far, simulated anew.
+    """
+    tree, attributes = file.load(data)
+    chosen = spec.Folding.model_validate_json(attributes["spec"])
+    names = [target.name for target in chosen.targets]
+    genes, pictures, least = (tree["folds"][name] for name in ("genes", "picture", "loss"))
+    if not np.isfinite(least).any():
+        raise ValueError("a folding with an update is needed, got one without.")
+    courses = _courses(chosen, genes)
+    banks, across = ceil(len(names) / COLUMNS), min(COLUMNS, len(names))
+    rows = len(MOMENTS) + 1
+    figure = blank(max(5.0, 1.05 * across + 0.6), 1.08 * rows * banks + 2.6)
+    grid = figure.add_gridspec(rows * banks + 1, across, height_ratios=[1] * rows * banks + [2])
+    for number, name in enumerate(names):
+        top, column = number // COLUMNS * rows, number % COLUMNS
+        panels = [figure.add_subplot(grid[top + i, column]) for i in range(rows)]
+        _column(panels, courses[number], pictures[number], chosen)
+        panels[0].set_title(f"{name}: {least[number]:.4f}", fontsize=8)
+        if column == 0:
+            for panel, label in zip(panels, (*MOMENTS, "picture"), strict=True):
+                panel.set_ylabel(label, fontsize=8)
+    _losses(figure.add_subplot(grid[-1, :]), tree["curves"]["loss"], names)
+    return figure
+
+
+def _courses(chosen: spec.Folding, genes: np.ndarray) -> np.ndarray:
+    """(fold, moment, node, 2) places of the nodes."""
+    descent = build_descent(chosen)
+    steps = [max(1, round(share * chosen.steps)) - 1 for share in MOMENTS.values()]
+
+    def course(genes):
+        driven = search.drive(descent.task, Vector(genes))
+        _, seen = search.simulate(driven, lambda state, measures: state.positions)
+        return seen[np.array(steps)]
+
+    program = jax.jit(partial(jax.lax.map, course), compiler_options=compiler_options())
+    return np.asarray(program(genes))
+
+
+def _column(
+    panels: list[Any], course: np.ndarray, picture: np.ndarray, chosen: spec.Folding
+) -> None:
+    size = np.array([chosen.world.width, chosen.world.height])
+    edges = spec.shape(chosen.body).edges
+    for panel, places in zip(panels, course, strict=False):
+        panel.imshow(picture.T, origin="lower", cmap="Greys", vmin=0, vmax=3)
+        ends = places[edges]
+        ends = ends - size * np.floor(ends.mean(1, keepdims=True) / size)
+        _strokes(panel, ends)
+    panels[-1].imshow(picture.T, origin="lower", cmap="Greys", vmin=0, vmax=1)
+    for panel in panels:
+        panel.set(xticks=[], yticks=[], xlim=(-0.5, size[0] - 0.5), ylim=(-0.5, size[1] - 0.5))
+        for side in panel.spines.values():
+            side.set(color=GREY, lw=0.4)
+
+
+def _strokes(panel: Any, ends: np.ndarray) -> None:
+    """Edges in the box that holds their middle."""
+    from matplotlib.collections import LineCollection
+
+    panel.add_collection(LineCollection(list(ends), colors=COLOURS[0], lw=0.5))
+    nodes = ends[:, 0]
+    panel.plot(nodes[:, 0], nodes[:, 1], ".", color=COLOURS[0], ms=0.9, mew=0)
+
+
+def _losses(panel: Any, losses: np.ndarray, names: list[str]) -> None:
+    for number, name in enumerate(names):
+        panel.plot(losses[:, number], lw=1, color=COLOURS[number % len(COLOURS)],
+                   ls="-" if number < len(COLOURS) else "--", label=name)  # fmt: skip
+    panel.set(yscale="log", xlabel="update", ylabel="loss")
+    tidy(panel)
+    if len(names) > 1:
+        panel.legend(fontsize=7, frameon=False, ncols=5)

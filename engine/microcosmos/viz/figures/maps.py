@@ -1,0 +1,158 @@
+"""The archive as a map: a cell for each kind of creature, in the colour of its fitness."""
+
+from typing import Any
+
+import numpy as np
+
+from ...spec.measures import FEATURES
+from .axes import Axis, chosen, dress, fitness_label, label
+from .reading import Archive
+from .style import EMPTY, GREY, INK, blank, palette
+from .tessellation import borders, cells
+
+
+def archive(
+    found: Archive,
+    *,
+    axes: list[str] | None = None,
+    colour: str = "fitness",
+    colours: str = "viridis",
+    width: float = 85.0,
+) -> Any:
+    """The map over one or two axes; of elites that share a place the fittest is shown.
+
+    `colour` is fitness, or anything else that was measured; a ring marks the fittest elite.
+    """
+    along = chosen(found, axes)
+    shown, title = _colour(found, colour)
+    figure = blank(width, width * (0.78 if len(along) == 2 else 0.6))
+    panel = figure.add_subplot()
+    scale = _scale(shown, _logarithmic(found, colour))
+    shades = {"cmap": palette(colours), "norm": scale}
+    draw = _bars if len(along) == 1 else _cells if _whole(found, along) else _bins
+    drawn = draw(panel, found, along, shown, shades)
+    dress(panel, along)
+    if len(along) == 2:
+        x, y = (found.features[axis.name][found.best] for axis in along)
+        x, y = (np.clip(v, a.low, a.high) for v, a in zip((x, y), along, strict=True))
+        for edge, size in (("white", 1.8), (INK, 0.8)):
+            panel.plot(x, y, "o", ms=5, mfc="none", mec=edge, mew=size, clip_on=False)
+    bar = figure.colorbar(drawn, ax=panel, label=title, pad=0.02, aspect=28)
+    bar.outline.set_linewidth(0.5)
+    return figure
+
+
+def _colour(found: Archive, name: str) -> tuple[np.ndarray, str]:
+    """Of each elite the number that is shown, and what it is."""
+    if name == "fitness":
+        return found.fitness, fitness_label(found)
+    if name not in found.features:
+        known = ", ".join(["fitness", *found.features])
+        raise ValueError(f"`colour` must be one of {known}, got {name!r}.")
+    return found.features[name].astype(float), label(found, name)
+
+
+def _logarithmic(found: Archive, name: str) -> bool:
+    """Whether a measure goes in decades: as its axis does, where it is one of the archive's."""
+    own = {axis.name: axis.scale for axis in found.axes}
+    usual = FEATURES[name].scale if name in FEATURES else "linear"
+    return own.get(name, usual) == "log10"
+
+
+def _scale(shown: np.ndarray, logarithmic: bool) -> Any:
+    """From the least to the greatest."""
+    from matplotlib.colors import LogNorm, Normalize
+
+    low, high = float(shown.min()), float(shown.max())
+    if logarithmic and low > 0:
+        return LogNorm(low, high if high > low else 10 * low)
+    return Normalize(low, high if high > low else low + 1)
+
+
+def _whole(found: Archive, along: list[Axis]) -> bool:
+    """Whether the map shows Voronoi cells as they are: over both of their own axes."""
+    names = [axis.name for axis in found.axes]
+    return found.centroids is not None and sorted(a.name for a in along) == sorted(names)
+
+
+def bins(found: Archive, along: list[Axis]) -> np.ndarray:
+    """(axis, elite): in which bin each elite is; by its cell where the axis is a grid's."""
+    own = [axis.name for axis in found.axes]
+    grid = found.centroids is None
+    places = np.unravel_index(found.cells, found.spec.archive.shape) if grid else ()
+    return np.stack(
+        [
+            places[own.index(axis.name)]
+            if grid and axis.name in own
+            else np.minimum(
+                (axis.places(found.features[axis.name]) * axis.bins).astype(int), axis.bins - 1
+            )
+            for axis in along
+        ]
+    )
+
+
+def fittest(found: Archive, places: np.ndarray) -> np.ndarray:
+    """The rows of the fittest elite at each place that has any; places are (axis, elite)."""
+    order = np.lexsort((-found.fitness, *places))
+    new = np.any(np.diff(places[:, order], axis=1) != 0, axis=0)
+    return order[np.concatenate([[True], new])]
+
+
+def _bins(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shades: Any) -> Any:
+    x, y = along
+    there = bins(found, along)
+    rows = fittest(found, there)
+    values = np.full((y.bins, x.bins), np.nan)
+    values[there[1, rows], there[0, rows]] = shown[rows]
+    panel.set_facecolor(EMPTY)
+    mesh = panel.pcolormesh(
+        x.edges, y.edges, np.ma.masked_invalid(values), rasterized=False, lw=0, **shades
+    )
+    mesh.set_edgecolor("face")  # Viewers of PDF files else show gaps between cells.
+    mesh.set_linewidth(0.1)
+    return mesh
+
+
+def _cells(
+    panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shades: Any
+) -> Any:
+    """Every cell of a tessellation, those with nobody pale."""
+    from matplotlib.collections import PolyCollection
+
+    assert found.centroids is not None
+    own = [axis.name for axis in found.axes]
+    order = [own.index(axis.name) for axis in along]
+    shapes = [
+        np.stack(
+            [axis.values(column) for axis, column in zip(along, corners.T, strict=True)], 1
+        )
+        for corners in cells(found.centroids[:, order])
+    ]
+    look = {"edgecolors": "white", "linewidths": 0.25}
+    panel.add_collection(PolyCollection(shapes, facecolors=EMPTY, **look))
+    filled = PolyCollection([shapes[cell] for cell in found.cells], **look, **shades)
+    filled.set_array(shown)
+    panel.add_collection(filled)
+    return filled
+
+
+def _bars(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shades: Any) -> Any:
+    """Over one axis: how fit the best of each bin or cell is."""
+    from matplotlib.cm import ScalarMappable
+
+    (axis,) = along
+    if _whole(found, along):
+        assert found.centroids is not None
+        ends = axis.values(borders(found.centroids[:, 0]))
+        rows, low, high = np.arange(len(shown)), ends[found.cells, 0], ends[found.cells, 1]
+    else:
+        there = bins(found, along)
+        rows = fittest(found, there)
+        low, high = axis.edges[there[0, rows]], axis.edges[there[0, rows] + 1]
+    drawn = ScalarMappable(**shades)
+    height, colours = found.fitness[rows], drawn.to_rgba(shown[rows])
+    panel.bar(low, height, high - low, align="edge", color=colours, ec="white", lw=0.25)
+    panel.set_ylabel(fitness_label(found))
+    panel.axhline(0, color=GREY, lw=0.5)
+    return drawn

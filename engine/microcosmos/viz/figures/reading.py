@@ -1,0 +1,98 @@
+"""An archive file as figures need it, read with NumPy alone."""
+
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...archive import file
+from ...spec import Descriptor, Neuroevolution, Own, QualityDiversity, parse
+
+Search = QualityDiversity | Neuroevolution
+"""The specs whose runs fill an archive."""
+
+NO_ARCHIVE = "an archive is needed, as searches have; got the table of {!r}"
+
+
+@dataclass(frozen=True, eq=False)
+class Archive:
+    """The elites of a run, and how it came to them."""
+
+    spec: Search
+    version: str
+    devices: tuple[str, ...]
+    """Kinds of device that computed it, the last one last."""
+    features: dict[str, np.ndarray]
+    """Of each elite, every measure by its name."""
+    cells: np.ndarray
+    fitness: np.ndarray
+    generation: np.ndarray
+    centroids: np.ndarray | None
+    """(cell, axis) from 0 to 1 on the axes' own scales; None where bins make a grid."""
+    curves: dict[str, np.ndarray]
+    lineage: dict[str, np.ndarray]
+    """Columns with an entry for each creature that came into the archive, in order."""
+    operators: tuple[str, ...]
+
+    @property
+    def axes(self) -> tuple[Descriptor, ...]:
+        """The archive's descriptors."""
+        return self.spec.archive.descriptors
+
+    @property
+    def own(self) -> dict[str, Own]:
+        """What is said of measures of one's own, by name."""
+        task = self.spec.task
+        return self.spec.archive.own | ({task.fitness: task.own} if task.own else {})
+
+    @property
+    def best(self) -> int:
+        """The row of the fittest elite."""
+        return int(np.argmax(self.fitness))
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """The whole spec, defaults written out."""
+        return self.spec.model_dump(mode="json")
+
+    def row(self, cell: int | None) -> int:
+        """The row of a cell's elite, of the fittest for none. `ValueError` if it is empty."""
+        if cell is None:
+            return self.best
+        found = np.flatnonzero(self.cells == cell)
+        if not len(found):
+            raise ValueError(
+                f"`cell` must be one of the {len(self.cells)} that have an elite, from "
+                f"{self.cells.min()} to {self.cells.max()}; got {cell}"
+            )
+        return int(found[0])
+
+
+def read(data: bytes) -> Archive:
+    """The archive in a run's file. Raises `ValueError` where there is none, or nobody in it."""
+    tree, told = file.load(data)
+    document = json.loads(told["spec"])
+    if "archive" not in tree:
+        raise ValueError(NO_ARCHIVE.format(document["experiment"]))
+    spec = parse(document)
+    if not isinstance(spec, Search):
+        raise ValueError(NO_ARCHIVE.format(document["experiment"]))
+    archive = tree["archive"]
+    if not len(archive["cell"]):
+        raise ValueError("an archive with an elite is needed, got one without")
+    names = json.loads(told["features"])
+    return Archive(
+        spec=spec,
+        version=told["version"],
+        devices=tuple(json.loads(told["device"])),
+        features=dict(zip(names, archive["features"].T, strict=True)),
+        cells=archive["cell"],
+        fitness=archive["fitness"].astype(float),
+        generation=archive["generation"],
+        centroids=archive.get("centroids"),
+        curves=tree["curves"],
+        lineage=tree["lineage"],
+        operators=tuple(json.loads(told["operators"])),
+    )

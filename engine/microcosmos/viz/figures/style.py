@@ -1,0 +1,105 @@
+"""How figures for print look: their sizes, letters and colours."""
+
+import re
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from typing import Any
+
+from ...optional import needed
+
+INCH = 25.4
+"""Millimetres."""
+
+COLUMNS = {"single": 85.0, "double": 178.0}
+"""Widths of a column and of a page, as most journals have them, in mm."""
+
+INK, GREY, PALE = "#1b2226", "#5f6b73", "#c9d0d4"
+EMPTY = "#eef1f2"
+"""Of cells with nobody in them."""
+
+RC: dict[str, Any] = {
+    "font.family": ["DejaVu Sans"],  # Comes with matplotlib: the same letters everywhere.
+    "mathtext.fontset": "dejavusans",
+    "font.size": 7.0,
+    "axes.titlesize": 7.0,
+    "axes.labelsize": 7.0,
+    "xtick.labelsize": 6.0,
+    "ytick.labelsize": 6.0,
+    "legend.fontsize": 6.0,
+    "axes.linewidth": 0.5,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "xtick.minor.size": 1.5,
+    "ytick.minor.size": 1.5,
+    "xtick.major.pad": 2.0,
+    "ytick.major.pad": 2.0,
+    "axes.labelpad": 2.5,
+    "lines.linewidth": 1.0,
+    "pdf.fonttype": 42,  # TrueType, which journals ask for.
+    "svg.hashsalt": "microcosmos",
+}
+
+SAMPLES = {
+    "viridis": "44015448186a472d7b4240863b528b33638d2c728e26828e21918c1fa08828ae803fbc735ec96284d44baddc30d8e219fde725",  # noqa: E501
+    "cividis": "00224e002e6a1a386f32436d434e6c535a6d61656f6f70737d7c788c88789b9476aba072bcae6ccdbb63dec958f0d846fee838",  # noqa: E501
+    "magma": "1a10422f11634710785d177f7521818b2981a1307eb83779cf4070e34e65f2625df97b5dfd9668feb078feca8dfde3a5fcfdbf",  # noqa: E501
+}
+"""The page's colours from dark to light (`web/src/ui/colours.ts`): perceptually uniform, to
+most colour-blind people too."""
+
+
+def styled() -> AbstractContextManager:
+    """The look of print, for as long as a figure is made and saved."""
+    return needed("matplotlib").rc_context(RC)
+
+
+def palette(name: str) -> Any:
+    """A colour map from 0, dark, to 1, light."""
+    if name not in SAMPLES:
+        raise ValueError(f"`palette` must be one of {', '.join(SAMPLES)}, got {name!r}.")
+    colours = ["#" + colour for colour in re.findall("......", SAMPLES[name])]
+    return needed("matplotlib.colors").LinearSegmentedColormap.from_list(name, colours)
+
+
+def millimetres(width: str) -> float:
+    """A width as people write it: `single`, `double`, `85mm`, `3.5in`, or a number of mm."""
+    found = re.fullmatch(r"([0-9.]+) *(mm|cm|in|)", width.strip())
+    try:
+        size = COLUMNS.get(width) or float(found[1]) * _unit(found[2])  # pyright: ignore
+    except (TypeError, ValueError):
+        size = 0.0
+    if not 20 <= size <= 1000:
+        raise ValueError(
+            f"`width` must be single ({COLUMNS['single']:g} mm), double "
+            f"({COLUMNS['double']:g} mm), or 20 to 1000 mm as in 120mm or 3.5in; got {width!r}."
+        )
+    return size
+
+
+def _unit(name: str) -> float:
+    return {"cm": 10.0, "in": INCH}.get(name, 1.0)
+
+
+def blank(width: float, height: float) -> Any:
+    """A figure of so many mm, drawn without matplotlib's global state."""
+    figure = needed("matplotlib.figure").Figure((width / INCH, height / INCH))
+    figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02, wspace=0.03, hspace=0.03)
+    return figure
+
+
+def lettered(panels: Sequence[Any]) -> None:
+    """(a), (b) ... before the titles of panels, where there are several."""
+    if len(panels) > 1:
+        for number, panel in enumerate(panels):
+            panel.set_title(f"({chr(97 + number)})", loc="left", fontweight="bold")

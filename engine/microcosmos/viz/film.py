@@ -1,0 +1,103 @@
+"""Films of a replay: GIF, which plays everywhere, and MP4, which is small."""
+
+import io
+import tempfile
+from collections.abc import Iterator
+from itertools import chain
+from pathlib import Path
+from platform import machine
+from typing import Any
+
+import numpy as np
+
+from ..optional import needed
+from .raster import frame
+from .replay_file import Replay
+
+ENCODER = "libx264"
+QUALITY = {"preset": "medium", "crf": "18"}
+X86 = {"x264-params": "asm=SSE4"}
+"""The same film on every x86: with AVX-512, x264 differs even from run to run."""
+
+BT709, LIMITED = 1, 1
+"""The colours of films of high definition, in the numbers of H.264 and FFmpeg."""
+
+SAMPLES = 12
+"""Frames whose colours the palette of a GIF is chosen for."""
+
+
+def gif(
+    replay: Replay, *, width: int = 320, frames: int = 125, rate: int = 20, **options: Any
+) -> bytes:
+    """A film that starts again at its end, of at most so many frames, `rate` a second.
+
+    A GIF counts hundredths of a second, of which viewers keep two at least. `options` are
+    those of `frame`.
+    """
+    if not 1 <= rate <= 50:
+        raise ValueError(f"`rate` must be from 1 to 50 frames a second, got {rate}.")
+    if frames < 2:
+        raise ValueError(f"`frames` must be at least 2, got {frames}.")
+    image = needed("PIL.Image")
+    numbers = range(0, replay.frames, -(-replay.frames // frames))
+    pictures = [frame(replay, k, width=width, **options) for k in numbers]
+    palette = _palette(pictures)
+    first, *others = (
+        image.fromarray(picture).quantize(palette=palette, dither=image.Dither.NONE)
+        for picture in pictures
+    )
+    out = io.BytesIO()
+    duration = 10 * round(100 / rate)
+    first.save(
+        out, "GIF", save_all=True, append_images=others, duration=duration, loop=0, disposal=1
+    )
+    return out.getvalue()
+
+
+def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> bytes:
+    """A film in H.264 of all frames, `rate` a second, that browsers play while they load it.
+
+    `options` are those of `frame`.
+    """
+    if not 1 <= rate <= 120:
+        raise ValueError(f"`rate` must be from 1 to 120 frames a second, got {rate}.")
+    pictures = (frame(replay, k, width=width, **options) for k in range(replay.frames))
+    _refuse_without_encoder()
+    with tempfile.TemporaryDirectory() as folder:  # The index is moved to the front at the end.
+        path = Path(folder) / "film.mp4"
+        _encode(pictures, path, rate)
+        return path.read_bytes()
+
+
+def _palette(pictures: list[np.ndarray]) -> Any:
+    """An image whose palette suits all pictures, so that still parts do not flicker."""
+    some = pictures[:: -(-len(pictures) // SAMPLES)]
+    image = needed("PIL.Image")
+    return image.fromarray(np.concatenate(some)).quantize(256, image.Quantize.MEDIANCUT)
+
+
+def _refuse_without_encoder() -> None:
+    if ENCODER not in needed("av").codecs_available:
+        raise RuntimeError(
+            f"An MP4 needs PyAV with {ENCODER}, which this one was built without; "
+            "make a GIF instead."
+        )
+
+
+def _encode(pictures: Iterator[np.ndarray], path: Path, rate: int) -> None:
+    av = needed("av")
+    kept = {"movflags": "faststart", "fflags": "bitexact"}
+    options = QUALITY | (X86 if machine() in ("x86_64", "AMD64") else {})
+    with av.open(str(path), "w", options=kept) as film:
+        stream = film.add_stream(ENCODER, rate=rate, options=options)
+        stream.pix_fmt = "yuv420p"
+        stream.thread_count = 1  # With more, the film depends on the machine.
+        first = next(pictures)
+        stream.height, stream.width = first.shape[:2]
+        context = stream.codec_context
+        context.colorspace = context.color_primaries = context.color_trc = BT709
+        context.color_range = LIMITED
+        for picture in chain([first], pictures):
+            image = av.VideoFrame.from_ndarray(picture, format="rgb24")
+            film.mux(stream.encode(image.reformat(format="yuv420p", dst_colorspace=BT709)))
+        film.mux(stream.encode())

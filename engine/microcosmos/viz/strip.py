@@ -1,0 +1,85 @@
+"""Still pictures of a replay as PNG files."""
+
+import io
+from typing import Any
+
+import numpy as np
+
+from ..optional import needed
+from .raster import frame, frame_number, theme_of
+from .replay_file import Replay
+
+GAP = 8
+"""Pixels around the panels of a strip."""
+
+LETTERS = 14
+"""The height of the captions, in pixels."""
+
+
+def png(replay: Replay, number: int, **options: Any) -> bytes:
+    """One frame as a PNG; `options` are those of `frame`."""
+    return encoded(frame(replay, number, **options))
+
+
+def strip(
+    replay: Replay,
+    count: int = 6,
+    *,
+    columns: int | None = None,
+    width: int = 240,
+    theme: str = "light",
+    **options: Any,
+) -> bytes:
+    """`count` moments from the first frame to the last, each with its step, as a PNG.
+
+    They lie side by side, or in rows of `columns`; `width` is one panel's and `options` are
+    those of `frame`.
+    """
+    numbers = moments(replay, count)
+    columns = count if columns is None else columns
+    if not 1 <= columns <= count:
+        raise ValueError(f"`columns` must be from 1 to {count}, got {columns}.")
+    panels = [frame(replay, k, width=width, theme=theme, **options) for k in numbers]
+    high, wide = panels[0].shape[:2]
+    tall = high + 2 * GAP + LETTERS
+    rows = -(-count // columns)
+    shape = rows * tall + GAP, columns * (wide + GAP) + GAP, 3
+    sheet = np.full(shape, theme_of(theme).halo, np.uint8)
+    corners = []
+    for place, panel in enumerate(panels):
+        top = place // columns * tall + GAP
+        left = place % columns * (wide + GAP) + GAP
+        sheet[top : top + high, left : left + wide] = panel
+        corners.append((left, top + high + GAP // 2))
+    captions = [f"step {replay.step(k):,}" for k in numbers]
+    return encoded(_written(sheet, corners, captions, theme_of(theme).ink))
+
+
+def moments(replay: Replay, count: int) -> list[int]:
+    """The numbers of `count` frames, evenly from the first to the last."""
+    if not 1 <= count <= replay.frames:
+        raise ValueError(f"`count` must be from 1 to {replay.frames} frames, got {count}.")
+    if count == 1:
+        return [frame_number(replay, -1)]
+    return [round(k * (replay.frames - 1) / (count - 1)) for k in range(count)]
+
+
+def _written(
+    sheet: np.ndarray,
+    corners: list[tuple[int, int]],
+    texts: list[str],
+    ink: tuple[int, int, int],
+) -> np.ndarray:
+    """The sheet with each text below and right of its corner (column, row)."""
+    image = needed("PIL.Image").fromarray(sheet)
+    font = needed("PIL.ImageFont").load_default(LETTERS)
+    draw = needed("PIL.ImageDraw").Draw(image)
+    for corner, text in zip(corners, texts, strict=True):
+        draw.text(corner, text, fill=ink, font=font, anchor="lt")
+    return np.asarray(image)
+
+
+def encoded(picture: np.ndarray) -> bytes:
+    out = io.BytesIO()
+    needed("PIL.Image").fromarray(picture).save(out, "PNG", optimize=True)
+    return out.getvalue()

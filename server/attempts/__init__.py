@@ -1,0 +1,1 @@
+"""Attempts: claims, leases, checkpoints, and recording what a worker reports."""

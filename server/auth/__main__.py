@@ -1,0 +1,73 @@
+"""`python -m server.auth`: create, list and revoke tokens on the server's own machine."""
+
+import argparse
+import sys
+from datetime import UTC, datetime, timedelta
+from uuid import UUID
+
+from sqlalchemy import select
+
+from ..core.errors import Refused
+from ..services.services import Services, connect
+from ..settings import Settings
+from ..tables import Token, migrations
+from . import tokens
+from .principal import RANKS
+
+
+def main(words: list[str] | None = None) -> None:
+    asked = _arguments().parse_args(words)
+    services = connect(Settings())
+    try:
+        migrations.upgrade(services.sessions)
+        asked.act(services, asked)
+    except Refused as error:
+        sys.exit(error.problem.detail)
+    finally:
+        services.close()
+
+
+def _arguments() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m server.auth", description=__doc__)
+    actions = parser.add_subparsers(required=True, metavar="create | list | revoke")
+    create = actions.add_parser("create", help="make a token; its secret is shown once")
+    create.add_argument("name")
+    create.add_argument("--scope", choices=RANKS, default="write")
+    create.add_argument("--days", type=float, help="for how long it is good (for ever)")
+    create.set_defaults(act=_create)
+    actions.add_parser("list", help="all tokens").set_defaults(act=_list)
+    revoke = actions.add_parser("revoke", help="end a token now")
+    revoke.add_argument("name")
+    revoke.set_defaults(act=_revoke)
+    return parser
+
+
+def _create(services: Services, asked: argparse.Namespace) -> None:
+    expires_at = datetime.now(UTC) + timedelta(days=asked.days) if asked.days else None
+    print(tokens.create(services, asked.name, asked.scope, expires_at).secret)
+
+
+def _list(services: Services, asked: argparse.Namespace) -> None:
+    with services.sessions.read() as session:
+        for token in tokens.known(session):
+            ended = f"revoked {token.revoked_at:%Y-%m-%d}" if token.revoked_at else "live"
+            until = f", until {token.expires_at:%Y-%m-%d %H:%M}" if token.expires_at else ""
+            print(f"{token.name}\t{token.scope}\t{token.beginning}…\t{ended}{until}")
+
+
+def _revoke(services: Services, asked: argparse.Namespace) -> None:
+    """On this machine also the last one of an admin: who sits here can make another."""
+    tokens.revoke(services, _named(services, asked.name), last=True)
+
+
+def _named(services: Services, name: str) -> UUID:
+    with services.sessions.read() as session:
+        mine = select(Token.id).where(Token.name == name, Token.revoked_at.is_(None))
+        found = session.scalars(mine).one_or_none()
+    if found is None:
+        raise Refused(404, "Not found", f"No live token is named {name!r}.")
+    return found
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,163 @@
+"""Every error as a problem (RFC 9457): which field, what was needed, what came."""
+
+import logging
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, Self
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from pydantic import ValidationError
+from redis import RedisError
+from sqlalchemy.exc import OperationalError, SQLAlchemyError, TimeoutError
+from starlette.exceptions import HTTPException
+
+from microcosmos.archive.creature import CreatureError
+from microcosmos.spec import field_path
+
+from ..runs.lifecycle import Conflict
+from .schemas import FieldError, Problem
+
+log = logging.getLogger(__name__)
+TOLD = 50
+"""So many errors are told at most: a document may have as many as it has values."""
+RETRY = {"Retry-After": "2"}
+MEDIA_TYPE = "application/problem+json"
+NAMED = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
+
+
+class Refused(Exception):
+    """Something that cannot be done, and why."""
+
+    def __init__(
+        self,
+        status: int,
+        title: str,
+        detail: str,
+        errors: list[FieldError] | None = None,
+        headers: Mapping[str, str] | None = None,
+    ):
+        super().__init__(detail)
+        self.problem = Problem(title=title, status=status, detail=detail, errors=errors)
+        self.headers = headers
+
+    @classmethod
+    def of(cls, problem: Problem) -> Self:
+        """Of a problem that was found elsewhere."""
+        return cls(problem.status, problem.title, problem.detail, problem.errors)
+
+
+def answer(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
+    content = problem.model_dump(mode="json", exclude_none=True)
+    return JSONResponse(content, problem.status, headers, media_type=MEDIA_TYPE)
+
+
+def install(app: FastAPI) -> None:
+    """Have the application answer every error as a problem."""
+
+    @app.exception_handler(Refused)
+    def refused(_: Request, error: Refused) -> JSONResponse:
+        return answer(error.problem, error.headers)
+
+    @app.exception_handler(Conflict)
+    def conflict(_: Request, error: Conflict) -> JSONResponse:
+        return answer(Problem(title="Conflict", status=409, detail=str(error)))
+
+    @app.exception_handler(ValidationError)
+    def unsound(_: Request, error: ValidationError) -> JSONResponse:
+        return answer(invalid(error))
+
+    @app.exception_handler(RequestValidationError)
+    def invalid_request(_: Request, error: RequestValidationError) -> JSONResponse:
+        told = error.errors()[:TOLD]
+        found = [(e, e["loc"][1:]) for e in told]  # Without "query", "path".
+        return answer(
+            invalid_input([_field_error(e, ".".join(map(str, place))) for e, place in found])
+        )
+
+    @app.exception_handler(CreatureError)
+    def no_creature(_: Request, error: CreatureError) -> JSONResponse:
+        return answer(bad_creature(error))
+
+    @app.exception_handler(HTTPException)
+    def http(_: Request, error: HTTPException) -> JSONResponse:
+        problem = Problem(title=error.detail, status=error.status_code, detail=error.detail)
+        return answer(problem, error.headers)
+
+    @app.exception_handler(OperationalError)
+    @app.exception_handler(TimeoutError)
+    @app.exception_handler(RedisError)
+    def away(_: Request, error: SQLAlchemyError | RedisError) -> JSONResponse:
+        return unavailable(error)
+
+    @app.exception_handler(Exception)
+    def unforeseen(_: Request, error: Exception) -> JSONResponse:
+        detail = "The server failed; its log says why."
+        return answer(Problem(title="Internal server error", status=500, detail=detail))
+
+
+def unavailable(error: SQLAlchemyError | RedisError) -> JSONResponse:
+    name = "Redis" if isinstance(error, RedisError) else "The database"
+    log.error("%s did not answer: %s", name, error)
+    detail = f"{name} does not answer; try again."
+    return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY)
+
+
+def invalid(error: ValidationError) -> Problem:
+    """What is wrong with a document, as far as anybody reads on."""
+    return invalid_input(field_errors(error))
+
+
+def bad_creature(error: CreatureError) -> Problem:
+    found = FieldError(
+        field=error.field, message=str(error), needed=error.needed, got=brief(error.got)
+    )
+    return invalid_input([found])
+
+
+def invalid_input(errors: list[FieldError]) -> Problem:
+    detail = "; ".join(f"{error.field}: {error.message}" for error in errors)
+    return Problem(title="Invalid input", status=422, detail=detail, errors=errors)
+
+
+def field_errors(error: ValidationError) -> list[FieldError]:
+    """What is wrong with which field, as people read it."""
+    found = _without_echoes(error.errors(include_url=False)[:TOLD])
+    return [_field_error(e, field_path(e["loc"])) for e in found]
+
+
+def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Errors without those that only say that an item, whose own error is there, is lacking."""
+
+    def echoes(error: Mapping[str, Any]) -> bool:
+        place = error["loc"]
+        inside = [e for e in errors if e is not error and e["loc"][: len(place)] == place]
+        return error["type"] == "too_short" and bool(inside)
+
+    return [error for error in errors if not echoes(error)]
+
+
+def _field_error(error: Mapping[str, Any], path: str) -> FieldError:
+    message = str(error["msg"]).removeprefix("Value error, ")
+    if error["type"] == "value_error":  # Our own words: they name the field and what came.
+        named = NAMED.search(message)
+        field = ".".join(filter(None, [path, named[1] if named else ""]))
+        return FieldError(field=field, message=message)
+    needed = message.removeprefix("Input should be ")
+    if error["type"] == "extra_forbidden":
+        needed = "no field of this name"
+    got = brief(error["input"])
+    if error["type"] == "missing":
+        needed, got = "a value", "nothing"
+    return FieldError(
+        field=path, message=f"needs {needed}; got {got!r}", needed=needed, got=got
+    )
+
+
+def brief(value: Any) -> Any:
+    """What came, unless it is long."""
+    if value is None or isinstance(value, bool | int | float):
+        return value if abs(value or 0) < 1e308 else str(value)
+    text = value if isinstance(value, str) else repr(value)
+    return text if len(text) <= 120 else f"{text[:117]}..."

@@ -1,0 +1,51 @@
+"""Files over HTTP: a strong ETag, and the part of the file that was asked for."""
+
+import re
+
+from fastapi import Request
+from fastapi.responses import Response, StreamingResponse
+
+from ..storage.artifacts import Artifacts
+from ..tables import Artifact
+from .errors import Refused
+
+ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")
+
+
+def file(
+    request: Request,
+    artifacts: Artifacts,
+    artifact: Artifact,
+    headers: dict[str, str],
+    media_type: str = "application/octet-stream",
+) -> Response:
+    """An artifact, or 304 where the client has it, or 206 with one range of it."""
+    etag = f'"{artifact.sha256}"'
+    headers = {"ETag": etag, "Accept-Ranges": "bytes", **headers}
+    known = [tag.strip() for tag in request.headers.get("if-none-match", "").split(",")]
+    if etag in known or f"W/{etag}" in known or "*" in known:
+        return Response(status_code=304, headers=headers)
+    start, stop, status = 0, artifact.size, 200
+    wanted = request.headers.get("range")
+    fresh = request.headers.get("if-range", etag) == etag
+    if wanted and fresh and (part := _part(wanted, artifact.size)):
+        (start, stop), status = part, 206
+        headers["Content-Range"] = f"bytes {start}-{stop - 1}/{artifact.size}"
+    headers["Content-Length"] = str(stop - start)
+    content = artifacts.stream(artifact.path, start, stop)
+    return StreamingResponse(content, status, headers, media_type)
+
+
+def _part(wanted: str, size: int) -> tuple[int, int] | None:
+    """Start and stop of the range; None where several are asked for: then all is sent."""
+    match = ONE_RANGE.fullmatch(wanted.strip())
+    if not match or match.groups() == ("", ""):
+        return None
+    first, last = match.groups()
+    start = int(first) if first else max(0, size - int(last))
+    stop = min(size, int(last) + 1) if first and last else size
+    if start >= size or start >= stop:
+        detail = f"A range within 0 to {size - 1} is needed; got {wanted}."
+        headers = {"Content-Range": f"bytes */{size}"}
+        raise Refused(416, "Range not satisfiable", detail, headers=headers)
+    return start, stop

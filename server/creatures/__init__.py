@@ -1,0 +1,1 @@
+"""Creatures: storage, lineage, the import sandbox, and routes."""

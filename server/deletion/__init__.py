@@ -1,0 +1,1 @@
+"""Deletion: the bin, purging, and garbage collection."""

@@ -1,0 +1,1 @@
+"""Estimates: time, memory, and position in the queue."""

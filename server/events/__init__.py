@@ -1,0 +1,1 @@
+"""Events: a Redis stream, its fan-out to listeners, and the route."""

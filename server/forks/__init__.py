@@ -1,0 +1,1 @@
+"""Forking and extending runs."""

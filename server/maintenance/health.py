@@ -1,0 +1,45 @@
+"""Whether the server lives, and whether it can work."""
+
+from typing import Literal
+
+from fastapi import APIRouter, Response
+from redis import RedisError
+from sqlalchemy import text
+from sqlalchemy.exc import SQLAlchemyError
+
+from ..services.deps import ServicesDep
+from ..services.services import Services
+from ..workers.schemas import Health, Readiness
+
+router = APIRouter(tags=["health"])
+Answer = Literal["ok", "unreachable"]
+
+
+@router.get("/healthz")
+def alive() -> Health:
+    return Health()
+
+
+@router.get("/readyz", responses={503: {"model": Readiness}})
+def ready(services: ServicesDep, response: Response) -> Readiness:
+    found = Readiness(database=_database(services), redis=_redis(services))
+    if "unreachable" in (found.database, found.redis):
+        response.status_code = 503
+    return found
+
+
+def _database(services: Services) -> Answer:
+    try:
+        with services.sessions.read() as session:
+            session.execute(text("SELECT 1"))
+    except SQLAlchemyError:
+        return "unreachable"
+    return "ok"
+
+
+def _redis(services: Services) -> Answer:
+    try:
+        services.redis.ping()
+    except RedisError:
+        return "unreachable"
+    return "ok"

@@ -1,0 +1,1 @@
+"""Queue: RQ jobs, and how they are enqueued."""

@@ -1,0 +1,1 @@
+"""Renderings of creatures: replays, films, pictures, audits and measurements."""

@@ -1,0 +1,1 @@
+"""Runs: lifecycle, submission, listing, curves, log, and routes."""

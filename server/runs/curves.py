@@ -1,0 +1,53 @@
+"""Curves over the generations, thinned for a screen."""
+
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from ..tables import Generation
+
+COUNTED = "diverged: "
+"""What names begin with whose numbers are counts of their generation alone."""
+
+
+def told(
+    session: Session, run_id: UUID, generations: Sequence[int]
+) -> dict[str, list[float | None]]:
+    """The numbers in the summaries, as columns with an entry for each of the generations.
+
+    Some are told now and then: each entry is the newest since the generation before it in
+    the list, so that nothing told between two points is lost. Diverged evaluations are added
+    up instead.
+    """
+    mine = (Generation.run_id == run_id) & Generation.summary.is_not(None)
+    rows = select(Generation.generation, Generation.summary).where(mine)
+    points: list[dict[str, float]] = [{} for _ in generations]
+    ordered = rows.order_by(Generation.generation).execution_options(yield_per=1000)
+    for generation, summary in session.execute(ordered):
+        place = bisect_left(generations, generation)
+        if place < len(points):
+            points[place] = _joined(points[place], numbers(summary or {}))
+    names = dict.fromkeys(name for point in points for name in point)
+    return {name: [point.get(name) for point in points] for name in names}
+
+
+def _joined(before: dict[str, float], later: dict[str, float]) -> dict[str, float]:
+    added = {
+        name: before.get(name, 0) + value
+        for name, value in later.items()
+        if name.startswith(COUNTED)
+    }
+    return before | later | added
+
+
+def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
+    """Those of the values that are numbers."""
+    return {
+        name: value
+        for name, value in summary.items()
+        if isinstance(value, int | float) and not isinstance(value, bool)
+    }

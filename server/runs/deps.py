@@ -1,0 +1,40 @@
+"""FastAPI dependencies: the run that a path names."""
+
+from datetime import datetime
+from typing import Annotated
+from uuid import UUID
+
+from fastapi import Depends
+from sqlalchemy.orm import Session
+
+from ..core.errors import Refused
+from ..services.deps import SessionDep
+from ..tables import Run
+
+
+def find_run(session: Session, run_id: UUID, deleted: bool = False) -> Run:
+    """Return the row; a run in the bin is found only with `deleted`."""
+    found = session.get(Run, run_id)
+    if found is None:
+        raise Refused(404, "Not found", f"No run has the id {run_id}.")
+    if found.purge_at and not deleted:
+        raise Refused(404, "In the bin", in_the_bin(found.id, found.purge_at))
+    return found
+
+
+def in_the_bin(run_id: UUID, until: datetime) -> str:
+    moment = f"{until:%Y-%m-%d %H:%M} UTC"
+    return f"Run {run_id} is in the bin until {moment}; restore it to use it again."
+
+
+def run(run_id: UUID, session: SessionDep) -> Run:
+    return find_run(session, run_id)
+
+
+def any_run(run_id: UUID, session: SessionDep) -> Run:
+    return find_run(session, run_id, deleted=True)
+
+
+RunDep = Annotated[Run, Depends(run)]
+AnyRunDep = Annotated[Run, Depends(any_run)]
+"""A run that may be in the bin."""

@@ -1,0 +1,204 @@
+"""queued → running → finished | failed | cancelled, with paused between: who may do what.
+
+Every change is one guarded UPDATE, so that of two that come at once only one happens.
+"""
+
+import logging
+from collections.abc import Collection, Sequence
+from typing import Any, NoReturn
+from uuid import UUID
+
+from sqlalchemy import case, or_, select, update
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from ..core.database import ago, clock
+from ..services.services import Services
+from ..tables import (
+    CANCEL,
+    CANCELLED,
+    FAILED,
+    GIVEN,
+    NEEDED,
+    PAUSE,
+    PAUSED,
+    QUEUED,
+    RUNNING,
+    Run,
+)
+from .log import note, note_standing
+from .overview import read_runs
+from .schemas import RunRead
+
+log = logging.getLogger(__name__)
+
+KEPT = Run.deleted_at.is_(None)
+"""The condition that a run does not lie in the bin."""
+
+FIGURES = {
+    *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "diverged"),
+    *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting"),
+}
+"""What may be another each time that a run is read; events of generations tell it too."""
+
+ATTEMPTS = 3
+"""So many attempts without a new checkpoint end a run."""
+
+
+class Conflict(Exception):
+    """The state of a run does not allow what was asked."""
+
+    def __init__(self, action: str, run: Run, needed: str):
+        wish = f", asked to {run.wish}" if run.wish else ""
+        place = " and in the bin" if run.deleted_at else ""
+        standing = f"{run.status}{wish}{place}"
+        super().__init__(f"to {action} a run it must be {needed}; it is {standing}")
+
+
+def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | None:
+    """Change a run if it is as `where` says: the changed row, else None."""
+    statement = update(Run).where(Run.id == run_id, *where).values(**values).returning(Run)
+    options = {"populate_existing": True, "synchronize_session": False}
+    return session.scalars(statement, execution_options=options).one_or_none()
+
+
+def pause(session: Session, run: Run) -> Run:
+    """At once where it waits; where it runs, its worker is asked to."""
+    changed = (
+        change(session, run.id, KEPT, Run.status == QUEUED, status=PAUSED)
+        or change(
+            session,
+            run.id,
+            Run.status == RUNNING,
+            or_(Run.wish.is_(None), Run.wish == PAUSE),
+            wish=PAUSE,
+            wished_at=clock(),
+        )
+        or refuse(session, "pause", run, "queued or running, not asked to cancel")
+    )
+    note(session, changed, "Paused." if changed.status == PAUSED else "Asked to pause.")
+    return changed
+
+
+def cancel(session: Session, run: Run) -> Run:
+    """At once where it waits or is paused; where it runs, its worker is asked to."""
+    changed = (
+        change(
+            session,
+            run.id,
+            KEPT,
+            Run.status.in_((QUEUED, PAUSED)),
+            status=CANCELLED,
+            finished_at=clock(),
+        )
+        or change(
+            session,
+            run.id,
+            Run.status == RUNNING,
+            wish=CANCEL,
+            wished_at=case((Run.wish == CANCEL, Run.wished_at), else_=clock()),
+        )
+        or refuse(session, "cancel", run, "queued, running or paused")
+    )
+    note(session, changed, "Cancelled." if changed.status == CANCELLED else "Asked to cancel.")
+    return changed
+
+
+def resume(session: Session, run: Run) -> Run:
+    """Back into the queue, its attempts counted anew."""
+    # Whoever resumes a run that waits for leave to change its kind of device gives it.
+    leave = case((Run.device_leave == NEEDED, GIVEN), else_=Run.device_leave)
+    values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_leave": leave}
+    values |= {"queued_at": clock()}
+    waited = run.device_leave == NEEDED
+    changed = change(session, run.id, KEPT, Run.status == PAUSED, **values) or refuse(
+        session, "resume", run, "paused"
+    )
+    leave = " Another kind of device is allowed." if waited else ""
+    note(session, changed, f"Resumed: queued again.{leave}")
+    return changed
+
+
+def refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
+    """Raise `Conflict`, which says how the run stands now."""
+    current = session.get_one(Run, run.id, populate_existing=True)
+    raise Conflict(action, current, needed)
+
+
+def release(session: Session, run_id: UUID, *where: Any, error: str) -> Run | None:
+    """Take a running run from an attempt that ended badly, and do what was wished meanwhile.
+
+    It waits for another attempt, unless it is paused, cancelled, or had its last chance.
+    """
+    run = yield_up(session, run_id, *where, error=error)
+    if run is None:
+        return None
+    note(session, run, f"Attempt {run.attempt} ended badly: {error}", "error")
+    if run.status == QUEUED and run.attempts_without_checkpoint >= ATTEMPTS:
+        lost = f"{ATTEMPTS} attempts without a new checkpoint"
+        text = f"{lost}; the last one: {error}"
+        run = change(session, run_id, status=FAILED, finished_at=clock(), error=text)
+        assert run is not None
+        note(session, run, f"Failed: {lost}.", "error")
+    else:
+        note_standing(session, run)
+    return run
+
+
+def yield_up(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | None:
+    """A running run without its worker: queued again, unless paused or cancelled meanwhile."""
+    status = case((Run.wish == CANCEL, CANCELLED), (Run.wish == PAUSE, PAUSED), else_=QUEUED)
+    values |= {"wish": None, "wished_at": None, "worker": None, "status": status}
+    values |= {"queued_at": clock()}
+    over = case((Run.wish == CANCEL, clock()), else_=None)
+    return change(session, run_id, Run.status == RUNNING, *where, finished_at=over, **values)
+
+
+def hand_back(session: Session, run_id: UUID, *where: Any) -> Run | None:
+    """A running run given up in good order: its attempt is not one of the three chances."""
+    strikes = Run.attempts_without_checkpoint
+    kept = case((strikes > 0, strikes - 1), else_=0)
+    run = yield_up(session, run_id, *where, attempts_without_checkpoint=kept)
+    if run:
+        note(session, run, f"Worker stopped after generation {run.generation}.")
+        note_standing(session, run)
+    return run
+
+
+def lost(session: Session, lease: float) -> Any:
+    """The condition that nobody has spoken for a run as long as a lease."""
+    return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
+
+
+def announce(services: Services, *run_ids: UUID, without: Collection[str] = ()) -> None:
+    """Tell everybody how some runs stand, after what changed them was committed.
+
+    Said again and again, it is said `without` what never changes and may be long.
+
+    Who reads first may speak last, of what is past by then. So whoever has spoken looks again,
+    and tells what has changed meanwhile: the last word on a run is how it stands.
+
+    What changed stands even where nobody can be told: an event is a courtesy.
+    """
+    said: dict[UUID, dict[str, Any]] = {}
+    try:
+        while news := [
+            run for run in _read(services, run_ids) if _facts(run) != said.get(run.id)
+        ]:
+            for run in news:
+                data = run.model_dump(mode="json", exclude=set(without))
+                services.events.publish("run", run.id, data)
+                said[run.id] = _facts(run)
+    except SQLAlchemyError as error:
+        log.warning("no event of runs %s: %s", ", ".join(map(str, run_ids)), error)
+
+
+def _read(services: Services, run_ids: Sequence[UUID]) -> list[RunRead]:
+    with services.sessions.read() as session:
+        runs = session.scalars(select(Run).where(Run.id.in_(run_ids))).all()
+        return read_runs(services, session, runs)
+
+
+def _facts(run: RunRead) -> dict[str, Any]:
+    """What no event but a run's own tells."""
+    return run.model_dump(exclude=FIGURES)

@@ -1,0 +1,72 @@
+"""The journal of a run: what happened to it, written in the transactions that change it."""
+
+from typing import Literal
+from uuid import UUID
+
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
+
+from ..core.sizes import size
+from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, QUEUED, RUNNING, Entry, Run
+
+Level = Literal["info", "warning", "error"]
+
+SAVED, UNSAVED = "saved", "unsaved"
+"""Kinds of entries that come again and again: of these only the first and the last stay."""
+
+STANDINGS = {
+    QUEUED: "Queued for another attempt.",
+    RUNNING: "Running.",
+    PAUSED: "Paused.",
+    FINISHED: "Finished.",
+    FAILED: "Failed.",
+    CANCELLED: "Cancelled.",
+}
+
+
+def note(
+    session: Session, run: Run, text: str, level: Level = "info", kind: str | None = None
+) -> None:
+    """Write an entry; of a `kind`, those between the first and this one of an attempt go."""
+    entry = Entry(run_id=run.id, attempt=run.attempt, level=level, kind=kind, text=text)
+    session.add(entry)
+    session.flush()
+    if kind is None:
+        return
+    alike = (Entry.run_id == run.id, Entry.attempt == run.attempt, Entry.kind == kind)
+    first = session.scalars(select(Entry.id).where(*alike).order_by(Entry.id).limit(1)).one()
+    # The new one was written before: its number is higher than any that was ever read.
+    session.execute(delete(Entry).where(*alike, Entry.id.not_in((first, entry.id))))
+
+
+def note_standing(session: Session, run: Run) -> None:
+    """Say where a run stands after an attempt has ended."""
+    note(session, run, STANDINGS[run.status])
+
+
+def note_beginning(session: Session, run: Run, before: int) -> None:
+    """Say where an attempt begins, and what was recorded `before` it beyond that."""
+    last = run.checkpoint_generation
+    place = f"from the checkpoint of generation {last}" if last else "from the beginning"
+    note(session, run, f"Attempt {run.attempt} begins on worker {run.worker}, {place}.")
+    if before > last:
+        lost = (
+            f"generations {last + 1} to {before}"
+            if before > last + 1
+            else f"generation {before}"
+        )
+        note(session, run, f"Went back: what was recorded of {lost} is dropped.", "warning")
+
+
+def note_checkpoint(session: Session, run: Run, generation: int, count: int) -> None:
+    """Say that a checkpoint of so many bytes was written."""
+    text = f"Checkpoint of generation {generation} written, {size(count)}."
+    note(session, run, text, kind=SAVED)
+
+
+def read(session: Session, run_id: UUID, after: int | None, limit: int) -> list[Entry]:
+    """In the order in which they were written: those after one, else the last ones."""
+    mine = select(Entry).where(Entry.run_id == run_id).limit(limit)
+    if after is not None:
+        return list(session.scalars(mine.where(Entry.id > after).order_by(Entry.id)))
+    return list(session.scalars(mine.order_by(Entry.id.desc())))[::-1]

@@ -1,0 +1,39 @@
+"""The queue: runs that wait for a worker."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from sqlalchemy import select
+
+from ..estimates import position
+from ..services.deps import ServicesDep, SessionDep
+from ..tables import QUEUED, Run
+from ..workers.schemas import QueueRead, Waiting
+from . import overview
+
+router = APIRouter(prefix="/queue", tags=["workers"])
+
+
+@router.get("")
+def read_queue(
+    services: ServicesDep,
+    session: SessionDep,
+    limit: Annotated[int, Query(ge=1, le=200)] = 50,
+) -> QueueRead:
+    """How many runs wait, and the first of them, in order, each with the reason."""
+    line = position.line(services, session)
+    first = line.runs[:limit]
+    waits = select(Run).where(Run.id.in_(first), Run.status == QUEUED)
+    found = {run.id: run for run in session.scalars(waits)}
+    runs = [found[run_id] for run_id in first if run_id in found]
+    reasons = position.reasons_in(line, runs)
+    items = [
+        Waiting(
+            **overview.carried(run).model_dump(),
+            waiting=reasons[run.id],
+            queued_at=run.queued_at,
+            memory_bytes=position.needed_bytes(run),
+        )
+        for run in runs
+    ]
+    return QueueRead(total=len(line.runs), items=items)

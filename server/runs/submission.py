@@ -1,0 +1,130 @@
+"""From a spec to a queued run."""
+
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from microcosmos.spec import Spec, estimate
+from microcosmos.version import VERSION
+
+from ..core.errors import FieldError, Refused
+from ..creatures import initial
+from ..maintenance.reconcile import requeue
+from ..services.services import Services
+from ..tables import Idempotency, Run
+from ..workers import plugins, registry
+from . import idempotency
+from .lifecycle import announce
+from .log import note
+
+OF_SEARCHES = ("search.block", "search.batch", "archive")
+DECISIVE = {
+    "quality-diversity": OF_SEARCHES,
+    "neuroevolution": OF_SEARCHES,
+    "folding": ("memory",),
+    "refinement": ("segment",),
+    "gaits": ("block",),
+    "scaling": ("nodes",),
+}
+"""The fields of each experiment that may decide most about its memory."""
+TOO_LARGE = "More memory than there is"
+
+
+@dataclass(frozen=True)
+class OneCell:
+    """The smallest archive, as far as an estimate looks at it."""
+
+    cells: int = 1
+    own: dict[str, Any] = field(default_factory=dict)
+
+
+def memory_limit(services: Services, session: Session) -> int:
+    """Bytes that a run may need: the largest worker's, else this machine's; or less, if set."""
+    live = registry.live(session, services.settings.lease)
+    cap = services.settings.max_bytes
+    if not live:
+        return cap or os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    largest = max(worker.memory_bytes for worker in live)
+    return min(largest, cap) if cap else largest
+
+
+def refuse_too_large(services: Services, spec: Spec) -> None:
+    """Raise `Refused` where no worker has the memory."""
+    with services.sessions.read() as session:
+        limit = memory_limit(services, session)
+    if error := too_large(spec, limit):
+        raise Refused(422, TOO_LARGE, error.message, [error])
+
+
+def too_large(spec: Spec, limit: int) -> FieldError | None:
+    """What is wrong with a spec that needs more than so many bytes."""
+    needed = estimate(spec).memory_bytes
+    if needed <= limit:
+        return None
+    detail = f"The run needs {needed:,} bytes of memory; {limit:,} bytes are available."
+    return FieldError(
+        field=decisive(spec), message=detail, needed=f"at most {limit} bytes", got=needed
+    )
+
+
+def decisive(spec: Spec) -> str:
+    """The field whose least value would save the most memory."""
+    fields = DECISIVE[spec.experiment]
+    if len(fields) == 1:
+        return fields[0]
+    return min(fields, key=lambda field: estimate(_least(spec, field)).memory_bytes)
+
+
+def _least(spec: Any, field: str) -> Spec:
+    """The spec with as little as possible in one of its fields."""
+    part, _, name = field.partition(".")
+    if not name:
+        return spec.model_copy(update={part: OneCell()})
+    changed = getattr(spec, part).model_copy(update={name: 1})
+    return spec.model_copy(update={part: changed})
+
+
+def submit(
+    services: Services, spec: Spec, key: str | None = None, request: Any = None, **said: Any
+) -> tuple[Run, bool]:
+    """The run of a spec and whether it is new; the same key with the same request is one run.
+
+    Of what is asked for by its spec alone, that is the request. What else is `said` of a new
+    run are columns of its row.
+    """
+    document = spec.model_dump(mode="json")
+    request = document if request is None else request
+    run = Run(
+        experiment=spec.experiment,
+        spec=document,
+        sources=plugins.needs(document),
+        generations=spec.generations,
+        version=VERSION,
+        **said,
+    )
+    with services.sessions.read() as session:
+        initial.check(session, spec)
+    try:
+        with services.sessions.write.begin() as session:
+            session.add(run)
+            session.flush()
+            note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
+            initial.keep(session, [(spec, [run.id])])
+            idempotency.remember(session, key, request, run_id=run.id)
+    except IntegrityError:
+        known = idempotency.earlier(services, key, request)
+        if known is None:
+            raise
+        return _made(services, known), False
+    # Committed before it is enqueued: the worker must find the row.
+    requeue(services, run.id)
+    announce(services, run.id)
+    return run, True
+
+
+def _made(services: Services, known: Idempotency) -> Run:
+    with services.sessions.read() as session:
+        return session.get_one(Run, known.run_id)

@@ -1,0 +1,33 @@
+"""The pictures that the filaments of a run fold into."""
+
+from fastapi import APIRouter
+
+from microcosmos.spec import Folding, parse, targets
+
+from ..core.errors import Refused
+from .deps import RunDep
+from .schemas import Target
+
+router = APIRouter(prefix="/runs/{run_id}/targets", tags=["results"])
+
+
+@router.get("")
+def read_targets(run: RunDep) -> list[Target]:
+    """In the order of the spec; at most 256 pixels along a side."""
+    if run.experiment != "folding":
+        detail = f"A run of `{run.experiment}` folds nothing into pictures."
+        raise Refused(404, "No pictures", detail)
+    chosen = parse(run.spec)
+    assert isinstance(chosen, Folding)
+    longest = min(chosen.size, targets.MOST)
+    fitted = [(one.name, targets.fitted(one.ink, longest)) for one in chosen.targets]
+    return [
+        Target(
+            name=name,
+            width=ink.shape[1],
+            height=ink.shape[0],
+            size=chosen.size,
+            pixels=targets.encoded(ink),
+        )
+        for name, ink in fitted
+    ]

@@ -1,0 +1,1 @@
+"""Services that server and workers share, put together from settings."""

@@ -1,0 +1,1 @@
+"""Shares: publishing, pages, and routes."""

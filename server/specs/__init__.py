@@ -1,0 +1,1 @@
+"""Specs: parsing with plug-ins, and schemas and presets for the page."""

@@ -1,0 +1,33 @@
+"""What is drawn of a spec before it runs, as it goes over the wire."""
+
+from microcosmos.spec import Drawing, targets
+
+from ..estimates.schemas import BodyRead, DrawingRead, PictureRead
+
+DECIMALS = 3
+
+
+def drawing_read(drawing: Drawing) -> DrawingRead:
+    bodies = [
+        BodyRead(
+            name=body.name,
+            nodes=body.nodes,
+            positions=body.positions.round(DECIMALS).tolist(),
+            edges=body.edges.tolist(),
+            whole=body.whole,
+        )
+        for body in drawing.bodies
+    ]
+    shown = [
+        PictureRead(
+            name=name, width=ink.shape[1], height=ink.shape[0], pixels=targets.encoded(ink)
+        )
+        for name, ink in drawing.pictures
+    ]
+    return DrawingRead(
+        width=drawing.width,
+        height=drawing.height,
+        bodies=bodies,
+        pictures=shown,
+        picture_size=drawing.picture_size,
+    )

@@ -1,0 +1,46 @@
+"""What can be run: the page's forms come from here."""
+
+from functools import cache
+
+from fastapi import APIRouter
+
+from microcosmos.spec import EXPERIMENTS, Experiment
+
+from ..services.deps import ServicesDep, SessionDep
+from ..workers import plugins
+from .plugin_schemas import with_own
+from .schemas import ExperimentRead, PresetRead
+
+router = APIRouter(prefix="/experiments", tags=["experiments"])
+
+
+@router.get("")
+def list_experiments(services: ServicesDep, session: SessionDep) -> list[ExperimentRead]:
+    """With what live workers have of users' own among the choices."""
+    known = plugins.reported(services, session)
+    offered = known.offered()
+    if not offered:
+        return built_in()
+    return [
+        one.model_copy(update={"schema_": with_own(one.schema_, offered, known.having)})
+        for one in built_in()
+    ]
+
+
+@cache
+def built_in() -> list[ExperimentRead]:
+    """Schemas take a tenth of a second to make, and do not change while a server runs."""
+    return [_read(experiment) for experiment in EXPERIMENTS.values()]
+
+
+def _read(experiment: Experiment) -> ExperimentRead:
+    presets = [
+        PresetRead(name=p.name, title=p.title, spec=p.spec.model_dump(mode="json"))
+        for p in experiment.presets
+    ]
+    return ExperimentRead(
+        experiment=experiment.name,
+        title=experiment.title,
+        schema_=experiment.spec.model_json_schema(),
+        presets=presets,
+    )

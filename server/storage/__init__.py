@@ -1,0 +1,1 @@
+"""Artifacts behind fsspec: checkpoints and renderings."""

@@ -1,0 +1,1 @@
+"""Sweeps: grid, submission, summary, and routes."""

@@ -1,0 +1,105 @@
+"""From a plan to a sweep and its queued runs, in one transaction."""
+
+import logging
+from datetime import timedelta
+from uuid import UUID
+
+from redis import RedisError
+from sqlalchemy import select
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from microcosmos.version import VERSION
+
+from ..core.database import clock
+from ..creatures import initial
+from ..runs import idempotency
+from ..services.services import Services
+from ..tables import Entry, Run, Sweep
+from ..workers import plugins
+from .planning import Plan, refuse_origins
+from .steering import announce
+
+log = logging.getLogger(__name__)
+
+
+def submit_sweep(services: Services, plan: Plan, key: str | None = None) -> tuple[UUID, bool]:
+    """The sweep of a plan and whether it is new; the same key with the same plan is one."""
+    with services.sessions.read() as session:
+        refuse_origins(session, plan)
+    try:
+        with services.sessions.write.begin() as session:
+            sweep = _write(session, plan, key)
+            runs = _write_runs(session, plan, sweep)
+    except IntegrityError:
+        known = earlier_sweep(services, plan, key)
+        if known is None:
+            raise
+        return known, False
+    # Committed before they are enqueued: workers must find the rows.
+    try:
+        services.jobs.evolve_new(runs)
+    except RedisError as error:
+        log.warning("runs of sweep %s stay queued until Redis answers: %s", sweep.id, error)
+    announce(services, sweep.id)
+    return sweep.id, True
+
+
+def earlier_sweep(services: Services, plan: Plan, key: str | None) -> UUID | None:
+    """The sweep that a key stands for already; `Refused` where another request did."""
+    known = idempotency.earlier(services, key, _request(plan))
+    return known.sweep if known else None
+
+
+def _write(session: Session, plan: Plan, key: str | None) -> Sweep:
+    sweep = Sweep(
+        experiment=plan.spec.experiment,
+        name=plan.name,
+        spec=plan.spec.model_dump(mode="json"),
+        seeds=plan.seeds,
+        grid=plan.grid,
+    )
+    session.add(sweep)
+    session.flush()
+    idempotency.remember(session, key, _request(plan), sweep=sweep.id)
+    return sweep
+
+
+def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[Run]:
+    """Their rows, a microsecond apart: lists and the queue have them in their own order."""
+    now = session.execute(select(clock())).scalar_one()
+    generations = [case.spec.generations for case in plan.cases]
+    runs = [
+        Run(
+            experiment=sweep.experiment,
+            spec=spec,
+            sources=plugins.needs(spec),
+            generations=generations[place % len(generations)],
+            version=VERSION,
+            name=name,
+            sweep=sweep.id,
+            place=place,
+            created_at=now + timedelta(microseconds=place),
+            queued_at=now + timedelta(microseconds=place),
+        )
+        for place, (name, spec) in enumerate(plan.runs())
+    ]
+    session.add_all(runs)
+    session.flush()
+    session.add_all(_first_entry(run, len(runs)) for run in runs)
+    ids = [run.id for run in runs]
+    several = len(plan.cases)
+    initial.keep(session, [(case.spec, ids[i::several]) for i, case in enumerate(plan.cases)])
+    return runs
+
+
+def _first_entry(run: Run, total: int) -> Entry:
+    text = f"Submitted: {run.experiment}, {run.generations} generations; run "
+    text += f"{(run.place or 0) + 1} of a sweep of {total}."
+    return Entry(run_id=run.id, attempt=0, level="info", text=text)
+
+
+def _request(plan: Plan) -> dict[str, object]:
+    """What two requests under one key must have in common; grids with their order."""
+    spec = plan.spec.model_dump(mode="json")
+    return {"sweep": [plan.name, spec, plan.seeds, list(plan.grid.items())]}

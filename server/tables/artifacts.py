@@ -1,0 +1,38 @@
+"""Files, and what can be made of a creature."""
+
+from datetime import datetime
+from uuid import UUID
+
+from sqlalchemy import BigInteger, ForeignKey, String, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
+
+from ..core.database import clock
+from .base import Base, Sha256
+
+CHECKPOINT = "checkpoint"
+REPLAY, AUDIT, STRIP, GIF, MP4 = "replay", "audit", "strip.png", "film.gif", "film.mp4"
+PREVIEW, MEASUREMENT = "preview.png", "measurement"
+"""What can be made of a creature, under the names that the API has for it."""
+PUBLISHED = "published"
+"""An archive file as it was when it was shared."""
+
+
+class Artifact(Base):
+    """A file that is completely written; without a row, a file does not count."""
+
+    __tablename__ = "artifacts"
+    __table_args__ = (
+        UniqueConstraint("run_id", "kind", "number"),
+        UniqueConstraint("creature", "kind"),
+    )
+
+    path: Mapped[str] = mapped_column(String(255), primary_key=True)
+    kind: Mapped[str] = mapped_column(String(16))
+    run_id: Mapped[UUID | None] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    number: Mapped[int | None]
+    """Counts the checkpoints of a run; of a replay the version of its format."""
+    generation: Mapped[int | None]
+    creature: Mapped[str | None] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
+    size: Mapped[int] = mapped_column(BigInteger)
+    sha256: Mapped[str] = mapped_column(Sha256)
+    created_at: Mapped[datetime] = mapped_column(default=clock())

@@ -1,0 +1,57 @@
+"""Creatures, where they came from, and who begins with them."""
+
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import ForeignKey, Index, Text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from ..core.database import clock
+from .base import Base, Sha256
+
+
+class Creature(Base):
+    """A creature by its name; kept after its cell was taken by another."""
+
+    __tablename__ = "creatures"
+
+    sha256: Mapped[str] = mapped_column(Sha256, primary_key=True)
+    identity: Mapped[bytes]
+    """The canonical bytes, whose hash is the name."""
+    parents: Mapped[list[str]]
+    operator: Mapped[str | None] = mapped_column(Text)
+    measured: Mapped[dict[str, Any] | None]
+    provenance: Mapped[dict[str, Any] | None]
+    """What else is known of its origin: generation, seed, version."""
+    licence: Mapped[str] = mapped_column(Text)
+    credit: Mapped[list[str]] = mapped_column(default=list)
+    """Who is to be named wherever it is shown."""
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+    imported: Mapped[bool] = mapped_column(default=False)
+    """Whether somebody brought it, so that it stays without any run."""
+
+
+class Parent(Base):
+    """One parent of a creature; narrow, so that children are found as fast as parents."""
+
+    __tablename__ = "parents"
+    __table_args__ = (Index(None, "parent"),)
+
+    child: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), primary_key=True)
+    place: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    parent: Mapped[str] = mapped_column(Sha256)
+    """Its name; only who became an elite is kept as a creature."""
+
+
+class Origin(Base):
+    """A creature that a run begins from, as its spec says."""
+
+    __tablename__ = "origins"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    creature: Mapped[str] = mapped_column(
+        Sha256, ForeignKey("creatures.sha256"), primary_key=True, index=True
+    )

@@ -1,0 +1,46 @@
+"""The database's tables, brought up to date."""
+
+from pathlib import Path
+from typing import Any
+
+from alembic import command
+from alembic.config import Config
+from sqlalchemy import Connection, text
+
+from ...core.database import Sessions
+
+LOCK = 0x6D6963726F  # "micro": PostgreSQL's advisory locks are numbers.
+
+
+def upgrade(sessions: Sessions) -> None:
+    """Apply what is missing, in one transaction under a lock: several may start at once."""
+    writer = sessions.engine.execution_options(writer=True)
+    with writer.connect() as connection:
+        _prepare(connection)
+        with connection.begin():
+            if connection.dialect.name == "postgresql":
+                for limit in ("statement_timeout", "lock_timeout"):  # Those of requests.
+                    connection.execute(text(f"SET LOCAL {limit} = 0"))
+                connection.execute(text(f"SELECT pg_advisory_xact_lock({LOCK})"))
+            command.upgrade(config(connection), "head")
+
+
+def check(sessions: Sessions) -> None:
+    """Raise `alembic.util.CommandError` where tables and models differ."""
+    with sessions.engine.connect() as connection:
+        command.check(config(connection))
+
+
+def config(connection: Connection) -> Config:
+    """Alembic's settings, for a connection whose transaction the caller ends."""
+    settings = Config(attributes={"connection": connection})
+    settings.set_main_option("script_location", str(Path(__file__).parent).replace("%", "%%"))
+    return settings
+
+
+def _prepare(connection: Connection) -> None:
+    """Rebuilding a table in SQLite drops the old one, which must not cascade."""
+    if connection.dialect.name == "sqlite":
+        driver: Any = connection.connection.dbapi_connection
+        driver.execute("PRAGMA foreign_keys=OFF")
+        connection.detach()  # Closed at the end: its settings are not for others.

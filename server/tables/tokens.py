@@ -1,0 +1,38 @@
+"""Who may use the server."""
+
+from datetime import datetime
+from uuid import UUID, uuid4
+
+from sqlalchemy import CheckConstraint, Index, String, text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from ..auth.principal import RANKS
+from ..core.database import clock
+from .base import Base, Sha256
+
+
+class Token(Base):
+    """Leave to use the server: of the secret only the hash, so that nobody can read it here."""
+
+    __tablename__ = "tokens"
+    __table_args__ = (
+        CheckConstraint(f"scope IN {RANKS}", name="scope"),
+        Index(
+            None,
+            "name",
+            unique=True,
+            sqlite_where=text("revoked_at IS NULL"),
+            postgresql_where=text("revoked_at IS NULL"),
+        ),
+    )
+
+    id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
+    name: Mapped[str] = mapped_column(String(64))
+    secret_sha256: Mapped[str] = mapped_column(Sha256, unique=True)
+    beginning: Mapped[str] = mapped_column(String(16))
+    """The first characters of the secret, to tell which one it is."""
+    scope: Mapped[str] = mapped_column(String(16))
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+    expires_at: Mapped[datetime | None]
+    revoked_at: Mapped[datetime | None]
+    last_used_at: Mapped[datetime | None]

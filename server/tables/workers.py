@@ -1,0 +1,47 @@
+"""Who computes, and what of users' own they have."""
+
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import JSON, BigInteger, String, Text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from ..core.database import clock
+from .base import Base, Sha256
+
+
+class Worker(Base):
+    """A worker as it last reported."""
+
+    __tablename__ = "workers"
+
+    name: Mapped[str] = mapped_column(String(255), primary_key=True)
+    device: Mapped[str] = mapped_column(Text)
+    kind: Mapped[str] = mapped_column(String(16))
+    memory_bytes: Mapped[int] = mapped_column(BigInteger)
+    memory_used_bytes: Mapped[int | None] = mapped_column(BigInteger)
+    load: Mapped[float | None]
+    """How busy the device is with anything at all: 1 is fully."""
+    status: Mapped[str] = mapped_column(String(16))
+    run_id: Mapped[UUID | None]
+    since: Mapped[datetime] = mapped_column(default=clock())
+    """When its status or its run last changed."""
+    heartbeat_at: Mapped[datetime] = mapped_column(default=clock())
+    plugins: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
+    """Declarations of what it has of users' own."""
+    unloaded: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
+    """Modules that it could not load: `module` and `reason`."""
+
+
+class Plugin(Base):
+    """Something of users' own that a worker has, or had; a row for each version."""
+
+    __tablename__ = "plugins"
+
+    kind: Mapped[str] = mapped_column(String(16), primary_key=True)
+    name: Mapped[str] = mapped_column(String(128), primary_key=True)
+    source: Mapped[str] = mapped_column(Sha256, primary_key=True)
+    declaration: Mapped[dict[str, Any]] = mapped_column(JSON())
+    seen_at: Mapped[datetime] = mapped_column(default=clock())
+    """When a worker first came with it, or came back."""

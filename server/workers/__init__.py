@@ -1,0 +1,1 @@
+"""Workers: their registry, and the plug-ins that they offer."""

@@ -1,0 +1,119 @@
+"""Our archives are read by pandas and pyribs."""
+
+import importlib.util
+import io
+import json
+
+import numpy as np
+import pytest
+
+import microcosmos
+from microcosmos.archive import export, file
+
+AXES = [
+    {"name": "a", "low": 1e-4, "high": 100.0, "bins": 4, "scale": "log10"},
+    {"name": "b", "low": 0.0, "high": 1.0, "bins": 3, "scale": "linear"},
+]
+AROUND = np.random.default_rng(0).random((12, 2)).astype(np.float32)
+
+pytestmark = [
+    pytest.mark.skipif(importlib.util.find_spec("ribs") is None, reason="pyribs: make peers"),
+    pytest.mark.filterwarnings("ignore"),
+]
+
+
+@pytest.fixture(params=["grid", "cvt"])
+def archive(request):
+    """A file with an elite in cells 1, 6 and 11, the second on the border of its bin."""
+    if request.param == "grid":
+        cells = np.stack([[0, 2, 3], [1, 0, 2]], 1)
+        places = (cells + np.array([[0.5, 0.5], [0.0, 0.0], [0.3, 0.9]])) / [4, 3]
+    else:
+        places = AROUND[[1, 6, 11]].astype(float)
+    raw = np.stack([10 ** (-4 + 6 * places[:, 0]), places[:, 1]], 1)
+    tree = {
+        "cell": np.array([1, 6, 11], np.int32),
+        "fitness": np.array([1.5, 2.5, 0.5], np.float32),
+        "features": raw.astype(np.float32),
+        "generation": np.array([1, 2, 2], np.int32),
+        "creature": np.arange(96, dtype=np.uint8).reshape(3, 32),
+        "genomes": {"weight": np.arange(6, dtype=np.float32).reshape(3, 2)},
+        "repeats": {
+            "count": np.array([4, 1, 0], np.int32),
+            "failed": np.array([1, 1, 0], np.int32),
+            "hits": np.array([2, 0, 0], np.int32),
+            "fitness": np.array([1.0, 0.0, 0.0], np.float32),
+            "squares": np.array([0.5, 0.0, 0.0], np.float32),
+        },
+    }
+    if request.param == "cvt":
+        tree["centroids"] = AROUND
+    told = {"archive": {"descriptors": AXES, "centroids": None}}
+    attributes = {"format": file.FORMAT, "spec": json.dumps(told), "features": '["a", "b"]'}
+    return file.dump({"archive": tree}, attributes)
+
+
+def test_pyribs_holds_our_elites_in_our_cells(archive):
+    filled = microcosmos.to_ribs(archive)
+    ours, theirs = microcosmos.to_pandas(archive), filled.data(return_type="pandas")
+    assert list(theirs.columns) == list(ours.columns)
+    theirs = theirs.sort_values("index").reset_index(drop=True)
+    assert theirs["index"].tolist() == [1, 6, 11]
+    for name in ("solution_0", "solution_1", "objective", "threshold", "a", "b", "creature"):
+        assert theirs[name].tolist() == ours[name].tolist()
+    assert filled.stats.num_elites == 3
+    assert filled.stats.qd_score == pytest.approx(4.5)
+
+
+def test_types_are_those_of_pyribs(archive):
+    ours = microcosmos.to_pandas(archive).dtypes
+    theirs = microcosmos.to_ribs(archive).data(return_type="pandas").dtypes
+    for name in ("solution_0", "objective", "measures_0", "threshold", "index"):
+        assert ours[name] == theirs[name]
+
+
+def test_the_table_of_the_csv_is_what_their_frame_takes(archive):
+    import pandas as pd
+    from ribs.archives import ArchiveDataFrame
+
+    frame = ArchiveDataFrame(pd.read_csv(io.StringIO(export.csv(archive))))
+    assert frame.get_field("measures").shape == (3, 2)
+    assert frame.get_field("solution").shape == (3, 2)
+    assert frame.get_field("index").tolist() == [1, 6, 11]
+
+
+def test_repeated_evaluations_are_told(archive):
+    frame = microcosmos.to_pandas(archive)
+    assert frame["repeats"].tolist() == [4, 1, 0]
+    np.testing.assert_allclose(frame["repeats_mean"], [1.0, np.nan, np.nan])
+    np.testing.assert_allclose(frame["repeats_std"], [0.5, np.nan, np.nan])
+    np.testing.assert_allclose(frame["repeats_hit_rate"], [0.5, 0.0, np.nan])
+
+
+def test_their_heatmaps_draw_our_archive(archive, tmp_path):
+    import matplotlib as mpl
+
+    mpl.use("agg")
+    import matplotlib.pyplot as plt
+    from ribs.visualize import cvt_archive_heatmap, grid_archive_heatmap
+
+    filled = microcosmos.to_ribs(archive)
+    around = hasattr(filled, "centroids")
+    draw = cvt_archive_heatmap if around else grid_archive_heatmap
+    figure, axes = plt.subplots()
+    draw(filled, ax=axes)
+    figure.savefig(tmp_path / "heatmap.png")
+    plt.close(figure)
+    assert axes.get_xlim() == pytest.approx((0, 1) if around else (-4, 2))
+    assert axes.get_ylim() == pytest.approx((0, 1))
+
+
+def test_what_is_missing_is_named_with_its_command(monkeypatch):
+    def missing(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    from microcosmos.archive import dataframe
+
+    with pytest.raises(ImportError, match='pip install "pandas"'):
+        dataframe._needed("pandas")

@@ -1,0 +1,99 @@
+"""A run from the command line that begins from creatures in files."""
+
+import json
+import signal
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from microcosmos import device
+from microcosmos.archive import creature, creature_h5, file
+from microcosmos.cli import app
+from microcosmos.cli.fork import begun, creatures
+
+
+@pytest.fixture(scope="module")
+def archive(experiment, course, tmp_path_factory):
+    """The small run's file."""
+    path = tmp_path_factory.mktemp("beginning") / "archive.h5"
+    path.write_bytes(experiment.save(course[0][-1]))
+    return path
+
+
+@pytest.fixture(scope="module")
+def best(experiment, course):
+    return creature.parse(experiment.best(course[0][-1]))
+
+
+@pytest.fixture
+def evolve(tmp_path, monkeypatch):
+    """A function that runs the command; signals and JAX stay as the tests have them."""
+    monkeypatch.setattr(device, "prepare", lambda **_: None)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+
+    def run(spec, *arguments, code=0):
+        (tmp_path / "spec.json").write_text(json.dumps(spec.model_dump(mode="json")))
+        command = ["evolve", str(tmp_path / "spec.json"), *map(str, arguments)]
+        done = CliRunner().invoke(app, command)
+        assert done.exit_code == code, done.output
+        return " ".join(done.output.split())
+
+    yield run
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+def test_an_archive_gives_the_creature_files_of_its_elites(archive, experiment, course, best):
+    state = course[0][-1]
+    cells = np.flatnonzero(state.elites.occupied).tolist()
+    found = creatures(archive)
+    assert found == [creature.parse(experiment.creature(state, cell)) for cell in cells]
+    assert best in found
+
+
+def test_a_creature_is_read_as_json_or_hdf5(best, tmp_path):
+    (tmp_path / "best.json").write_text(json.dumps(best))
+    (tmp_path / "best.h5").write_bytes(creature_h5.dump(best))
+    assert creatures(tmp_path / "best.json") == creatures(tmp_path / "best.h5") == [best]
+
+
+def test_the_command_begins_from_a_file_and_goes_on_from_its_own(small, evolve, best, tmp_path):
+    (tmp_path / "best.json").write_text(json.dumps(best))
+    out, whole = tmp_path / "out.h5", tmp_path / "whole.h5"
+    begin = ("--from", tmp_path / "best.json")
+    evolve(small(search={"generations": 1}), *begin, "--out", out)
+    tree, _ = file.load(out.read_bytes())
+    assert [bytes(name).hex() for name in tree["origin"]["creature"]] == [best["sha256"]]
+    evolve(small(search={"generations": 2}), *begin, "--out", whole)
+    named, _ = begun(small(search={"generations": 2}), [tmp_path / "best.json"])
+    evolve(named, "--out", out)  # Which can only go on: the creature's file is not given.
+    assert out.read_bytes() == whole.read_bytes()
+    evolve(small(search={"generations": 2}), *begin, "--out", out)
+    assert out.read_bytes() == whole.read_bytes()
+    refused = evolve(named, "--out", tmp_path / "none.h5", code=2)
+    assert "`search.origin` names 1 creatures" in refused
+    assert "--from" in refused
+
+
+def test_a_spec_that_names_creatures_takes_only_those_of_the_files(
+    small, archive, evolve, best
+):
+    named = small(search={"origin": [best["sha256"]]})
+    chosen, files = begun(named, [archive])
+    assert chosen == named
+    assert [file["sha256"] for file in files] == [best["sha256"]]
+    other = small(search={"origin": ["0" * 64]})
+    text = evolve(other, "--from", archive, code=2)
+    assert "--from needs the creatures that `search.origin` names; got none of 0000" in text
+
+
+def test_what_cannot_be_begun_from_is_refused(small, archive, evolve, tmp_path):
+    (tmp_path / "note.txt").write_text("a note")
+    (tmp_path / "broken.h5").write_bytes(archive.read_bytes()[:2000])
+    for name in ("note.txt", "broken.h5"):
+        text = evolve(small(), "--from", tmp_path / name, code=2)
+        assert "--from needs a creature file or an archive" in text
+        assert name in text.replace(" ", "")
+    text = evolve(small(control={"timer": "linear"}), "--from", archive, code=2)
+    assert "--from: `control: inputs` needs" in text

@@ -1,0 +1,223 @@
+"""A search that begins from creatures of another, and the lineage that goes through it."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from microcosmos.archive import creature
+from microcosmos.archive.encoding import decode, encode
+from microcosmos.archive.initial import counters, fitting, genes_of, renumbered
+from microcosmos.build import build
+from microcosmos.build.experiments import begun
+from microcosmos.experiments.offspring import born
+from microcosmos.search import OPERATORS, never
+from microcosmos.spec import parse
+
+GAUSSIAN = {"emitters": [{"operator": "gaussian"}]}
+
+
+@pytest.fixture(scope="module")
+def files(experiment, course):
+    """The creature files of the small run's elites."""
+    state = course[0][-1]
+    cells = np.flatnonzero(state.elites.occupied).tolist()[:20]
+    return [creature.parse(experiment.creature(state, cell)) for cell in cells]
+
+
+def names_of(files):
+    return sorted(file["sha256"] for file in files)
+
+
+@pytest.fixture(scope="module")
+def forked(small, files):
+    """In another viscosity, from more creatures than a batch holds."""
+    spec = small(
+        world={"width": 32, "height": 32, "viscosity": 0.2},
+        search={"origin": names_of(files), "generations": 4},
+    )
+    return build(spec, files)
+
+
+@pytest.fixture(scope="module")
+def forking(forked, carry_out):
+    return carry_out(forked)
+
+
+def test_all_that_it_begins_from_are_evaluated_first_each_once(forked, forking, files):
+    _, reports = forking
+    assert [report.evaluations for report in reports] == [16, 32, 48, 64]
+    begun = [e for report in reports for e in report.elites if e.operator == "fork"]
+    assert {e.generation for e in begun} == {1, 2}
+    sources = {file["sha256"]: file["identity"]["genome"] for file in files}
+    assert len({e.parents for e in begun}) == len(begun)
+    for elite in begun:
+        (parent,) = elite.parents
+        assert json.loads(elite.identity)["genome"] == sources[parent], "the very same genes"
+        assert elite.creature != parent
+        assert json.loads(elite.identity)["world"]["viscosity"] == 0.2
+
+
+def test_whoever_comes_later_descends_from_it(forking, files):
+    born, origin = set(), set(names_of(files))
+    for report in forking[1]:
+        for elite in report.elites:
+            assert elite.operator in ("fork", "neat")
+            assert elite.parents
+            assert set(elite.parents) <= born | origin
+        born |= {elite.creature for elite in report.elites}
+
+
+def test_a_fork_taken_up_from_any_generation_ends_the_same(forked, forking, finish, lasting):
+    """Also where nobody has the creatures any more: the file does."""
+    states, _ = forking
+    whole = forked.save(states[-1])
+    alone = replace(forked, plan=replace(forked.plan, origin=None))
+    for state in states[:-1]:
+        assert finish(alone, alone.restore(forked.save(state))) == whole
+    shorter = lasting(forked, 1)
+    assert finish(alone, alone.restore(finish(shorter, shorter.init()))) == whole
+    with pytest.raises(ValueError, match=r"`search.origin` names \d+ creatures"):
+        alone.init()
+
+
+def test_in_its_own_world_a_creature_is_itself_and_not_its_child(
+    small, experiment, files, finish
+):
+    chosen = small(search={"origin": [files[3]["sha256"]], "generations": 2})
+    text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
+    plan = replace(experiment.plan, spec=text, generations=2)
+    again = replace(experiment, plan=begun(plan, chosen, files))
+    state, report = again.advance(again.init())
+    same = next(e for e in report.elites if e.creature == files[3]["sha256"])
+    assert (same.operator, same.parents) == ("fork", ())
+    assert same.fitness == files[3]["measured"]["fitness"]
+    others = [e for e in report.elites if e is not same]
+    assert others
+    assert all(e.parents == (same.creature,) for e in others)
+    document = again.creature(state, same.cell)
+    assert creature.parse(document)["provenance"]["parents"] == []
+    assert finish(again, again.restore(again.save(state))) == finish(again, again.init())
+
+
+def test_new_genes_get_numbers_that_no_ancestor_has(small, files):
+    chosen = small(search={"origin": names_of(files)})
+    after, _ = counters(genes_of(chosen, files))
+    plan = begun(build_plan_of(chosen), chosen, files)
+    assert int(plan.counters.innovation) == after > 6
+
+
+def build_plan_of(chosen):
+    from microcosmos.build.experiments import build_plan
+
+    return build_plan(chosen)
+
+
+def test_numbers_of_one_run_stay_and_those_of_another_do_not_mix(files):
+    genomes = [file["identity"]["genome"] for file in files]
+    assert renumbered(genomes, 3, 2) == genomes
+    foreign = json.loads(json.dumps(genomes[0]))
+    genes = foreign["connections"]
+    genes["innovation"] = [*genes["innovation"][:-1], 90]
+    stranger = json.loads(json.dumps(foreign))
+    ends = stranger["connections"]
+    ends["source"][-1], ends["target"][-1] = 1, 4
+    assert (ends["source"][-1], ends["target"][-1]) != (
+        genes["source"][-1],
+        genes["target"][-1],
+    )
+    kept, moved = renumbered([foreign, stranger], 3, 2)
+    assert kept == foreign
+    numbers = moved["connections"]["innovation"]
+    assert numbers == sorted(numbers)
+    assert numbers[-1] > 90
+    assert numbers[:6] == list(range(6)), "newcomers' genes mean the same to all"
+    assert decode(moved["connections"]["weight"]).tolist() == pytest.approx(
+        decode(ends["weight"]).tolist()
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"genome": {"max_nodes": 8, "max_connections": 8}}, "genome.max_"),
+        ({"control": {"timer": "linear"}}, "control: inputs"),
+        ({"control": {"encoding": "direct"}, "search": GAUSSIAN}, "control.encoding"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_is_refused_with_the_field(small, files, changes, field):
+    large = max(files, key=lambda file: len(file["identity"]["genome"]["nodes"]["id"]))
+    grown = json.loads(json.dumps(large))
+    nodes = grown["identity"]["genome"]["nodes"]
+    nodes["id"] = [*nodes["id"], *range(1000, 1008)]
+    with pytest.raises(creature.CreatureError) as raised:
+        fitting(small(**changes), grown)
+    assert raised.value.field.startswith(field)
+
+
+def test_vectors_need_the_same_body_and_terms(small):
+    direct = {"encoding": "direct", "terms": 2}
+    chosen = small(control=direct, search=GAUSSIAN)
+    scene = chosen.scene
+    from microcosmos.build.creatures import frame
+
+    genome = {**frame(scene)["genome"], "values": encode(np.zeros(4 * (10 + 11)))}
+    identity = {**frame(scene), "genome": genome}
+    file = creature.parse(creature.document(identity, None, None))
+    assert fitting(chosen, file) == file["identity"]["genome"]
+    for changes, field in (
+        ({"terms": 3}, "control.terms"),
+        ({"waveform": "table"}, "control."),
+    ):
+        other = chosen.model_copy(update={"control": chosen.control.model_copy(update=changes)})
+        with pytest.raises(creature.CreatureError, match=field):
+            fitting(other, file)
+    longer = small(body={"nodes": 13}, control=direct, search=GAUSSIAN)
+    with pytest.raises(creature.CreatureError, match="body: number of joints"):
+        fitting(longer, file)
+
+
+def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish):
+    """Vectors: the first slots are creatures of before, whoever would have filled them."""
+    direct = {"encoding": "direct", "terms": 2, "period": 30}
+    emitters = [{"operator": "cma-mae"}, {"operator": "iso+line"}]
+    search = {"generations": 1, "batch": 16, "block": 8, "emitters": emitters}
+    first = build(small(control=direct, search=search))
+    state, _ = first.advance(first.init())
+    best = creature.parse(first.best(state))
+    chosen = small(
+        control=direct, search=search | {"origin": [best["sha256"]], "generations": 3}
+    )
+    text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
+    plan = replace(first.plan, spec=text, generations=3)
+    fork = replace(first, plan=begun(plan, chosen, [best]))
+    before = fork.init()
+    after, report = fork.advance(before)
+    assert str(after.emitters[0]) == str(before.emitters[0]), "it neither asked nor was told"
+    brood = born(fork.plan, fork.programs, before, never)
+    assert OPERATORS[brood.children.operator[0]] == "fork"
+    np.testing.assert_array_equal(
+        brood.children.genotypes.values[0], fork.plan.origin.genotypes.values[0]
+    )
+    assert any(e.parents == (best["sha256"],) for e in report.elites)
+    assert finish(fork, fork.restore(fork.save(after))) == finish(fork, fork.init())
+
+
+def test_the_order_in_which_creatures_are_named_changes_nothing(small):
+    names = [letter * 64 for letter in "cab"]
+    one, other = (
+        small(search={"origin": order}) for order in (names, [*names[::-1], names[0]])
+    )
+    assert one == other
+    assert one.search.origin == tuple(sorted(names))
+    with pytest.raises(ValueError, match="origin"):
+        small(search={"origin": ["nonsense"]})
+
+
+def test_a_population_holds_all_that_it_begins_from():
+    names = [f"{number:064x}" for number in range(5)]
+    spec = {"experiment": "neuroevolution", "search": {"batch": 4, "origin": names}}
+    with pytest.raises(ValueError, match=r"`search.origin` must have at most `search.batch`"):
+        parse(spec)
+    assert parse({**spec, "search": {"batch": 5, "origin": names}}).search.origin

@@ -1,0 +1,255 @@
+"""Fitnesses, descriptors, bodies, gaits and encodings of one's own, in specs and in runs."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from microcosmos import plugins
+from microcosmos.archive import creature, creature_h5
+from microcosmos.audit.reproducibility import check
+from microcosmos.build import build
+from microcosmos.plugins import registry
+from microcosmos.spec import estimate, parse, used
+from microcosmos.viz.replay import record
+from microcosmos.viz.replay_file import read_replay
+
+MODULE = """
+from dataclasses import replace
+import jax.numpy as jnp
+import numpy as np
+from pydantic import Field
+from microcosmos import bodies, creatures, plugins
+from microcosmos.spec import Part
+
+class Strict(Part):
+    strictness: float = Field(default=1.0, ge=0, le=10)
+
+@plugins.fitness("straight", title="Straight way", unit="cells", settings=Strict)
+def straight(motion, settings):
+    return motion.measures["displacement"] * settings.strictness
+
+@plugins.descriptor("ahead", title="Ahead", low=-2, high=2, unit="cells")
+def ahead(motion):
+    return motion.path[-1, 0] - motion.path[0, 0]
+
+@plugins.descriptor("broken", title="Broken", low=0, high=1)
+def broken(motion):
+    return motion.path
+
+@plugins.body("stick", title="A stick", nodes=10)
+def stick():
+    return bodies.chain(8, 1.0)
+
+@plugins.body("large", title="Larger than it says", nodes=3)
+def large():
+    return bodies.chain(8, 1.0)
+
+@plugins.body("uneven", title="Stiffer at one end", nodes=8)
+def uneven():
+    body = bodies.chain(8, 1.0)
+    return replace(body, bend=np.linspace(0.1, 1, len(body.bend)))
+
+@plugins.gait("wiggler", title="A wiggler", nodes=8)
+def wiggler():
+    body = bodies.chain(8, 1.0)
+    def gait(time):
+        wave = np.sin(2 * np.pi * (np.linspace(0, 1, 6)[None] - time[:, None]))
+        return 0.3 * wave, np.zeros((len(time), 7))
+    return creatures.Swimmer("wiggler", body, gait)
+
+@plugins.encoding("pulse", title="A pulse", genes=2, per_joint=1)
+def pulse(genes, clock):
+    wave = jnp.sin(clock.phase[:, None] + 3 * genes[0] * clock.joints[None])
+    return wave * genes[None, 2:], 0.1 * jnp.cos(clock.phase)[:, None] * clock.edges[None]
+"""
+
+SPEC = {
+    "experiment": "quality-diversity",
+    "world": {"width": 24, "height": 24},
+    "body": {"builder": "own.stick"},
+    "control": {"encoding": "own.pulse", "period": 20, "angle_scale": 0.5},
+    "task": {"fitness": "own.straight", "steps": 20, "own": {"settings": {"strictness": 2}}},
+    "archive": {
+        "descriptors": [{"name": "own.ahead", "bins": 8}, {"name": "displacement", "bins": 4}]
+    },
+    "search": {
+        "generations": 2,
+        "batch": 4,
+        "block": 4,
+        "emitters": [{"operator": "gaussian"}],
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def module(tmp_path_factory):
+    file = tmp_path_factory.mktemp("own") / "own.py"
+    file.write_text(MODULE)
+    return file
+
+
+@pytest.fixture(autouse=True)
+def loaded(module, monkeypatch):
+    """The module is loaded, and forgotten after the test."""
+    monkeypatch.setattr(registry, "_plugins", {})
+    return plugins.load(module)
+
+
+@pytest.fixture
+def away(monkeypatch):
+    return lambda: monkeypatch.setattr(registry, "_plugins", {})
+
+
+@pytest.fixture(scope="module")
+def course(module):
+    """A whole run: its experiment, its last state and its reports."""
+    before, registry._plugins = registry._plugins, {}
+    plugins.load(module)
+    experiment = build(parse(SPEC))
+    state, reports = experiment.init(), []
+    while not experiment.done(state):
+        state, report = experiment.advance(state)
+        reports.append(report)
+    registry._plugins = before
+    return experiment, state, reports
+
+
+def test_a_spec_says_the_version_and_all_settings_of_what_it_names(loaded):
+    document = parse(SPEC).model_dump(mode="json")
+    named = {one.path: one.name for one in used(document)}
+    assert named == {
+        "task.fitness": "own.straight",
+        "body.builder": "own.stick",
+        "control.encoding": "own.pulse",
+        "archive.descriptors.0.name": "own.ahead",
+    }
+    assert {one.own.source for one in used(document)} == {loaded[0].source}
+    assert document["task"]["own"]["settings"] == {"strictness": 2.0}
+    axis = document["archive"]["descriptors"][0]
+    assert (axis["low"], axis["high"], axis["scale"]) == (-2, 2, "linear")
+
+
+@pytest.mark.fast
+def test_what_a_spec_says_can_be_read_where_nobody_can_carry_it_out(away):
+    chosen = parse(SPEC)
+    away()
+    again = parse(chosen.model_dump(mode="json"))
+    assert again == chosen
+    assert estimate(again).memory_bytes > 0
+    with pytest.raises(plugins.Missing, match=r"own\.stick .* is not loaded here: give its"):
+        build(again)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("part", "value", "words"),
+    [
+        ("task", {"fitness": "own.nothing"}, "`fitness` must be known, got 'own.nothing'"),
+        ("task", {"fitness": "own.ahead"}, "loaded are own.straight"),
+        ("task", {"fitness": "os.system"}, "give its module with --module"),
+        (
+            "task",
+            {"fitness": "own.straight", "own": {"settings": {"strictness": -1}}},
+            "`own.settings.strictness` needs Input should be greater",
+        ),
+        ("task", {"own": {"settings": {}}}, "`own` must be left out where `fitness` is None"),
+        ("body", {"builder": "own.large"}, "at most the 3 `nodes` that it declares, got 8"),
+        ("body", {"builder": "own.uneven"}, "equally stiff in bend everywhere"),
+        ("control", {"encoding": "own.stick"}, "`encoding` must be known"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_the_reason(part, value, words):
+    with pytest.raises(ValidationError) as refused:
+        parse({**SPEC, part: value})
+    assert words in str(refused.value)
+
+
+def test_a_run_measures_selects_and_moves_as_the_module_says(course):
+    experiment, state, reports = course
+    names = list(experiment.plan.features)
+    assert names[-2:] == ["own.ahead", "own.straight"]
+    rows = np.asarray(state.elites.features)[np.asarray(state.elites.occupied)]
+    fitness = np.asarray(state.elites.fitness)[np.asarray(state.elites.occupied)]
+    np.testing.assert_allclose(fitness, 2 * rows[:, names.index("displacement")], rtol=1e-6)
+    np.testing.assert_array_equal(fitness, rows[:, names.index("own.straight")])
+    assert np.all(np.abs(rows[:, -2]) <= rows[:, names.index("displacement")] + 1e-6)
+    assert len(np.unique(fitness)) > 1
+    assert all(
+        elite.descriptors[0] == elite.features["own.ahead"] for elite in reports[0].elites
+    )
+
+
+def test_a_run_goes_on_from_its_file_with_the_same_bytes(course, module, away):
+    experiment, state, _ = course
+    data = experiment.save(state)
+    first, _ = experiment.advance(experiment.init())
+    middle = experiment.restore(experiment.save(first))
+    assert experiment.save(experiment.advance(middle)[0]) == data
+    module.write_text(MODULE + "# Changed.\n")
+    away()
+    plugins.load(module)
+    changed = build(parse(SPEC))
+    module.write_text(MODULE)
+    with pytest.raises(
+        ValueError, match=r"own\.source` must be \w{12}, .* go on with the module as it was"
+    ):
+        changed.restore(data)
+
+
+def test_a_creature_says_what_it_needs_and_repeats_bit_for_bit(course, away):
+    experiment, state, _ = course
+    file = creature.parse(json.dumps(experiment.best(state)))
+    assert check(file).exact
+    assert creature_h5.load(creature_h5.dump(file)) == file
+    away()
+    assert creature.parse(json.dumps(file)) == file, "a file is read without the module"
+    with pytest.raises(plugins.Missing, match=r"own\."):
+        check(file)
+
+
+def test_who_only_lacks_measures_can_still_be_watched(course, module, monkeypatch):
+    experiment, state, _ = course
+    file = experiment.best(state)
+    kept = {key: one for key, one in registry._plugins.items() if key[0] == "encoding"}
+    whole = read_replay(record(file))
+    monkeypatch.setattr(registry, "_plugins", kept)
+    replay = read_replay(record(file))
+    np.testing.assert_array_equal(replay.positions, whole.positions)
+    header = whole.header
+    assert header["fitness"]["replayed"] == pytest.approx(
+        header["fitness"]["recorded"], rel=0.1
+    )
+    assert replay.header["fitness"]["replayed"] is None
+
+
+def test_a_measure_that_is_no_number_is_refused_by_name():
+    axes = {"descriptors": [{"name": "own.broken", "bins": 2}]}
+    experiment = build(parse({**SPEC, "archive": axes}))
+    with pytest.raises(plugins.Broken, match=r"own\.broken must give one number, got shape"):
+        experiment.advance(experiment.init())
+
+
+def test_a_gait_of_ones_own_swims_in_a_sweep_beside_known_ones(away):
+    spec = {
+        "experiment": "gaits", "swimmers": ["own.wiggler"], "forms": ["ours"],
+        "viscosities": [0.5], "period": 20, "cycles": 1,
+    }  # fmt: skip
+    experiment = build(parse(spec))
+    _, report = experiment.advance(experiment.init())
+    (row,) = report.rows
+    assert row.values["swimmer"] == "own.wiggler"
+    assert row.values["displacement"] > 0
+    file = creature.document(json.loads(row.identity), row.measured, row.provenance)
+    assert creature.parse(file)["sha256"] == row.creature
+    chosen = parse(spec).model_dump(mode="json")
+    away()
+    assert parse(chosen).model_dump(mode="json") == chosen
+
+
+def test_the_example_is_a_module(away):
+    away()
+    found = plugins.load(Path(__file__).parents[3] / "examples" / "own_task.py")
+    assert {one.kind for one in found} == {"fitness", "descriptor", "body"}

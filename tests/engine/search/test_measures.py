@@ -1,0 +1,119 @@
+"""Features against closed forms, and against plain NumPy on a simulated creature."""
+
+from typing import get_args
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import bodies, filaments, search, spec, world
+from microcosmos.search.measures import curvature, efficiency, symmetry
+from microcosmos.spec import measures
+
+STEPS = 40
+
+
+@pytest.mark.fast
+def test_the_table_of_axes_names_what_is_recorded_in_the_same_order():
+    assert tuple(measures.FEATURES) == search.FEATURES == get_args(measures.Name)
+    for name, feature in measures.FEATURES.items():
+        axis = spec.Descriptor.model_validate({"name": name})
+        assert (axis.low, axis.high, axis.scale) == (feature.low, feature.high, feature.scale)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(("sign", "expected"), [(1, 1.0), (-1, -1.0)])
+def test_both_halves_bend_alike_or_oppositely(float64, sign, expected):
+    random = np.random.default_rng(0)
+    half = random.normal(size=(30, 4))
+    bent = np.concatenate([half, sign * half[:, ::-1]], 1) + random.normal(size=(1, 8))
+    assert symmetry(jnp.asarray(bent)) == pytest.approx(expected)
+
+
+@pytest.mark.fast
+def test_a_wave_along_the_body_is_not_symmetric(float64):
+    t, joint = np.arange(60)[:, None], np.arange(20)[None]
+    wave = np.sin(2 * np.pi * (t / 30 - joint / 10))
+    assert abs(symmetry(jnp.asarray(wave))) < 0.1
+    assert symmetry(jnp.zeros((5, 3))) == 0
+
+
+@pytest.mark.fast
+def test_what_is_absent_counts_nowhere(float64):
+    random = np.random.default_rng(1)
+    bent = random.normal(size=(30, 5))
+    wide = np.concatenate([bent, np.zeros((30, 3))], 1)
+    kept = jnp.arange(8) < 5
+    found = symmetry(jnp.asarray(wide), kept)
+    np.testing.assert_allclose(found, symmetry(jnp.asarray(bent)))
+    size = np.abs(bent)
+    for average, spread in (
+        curvature(jnp.asarray(wide), kept),
+        curvature(jnp.asarray(bent)),
+    ):
+        np.testing.assert_allclose(average, size.mean())
+        np.testing.assert_allclose(spread, size.std())
+
+
+@pytest.mark.fast
+def test_no_power_is_no_efficiency(float64):
+    values = [jnp.asarray(x) for x in (0.01, 0.002, 0.1)]
+    assert efficiency(*values) == pytest.approx(0.1 * 0.01**2 / 0.002)
+    assert efficiency(values[0], jnp.asarray(-1.0), values[2]) == 0
+
+
+@pytest.fixture
+def swum(immerse, float64):
+    """What was seen of a gait, every state of it, and the motion's features."""
+    body = bodies.chain(8, 1.0)
+    box, start = immerse(body, float64, viscosity=0.1, size=(24, 24), layers=2)
+    t, joint = np.arange(STEPS)[:, None], np.arange(6)[None]
+    angle = 0.3 * np.sin(2 * np.pi * t / 20 - 0.9 * joint)
+    rest = filaments.Rest(jnp.asarray(angle), jnp.ones((STEPS, 7)))
+
+    def see(state, measures):
+        return search.observe(state, measures), state, measures
+
+    @jax.jit
+    def run():
+        end, (seen, states, measures) = world.rollout(box, start, rest, see)
+        return seen, states, measures, search.motion(box, start, end, seen, 7.0)
+
+    return start, *run()
+
+
+def test_features_are_what_numpy_makes_of_the_states(swum):
+    start, _, states, measures, values = swum
+    positions, angles = np.asarray(states.positions), np.asarray(states.angles)
+    centres = np.concatenate([[start.positions.mean(0)], positions.mean(1)])
+    path = np.hypot(*np.diff(centres, axis=0).T).sum()
+    heading = np.concatenate([[start.angles.mean()], angles.mean(1)])
+    lengths = np.linalg.norm(np.diff(positions, axis=1), axis=2)
+    turn = np.diff(angles, axis=1)
+    bent = (turn + np.pi) % (2 * np.pi) - np.pi
+    bent = bent / (0.5 * (lengths[:, 1:] + lengths[:, :-1]))
+    size = np.abs(bent)
+    change = bent - bent.mean(0)
+    moved = np.hypot(*(centres[-1] - centres[0]))
+    power = float(np.mean(measures.power))
+    expected = {
+        "displacement": moved,
+        "path_length": path,
+        "mean_speed": path / STEPS,
+        "turning": np.abs(np.diff(heading)).sum(),
+        "curvature_mean": size.mean(),
+        "curvature_spread": size.std(),
+        "symmetry": (change * change[:, ::-1]).sum() / (change**2).sum(),
+        "efficiency": 0.1 * (moved / STEPS) ** 2 / power,
+        "nodes": 8,
+    }
+    for name, value in expected.items():
+        np.testing.assert_allclose(values[name], value, rtol=1e-9, err_msg=name)
+
+
+def test_power_is_what_the_fluid_gains_and_dissipates(swum):
+    """Swimming against a viscous fluid costs work: it is positive on the whole."""
+    _, _, _, measures, values = swum
+    assert values["power"] == pytest.approx(float(np.mean(measures.power)))
+    assert values["power"] > 0

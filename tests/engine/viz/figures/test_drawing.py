@@ -1,0 +1,127 @@
+"""Figures are drawn of a real run's file, by the library and by the command line."""
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from microcosmos import spec
+from microcosmos.build import local
+from microcosmos.cli import app
+from microcosmos.viz.figures import drawing, motions, reading
+
+TINY = {
+    "experiment": "quality-diversity",
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 12},
+    "control": {"period": 30},
+    "task": {"steps": 60},
+    "archive": {
+        "descriptors": [
+            {"name": "bending_effort", "bins": 6},
+            {"name": "stretching_effort", "bins": 6},
+            {"name": "straightness", "bins": 2},
+        ]
+    },
+    "search": {"generations": 3, "batch": 16, "block": 8},
+}
+"""Evaluated by the program that tests of experiments have compiled."""
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory):
+    """The file of a small run."""
+    path = tmp_path_factory.mktemp("run") / "tiny.h5"
+    assert local.evolve(spec.parse(TINY), path)
+    return path
+
+
+def invoked(*arguments, code=0):
+    found = CliRunner().invoke(app, ["figure", *map(str, arguments)])
+    assert found.exit_code == code, found.output
+    return found.output.replace("\n", "")
+
+
+def test_elites_of_a_file_are_simulated_as_they_were_measured(archive):
+    found = reading.read(archive.read_bytes())
+    cell = int(found.cells[found.best])
+    (motion,) = motions.motions(archive.read_bytes(), [cell])
+    ends = motion.positions[[0, -1]].mean(1)
+    np.testing.assert_allclose(np.hypot(*(ends[1] - ends[0])), found.fitness.max(), rtol=1e-3)
+
+
+def test_a_sheet_is_drawn_with_its_progress_told(archive, tmp_path):
+    heard = []
+    how, out = drawing.Print(), tmp_path / "sheet.svg"
+    drawing.contact(archive, out, how, None, (2, 2), 3, lambda *done: heard.append(done))
+    assert heard == [(k + 1, len(heard)) for k in range(len(heard))]
+    told = (tmp_path / "sheet.caption.txt").read_text()
+    assert f"each of {len(heard)} regions" in told
+    assert "at 3 moments of its 60 steps" in told
+
+
+def test_each_command_writes_its_figure_and_its_caption(archive, tmp_path):
+    for name, *options in (
+        ("archive", "--axes", "straightness,bending_effort", "--latex", "--caption"),
+        ("curves", "--against", "generations"),
+        ("lineage", "--palette", "magma"),
+    ):
+        out = tmp_path / f"{name}.pdf"
+        assert str(out) in invoked(name, archive, out, *options)
+        assert out.read_bytes().startswith(b"%PDF")
+        told = out.with_suffix(".caption.txt").read_text()
+        assert "3 generations of 16 (48 evaluations, seed 0)" in told
+    assert (tmp_path / "archive.caption.tex").exists()
+
+
+def test_a_file_without_a_command_is_drawn_by_its_kind(archive, tmp_path):
+    invoked(archive, tmp_path / "map.png")
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_name_without_an_output_gets_a_pdf_beside_the_file(archive):
+    invoked("archive", archive)
+    assert archive.with_suffix(".archive.pdf").exists()
+
+
+def test_the_help_names_every_figure():
+    told = invoked("--help")
+    for name in ("file", "archive", "curves", "sheet", "lineage"):
+        assert re.search(rf"\b{name}\b", told)
+
+
+def test_mistakes_are_said_with_what_is_needed(archive, tmp_path):
+    assert "must end in .pdf" in invoked("archive", archive, tmp_path / "map.bmp", code=2)
+    assert "`cell` must be one of" in invoked(
+        "lineage", archive, tmp_path / "a.svg", "--cell", "9999", code=2
+    )
+    assert "seed 0 twice" in invoked("curves", archive, archive, tmp_path / "a.svg", code=2)
+    assert "FILE... OUT needs" in invoked("curves", archive, code=2)
+    broken = tmp_path / "broken.h5"
+    broken.write_bytes(b"nothing")
+    assert "must be HDF5" in invoked("archive", broken, tmp_path / "a.svg", code=2)
+
+
+def test_a_file_whose_run_has_a_table_has_no_map(tmp_path):
+    from microcosmos.experiments import table_file
+
+    path = tmp_path / "table.h5"
+    rows = table_file.Table(0, (), ("cpu",))
+    path.write_bytes(table_file.save('{"experiment": "gaits"}', rows))
+    with pytest.raises(ValueError, match=r"an archive is needed.*table of 'gaits'"):
+        drawing.open_archive(path)
+
+
+def test_a_map_is_drawn_without_jax(archive, tmp_path):
+    code = f"""
+import sys
+from pathlib import Path
+from microcosmos.viz.figures import drawing
+drawing.archive(Path({str(archive)!r}), Path({str(tmp_path / "map.pdf")!r}), drawing.Print(),
+                None, "fitness")
+assert "jax" not in sys.modules
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)

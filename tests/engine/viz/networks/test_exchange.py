@@ -1,0 +1,206 @@
+"""Genes go to TensorNEAT and back; files that are no genomes are refused."""
+
+import copy
+import json
+from collections import Counter
+from dataclasses import replace
+from io import BytesIO
+
+import numpy as np
+import pytest
+
+from microcosmos.archive.cppn_genes import Connections, Nodes, check_genes
+from microcosmos.viz import networks
+
+INPUTS, OUTPUTS = ("position", "sine", "cosine"), ("rest_angle", "rest_length")
+
+
+def test_grown_genes_go_there_and_back_sound_and_with_the_same_values(grown):
+    """Those are refused whose values pass the bound of ours, which TensorNEAT lacks."""
+    exchanged = 0
+    for genes in grown:
+        network = networks.from_genes(genes, INPUTS, OUTPUTS)
+        inputs = networks.probes(3)
+        expected = networks.evaluate(network, inputs)
+        if not networks.agree(
+            expected, networks.evaluate(replace(network, bound=np.inf), inputs)
+        ):
+            with pytest.raises(ValueError, match="keeps values within ±1e\\+06"):
+                networks.write_tensorneat(network)
+            continue
+        written = networks.write_tensorneat(network)
+        back = networks.read_tensorneat(written.nodes, written.conns, written.meta)
+        imported = networks.to_genes(back)
+        exchanged += 1
+        check_genes(3, 2, Nodes(**imported["nodes"]), Connections(**imported["connections"]))
+        again = networks.from_genes(imported, INPUTS, OUTPUTS)
+        assert np.isfinite(expected).all()
+        for other in (back, again):
+            difference = np.abs(networks.evaluate(other, inputs) - expected)
+            assert np.max(difference / np.maximum(1, np.abs(expected))) <= 1e-6
+    assert exchanged > 1000
+
+
+def test_genes_without_disabled_connections_are_themselves_again(grown):
+    for genes in grown[:200]:
+        network = networks.from_genes(genes, INPUTS, OUTPUTS)
+        once = networks.to_genes(network)
+        assert networks.to_genes(networks.from_genes(once, INPUTS, OUTPUTS)) == once
+        assert once["connections"]["innovation"] == list(network.marker)
+
+
+def test_a_genome_of_tensorneat_is_written_as_it_was_read(reference):
+    for nodes, conns in zip(reference.nodes, reference.conns, strict=True):
+        network = networks.read_tensorneat(nodes, conns, reference.meta)
+        data = networks.dump_tensorneat(networks.write_tensorneat(network), 1.5)
+        again, fitness = networks.load_tensorneat(data)
+        assert fitness == 1.5
+        assert set(again.pairs) == set(network.pairs)
+        assert (again.steps, again.output_transform) == (
+            network.steps,
+            network.output_transform,
+        )
+        assert dict(zip(again.pairs, again.marker or (), strict=False)) == dict(
+            zip(network.pairs, network.marker or (), strict=False)
+        )
+
+
+@pytest.mark.fast
+def test_outputs_that_follow_hidden_keys_are_renumbered():
+    """As TensorNEAT has them with `init_hidden_layers`: the outputs have the last keys."""
+    nodes = np.array([[0, 0, 0, 0], [1, 0.5, 0, 1], [2, -1, 0, 0]], np.float32)
+    conns = np.array([[0, 1, 2], [1, 2, 3]], np.float32)
+    meta = described(1, 1, ["tanh", "sin"], output_keys=[2])
+    genes = networks.to_genes(networks.read_tensorneat(nodes, conns, meta))
+    assert genes["nodes"]["id"] == [0, 1, 2]
+    assert genes["nodes"]["activation"] == ["identity", "identity", "sin"]
+    assert genes["connections"]["source"] == [0, 2]
+    assert genes["connections"]["target"] == [2, 1]
+
+
+@pytest.mark.fast
+def test_a_settled_recurrent_network_is_feed_forward():
+    nodes = np.array([[0, 0, 0, 0], [1, -1, 0, 0], [2, 0.5, 0, 0]], np.float32)
+    conns = np.array([[0, 2, 2], [2, 1, 3]], np.float32)
+    meta = described(1, 1, ["sin"], genome_class="RecurrentGenome", activate_time=2)
+    assert networks.to_genes(networks.read_tensorneat(nodes, conns, meta))
+    with pytest.raises(ValueError, match="`steps` must be at least the depth 2, got 1"):
+        networks.to_genes(networks.read_tensorneat(nodes, conns, meta | {"activate_time": 1}))
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"activation_names": ["exp"]}, "`activation` must be among .* got \\['exp'\\]"),
+        ({"aggregation_names": ["max"]}, "`aggregation` must be sum, .* max of 2 at node 3"),
+        ({"num_outputs": 2}, "`outputs` must be reached from an input, got \\[2\\]"),
+    ],
+)
+def test_what_our_genes_cannot_express_is_refused_with_the_reason(change, reason):
+    nodes = np.array([[0, 0, 0, 0], [1, 0, 0, 0], [2, 1, 0, 0], [3, 1, 0, 0]], np.float32)
+    conns = np.array([[0, 3, 2], [1, 3, 1], [3, 2, 3]], np.float32)
+    if "num_outputs" in change:
+        nodes, conns = nodes[[0, 1, 2, 3]], conns[:2]
+        change = {"num_outputs": 2}
+    meta = described(2, 1, ["sin"]) | change
+    network = networks.read_tensorneat(nodes, conns, meta)
+    with pytest.raises(ValueError, match=reason):
+        networks.to_genes(network)
+
+
+def described(inputs, outputs, activations, **more):
+    return {
+        "genome_class": "DefaultGenome",
+        "node_class": "BiasNode",
+        "conn_class": "DefaultConn",
+        "activation_names": activations,
+        "aggregation_names": ["sum"],
+        "num_inputs": inputs,
+        "num_outputs": outputs,
+    } | more
+
+
+NODES = [[0, 0, 0, 0], [1, 0, 0, 0], [2, 1, 0, 0], [9, 1, 0, 1]]
+CONNS = [[0, 2, 1], [1, 9, 1], [9, 2, 1]]
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("table", "place", "value", "reason"),
+    [
+        ("nodes", (3, 0), 2, "`keys` must differ, got 2"),
+        ("nodes", (3, 0), 2**24, "key that is whole, from 0 to 16777215, got 1.67772e"),
+        ("nodes", (3, 0), 8.5, "key that is whole, .* got 8.5"),
+        ("nodes", (3, 0), -1, "key that is whole, .* got -1"),
+        ("nodes", (3, 1), np.nan, "`nodes` must be finite in used rows"),
+        ("nodes", (3, 2), 1, "function index \\(aggregation\\) .* from 0 to 0, got 1"),
+        ("nodes", (3, 3), 2, "function index \\(activation\\) .* from -1 to 1, got 2"),
+        ("nodes", (3, 3), 0.5, "function index \\(activation\\) .* got 0.5"),
+        ("nodes", (1, 0), 5, "`nodes` must have the input or output 1 in row 1, got 5"),
+        ("conns", (0, 0), 7, "connections must join existing nodes, got 7"),
+        ("conns", (0, 1), 1, "`target` must not be an input, got 1"),
+        ("conns", (0, 0), 9, "once, got twice \\(9, 2\\)"),
+        ("conns", (0, 2), np.inf, "`conns` must be finite in used rows"),
+        ("conns", (1, 0), 9, "must be free of cycles, got one that holds or leads to 2, 9"),
+    ],
+)
+def test_a_malformed_genome_is_refused_with_field_need_and_what_came(
+    table, place, value, reason
+):
+    tables = {"nodes": np.array(NODES, np.float32), "conns": np.array(CONNS, np.float32)}
+    meta = described(2, 1, ["sin", "cos"])
+    assert networks.read_tensorneat(**tables, meta=meta)
+    tables[table][place] = value
+    with pytest.raises(ValueError, match=reason):
+        networks.read_tensorneat(**tables, meta=meta)
+
+
+def test_whatever_is_no_genome_is_a_value_error(plain):
+    """Bytes, arrays and names changed at random: a network or `ValueError`, nothing else."""
+    random = np.random.default_rng(0)
+    network = networks.read_tensorneat(plain.nodes[5], plain.conns[5], plain.meta)
+    genome = networks.write_tensorneat(network)
+    sound = networks.dump_tensorneat(genome)
+    outcomes = Counter()
+    for trial in range(3000):
+        data = [spoil_bytes, spoil_arrays, spoil_meta][trial % 3](sound, genome, random)
+        try:
+            networks.load_tensorneat(data)
+            outcomes["read"] += 1
+        except ValueError:
+            outcomes["refused"] += 1
+    assert outcomes["refused"] > 1500
+
+
+def spoil_bytes(sound, genome, random):
+    data = bytearray(sound)
+    for place in random.integers(0, len(data), random.integers(1, 6)):
+        data[place] = random.integers(256)
+    return bytes(data[: random.integers(len(data))] if random.random() < 0.3 else data)
+
+
+def spoil_arrays(sound, genome, random):
+    arrays = {"nodes": genome.nodes.copy(), "conns": genome.conns.copy()}
+    table = arrays[random.choice(["nodes", "conns"])]
+    strange = [np.nan, np.inf, -1, 0.5, 2, 3e9, 2**24, random.normal()]
+    table[random.integers(len(table)), random.integers(table.shape[1])] = random.choice(strange)
+    if random.random() < 0.2:
+        arrays["nodes"] = random.choice(["a", "b"], (3, 4))
+    if random.random() < 0.1:
+        arrays["conns"] = arrays["conns"][None]
+    stream = BytesIO()
+    np.savez(stream, meta=np.array(json.dumps(genome.meta)), **arrays)
+    return stream.getvalue()
+
+
+def spoil_meta(sound, genome, random):
+    meta = copy.deepcopy(genome.meta)
+    strange = [None, -1, 1.5, True, "x", [], ["nope"], {}, [1], 10**30, [[]], "DefaultGenome"]
+    for field in random.choice(list(meta), 2):
+        meta[field] = strange[random.integers(len(strange))]
+    text = json.dumps(meta if random.random() < 0.9 else [meta])
+    stream = BytesIO()
+    text = text[: random.integers(len(text))] if random.random() < 0.1 else text
+    np.savez(stream, nodes=genome.nodes, conns=genome.conns, meta=np.array(text))
+    return stream.getvalue()

@@ -1,0 +1,137 @@
+"""Networks as SVG, DOT, NumPy code and formulas say what the network is."""
+
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from itertools import pairwise
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from microcosmos.archive.encoding import encode
+from microcosmos.viz import networks
+from microcosmos.viz.networks import code
+from microcosmos.viz.networks.layout import layout
+
+pytestmark = pytest.mark.fast
+
+INPUTS, OUTPUTS = ("position", "sine", "cosine"), ("rest_angle", "rest_length")
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture
+def small():
+    """tanh of a sine of the position; one connection is disabled."""
+    genes = {
+        "nodes": {
+            "id": [0, 1, 2, 3, 4, 9],
+            "activation": ["identity"] * 3 + ["tanh", "identity", "sin"],
+            "bias": encode(np.array([0, 0, 0, 0.5, -1, 2])),
+        },
+        "connections": {
+            "innovation": [0, 4, 7, 8],
+            "source": [0, 1, 9, 2],
+            "target": [9, 4, 3, 3],
+            "enabled": [True, True, True, False],
+            "weight": encode(np.array([1, -2, 0.25, 3])),
+        },
+    }
+    return networks.from_genes(genes, INPUTS, OUTPUTS)
+
+
+def test_code_computes_what_the_network_does_with_numpy_alone(small, tmp_path):
+    module = tmp_path / "found.py"
+    module.write_text(networks.numpy_code(small))
+    program = (
+        "import sys, found, numpy as np\n"
+        "print(repr(found.network(np.array([0.3, -1.0, 7.0])).tolist()))\n"
+        "assert not any(name.startswith(('jax', 'microcosmos')) for name in sys.modules)\n"
+    )
+    came = subprocess.run(
+        [
+            sys.executable,
+            "-S",
+            "-c",
+            f"import sys; sys.path[:0] = {[np.__path__[0] + '/..']}\n" + program,
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    expected = [np.tanh(0.5 + 0.25 * np.sin(2 + 0.3)), -1 + 2]
+    np.testing.assert_allclose(eval(came.stdout), expected, rtol=1e-15)
+
+
+def test_code_of_every_genome_and_creature_is_checked(reference, grown):
+    """`numpy_code` carries the code out and raises where a value differs by 1e-12."""
+    for nodes, conns in zip(reference.nodes[:60], reference.conns[:60], strict=True):
+        networks.numpy_code(networks.read_tensorneat(nodes, conns, reference.meta))
+    for genes in grown[:60]:
+        networks.numpy_code(networks.from_genes(genes, INPUTS, OUTPUTS))
+
+
+def test_code_that_computes_otherwise_is_refused(small):
+    text = networks.numpy_code(small)
+    changed = replace(small, bias=(0, 0, 0, 0.5 + 1e-9, -1, 2))
+    code.require_same(small, text)
+    with pytest.raises(ValueError, match="must compute the same within 1e-12"):
+        code.require_same(changed, text)
+
+
+def test_names_cannot_end_the_text_they_stand_in(small):
+    name = 'x"""\nimport os\nos.abort()\n"""<b>'
+    spoiled = replace(small, input_names=(name, "b", "c"))
+    networks.numpy_code(spoiled)
+    ElementTree.fromstring(networks.svg(spoiled))
+    assert "<b>" not in networks.svg(spoiled)
+
+
+def test_a_formula_has_a_line_for_each_node_in_order(small):
+    assert networks.formula(small) == (
+        "rest_length = −1 − 2·sine\nn9 = sin(2 + position)\nrest_angle = tanh(0.5 + 0.25·n9)\n"
+    )
+
+
+def test_a_picture_draws_every_node_and_enabled_connection_with_names(small):
+    picture = ElementTree.fromstring(networks.svg(small))
+    assert len(picture.findall(f"{SVG}g[@class='node']")) == 6
+    links = [
+        path for path in picture.findall(f"{SVG}path") if path.find(f"{SVG}title") is not None
+    ]
+    told = sorted(path.findtext(f"{SVG}title") for path in links)
+    assert told == [
+        "node 9 → rest_angle: weight 0.25",
+        "position → node 9: weight 1",
+        "sine → rest_length: weight -2",
+    ]
+    width = {p.findtext(f"{SVG}title")[:8]: float(p.get("stroke-width")) for p in links}
+    assert width["sine → r"] > width["position"] > width["node 9 →"]
+    words = {text.text for text in picture.iter(f"{SVG}text")}
+    assert {*INPUTS, *OUTPUTS, "sin", "tanh"} <= words
+    assert picture.findtext(f"{SVG}title") == (
+        "A network with 3 inputs, 2 outputs, 1 hidden node and 3 connections"
+    )
+
+
+def test_nodes_never_overlap_and_sources_stand_left_of_their_targets(grown):
+    for genes in grown[:100]:
+        network = networks.from_genes(genes, INPUTS, OUTPUTS)
+        drawn = layout(network)
+        columns = {}
+        for x, y in drawn.place.values():
+            columns.setdefault(x, []).append(y)
+        for heights in columns.values():
+            assert all(b - a > 40 for a, b in pairwise(sorted(heights)))
+        for source, target in network.pairs:
+            if source not in network.outputs:
+                assert drawn.place[source][0] < drawn.place[target][0]
+
+
+def test_graphviz_gets_every_node_and_connection(small):
+    text = networks.dot(small)
+    assert re.findall(r"(\d+) -> (\d+)", text) == [("0", "9"), ("1", "4"), ("9", "3")]
+    assert len(re.findall(r"^  \d+ \[", text, re.M)) == 6
+    assert 'label="rest_angle\\ntanh"' in text

@@ -1,0 +1,204 @@
+"""Figures show the numbers of their rows, and mark what is not sound."""
+
+import itertools
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from microcosmos.viz.figures import experiments
+
+VISCOSITIES = [0.001, 0.01, 0.1, 2.0]
+NODES = [1000, 4000, 16000, 64000]
+
+
+def displacement(swimmer, viscosity):
+    return {"worm": 2.0, "ray": 0.4}[swimmer] / (1 + viscosity)
+
+
+@pytest.fixture
+def rows():
+    """A sweep in three forms; in the paper's a worm fails, in ours a ray meets a limit."""
+    found = []
+    for form, swimmer, viscosity in itertools.product(
+        ("paper", "ours", "strong"), ("worm", "ray"), reversed(VISCOSITIES)
+    ):
+        fails = (form, swimmer, viscosity) == ("paper", "worm", 0.001)
+        limited = (form, swimmer, viscosity) == ("ours", "ray", 2.0)
+        found.append(
+            {
+                "form": form,
+                "swimmer": swimmer,
+                "viscosity": viscosity,
+                "displacement": None if fails else displacement(swimmer, viscosity),
+                "status": "diverged" if fails else "ok",
+                "reynolds": None if fails else {"worm": 3.1, "ray": 6.2}[swimmer] / viscosity,
+                "limited": 0.25 if limited else 0.0,
+                "force_free": form != "paper",
+            }
+        )
+    return found
+
+
+@pytest.fixture
+def timings():
+    """A run that is linear beside a fluid of 6 s, and all pairs of which two are known."""
+    ours = [
+        {
+            "method": "microcosmos",
+            "nodes": nodes,
+            "seconds": 6 + nodes / 1000,
+            "fluid": 6.0,
+            "coupling": nodes / 2000,
+            "constraints": nodes / 4000,
+            "steric": nodes / 4000,
+            "memory_bytes": 2**26 + 1000 * nodes,
+        }
+        for nodes in NODES
+    ]
+    pairs = [
+        {"method": "all-pairs", "nodes": n, "seconds": 1e-6 * n**2, "memory_bytes": 8 * n**2}
+        for n in NODES[:2]
+    ]
+    for row in pairs:
+        row |= dict.fromkeys(("fluid", "coupling", "constraints", "steric"))
+    return ours + pairs
+
+
+def line(panel, label):
+    (found,) = [line for line in panel.get_lines() if line.get_label() == label]
+    return found
+
+
+def panels(figure):
+    return {panel.get_title(): panel for panel in figure.axes}
+
+
+def test_each_line_of_a_sweep_has_the_numbers_of_its_rows(rows):
+    found = panels(experiments.sweep(rows))
+    assert list(found) == [
+        "Ours",
+        "Ours, unlimited strength",
+        "The paper’s literal form (not force-free)",
+    ]
+    for title, panel in found.items():
+        assert panel.get_xscale() == "log"
+        for swimmer in ("worm", "ray"):
+            x, y = line(panel, swimmer).get_data()
+            np.testing.assert_array_equal(x, VISCOSITIES)
+            expected = [displacement(swimmer, nu) for nu in VISCOSITIES]
+            if swimmer == "worm" and "paper" in title:
+                expected[0] = np.nan
+            np.testing.assert_array_equal(np.array(y, float), expected)
+
+
+def test_a_limit_and_a_failure_are_marked_where_they_were(rows):
+    found = panels(experiments.sweep(rows))
+    ours, _, paper = found.values()
+    x, y = line(ours, "_ray, limited").get_data()
+    assert (list(x), list(y)) == ([2.0], [displacement("ray", 2.0)])
+    assert list(line(paper, "_worm, unfinished").get_xdata()) == [0.001]
+    for panel, label in ((paper, "_ray, limited"), (ours, "_worm, unfinished")):
+        assert len(line(panel, label).get_xdata()) == 0
+
+
+def test_a_form_that_is_not_force_free_stands_out(rows):
+    ours, strong, paper = experiments.sweep(rows).axes
+    assert ours.get_facecolor() == strong.get_facecolor() != paper.get_facecolor()
+    assert "not force-free" in paper.get_title()
+
+
+def test_the_legend_explains_only_marks_that_are_there(rows):
+    def texts(some):
+        (legend,) = experiments.sweep(some).legends
+        return [text.get_text() for text in legend.get_texts()]
+
+    assert texts(rows) == ["worm", "ray", "a limit was active", "did not finish"]
+    sound = [row for row in rows if row["status"] == "ok" and not row["limited"]]
+    assert texts(sound) == ["worm", "ray"]
+
+
+def test_the_upper_axis_has_the_worms_reynolds_numbers_at_its_viscosities(rows):
+    figure = experiments.sweep(rows)
+    for panel in figure.axes:
+        (upper,) = panel.child_axes
+        assert upper.get_xlabel() == "Reynolds number of the worm"
+        ticks = dict(zip(upper.get_xticks(), upper.get_xticklabels(), strict=True))
+        for viscosity, label in ticks.items():
+            assert float(label.get_text().replace(",", "")) == pytest.approx(
+                3.1 / viscosity, rel=0.05
+            )
+    assert set(upper.get_xticks()) <= set(VISCOSITIES)
+
+
+def test_the_upper_axis_names_another_swimmer_where_there_is_no_worm(rows):
+    figure = experiments.sweep([row for row in rows if row["swimmer"] == "ray"])
+    for panel in figure.axes:
+        assert panel.child_axes[0].get_xlabel() == "Reynolds number of the ray"
+
+
+def test_the_lines_of_a_scaling_run_have_the_numbers_of_its_rows(timings):
+    summary = {"exponent": 1.0, "exponent_all_pairs": 2.0, "peak_memory_bytes": 2**27}
+    time, memory = experiments.scaling(timings[::-1], summary).axes
+    for panel in (time, memory):
+        assert (panel.get_xscale(), panel.get_yscale()) == ("log", "log")
+    for label, expected in (
+        ("Microcosmos (the nodes’ part ∝ n$^{1.00}$)", [6 + n / 1000 for n in NODES]),
+        ("fluid", [6.0] * 4),
+        ("interpolation and spreading", [n / 2000 for n in NODES]),
+    ):
+        x, y = line(time, label).get_data()
+        np.testing.assert_array_equal(x, NODES)
+        np.testing.assert_allclose(y, expected)
+    x, y = line(time, "all pairs (∝ n$^{2.00}$)").get_data()
+    np.testing.assert_allclose(y, 1e-6 * np.array(NODES[:2]) ** 2)
+    np.testing.assert_allclose(line(memory, "all pairs").get_ydata(), [8e6, 1.28e8])
+    assert memory.yaxis.get_major_formatter()(2**29) == "512 MiB"
+
+
+def test_the_guide_of_a_scaling_run_is_linear(timings):
+    time, _ = experiments.scaling(timings).axes
+    x, y = line(time, "∝ n").get_data()
+    assert y[1] / y[0] == pytest.approx(x[1] / x[0])
+    assert (x[1], y[1]) == (64000, 70)
+
+
+def test_a_scaling_run_that_has_just_begun_is_drawn(timings):
+    time, memory = experiments.scaling(timings[:1]).axes
+    assert list(line(time, "Microcosmos").get_xdata()) == [1000]
+    assert len(memory.get_lines()) == 1
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_equal_figures_are_equal_files(rows, tmp_path, suffix):
+    first, second = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
+    experiments.save(experiments.sweep(rows), first)
+    experiments.save(experiments.sweep(rows), second)
+    data = first.read_bytes()
+    assert data.startswith({"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[suffix])
+    assert data == second.read_bytes()
+
+
+def test_a_file_of_another_kind_is_refused(timings, tmp_path):
+    with pytest.raises(ValueError, match=r"`path` must end in .png, .svg, .pdf, got"):
+        experiments.save(experiments.scaling(timings), tmp_path / "a.bmp")
+
+
+@pytest.mark.parametrize(
+    ("draw", "lacking"), [(experiments.sweep, "form"), (experiments.scaling, "method")]
+)
+def test_rows_that_lack_a_number_are_refused(draw, lacking):
+    with pytest.raises(ValueError, match="`rows` must have at least one row"):
+        draw([])
+    with pytest.raises(ValueError, match=f"`rows` must have {lacking}, .*; row 0 has not"):
+        draw([{"anything": 1}])
+
+
+def test_figures_leave_matplotlibs_global_state_alone():
+    code = (
+        "import sys; from microcosmos.viz import figures; "
+        "figures.scaling([{'method': 'microcosmos', 'nodes': 9, 'seconds': 1.0}]); "
+        "sys.exit('matplotlib.pyplot' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

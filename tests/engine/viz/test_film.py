@@ -1,0 +1,113 @@
+"""Films have the frames, the size and the pace that were asked for."""
+
+import io
+from platform import machine
+
+import av
+import numpy as np
+import pytest
+from PIL import Image
+
+from microcosmos.viz import film as module
+from microcosmos.viz.files import export
+from microcosmos.viz.film import gif, mp4
+from microcosmos.viz.raster import frame
+
+
+@pytest.fixture(scope="module")
+def film(swimming):
+    """The bytes of an MP4 of the eel."""
+    return mp4(swimming, width=160, rate=20)
+
+
+def shown(image):
+    return np.asarray(image.convert("RGB"), float)
+
+
+@pytest.mark.parametrize(("most", "every", "count"), [(125, 1, 31), (31, 1, 31), (10, 4, 8)])
+def test_a_gif_has_every_so_many_frames(swimming, most, every, count):
+    image = Image.open(io.BytesIO(gif(swimming, width=160, frames=most, rate=20)))
+    assert image.format == "GIF"
+    assert image.n_frames == count
+    assert image.size == (160, 120)
+    for number in range(count):
+        image.seek(number)
+        assert image.info["duration"] == 50
+        source = frame(swimming, every * number, width=160)
+        # All frames share 256 colours.
+        away = np.abs(shown(image) - source)
+        assert away.mean() < 2
+        assert np.quantile(away, 0.999) < 32
+
+
+def test_a_gif_starts_again_at_its_end_and_is_the_same_every_time(swimming):
+    data = gif(swimming, width=64)
+    assert Image.open(io.BytesIO(data)).info["loop"] == 0
+    assert gif(swimming, width=64) == data
+
+
+def test_an_mp4_has_every_frame_at_its_size_and_pace(film, swimming):
+    with av.open(io.BytesIO(film)) as container:
+        stream = container.streams.video[0]
+        assert (stream.codec.name, stream.pix_fmt) == ("h264", "yuv420p")
+        assert stream.average_rate == 20
+        assert container.duration == pytest.approx(31 / 20 * av.time_base, rel=1e-3)
+        pictures = list(container.decode(stream))
+    assert len(pictures) == 31
+    for number, picture in enumerate(pictures):
+        source = frame(swimming, number, width=160).astype(float)
+        got = picture.to_ndarray(format="rgb24")
+        assert got.shape == source.shape
+        assert picture.pts * picture.time_base == pytest.approx(number / 20)
+        assert np.abs(got - source).mean() < 4
+
+
+def test_an_mp4_keeps_the_colours_of_still_water(film):
+    with av.open(io.BytesIO(film)) as container:
+        first = next(container.decode(video=0))
+    assert (first.colorspace, first.color_range) == (1, 1)  # BT.709, limited.
+    corner = first.to_ndarray(format="rgb24")[3, 3].astype(int)
+    assert np.abs(corner - [246, 248, 249]).max() <= 2
+
+
+def test_a_browser_can_play_an_mp4_before_it_has_all_of_it(film):
+    assert 0 < film.index(b"moov") < film.index(b"mdat")
+
+
+@pytest.mark.skipif(machine() not in ("x86_64", "AMD64"), reason="other machines untried")
+def test_an_mp4_is_the_same_every_time(film, swimming):
+    assert mp4(swimming, width=160, rate=20) == film
+
+
+def test_an_mp4_without_an_encoder_is_refused(swimming, monkeypatch):
+    monkeypatch.setattr(module, "ENCODER", "libabsent")
+    with pytest.raises(RuntimeError, match=r"PyAV with libabsent.*make a GIF instead"):
+        mp4(swimming)
+
+
+@pytest.mark.parametrize(
+    ("maker", "options", "message"),
+    [
+        (gif, {"rate": 51}, "`rate` must be from 1 to 50 frames a second, got 51"),
+        (gif, {"frames": 1}, "`frames` must be at least 2, got 1"),
+        (mp4, {"rate": 0}, "`rate` must be from 1 to 120 frames a second, got 0"),
+        (mp4, {"width": 161}, "`width` must be an even number"),
+    ],
+)
+def test_a_film_that_cannot_be_is_refused(swimming, maker, options, message):
+    with pytest.raises(ValueError, match=message):
+        maker(swimming, **options)
+
+
+@pytest.mark.parametrize(
+    ("name", "begins"),
+    [("a.png", b"\x89PNG"), ("b.GIF", b"GIF89a"), ("c.mp4", b"\0\0\0\x20ftyp")],
+)
+def test_an_export_is_what_its_name_says(eel, tmp_path, name, begins):
+    export(eel, tmp_path / name, width=64)
+    assert (tmp_path / name).read_bytes().startswith(begins)
+
+
+def test_an_export_of_another_kind_is_refused(eel, tmp_path):
+    with pytest.raises(ValueError, match=r"`path` must end in .png, .gif, .mp4, got .*\.avi"):
+        export(eel, tmp_path / "film.avi")

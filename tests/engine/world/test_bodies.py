@@ -1,0 +1,150 @@
+"""Several bodies in one world: each free of force on its own, and none through another."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import bodies, fields, fluid, world
+from microcosmos.bodies import swimmers
+from validation import scenes
+
+BOTH = pytest.mark.parametrize("gradient", [fields.gaussian, fields.binomial])
+
+
+def steric(gradient, dtype, strength=4.0):
+    return fields.Steric(jnp.asarray(strength, dtype), jnp.asarray(0.1, dtype), gradient)
+
+
+def side_by_side(nodes, gap):
+    """Two parallel filaments."""
+    one = bodies.chain(nodes, 1.0)
+    return bodies.together([bodies.placed(one, (0.0, y)) for y in (-gap / 2, gap / 2)])
+
+
+@jax.jit
+def watch(box, start, rest):
+    """The end, with positions and forces of each body after every step."""
+    return world.rollout(box, start, rest, lambda s, m: (s.positions, m.force))
+
+
+def wild_and_calm(dtype):
+    """Rest shapes of two bodies of which only the first is asked to move."""
+    body = side_by_side(16, 20.0)
+    rest = scenes.erratic(body, 60, dtype, seed=0)
+    still = scenes.held(body, 60, dtype)
+    angle = rest.angle.at[:, 14:].set(still.angle[:, 14:])
+    return body, type(rest)(angle, rest.length.at[:, 15:].set(still.length[:, 15:]))
+
+
+def test_each_body_exerts_no_force_however_they_move(float64):
+    body = side_by_side(16, 3.0)
+    box, start = scenes.immersed(
+        body,
+        0.1,
+        float64,
+        size=(32, 32),
+        steric=steric(fields.gaussian, float64),
+        form=world.Form(layers=2),
+        limits=scenes.limits(0.1, float64),
+    )
+    end, (_, force) = watch(box, start, scenes.erratic(body, 60, float64, seed=1))
+    assert force.shape == (60, 2, 2)
+    np.testing.assert_allclose(force, 0, atol=1e-13)
+    drift = [jnp.sum(plane) for plane in fluid.momentum(end.populations)]
+    np.testing.assert_allclose(drift, 0, atol=1e-11)
+    assert np.abs(np.asarray(end.positions - start.positions)).max() > 0.5
+
+
+def test_another_body_is_moved_only_by_the_fluid(float64):
+    body, rest = wild_and_calm(float64)
+    options = {"size": (48, 48), "limits": scenes.limits(0.1, float64)}
+    box, start = scenes.immersed(body, 0.1, float64, **options)
+    alone, _ = scenes.immersed(bodies.chain(16, 1.0), 0.1, float64, **options)
+    begun = world.at_rest(alone, start.positions[:16])
+    _, (pair, _) = watch(box, start, rest)
+    _, (single, _) = watch(alone, begun, type(rest)(rest.angle[:, :14], rest.length[:, :15]))
+    # At first the fluid around the other one is at rest, and so is it.
+    np.testing.assert_allclose(pair[0, :16], single[0], atol=1e-14)
+    np.testing.assert_allclose(pair[0, 16:], start.positions[16:], atol=1e-14)
+    moved = np.abs(np.asarray(pair[-1, 16:] - start.positions[16:])).max()
+    assert 1e-4 < moved < 1
+
+
+def test_the_limit_of_force_is_each_bodys_own(float64):
+    body, rest = wild_and_calm(float64)
+    both = scenes.erratic(body, 1, float64, seed=0)
+    box, start = scenes.immersed(
+        body, 0.1, float64, size=(48, 48), limits=world.Limits(None, jnp.asarray(0.05))
+    )
+    step = jax.jit(world.step)
+    _, one = step(box, start, jax.tree.map(lambda x: x[0], rest))
+    _, two = step(box, start, jax.tree.map(lambda x: x[0], both))
+    # A body at its limit holds all of its nodes, and nobody else's.
+    assert (one.held, two.held) == (0.5, 1)
+
+
+def test_parallel_bodies_are_pushed_apart_and_not_the_fluid(float64):
+    body = side_by_side(20, 1.0)
+    box, start = scenes.immersed(
+        body,
+        0.3,
+        float64,
+        size=(48, 48),
+        steric=steric(fields.binomial, float64),
+        limits=scenes.limits(0.3, float64),
+    )
+    _, (positions, force) = watch(box, start, scenes.held(body, 300, float64))
+    y = np.asarray(positions[..., 1])
+    gap = y[:, 20:].mean(1) - y[:, :20].mean(1)
+    assert gap[-1] > 3
+    np.testing.assert_allclose(force, 0, atol=1e-6)
+    np.testing.assert_allclose(y.mean(1), 24, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "gradient"), [("tadpole", fields.gaussian), ("jellyfish", fields.binomial)]
+)
+def test_no_body_moves_itself_by_repulsion(name, gradient, float64):
+    swimmer = swimmers.SWIMMERS[name]()
+    box, start = scenes.immersed(swimmer.body, 0.3, float64, steric=steric(gradient, float64))
+    bent = start.positions + 0.3 * np.random.default_rng(0).normal(size=start.positions.shape)
+    push, drift = world.repel(box, bent)
+    assert np.abs(push).max() > 0.05
+    np.testing.assert_allclose(drift, 0, atol=1e-13)
+    np.testing.assert_allclose(jnp.sum(push, 0), 0, atol=1e-13)
+
+
+def driven_together(gradient, speed, dtype):
+    """How far one rigid filament is ahead of another after being driven 20 cells through it."""
+    one = bodies.chain(20, 1.0)
+    pair = bodies.together([bodies.placed(one, (0.0, -3.0)), bodies.placed(one, (0.4, 3.0))])
+    box, start = scenes.immersed(pair, 0.3, dtype)
+    if gradient is not None:
+        box = replace(box, steric=steric(gradient, dtype))
+    wish = speed * jnp.where(box.groups.member == 0, 1.0, -1.0)[:, None]
+
+    def advance(positions, _):
+        _, drift = world.repel(box, positions)
+        return positions + drift + wish * jnp.asarray([[0.0, 1.0]], dtype), None
+
+    steps = round(10 / speed)
+    end, _ = jax.lax.scan(advance, start.positions, None, length=steps)
+    return float(jnp.mean(end[20:, 1]) - jnp.mean(end[:20, 1]))
+
+
+@BOTH
+@pytest.mark.parametrize("speed", [0.05, 0.095])
+def test_driven_filaments_do_not_cross(gradient, speed, float64):
+    assert driven_together(gradient, speed, float64) > 1
+
+
+def test_without_repulsion_driven_filaments_cross(float64):
+    assert driven_together(None, 0.05, float64) < -10
+
+
+@BOTH
+def test_filaments_driven_faster_than_the_limit_cross(gradient, float64):
+    assert driven_together(gradient, 0.2, float64) < 0

@@ -1,0 +1,298 @@
+"""The archive as columns, now and in the past, and as files."""
+
+import hashlib
+import json
+from uuid import UUID
+
+import numpy as np
+import pytest
+
+from microcosmos.archive import file
+from microcosmos.spec import parse
+from server.archives import routes as archives
+from server.attempts.begin import claim
+from server.runs.submission import submit
+
+
+@pytest.fixture
+def h5(spec) -> bytes:
+    """The file of an archive with one elite."""
+    archive = {
+        "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
+        "features": np.array([[0.01, 1.0]]),
+        "fitness": np.array([2.5]),
+        "generation": np.array([3]),
+        "creature": np.zeros((1, 32), np.uint8),
+        "cell": np.array([17]),
+    }
+    attributes = {
+        "format": file.FORMAT,
+        "spec": json.dumps(spec),
+        "features": json.dumps(["bending_effort", "stretching_effort"]),
+    }
+    return file.dump({"archive": archive}, attributes)
+
+
+@pytest.fixture
+def saved(services, run_id, report, h5) -> bytes:
+    """A run has this checkpoint."""
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1), 1.0)
+    attempt.save(1, h5)
+    return h5
+
+
+def test_the_archive_is_the_last_elite_of_each_cell(api, services, run_id, report, spec):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
+    attempt.record(report(2, {5: 1.5}), 1.0)
+    attempt.record(report(3, {255: 0.5, 5: 4.0}), 1.0)
+    now = api.get(f"runs/{run_id}/archive").json()
+    assert now["generation"] == 3
+    assert now["axes"] == spec["archive"]["descriptors"]
+    assert now["cell"] == [3, 5, 255]
+    assert now["fitness"] == [2.0, 4.0, 0.5]
+    assert now["elite_generation"] == [1, 3, 3]
+    assert now["descriptors"] == [[0.25, 0.5]] * 3
+    assert all(api.get(f"creatures/{sha}").status_code == 200 for sha in now["creature"])
+
+
+@pytest.mark.parametrize(
+    ("generation", "cells", "fitness"),
+    [(0, [], []), (1, [3, 5], [2.0, 1.0]), (2, [3, 5], [2.0, 1.5]), (99, [3, 5], [2.0, 1.5])],
+)
+def test_the_archive_in_the_past_is_as_it_was(
+    api, services, run_id, report, generation, cells, fitness
+):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
+    attempt.record(report(2, {5: 1.5}), 1.0)
+    then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
+    assert (then["cell"], then["fitness"]) == (cells, fitness)
+    assert then["generation"] == min(generation, 2)
+
+
+@pytest.mark.parametrize("ending", ["h5", "csv"])
+def test_without_a_checkpoint_there_is_no_file_yet(api, run_id, ending):
+    answer = api.get(f"runs/{run_id}/archive.{ending}")
+    assert answer.status_code == 404
+    assert answer.json()["detail"] == f"Run {run_id} has no checkpoint yet; it is queued."
+
+
+def test_the_file_is_the_checkpoint_with_its_hash_as_etag(api, run_id, saved):
+    answer = api.get(f"runs/{run_id}/archive.h5")
+    assert answer.content == saved
+    assert answer.headers["etag"] == f'"{hashlib.sha256(saved).hexdigest()}"'
+    assert answer.headers["content-length"] == str(len(saved))
+    assert "attachment" in answer.headers["content-disposition"]
+
+
+def test_who_has_the_file_gets_it_once(api, run_id, saved):
+    etag = api.get(f"runs/{run_id}/archive.h5").headers["etag"]
+    again = api.get(f"runs/{run_id}/archive.h5", headers={"If-None-Match": f'"other", {etag}'})
+    assert (again.status_code, again.content) == (304, b"")
+    other = api.get(f"runs/{run_id}/archive.h5", headers={"If-None-Match": '"other"'})
+    assert other.status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("wanted", "start", "stop"),
+    [
+        ("bytes=0-9", 0, 10),
+        ("bytes=100-", 100, None),
+        ("bytes=-7", -7, None),
+        ("bytes=5-5", 5, 6),
+    ],
+)
+def test_a_part_of_the_file_can_be_asked_for(api, run_id, saved, wanted, start, stop):
+    answer = api.get(f"runs/{run_id}/archive.h5", headers={"Range": wanted})
+    assert answer.status_code == 206
+    assert answer.content == saved[start:stop]
+    first = start % len(saved)
+    last = first + len(answer.content) - 1
+    assert answer.headers["content-range"] == f"bytes {first}-{last}/{len(saved)}"
+
+
+def test_parts_that_cannot_be_are_refused_or_ignored(api, run_id, saved):
+    def ask(**headers):
+        return api.get(f"runs/{run_id}/archive.h5", headers=headers)
+
+    beyond = ask(Range=f"bytes={len(saved)}-")
+    assert beyond.status_code == 416
+    assert beyond.headers["content-range"] == f"bytes */{len(saved)}"
+    assert ask(Range="bytes=0-1,4-5").content == saved
+    assert ask(Range="lines=0-1").content == saved
+    assert ask(**{"Range": "bytes=0-1", "If-Range": '"an older one"'}).content == saved
+
+
+def test_the_table_has_the_columns_of_pyribs(api, run_id, saved):
+    answer = api.get(f"runs/{run_id}/archive.csv")
+    assert answer.headers["content-type"].startswith("text/csv")
+    header, row = (line.split(",") for line in answer.text.splitlines())
+    table = dict(zip(header, row, strict=True))
+    assert [name for name in table if name.startswith("solution_")] == [
+        f"solution_{i}" for i in range(5)
+    ]
+    assert float(table["objective"]) == 2.5
+    assert [float(table["measures_0"]), float(table["measures_1"])] == [-2.0, 0.0]
+    assert table["index"] == "17"
+
+
+SLIM = {"energy": 0.1 + 0.2, "turning": -1e-9}
+
+
+def test_an_archive_has_the_features_of_its_elites_that_are_asked_for(
+    api, services, run_id, report
+):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0}, features=SLIM), 1.0)
+    attempt.record(report(2, {3: 2.0}, features=dict.fromkeys(SLIM, 7.0)), 1.0)
+    found = api.get(f"runs/{run_id}/archive", params={"features": "turning,energy"}).json()
+    assert found["cell"] == [3, 5]
+    assert found["features"] == {"turning": [7.0, -1e-9], "energy": [7.0, 0.1 + 0.2]}
+    names = [feature["name"] for feature in found["recorded"]]
+    assert names == ["displacement", "bending_effort", "stretching_effort", *SLIM]
+    assert api.get(f"runs/{run_id}/archive").json()["features"] == {}
+    before = {"features": "energy", "generation": 1}
+    then = api.get(f"runs/{run_id}/archive", params=before).json()
+    assert then["features"] == {"energy": [0.1 + 0.2]}
+
+
+@pytest.mark.postgresql
+def test_an_archive_tells_only_what_entered_after_a_generation(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 0.5}, features=SLIM), 1.0)
+    attempt.record(report(2, {5: 2.0, 7: 0.1}, features=SLIM), 1.0)
+    attempt.record(report(3, {5: 3.0}, features=SLIM), 1.0)
+
+    def read(**asked):
+        found = api.get(f"runs/{run_id}/archive", params=asked | {"features": "energy"}).json()
+        assert len(found["features"]["energy"]) == len(found["cell"])
+        return dict(zip(found["cell"], found["elite_generation"], strict=True))
+
+    assert read() == {3: 1, 5: 3, 7: 2}
+    assert read(after=1) == {5: 3, 7: 2}
+    assert read(after=1, generation=2) == {5: 2, 7: 2}
+    assert read(after=3) == {}
+    assert read(after=2**62) == {}
+    assert api.get(f"runs/{run_id}/archive", params={"after": -1}).status_code == 422
+
+
+def test_features_that_were_not_recorded_are_refused_with_those_that_were(
+    api, services, run_id, report
+):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
+    answer = api.get(f"runs/{run_id}/archive", params={"features": "energy,displacement"})
+    assert answer.status_code == 422
+    (error,) = answer.json()["errors"]
+    assert (error["field"], error["got"]) == ("features", ["energy"])
+    assert "displacement" in error["needed"]
+
+
+@pytest.mark.parametrize("descriptors", [(0.5,), (1.0, 2.0, 3.0)])
+def test_elites_have_any_number_of_descriptors(api, services, run_id, report, descriptors):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}, descriptors), 1.0)
+    assert api.get(f"runs/{run_id}/archive").json()["descriptors"] == [list(descriptors)]
+    entries = services.redis.xrange(services.events.stream)
+    (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"elites"]
+    assert told["descriptors"] == [list(descriptors)]
+
+
+@pytest.mark.parametrize(
+    ("archive", "kind", "cells"),
+    [
+        ({"descriptors": [{"name": "turning", "bins": 7}]}, "grid", 7),
+        (
+            {"descriptors": [{"name": name} for name in ("nodes", "mach", "power")]},
+            "grid",
+            8000,
+        ),
+        ({"centroids": 500}, "cvt", 500),
+    ],
+)
+def test_an_archive_says_what_its_cells_and_axes_are(
+    api, services, spec, report, archive, kind, cells
+):
+    document = {**spec, "archive": {**archive}}
+    run = api.post("runs", json=document).json()
+    claim(services, UUID(run["id"]), "worker").record(report(1, {5: 1.0}), 1.0)
+    found = api.get(f"runs/{run['id']}/archive").json()
+    assert (found["kind"], found["cells"]) == (kind, cells)
+    names = [axis["name"] for axis in found["axes"]]
+    assert names == [each["name"] for each in run["spec"]["archive"]["descriptors"]]
+    assert all(axis["low"] < axis["high"] for axis in found["axes"])
+
+
+def test_a_feature_comes_with_title_unit_and_ends(api, services, run_id, report):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}, features={"old": 1.0}), 1.0)
+    recorded = api.get(f"runs/{run_id}/archive").json()["recorded"]
+    known = {feature.pop("name"): feature for feature in recorded}
+    assert known["bending_effort"]["title"] == "Bending effort"
+    assert known["bending_effort"]["unit"] == "rad²"
+    assert known["bending_effort"]["low"] < known["bending_effort"]["high"]
+    assert known["old"] == {
+        "title": "Old",
+        "unit": "",
+        "low": None,
+        "high": None,
+        "scale": "linear",
+    }
+
+
+def test_the_history_tells_the_archive_of_every_generation(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}, features={"turning": 0.5}), 1.0)
+    attempt.record(report(2, {5: 1.5}, features={"turning": 0.25}), 1.0)
+    attempt.record(report(3, {255: 0.5, 5: 4.0}, features={"turning": 1.0}), 1.0)
+    asked = {"features": "turning"}
+    history = api.get(f"runs/{run_id}/archive/history", params=asked).json()
+    assert history["generation"] == 3
+    assert history["cell"] == [3, 5, 5, 5, 255]
+    assert history["elite_generation"] == [1, 1, 2, 3, 3]
+    assert history["features"] == {"turning": [0.5, 0.5, 0.25, 1.0, 1.0]}
+    columns = ("fitness", "descriptors", "creature")
+    for generation in range(4):
+        then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
+        last = {
+            cell: [history[name][i] for name in columns]
+            for i, cell in enumerate(history["cell"])
+            if history["elite_generation"][i] <= generation
+        }
+        assert last == {
+            cell: [then[name][i] for name in columns] for i, cell in enumerate(then["cell"])
+        }
+
+
+def test_a_history_with_what_was_not_recorded_is_refused(api, services, run_id, report):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
+    answer = api.get(f"runs/{run_id}/archive/history", params={"features": "beauty"})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == "features"
+
+
+def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, spec, report):
+    spec["archive"]["centroids"] = 3
+    run_id = submit(services, parse(spec))[0].id
+    assert api.get(f"runs/{run_id}/archive/centroids").json() == {"centroids": None}
+    places = np.array([[0.25, 0.5], [0.75, 0.125], [0.5, 1.0]], np.float32)
+    attributes = {"format": file.FORMAT}
+    data = file.dump({"archive": {"centroids": places}}, attributes)
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {2: 1.0}), 1.0)
+    attempt.save(1, data)
+    answer = api.get(f"runs/{run_id}/archive/centroids").json()
+    assert answer["centroids"] == places.tolist()
+
+
+def test_a_grid_has_no_centroids(api, run_id):
+    answer = api.get(f"runs/{run_id}/archive/centroids")
+    assert (answer.status_code, answer.json()["title"]) == (404, "No centroids")
+
+
+def test_a_history_too_long_to_be_sent_is_refused(api, services, run_id, report, monkeypatch):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
+    monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
+    answer = api.get(f"runs/{run_id}/archive/history")
+    assert answer.status_code == 422
+    assert "has 2 entries, of which at most 1" in answer.json()["detail"]

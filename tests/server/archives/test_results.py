@@ -1,0 +1,168 @@
+"""Results that are tables: written with each generation, read as JSON and CSV."""
+
+import csv
+import io
+import json
+from uuid import UUID
+
+import pytest
+from sqlalchemy import func, select
+from sqlalchemy.exc import OperationalError
+
+from microcosmos.archive import creature
+from server.attempts.begin import claim
+from server.core.database import Sessions
+from server.tables import Result, Run
+from server.workers import registry
+
+WORM = {"swimmer": "worm", "viscosity": 0.5, "ok": True, "number": 1}
+RAY = {"swimmer": "ray", "viscosity": 2.0, "ok": False, "number": 2}
+
+
+def count(services):
+    with services.sessions.read() as session:
+        return session.scalar(select(func.count()).select_from(Result))
+
+
+def test_rows_are_read_in_the_order_of_the_run_with_their_creatures(
+    api, services, sweep_id, table
+):
+    attempt = claim(services, sweep_id, "worker")
+    attempt.record(table(1, WORM), 1.0)
+    attempt.record(table(2, RAY, {"note": "no creature"}, summary={"best": 3.5}), 1.0)
+    found = api.get(f"runs/{sweep_id}/results").json()
+    assert (found["generation"], found["summary"]) == (2, {"best": 3.5})
+    creatures = [row.pop("creature") for row in found["rows"]]
+    assert found["rows"] == [WORM, RAY, {"note": "no creature"}]
+    assert creatures[2] is None
+    assert all(api.get(f"creatures/{sha}").status_code == 200 for sha in creatures[:2])
+
+
+def test_a_table_without_archive_has_a_run_and_curves_like_any_other(
+    api, services, sweep, sweep_id, table
+):
+    claim(services, sweep_id, "worker").record(table(1, WORM, summary={"best": 2.0}), 4.0)
+    run = api.get(f"runs/{sweep_id}").json()
+    total = len(sweep["swimmers"]) * len(sweep["forms"])
+    assert (run["generation"], run["generations"]) == (1, total)
+    assert run["progress"] == 1 / total
+    assert run["eta_seconds"] == pytest.approx(4.0 * (total - 1))
+    assert (run["qd_score"], run["sparkline"], run["summary"]) == (None, [], {"best": 2.0})
+    curves = api.get(f"runs/{sweep_id}/generations").json()
+    assert (curves["generation"], curves["qd_score"], curves["seconds"]) == ([1], [None], [4.0])
+    assert [item["id"] for item in api.get("runs").json()["items"]] == [run["id"]]
+
+
+def test_what_is_no_archive_says_where_its_result_is(api, sweep_id):
+    for path in ("archive", "archive.csv"):
+        answer = api.get(f"runs/{sweep_id}/{path}")
+        assert answer.status_code == 404
+        assert f"/api/v1/runs/{sweep_id}/results" in answer.json()["detail"]
+
+
+def test_what_is_no_table_says_where_its_archive_is(api, run_id):
+    assert api.get(f"runs/{run_id}/results").json()["rows"] == []
+    answer = api.get(f"runs/{run_id}/results.csv")
+    assert answer.status_code == 404
+    assert f"/api/v1/runs/{run_id}/archive" in answer.json()["detail"]
+
+
+def test_a_refinement_has_cells_to_keep_to_and_a_table_all_the_same(
+    api, services, identity, table
+):
+    file = creature.document(identity(1), None, None)
+    run = api.post("runs", json={"experiment": "refinement", "creature": file}).json()["id"]
+    claim(services, UUID(run), "worker").record(table(1, {"step": 0, "fitness": 2.5}), 1.0)
+    answer = api.get(f"runs/{run}/results.csv")
+    assert "refinement-" in answer.headers["content-disposition"]
+    assert answer.text.splitlines()[0] == "step,fitness,creature"
+    for path in ("archive", "archive.csv"):
+        assert api.get(f"runs/{run}/{path}").status_code == 404
+    registry.report(services.sessions, "small", "cpu", 1000, "idle")
+    large = api.post("runs", json={"experiment": "refinement", "creature": file})
+    assert large.json()["errors"][0]["field"] == "segment"
+
+
+def test_numbers_that_json_lacks_are_told_as_none(api, services, sweep_id, table):
+    rows = ({"displacement": float("nan")}, {"displacement": float("inf")})
+    claim(services, sweep_id, "worker").record(table(1, *rows), 1.0)
+    found = api.get(f"runs/{sweep_id}/results").json()["rows"]
+    assert [row["displacement"] for row in found] == [None, None]
+
+
+def test_the_table_as_csv_has_every_column(api, services, sweep_id, table):
+    assert api.get(f"runs/{sweep_id}/results.csv").status_code == 404
+    attempt = claim(services, sweep_id, "worker")
+    attempt.record(table(1, WORM), 1.0)
+    attempt.record(table(2, {"swimmer": "ray, flat", "late": 1.5}), 1.0)
+    answer = api.get(f"runs/{sweep_id}/results.csv")
+    assert answer.headers["content-type"] == "text/csv; charset=utf-8"
+    assert "gaits-" in answer.headers["content-disposition"]
+    first, second = csv.DictReader(io.StringIO(answer.text))
+    assert list(first) == ["swimmer", "viscosity", "ok", "number", "late", "creature"]
+    assert (first["viscosity"], first["late"], len(first["creature"])) == ("0.5", "", 64)
+    assert (second["swimmer"], second["late"]) == ("ray, flat", "1.5")
+
+
+def test_a_rewind_forgets_rows_and_summary_beyond_the_checkpoint(
+    api, services, sweep_id, table
+):
+    first = claim(services, sweep_id, "worker")
+    first.record(table(1, WORM, summary={"best": 1.0}), 1.0)
+    first.save(1, b"after 1")
+    first.record(table(2, RAY, RAY, summary={"best": 2.0}), 1.0)
+    again = claim(services, sweep_id, "worker")
+    found = api.get(f"runs/{sweep_id}/results").json()
+    assert (len(found["rows"]), found["summary"]) == (1, {"best": 1.0})
+    assert api.get(f"runs/{sweep_id}").json()["summary"] == {"best": 1.0}
+    again.record(table(2, RAY), 1.0)
+    swimmers = [row["swimmer"] for row in api.get(f"runs/{sweep_id}/results").json()["rows"]]
+    assert swimmers == ["worm", "ray"]
+    assert api.get(f"runs/{sweep_id}").json()["summary"] == {"best": 1.0}
+
+
+def test_a_generation_written_twice_after_an_outage_has_its_rows_once(
+    services, sweep_id, table
+):
+    attempt = claim(services, sweep_id, "worker")
+    for _ in range(2):  # Whether the first was committed nobody knew.
+        attempt.record(table(1, WORM, RAY), 1.0)
+    assert count(services) == 2
+
+
+def test_rows_and_standing_are_written_together_or_not_at_all(
+    services, sweep_id, table, monkeypatch
+):
+    attempt = claim(services, sweep_id, "worker")
+
+    def broken(*_):
+        raise OperationalError("insert", {}, Exception("gone"))
+
+    monkeypatch.setattr("server.attempts.recording.count_results", broken)
+    with pytest.raises(OperationalError):
+        attempt.record(table(1, WORM), 1.0)
+    with services.sessions.read() as session:
+        assert session.get_one(Run, sweep_id).generation == 0
+    assert count(services) == 0
+
+
+def test_new_rows_are_told_to_everybody(services, sweep_id, table):
+    claim(services, sweep_id, "worker").record(table(1, WORM, summary={"best": 1.0}), 1.0)
+    entries = services.redis.xrange(services.events.stream)
+    (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"results"]
+    creature = told["rows"][0].pop("creature")
+    assert len(creature) == 64
+    assert told == {
+        "run": str(sweep_id),
+        "generation": 1,
+        "summary": {"best": 1.0},
+        "rows": [WORM],
+    }
+
+
+def test_a_deleted_run_takes_its_rows_with_it(services, sweep_id, table):
+    sessions: Sessions = services.sessions
+    claim(services, sweep_id, "worker").record(table(1, WORM), 1.0)
+    with sessions.write.begin() as session:
+        session.delete(session.get_one(Run, sweep_id))
+    assert count(services) == 0

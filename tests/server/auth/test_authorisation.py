@@ -1,0 +1,223 @@
+"""Every route of the application × everybody who may come: who is let in."""
+
+import re
+from contextlib import contextmanager
+from datetime import UTC, datetime, timedelta
+from uuid import uuid4
+
+import httpx
+import pytest
+from fastapi.routing import iter_route_contexts
+
+from microcosmos.archive import creature
+from microcosmos.spec import parse
+from server.app import create_app
+from server.auth import tokens
+from server.auth.principal import ADMIN, CALLER, READ, WRITE
+from server.auth.scopes import METRICS, NEEDS, OWNED, OWNER, PUBLIC, ROOT, need_of
+from server.creatures import storage as creatures
+from server.runs.submission import submit
+from server.services.services import connect
+from server.settings import Settings
+from server.shares import publishing
+from server.shares.schemas import ShareAsked
+from server.sweeps.planning import plan
+from server.sweeps.schemas import SweepSent
+from server.sweeps.submission import submit_sweep
+from server.tables import Token
+
+OPEN = {
+    "GET /healthz",
+    "GET /readyz",
+    "GET /s/{slug}",
+    "GET /s/{slug}/{rest:path}",
+    "GET /{path:path}",
+}
+"""Outside of the API: for everybody."""
+STRANGERS = {
+    "GET /shares/{slug}",
+    "GET /commons",
+    "POST /session",
+    "DELETE /session",
+}
+"""In the API, what is for everybody; and all that lies below a share."""
+HARMLESS = {"POST /runs/estimate", "POST /sweeps/estimate", "POST /session", "DELETE /session"}
+"""What is no GET and yet changes nothing."""
+
+IN, UNKNOWN, FORBIDDEN = "let in", 401, 403
+WHO = ("none", "expired", "revoked", "reader", "other", "owner", "admin")
+EXPECTED = {
+    PUBLIC: dict.fromkeys(WHO, IN),
+    READ: dict.fromkeys(WHO, IN),
+    WRITE: dict.fromkeys(WHO, IN) | {"reader": FORBIDDEN},
+    OWNER: dict.fromkeys(WHO, IN) | {"reader": FORBIDDEN, "other": FORBIDDEN},
+    ADMIN: dict.fromkeys(WHO, FORBIDDEN) | {"admin": IN},
+}
+for need in (READ, WRITE, OWNER, ADMIN):
+    EXPECTED[need] |= dict.fromkeys(("none", "expired", "revoked"), UNKNOWN)
+
+
+def routes() -> list[str]:
+    """All that the application has, however it came to have it."""
+    nowhere = Settings(redis_url="redis://127.0.0.1:1/0", database_url="sqlite://")
+    found = iter_route_contexts(create_app(connect(nowhere)).routes)
+    named = [(sorted(route.methods or {"WEBSOCKET"}), route.path) for route in found]
+    return [f"{methods[0]} {path}" for methods, path in named]
+
+
+ROUTES = routes()
+API = [route for route in ROUTES if f" {ROOT}/" in route or route.endswith(METRICS)]
+SHAPES = {"form": "svg", "kind": "replay"}
+"""What else paths name."""
+
+
+def example(path: str) -> str:
+    """A path as one may be asked for."""
+    return path.replace(":path", "").replace("{", "").replace("}", "")
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_every_route_says_what_it_needs(route):
+    """A new one has to be named in `server.auth.scopes`: until then nobody gets there."""
+    method, path = route.split()
+    assert route in OPEN or need_of(method, example(path)).need in EXPECTED
+
+
+@pytest.mark.parametrize("route", API)
+def test_only_harmless_routes_go_without_leave_to_write(route):
+    method, path = route.replace(ROOT, "").split()
+    need = need_of(method, example(route.split()[1])).need
+    shared = path.startswith("/shares/{slug}/")
+    assert (need == PUBLIC) == (f"{method} {path}" in STRANGERS or shared)
+    if method != "GET" and f"{method} {path}" not in HARMLESS:
+        theirs = any(f"{{{name}}}" in path for name in OWNED) and not path.endswith("/fork")
+        assert need in ((OWNER,) if theirs else (WRITE, OWNER, ADMIN))
+    if path.startswith("/tokens"):
+        assert need == (READ if path == "/tokens/current" else ADMIN)
+
+
+def test_nothing_is_let_in_before_it_is_there():
+    """A row names one route: a pattern over many would let the next one in by itself."""
+    assert {whole(row) for row in NEEDS} == set(API)
+    assert not any(":path" in row for row in NEEDS)
+
+
+def whole(row: str) -> str:
+    method, path = row.split()
+    return f"{method} {path if path == METRICS else ROOT + path}"
+
+
+@pytest.fixture
+def database() -> str:
+    return "sqlite"
+
+
+@pytest.fixture
+def secrets(services) -> dict[str, str | None]:
+    """What each of those who come has to show."""
+    made = {
+        who: tokens.create(services, who, scope)
+        for who, scope in {
+            "reader": READ,
+            "other": WRITE,
+            "owner": WRITE,
+            "admin": ADMIN,
+            "expired": ADMIN,
+            "revoked": ADMIN,
+        }.items()
+    }
+    with services.sessions.write.begin() as session:
+        past = datetime.now(UTC) - timedelta(minutes=1)
+        session.get_one(Token, made["expired"].token.id).expires_at = past
+    tokens.revoke(services, made["revoked"].token.id)
+    return {"none": None, **{who: one.secret for who, one in made.items()}}
+
+
+@contextmanager
+def being(services, secret):
+    """What is made meanwhile belongs to the holder of a token."""
+    known = CALLER.set(tokens.holder(services, secret))
+    yield
+    CALLER.reset(known)
+
+
+@pytest.fixture
+def parameters(services, secrets, spec, identity):
+    """Makes what paths name, anew each time where it belongs to somebody: the `owner`."""
+    file = creature.document(identity(3), None, None)
+    with services.sessions.write.begin() as session:
+        creatures.add(session, file)
+
+    def run() -> str:
+        with being(services, secrets["owner"]):
+            return str(submit(services, parse(spec))[0].id)
+
+    def sweep() -> str:
+        with being(services, secrets["owner"]):
+            return str(submit_sweep(services, plan(SweepSent(spec=spec), parse))[0])
+
+    def share() -> str:
+        asked = ShareAsked(creature=file["sha256"], title=uuid4().hex)
+        with being(services, secrets["owner"]), services.sessions.write.begin() as session:
+            return publishing.publish(session, asked)[0].slug
+
+    examples = {
+        **{name: lambda shape=shape: shape for name, shape in SHAPES.items()},
+        "run_id": run,
+        "sweep_id": sweep,
+        "slug": share,
+        "sha": lambda: file["sha256"],
+        "token_id": lambda: str(tokens.create(services, uuid4().hex, READ).token.id),
+    }
+
+    def make(path: str) -> str:
+        names = re.findall(r"{(\w+)}", path.replace(":path", ""))
+        assert set(names) <= examples.keys(), f"{path}: say above how an example is made"
+        return path.format(**{name: examples[name]() for name in names})
+
+    return make
+
+
+def test_everybody_gets_where_they_may_and_nowhere_else(serve, secrets, parameters):
+    wrong = []
+    with serve(auth="required") as address, httpx.Client(base_url=address, timeout=20) as http:
+        for route in API:
+            method, path = route.split()
+            need = need_of(method, example(path)).need
+            url = parameters(path)
+            for who, secret in secrets.items():
+                if need == OWNER:
+                    url = parameters(path)
+                sent = {"Authorization": f"Bearer {secret}"} if secret else {}
+                found = status(http, method, url, sent)
+                met = found if found in (UNKNOWN, FORBIDDEN) else IN
+                if met != EXPECTED[need][who] or found in (405, 500):
+                    wrong.append(f"{route} needs {need}: {who} met {found}")
+    assert wrong == []
+
+
+def status(http: httpx.Client, method: str, url: str, headers: dict[str, str]) -> int:
+    """The beginning of an answer is enough: some have no end."""
+    json = None if method in ("GET", "DELETE") else {}
+    with http.stream(method, url, headers=headers, json=json) as answer:
+        return answer.status_code
+
+
+def test_a_route_that_is_not_named_is_reached_by_nobody(serve, secrets):
+    with serve(auth="required") as address:
+        for who in ("none", "admin"):
+            sent = {"Authorization": f"Bearer {secrets[who]}"} if secrets[who] else {}
+            nowhere = httpx.get(f"{address}{ROOT}/secrets", headers=sent)
+            assert nowhere.status_code == (404 if sent else 401)
+            other = httpx.put(f"{address}{ROOT}/runs", headers=sent)
+            assert other.status_code == (405 if sent else 401)
+    assert other.headers["allow"] == "GET, POST"
+
+
+def test_what_belongs_to_somebody_is_found_by_its_parameter(services):
+    """Whose a thing is has to be known for everything that an owner may change."""
+    changed = [route.split() for route in API if not route.startswith("GET ")]
+    owned = [path for method, path in changed if need_of(method, example(path)).need == OWNER]
+    assert owned
+    for path in owned:
+        assert [name for name in OWNED if f"{{{name}}}" in path], path

@@ -1,0 +1,184 @@
+"""Who may speak to the server, and where it may listen."""
+
+import logging
+from contextlib import contextmanager
+from urllib.parse import urlsplit
+
+import httpx
+import pytest
+from pydantic import SecretStr
+from sqlalchemy.exc import OperationalError
+
+from server.auth import authorize
+from server.auth.cookies import COOKIE
+from server.settings import SHORTEST, Settings
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "192.0.2.1", "::"])
+def test_a_server_for_others_needs_a_token(host):
+    assert Settings(host=host, token=None).needs_token
+
+
+def test_on_loopback_a_token_is_needed_where_it_is_asked_for():
+    assert not Settings(host="127.0.0.1", token=None).needs_token
+    assert Settings(host="127.0.0.1", token=None, auth="required").needs_token
+    assert Settings(host="127.0.0.1", token=SecretStr("s" * SHORTEST)).needs_token
+    assert not Settings(host="127.0.0.1", token=SecretStr("")).needs_token
+
+
+def test_a_token_that_could_be_guessed_is_refused(monkeypatch):
+    monkeypatch.setenv("MICROCOSMOS_TOKEN", "secret")
+    with pytest.raises(ValueError, match=r"`token` must have at least 16 .*; got 6"):
+        Settings()
+
+
+@pytest.mark.parametrize("name", ["evil.example", "127.0.0.1.evil.example", "", "["])
+def test_other_host_names_are_refused(api, name):
+    answer = api.get("runs", headers={"Host": name})
+    assert answer.status_code in (400, 403)
+
+
+@pytest.mark.parametrize("name", ["localhost:8000", "127.0.0.1", "[::1]:8000"])
+def test_the_names_of_this_machine_are_taken(api, name):
+    assert api.get("runs", headers={"Host": name}).status_code == 200
+
+
+def test_pages_of_other_sites_are_refused(api, address, spec):
+    assert (
+        api.post("runs", json=spec, headers={"Origin": "http://evil.example"}).status_code
+        == 403
+    )
+    other_port = api.post("runs", json=spec, headers={"Origin": "http://127.0.0.1:1"})
+    assert other_port.status_code == 403
+    assert api.post("runs", json=spec, headers={"Origin": address}).status_code == 202
+
+
+def test_with_a_token_the_api_needs_it_from_any_host(serve):
+    with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
+        url = f"{address}/api/v1/runs"
+        assert client.get(url).status_code == 401
+        assert client.get(url, headers={"Authorization": "Bearer wrong"}).status_code == 401
+        sent = {"Authorization": "Bearer secret", "Host": "microcosmos.example"}
+        assert client.get(url, headers=sent).status_code == 200
+        cookie = {"Cookie": f"microcosmos_token_{urlsplit(url).port}=secret"}
+        assert client.get(url, headers=cookie).status_code == 200
+        assert client.get(f"{address}/healthz").status_code == 200
+
+
+def test_a_page_opened_with_the_token_keeps_it_in_a_cookie(serve):
+    with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
+        client.get(f"{address}/runs?token=wrong")
+        assert client.get(f"{address}/api/v1/runs").status_code == 401
+        answer = client.get(f"{address}/runs?token=secret&view=map")
+        assert answer.status_code == 303
+        assert answer.headers["location"] == f"{address}/runs?view=map"
+        for word in ("HttpOnly", "SameSite=strict"):
+            assert word in answer.headers["set-cookie"]
+        assert client.get(f"{address}/api/v1/runs").status_code == 200
+
+
+def test_a_malformed_origin_is_refused(api):
+    assert api.get("runs", headers={"Origin": "http://["}).status_code == 403
+
+
+def test_a_port_that_nobody_can_be_told_is_refused(monkeypatch):
+    monkeypatch.setenv("PORT", "0")
+    with pytest.raises(ValueError, match="greater than or equal to 1"):
+        Settings()
+
+
+def test_a_cookie_is_of_no_use_to_the_pages_of_other_sites(serve, spec):
+    """A browser may send it by itself; a header it does not."""
+    with serve(token=SecretStr("secret")) as address:
+        url = f"{address}/api/v1/runs"
+        cookie = {"Cookie": f"microcosmos_token_{urlsplit(url).port}=secret"}
+        other = {"Origin": "http://evil.example"}
+        assert httpx.post(url, json=spec, headers=cookie | other).status_code == 403
+        own = {"Origin": address}
+        assert httpx.post(url, json=spec, headers=cookie | own).status_code == 202
+        bearer = {"Authorization": "Bearer secret"}
+        assert httpx.post(url, json=spec, headers=bearer | other).status_code == 202
+
+
+@contextmanager
+def listening(caplog):
+    """To the log of requests, which a server sets up when it starts: their addresses."""
+    log = logging.getLogger("uvicorn.access")
+    log.addHandler(caplog.handler)
+    caplog.set_level("INFO", "uvicorn.access")
+    yield lambda: [r.getMessage().partition('"')[2].split()[1] for r in caplog.records]
+    log.removeHandler(caplog.handler)
+
+
+def test_the_log_of_requests_does_not_name_a_token_in_an_address(serve, caplog):
+    with serve(token=SecretStr("secret")) as address, listening(caplog) as logged:
+        for token in ("secret", "guessed"):
+            httpx.get(f"{address}/runs?token={token}&view=map")
+        assert logged() == ["/runs?view=map"] * 2
+
+
+def test_the_log_of_requests_does_not_name_shares(serve, caplog):
+    slug, sha = "q7Xv-_0123456789abcdefghijklmnop", "ab" * 32
+    with serve() as address, listening(caplog) as logged:
+        for path in (f"/s/{slug}", f"/s/{slug}/creatures/{sha}"):
+            httpx.get(address + path)
+        for path in (f"shares/{slug}", f"shares/{slug}/preview.png", f"commons?cursor={slug}"):
+            httpx.get(f"{address}/api/v1/{path}")
+        httpx.delete(f"{address}/api/v1/shares/{slug}")
+        lines = logged()
+    assert not any(slug[4:] in line for line in lines)
+    assert lines[:2] == ["/s/q7Xv…", f"/s/q7Xv…/creatures/{sha}"]
+    assert len(lines) == 6
+
+
+def test_while_the_database_is_away_a_token_is_not_wrong(serve, monkeypatch):
+    def away(*_):
+        raise OperationalError("SELECT", {}, ConnectionError("gone"))
+
+    monkeypatch.setattr(authorize.tokens, "holder", away)
+    with serve(token=SecretStr("secret")) as address:
+        sent = {"Authorization": "Bearer mc_other"}
+        answer = httpx.get(f"{address}/api/v1/runs", headers=sent)
+    assert (answer.status_code, answer.headers["retry-after"]) == (503, "2")
+    assert answer.json()["detail"] == "The database does not answer; try again."
+
+
+def test_servers_on_one_host_keep_a_cookie_each(serve):
+    """A browser sends the cookies of all ports of a host, as this client does."""
+    first, second = SecretStr("first"), SecretStr("second")
+    with (
+        serve(token=first) as one,
+        serve(token=second) as other,
+        httpx.Client() as browser,
+    ):
+        for address, token in ((one, first), (other, second)):
+            asked = {"token": token.get_secret_value()}
+            assert browser.post(f"{address}/api/v1/session", json=asked).status_code == 200
+        for address in (one, other):
+            assert browser.get(f"{address}/api/v1/runs").status_code == 200
+        assert browser.delete(f"{one}/api/v1/session").status_code == 204
+        assert browser.get(f"{one}/api/v1/runs").status_code == 401
+        assert browser.get(f"{other}/api/v1/runs").status_code == 200
+
+
+def test_the_cookie_is_named_after_the_port_that_the_browser_knows(serve):
+    """Two boxes may be brought to two ports of a laptop by `ssh -L`, both from port 8000."""
+    with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
+        for host, name in (("localhost:9000", "microcosmos_token_9000"), ("box", COOKIE)):
+            sent = {"Host": host}
+            answer = client.get(f"{address}/?token=secret", headers=sent)
+            assert answer.headers["set-cookie"].startswith(f"{name}=")
+
+
+def test_no_page_of_others_holds_ours_or_reads_what_it_shows(api, address):
+    """Where no token is needed, a frame would be as good as a token."""
+    for path in ("/", "/runs", "/settings", "/api/v1/runs", "/api/v1/nothing", "/metrics"):
+        headers = httpx.get(address + path).headers
+        assert "frame-ancestors 'none'" in headers["content-security-policy"], path
+        assert "default-src 'self'" in headers["content-security-policy"], path
+        assert headers["cross-origin-resource-policy"] == "same-origin", path
+        assert headers["x-content-type-options"] == "nosniff", path
+    refused = api.get("runs", headers={"Host": "evil.example"})
+    assert refused.headers["cross-origin-resource-policy"] == "same-origin"
+    shared = api.get("shares/whatever/preview.png")
+    assert shared.headers["cross-origin-resource-policy"] == "cross-origin"

@@ -1,0 +1,302 @@
+"""Tokens: made once, kept as hashes, good until they end, and of no use then."""
+
+import stat
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import httpx
+import pytest
+from pydantic import SecretStr
+
+from server.auth import __main__ as commands
+from server.auth import bootstrap, tokens
+from server.core.errors import Refused
+from server.tables import Run, Token
+
+KEY = {"Idempotency-Key": "first"}
+
+
+@pytest.fixture
+def admin(services) -> str:
+    return tokens.create(services, "root", "admin").secret
+
+
+@pytest.fixture
+def required(serve, admin):
+    with serve(auth="required") as address:
+        yield f"{address}/api/v1"
+
+
+@pytest.fixture
+def settings(services, tmp_path):
+    """Those of the server, with a data folder where nothing is yet."""
+    return services.settings.model_copy(update={"data": tmp_path})
+
+
+@pytest.fixture
+def client():
+    """Clients by the secrets that they send."""
+    made = []
+
+    def make(base: str, secret: str | None = None) -> httpx.Client:
+        headers = {"Authorization": f"Bearer {secret}"} if secret else {}
+        made.append(httpx.Client(base_url=base, headers=headers, timeout=20))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def rows(services):
+    with services.sessions.read() as session:
+        return session.query(Token).all()
+
+
+def test_a_token_is_shown_once_and_kept_as_a_hash(required, client, admin, services):
+    asked = {"name": " alice ", "scope": "write"}
+    answer = client(required, admin).post("/tokens", json=asked)
+    assert answer.status_code == 201
+    secret = answer.json()["secret"]
+    assert len(secret) == len("mc_") + 43  # 32 bytes in base64.
+    listed = client(required, admin).get("/tokens")
+    assert [token["name"] for token in listed.json()] == ["alice", "root"]
+    assert listed.json()[0]["beginning"] == secret[:9]
+    assert secret not in listed.text
+    kept = [repr(vars(row)) for row in rows(services)]
+    assert not any(secret[9:] in text for text in kept)
+    who = client(required, secret).get("/tokens/current").json()
+    assert (who["name"], who["scope"], who["needed"]) == ("alice", "write", True)
+
+
+def test_a_revoked_token_is_refused_at_once_by_name(required, client, admin, services):
+    made = tokens.create(services, "bob", "read")
+    bob = client(required, made.secret)
+    assert bob.get("/runs").status_code == 200
+    assert client(required, admin).delete(f"/tokens/{made.token.id}").json()["revoked_at"]
+    answer = bob.get("/runs")
+    assert (answer.status_code, answer.headers["www-authenticate"]) == (401, "Bearer")
+    assert answer.json()["detail"] == "The token `bob` was revoked."
+
+
+def test_an_expired_token_is_refused_and_gives_up_its_name(required, client, services):
+    soon = datetime.now(UTC) + timedelta(hours=1)
+    made = tokens.create(services, "carol", "read", soon)
+    with pytest.raises(Refused, match="named 'carol' is there already"):
+        tokens.create(services, "carol", "read")
+    expire(services, made.token.id)
+    answer = client(required, made.secret).get("/runs")
+    assert answer.status_code == 401
+    assert "The token `carol` expired at 2020-01-01 00:00 UTC" in answer.json()["detail"]
+    assert tokens.create(services, "carol", "read").token.id != made.token.id
+
+
+def expire(services, token):
+    with services.sessions.write.begin() as session:
+        session.get_one(Token, token).expires_at = datetime(2020, 1, 1, tzinfo=UTC)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"name": ""}, "name"),
+        ({"name": "a" * 65}, "name"),
+        ({"scope": "everything"}, "scope"),
+        ({"expires_at": "2020-01-01T00:00:00Z"}, "expires_at"),
+        ({"expires_at": "2090-01-01T00:00:00"}, "expires_at"),
+    ],
+)
+def test_a_token_that_cannot_be_is_refused_with_its_field(api, change, field):
+    answer = api.post("tokens", json={"name": "dave", "scope": "read"} | change)
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == field
+
+
+def test_the_last_admin_is_not_sent_away(required, client, admin):
+    root = client(required, admin)
+    (mine,) = root.get("/tokens").json()
+    answer = root.delete(f"/tokens/{mine['id']}")
+    assert (answer.status_code, "the only token of an admin" in answer.text) == (409, True)
+    other = root.post("/tokens", json={"name": "other", "scope": "admin"}).json()
+    assert root.delete(f"/tokens/{mine['id']}").status_code == 200
+    assert client(required, other["secret"]).get("/tokens").status_code == 200
+
+
+def test_when_a_token_was_last_used_is_told_coarsely(required, client, services, monkeypatch):
+    made = tokens.create(services, "erin", "read")
+    erin = client(required, made.secret)
+    erin.get("/runs")
+    (first,) = [row.last_used_at for row in rows(services) if row.name == "erin"]
+    assert first is not None
+    erin.get("/runs")
+    assert first in [row.last_used_at for row in rows(services)]
+    monkeypatch.setattr(tokens, "COARSE", timedelta(0))
+    erin.get("/runs")
+    assert first not in [row.last_used_at for row in rows(services)]
+
+
+def test_a_run_belongs_to_whoever_submitted_it(required, client, admin, services, spec):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    bob = client(required, tokens.create(services, "bob", "write").secret)
+    run = alice.post("/runs", json=spec).json()
+    assert run["owner"] == "alice"
+    answer = bob.post(f"/runs/{run['id']}/pause")
+    assert answer.status_code == 403
+    assert f"run {run['id']} belongs to `alice`" in answer.json()["detail"]
+    assert "you are `bob`" in answer.json()["detail"]
+    assert bob.get(f"/runs/{run['id']}").json()["owner"] == "alice"
+    assert alice.post(f"/runs/{run['id']}/pause").json()["status"] == "paused"
+    sweep = alice.post("/sweeps", json={"spec": spec}).json()
+    assert bob.get(f"/sweeps/{sweep['id']}").json()["owner"] == sweep["owner"] == "alice"
+    assert client(required, admin).post(f"/runs/{run['id']}/resume").status_code == 202
+
+
+@pytest.mark.parametrize("noun", ["runs", "sweeps"])
+def test_everybody_has_idempotency_keys_of_their_own(required, client, services, spec, noun):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    bob = client(required, tokens.create(services, "bob", "write").secret)
+    sent = {"json": spec if noun == "runs" else {"spec": spec}, "headers": KEY}
+    mine = alice.post(f"/{noun}", **sent).json()["id"]
+    his = bob.post(f"/{noun}", **sent)
+    assert (his.status_code, his.json()["id"] == mine) == (202, False)
+    again = alice.post(f"/{noun}", **sent)
+    assert (again.status_code, again.json()["id"]) == (200, mine)
+
+
+def test_only_who_made_a_run_publishes_its_archive(required, client, admin, services, spec):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    bob = client(required, tokens.create(services, "bob", "write").secret)
+    run = alice.post("/runs", json=spec).json()["id"]
+    answer = bob.post("/shares", json={"run": run})
+    assert answer.status_code == 403
+    assert answer.json()["detail"] == (
+        f"The run {run} belongs to `alice`: only its owner or an admin may publish it; "
+        "you are `bob`."
+    )
+    for may in (alice, client(required, admin)):
+        assert may.post("/shares", json={"run": run}).json()["title"] == "Nothing to publish"
+
+
+def test_what_cannot_have_an_owner_is_not_found(required, client, admin, services):
+    alice = client(required, tokens.create(services, "alice", "write").secret)
+    for path in ("/shares/%00", "/runs/%00", "/sweeps/%00/pause"):
+        method = "POST" if path.endswith("pause") else "DELETE"
+        assert alice.request(method, path).status_code in (404, 422), path
+
+
+def test_what_was_made_without_a_token_is_for_admins_to_change(
+    required, client, admin, services, run_id
+):
+    bob = client(required, tokens.create(services, "bob", "write").secret)
+    answer = bob.patch(f"/runs/{run_id}", json={"name": "mine"})
+    assert (answer.status_code, "was made without a token" in answer.text) == (403, True)
+    named = client(required, admin).patch(f"/runs/{run_id}", json={"name": "x"})
+    assert (named.status_code, named.json()["owner"]) == (200, None)
+
+
+def test_nobody_owns_what_is_made_outside_of_a_request(services, run_id):
+    with services.sessions.read() as session:
+        assert session.get_one(Run, run_id).owner is None
+
+
+def test_a_stream_ends_with_its_token(required, client, admin, services):
+    made = tokens.create(services, "watcher", "read")
+    with client(required, made.secret).stream("GET", "/events") as answer:
+        lines = answer.iter_lines()
+        next(lines)
+        client(required, admin).delete(f"/tokens/{made.token.id}")
+        assert [line for line in lines if line.startswith("data")] == []
+    assert client(required, made.secret).get("/events").status_code == 401
+
+
+def test_signing_in_keeps_a_cookie_and_signing_out_forgets_it(required, client, admin):
+    page = client(required)
+    assert page.post("/session", json={"token": "mc_wrong"}).status_code == 401
+    answer = page.post("/session", json={"token": admin})
+    assert (answer.status_code, answer.json()["name"]) == (200, "root")
+    for word in ("HttpOnly", "SameSite=strict", "Max-Age="):
+        assert word in answer.headers["set-cookie"]
+    assert page.get("/tokens").status_code == 200
+    assert page.delete("/session").status_code == 204
+    assert page.get("/tokens").status_code == 401
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        (b'{"token": "' + bytes(1 << 22), 413),
+        (b'{"token": "\\ud800"}', 422),
+        (b'{"token": "\\u0000"}', 422),
+        (b"[" * 1000, 422),
+        (b'{"token": {}}', 422),
+    ],
+)
+def test_strangers_send_little_and_break_nothing(required, client, body, status):
+    answer = client(required).post("/session", content=body)
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_the_pages_of_other_sites_sign_nobody_in(required, client, admin):
+    other = {"Origin": "http://evil.example"}
+    answer = client(required).post("/session", json={"token": admin}, headers=other)
+    assert answer.status_code == 403
+
+
+def test_on_loopback_a_token_that_is_sent_still_has_to_be_right(api, services, spec):
+    reader = tokens.create(services, "reader", "read")
+    sent = {"Authorization": f"Bearer {reader.secret}"}
+    assert api.get("tokens/current").json()["name"] == "local"
+    assert api.get("tokens/current", headers=sent).json()["name"] == "reader"
+    assert api.post("runs", json=spec, headers=sent).status_code == 403
+    assert api.get("runs", headers={"Authorization": "Bearer wrong"}).status_code == 401
+
+
+def test_the_first_start_beyond_loopback_makes_the_token_of_an_admin(serve, services, settings):
+    open_to_all = settings.model_copy(update={"host": "0.0.0.0"})
+    exposed = with_settings(services, open_to_all)
+    secret = bootstrap.begin(exposed)
+    assert secret is not None
+    file = settings.data / bootstrap.FILE
+    assert file.read_text() == f"{secret}\n"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert secret in bootstrap.told(open_to_all, secret)
+    assert str(file) in bootstrap.told(open_to_all, secret)
+    assert bootstrap.begin(exposed) is None  # The second start makes none.
+    assert tokens.holder(services, secret).scope == "admin"
+
+
+def with_settings(services, settings):
+    return replace(services, settings=settings)
+
+
+def test_no_token_is_made_where_none_is_needed_or_one_is_set(services, settings):
+    assert bootstrap.begin(services) is None
+    told = settings.model_copy(update={"host": "0.0.0.0", "token": SecretStr("secret")})
+    assert bootstrap.begin(with_settings(services, told)) is None
+    assert rows(services) == []
+
+
+def test_a_server_whose_admins_are_all_gone_does_not_listen(services, settings, admin):
+    exposed = with_settings(services, settings.model_copy(update={"host": "0.0.0.0"}))
+    bootstrap.refuse_without_admin(exposed)
+    tokens.revoke(services, rows(services)[0].id, last=True)
+    for begin in (bootstrap.begin, bootstrap.refuse_without_admin):
+        with pytest.raises(ValueError, match=r"python -m server\.auth create"):
+            begin(exposed)
+
+
+def test_tokens_are_made_and_revoked_on_the_command_line(
+    services, settings, monkeypatch, capsys
+):
+    monkeypatch.setattr(commands, "Settings", lambda: settings)
+    commands.main(["create", "frank", "--scope", "admin", "--days", "1"])
+    secret = capsys.readouterr().out.strip()
+    assert tokens.holder(services, secret).name == "frank"
+    commands.main(["list"])
+    assert "frank\tadmin\t" + secret[:9] in capsys.readouterr().out
+    commands.main(["revoke", "frank"])
+    with pytest.raises(Refused, match="`frank` was revoked"):
+        tokens.holder(services, secret)
+    with pytest.raises(SystemExit, match="No live token is named 'frank'"):
+        commands.main(["revoke", "frank"])

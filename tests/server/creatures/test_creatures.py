@@ -1,0 +1,226 @@
+"""Creatures by their name, brought by anybody, and their replays."""
+
+import json
+
+import httpx
+import pytest
+from rq import SimpleWorker
+from rq.serializers import JSONSerializer
+
+from microcosmos.archive import creature
+from server.attempts.begin import claim
+from server.queue import jobs
+from server.renderings import storage as renderings
+from server.tables import REPLAY
+
+
+@pytest.fixture
+def file(identity):
+    return creature.document(identity(3), None, None)
+
+
+@pytest.fixture
+def known(api, file) -> str:
+    return api.post("creatures", json=file).json()["creature"]
+
+
+def test_an_elite_is_read_as_a_creature_file(api, services, run_id, report):
+    found = report(2, {7: 1.25})
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1), 1.0)
+    attempt.record(found, 1.0)
+    (elite,) = found.elites
+    answer = api.get(f"creatures/{elite.creature}")
+    document = answer.json()
+    assert document["identity"] == json.loads(elite.identity)
+    assert document["measured"]["fitness"] == 1.25
+    assert document["measured"] == elite.measured
+    assert document["provenance"] == elite.provenance
+    assert creature.parse(document)["sha256"] == elite.creature
+    assert "immutable" in answer.headers["cache-control"]
+
+
+def test_a_creature_is_downloaded_under_its_name_and_can_be_brought_back(api, known):
+    answer = api.get(f"creatures/{known}", params={"download": 1})
+    assert f'filename="creature-{known[:12]}.json"' in answer.headers["content-disposition"]
+    again = api.post("creatures", content=answer.content)
+    assert (again.status_code, again.json()) == (200, {"creature": known})
+
+
+def test_a_creature_is_brought_back_as_hdf5_too(api, known):
+    file = api.get(f"creatures/{known}/creature.h5").content
+    sent = {"Content-Type": "application/x-hdf5"}
+    again = api.post("creatures", content=file, headers=sent)
+    assert (again.status_code, again.json()) == (200, {"creature": known})
+
+
+def test_who_has_a_creature_gets_it_once(api, known):
+    etag = api.get(f"creatures/{known}").headers["etag"]
+    answer = api.get(f"creatures/{known}", headers={"If-None-Match": etag})
+    assert (answer.status_code, answer.content) == (304, b"")
+
+
+def test_a_new_creature_is_kept_whole(api, file):
+    file["measured"] = {
+        "fitness": 1.5,
+        "descriptors": {"bending_effort": 0.25},
+        "features": {"displacement": 1.5, "bending_effort": 0.25},
+        "block": 16,
+        "room": [24, 64],
+        "device": "elsewhere",
+    }
+    file["provenance"] = {
+        "parents": ["ab" * 32],
+        "operator": "neat",
+        "generation": 4,
+        "seed": 1,
+        "version": "0.1.0",
+    }
+    answer = api.post("creatures", json=file)
+    assert (answer.status_code, answer.json()) == (201, {"creature": file["sha256"]})
+    assert answer.headers["location"] == f"/api/v1/creatures/{file['sha256']}"
+    assert api.get(f"creatures/{file['sha256']}").json() == file
+
+
+def test_a_wrong_hash_is_refused_with_the_right_one(api, file):
+    right, wrong = file["sha256"], "00" * 32
+    answer = api.post("creatures", json={**file, "sha256": wrong})
+    assert answer.status_code == 422
+    (error,) = answer.json()["errors"]
+    assert (error["field"], error["got"]) == ("sha256", wrong)
+    assert right in error["needed"]
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        (lambda file: file.update(surprise=1), "surprise"),
+        (lambda file: file["identity"]["world"].update(viscosity=-1), "viscosity"),
+        (lambda file: file["identity"]["genome"]["nodes"].update(bias="???"), "bias"),
+        (lambda file: file.pop("identity"), "identity"),
+    ],
+)
+def test_an_unsound_creature_is_refused_with_its_field(api, file, change, field):
+    change(file)
+    answer = api.post("creatures", json=file)
+    assert answer.status_code == 422
+    assert field in answer.json()["errors"][0]["field"]
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [(b" " * (9 << 20), 413), (b'{"identity": NaN}', 422), (b"[" * 10_000, 422)],
+)
+def test_an_upload_that_is_too_large_or_no_json_is_refused(api, body, status):
+    assert api.post("creatures", content=body).status_code == status
+
+
+def test_an_upload_without_a_length_is_limited_while_it_streams(api):
+    sent = 0
+
+    def endless():
+        nonlocal sent
+        for _ in range(1000):
+            sent += 1 << 16
+            yield b" " * (1 << 16)
+
+    assert api.post("creatures", content=endless()).status_code == 413
+
+
+@pytest.mark.parametrize("name", ["00" * 32, "not-a-hash"])
+def test_an_unknown_creature_is_a_problem(api, name):
+    answer = api.get(f"creatures/{name}")
+    assert answer.status_code in (404, 422)
+    assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_a_replay_is_ordered_once_and_served_when_it_is_made(api, services, known):
+    for _ in range(3):
+        answer = api.get(f"creatures/{known}/replay")
+        assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
+        assert answer.headers["retry-after"] == "1"
+    (job_id,) = services.jobs.renderings.get_job_ids()
+    job = services.jobs.find(job_id)
+    assert (job.func_name, job.args) == ("worker.jobs.render", [known, "replay"])
+    renderings.save(services, known, REPLAY, b"the replay")
+    answer = api.get(f"creatures/{known}/replay")
+    assert (answer.status_code, answer.content) == (200, b"the replay")
+    assert answer.headers["content-type"] == "application/octet-stream"
+    assert renderings.creature(services, known)["sha256"] == known
+
+
+def test_a_rendering_that_failed_says_why(api, services, known, monkeypatch):
+    monkeypatch.setattr(jobs, "RENDER", "math.sqrt")
+    assert api.get(f"creatures/{known}/replay").status_code == 202
+    worker = SimpleWorker(
+        [services.jobs.renderings], connection=services.redis, serializer=JSONSerializer
+    )
+    worker.work(burst=True)
+    answer = api.get(f"creatures/{known}/replay")
+    assert answer.status_code == 500
+    assert "takes exactly one argument" in answer.json()["detail"]
+    assert answer.headers["retry-after"]
+
+
+def test_while_redis_is_away_a_replay_cannot_be_ordered(serve, known):
+    with serve(redis_url="redis://127.0.0.1:1/0") as address:
+        answer = httpx.get(f"{address}/api/v1/creatures/{known}/replay", timeout=20)
+    assert answer.status_code == 503
+    assert answer.json()["detail"] == "Redis does not answer; try again."
+    assert answer.headers["retry-after"]
+
+
+def test_a_lost_order_is_given_again(api, services, known, flush):
+    api.get(f"creatures/{known}/replay")
+    flush()
+    assert api.get(f"creatures/{known}/replay").status_code == 202
+    assert services.jobs.renderings.count == 1
+
+
+@pytest.fixture
+def family(identity) -> list[dict]:
+    """A creature, a parent of it, and a parent of that."""
+
+    def one(number: int, *parents: dict) -> dict:
+        origin = {"operator": "neat", "generation": number, "seed": 1, "version": "0.1.0"}
+        names = [parent["sha256"] for parent in parents]
+        return creature.document(identity(number), None, {"parents": names, **origin})
+
+    oldest = one(1)
+    parent = one(2, oldest)
+    return [one(3, parent), parent, oldest]
+
+
+def test_a_creature_brings_its_ancestors_with_hashes_credit_and_licence(api, family):
+    young, parent, oldest = family
+    oldest |= {"credit": ["Ada"], "licence": "CC0-1.0"}
+    whole = {**young, "ancestors": [parent, oldest]}
+    assert api.post("creatures", json=whole).status_code == 201
+    query = {"ancestors": True, "download": True}
+    answer = api.get(f"creatures/{young['sha256']}", params=query)
+    assert answer.json() == whole, "and can be handed on as it came"
+    assert "attachment" in answer.headers["content-disposition"]
+    kin = api.get(f"creatures/{young['sha256']}/ancestors").json()["items"]
+    assert [(one["creature"], one["kept"]) for one in kin] == [
+        (parent["sha256"], True),
+        (oldest["sha256"], True),
+    ]
+    assert (kin[1]["credit"], kin[1]["licence"]) == (["Ada"], "CC0-1.0")
+
+
+def test_ancestors_that_are_none_are_refused_and_nothing_is_kept(api, family, identity):
+    young, parent, oldest = family
+    stranger = creature.document(identity(9), None, None)
+    cases = [
+        ([stranger], "ancestors.0"),
+        ([parent, young], "ancestors.1"),
+        ([oldest], "ancestors.0"),
+        ([{**parent, "sha256": "00" * 32}], "ancestors.0.sha256"),
+        ([parent] * 201, "ancestors"),
+        ("none", "ancestors"),
+    ]
+    for ancestors, field in cases:
+        answer = api.post("creatures", json={**young, "ancestors": ancestors})
+        assert answer.status_code == 422
+        assert answer.json()["errors"][0]["field"] == field
+    assert api.get(f"creatures/{young['sha256']}").status_code == 404

@@ -1,0 +1,196 @@
+"""Who came from whom, and creatures as HDF5."""
+
+from io import BytesIO
+from typing import Any
+
+import h5py
+import pytest
+from alembic import command
+from sqlalchemy import text
+
+from microcosmos.archive import creature, creature_h5
+from server.attempts.begin import claim
+from server.tables import migrations
+
+
+@pytest.fixture
+def bring(api, identity):
+    """Brings the creature of a number with its parents, by number or name; answers its name."""
+
+    def name(parent: int | str) -> str:
+        return parent if isinstance(parent, str) else creature.name(identity(parent))
+
+    def make(number: int, *parents: int | str, operator: str = "mutation") -> str:
+        origin = {
+            "parents": [name(parent) for parent in parents],
+            "operator": operator,
+            "generation": number,
+            "seed": 0,
+            "version": "1",
+        }
+        file = creature.document(identity(number), None, origin)
+        return api.post("creatures", json=file).json()["creature"]
+
+    return make
+
+
+def names(found):
+    return [item["creature"] for item in found["items"]]
+
+
+def test_ancestors_are_nearest_first_and_each_is_named_once(api, bring):
+    # 1 is a parent of 4 and of its other parent 3.
+    old, one = bring(10), bring(1, 10)
+    three, four = bring(3, 1, 1), bring(4, 1, 3)
+    found = api.get(f"creatures/{four}/ancestors").json()
+    assert names(found) == [one, three, old]
+    assert [item["distance"] for item in found["items"]] == [1, 1, 2]
+    assert [item["generation"] for item in found["items"]] == [1, 3, 10]
+    assert (found["parents"], found["more"]) == ([one, three], False)
+
+
+def test_a_limit_of_depth_says_whether_there_are_older_ones(api, bring):
+    one, two, three = bring(1), bring(2, 1), bring(3, 2)
+    near = api.get(f"creatures/{three}/ancestors", params={"depth": 1}).json()
+    assert (names(near), near["more"]) == ([two], True)
+    all_of_them = api.get(f"creatures/{three}/ancestors", params={"depth": 2}).json()
+    assert (names(all_of_them), all_of_them["more"]) == ([two, one], False)
+    assert api.get(f"creatures/{three}/ancestors", params={"depth": 0}).status_code == 422
+
+
+def digests(begin, count):
+    return [f"{begin + i:064x}" for i in range(count)]
+
+
+@pytest.mark.parametrize("depth", [1, 2, 32])
+def test_where_the_most_are_named_there_are_more(api, bring, depth):
+    parents = digests(0, 201)
+    child = bring(1, *parents)
+    found = api.get(f"creatures/{child}/ancestors", params={"depth": depth}).json()
+    assert (names(found), found["more"]) == (parents[:200], True)
+    child = bring(2, *parents[:200])
+    found = api.get(f"creatures/{child}/ancestors", params={"depth": depth}).json()
+    assert (names(found), found["more"]) == (parents[:200], False)
+
+
+def test_which_ancestors_are_named_is_decided_by_the_order_of_parents(api, bring):
+    older = {1: digests(0, 150), 2: digests(1000, 150)}
+    one, two = bring(1, *older[1]), bring(2, *older[2])
+    for child, first, second, parents in ((3, 1, 2, [one, two]), (4, 2, 1, [two, one])):
+        name = bring(child, first, second)
+        found = api.get(f"creatures/{name}/ancestors", params={"depth": 2}).json()
+        assert names(found) == parents + older[first] + older[second][:48]
+        assert found["more"]
+
+
+def test_a_parent_that_was_never_kept_is_known_by_name_alone(api, bring, identity):
+    child = bring(2, 1)
+    (only,) = api.get(f"creatures/{child}/ancestors").json()["items"]
+    assert only["creature"] == creature.name(identity(1))
+    assert (only["kept"], only["fitness"], only["operator"]) == (False, None, None)
+
+
+def test_children_are_counted_and_named_once_each(api, bring):
+    parent = bring(1)
+    two, three = bring(2, 1, 1), bring(3, 1)
+    bring(4, 3)
+    found = api.get(f"creatures/{parent}/children").json()
+    assert (found["total"], sorted(names(found))) == (2, sorted([two, three]))
+    few = api.get(f"creatures/{parent}/children", params={"limit": 1}).json()
+    assert (few["total"], len(few["items"])) == (2, 1)
+
+
+@pytest.fixture
+def enter(api, services, run_id, report):
+    """Has a creature enter the archive with a fitness and a parent; answers its name."""
+    attempt = claim(services, run_id, "worker")
+    assert attempt is not None
+
+    def enter(generation: int, fitness: float, parent: str) -> str:
+        found = report(generation, {7: fitness})
+        (elite,) = found.elites
+        elite.provenance = {**elite.provenance, "parents": [parent]}
+        attempt.record(found, 1.0)
+        return elite.creature
+
+    return enter
+
+
+def test_children_are_named_best_first_and_unmeasured_ones_last(api, bring, enter):
+    parent = bring(1)
+    unmeasured = bring(2, 1)
+    fitness = [9.5, -3.0, 10.25, 1e-7, 0.0]
+    made = {enter(i, value, parent): value for i, value in enumerate(fitness, 1)}
+    best = sorted(made, key=lambda name: made[name], reverse=True)
+    found = api.get(f"creatures/{parent}/children").json()
+    assert names(found) == [*best, unmeasured]
+    few = api.get(f"creatures/{parent}/children", params={"limit": 2}).json()
+    assert (few["total"], names(few)) == (6, best[:2])
+
+
+def test_elites_of_a_run_are_linked_to_their_parents(api, enter):
+    parent = "ab" * 32
+    elite = enter(1, 1.25, parent)
+    (only,) = api.get(f"creatures/{elite}/ancestors").json()["items"]
+    assert (only["creature"], only["kept"]) == (parent, False)
+
+
+def test_creatures_of_before_are_linked_by_the_migration(api, services, bring):
+    parent, child = bring(1), bring(2, 1)
+    with services.sessions.engine.begin() as connection:
+        command.downgrade(migrations.config(connection), "0003")
+        assert connection.execute(text("SELECT count(*) FROM creatures")).scalar_one() == 2
+    migrations.upgrade(services.sessions)
+    migrations.check(services.sessions)
+    assert names(api.get(f"creatures/{parent}/children").json()) == [child]
+
+
+def test_a_creature_as_hdf5_is_always_the_same_bytes_and_all_of_it(api, bring):
+    name = bring(3, 1)
+    answer = api.get(f"creatures/{name}/creature.h5")
+    assert answer.status_code == 200
+    assert f'filename="creature-{name[:12]}.h5"' in answer.headers["content-disposition"]
+    assert creature_h5.load(answer.content) == creature.parse(
+        api.get(f"creatures/{name}").json()
+    )
+    assert api.get(f"creatures/{name}/creature.h5").content == answer.content
+    with h5py.File(BytesIO(answer.content), "r") as file:
+        weights: Any = file["genome/connections/weight"]
+        assert weights[:] == [3.0]
+
+
+def test_features_of_any_name_come_back_from_everywhere(api, identity, bring):
+    features = {"displacement": 0.5, "": 1.0, ".": 2.0, "a": 3.0, "a/b": 4.0, "fitness": 5.0}
+    measured = {
+        "fitness": 0.5,
+        "descriptors": {"a": 3.0, "a/b": 4.0},
+        "features": {**features, "..": 6.0, "%": 7.0, "x" * 70_000: 8.0, "é\n": 9.0},
+        "block": 16,
+        "room": [24, 64],
+        "device": "/",
+    }
+    parent = bring(2)
+    origin = {"parents": [parent], "operator": "a/b", "generation": 1, "seed": 0}
+    file = creature.document(identity(1), measured, {**origin, "version": ""})
+    sent = api.post("creatures", json=file)
+    assert sent.status_code == 201, sent.text
+    name = sent.json()["creature"]
+    assert api.get(f"creatures/{name}").json()["measured"] == measured
+    answer = api.get(f"creatures/{name}/creature.h5")
+    assert answer.status_code == 200
+    assert creature_h5.load(answer.content)["measured"] == measured
+    with h5py.File(BytesIO(answer.content), "r") as found:
+        fitness: Any = found["measured/fitness"]
+        assert fitness[()] == 0.5
+    (child,) = api.get(f"creatures/{parent}/children").json()["items"]
+    assert (child["creature"], child["fitness"]) == (name, 0.5)
+
+
+@pytest.mark.parametrize(
+    "features", [{"a\0b": 1.0}, {"a": 10**400}, {"a": "1/"}, {str(i): 0 for i in range(1001)}]
+)
+def test_features_that_cannot_be_kept_are_refused(api, identity, features):
+    measured = {"fitness": 0.5, "descriptors": {}, "block": 16, "room": [24, 64], "device": ""}
+    measured["features"] = {"displacement": 0.5, **features}
+    file = creature.document(identity(1), measured, None)
+    assert api.post("creatures", json=file).status_code == 422

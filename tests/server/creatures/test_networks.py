@@ -1,0 +1,95 @@
+"""A creature's network in other forms."""
+
+import io
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from microcosmos.archive import creature, naming
+from server.tables import Creature
+
+TYPES = {
+    "svg": "image/svg+xml",
+    "dot": "text/vnd.graphviz; charset=utf-8",
+    "py": "text/x-python; charset=utf-8",
+    "npz": "application/octet-stream",
+}
+
+
+@pytest.fixture
+def known(api, identity):
+    """The name of a creature that was brought."""
+
+    def bring(change=None) -> str:
+        found = identity(2)
+        if change:
+            change(found)
+        document = creature.document(found, None, None)
+        return api.post("creatures", json=document).json()["creature"]
+
+    return bring
+
+
+@pytest.mark.parametrize("form", TYPES)
+def test_each_form_is_for_ever_and_has_a_name(api, known, form):
+    sha = known()
+    answer = api.get(f"creatures/{sha}/network.{form}")
+    assert (answer.status_code, answer.headers["content-type"]) == (200, TYPES[form])
+    assert "immutable" in answer.headers["cache-control"]
+    assert f"network-{sha[:12]}.{form}" in answer.headers["content-disposition"]
+
+
+def test_the_picture_is_xml_and_the_graph_holds_the_connection(api, known):
+    sha = known()
+    picture = ElementTree.fromstring(api.get(f"creatures/{sha}/network.svg").text)
+    assert picture.tag == "{http://www.w3.org/2000/svg}svg"
+    assert re.search(r"1 -> 3", api.get(f"creatures/{sha}/network.dot").text)
+
+
+def test_the_code_computes_what_the_weight_says(api, known):
+    space = {}
+    exec(api.get(f"creatures/{known()}/network.py").text, space)
+    given = np.array([[0.3], [0.25], [0.7]])
+    np.testing.assert_allclose(space["network"](given), [[0.5], [0.0]])
+
+
+def test_the_genome_holds_nodes_and_connections(api, known):
+    data = api.get(f"creatures/{known()}/network.npz").content
+    with np.load(io.BytesIO(data)) as genome:
+        assert {"nodes", "conns"} <= set(genome.files)
+
+
+def cycle(identity):
+    genome = identity["genome"]
+    genome["control"]["recurrent"] = True
+    genome["connections"] |= {
+        "innovation": [0, 1],
+        "source": [1, 3],
+        "target": [3, 3],
+        "enabled": [True, True],
+        "weight": "AAAAPwAAAD8=",  # 0.5 twice.
+    }
+
+
+def test_a_network_with_a_cycle_is_updated_as_often_as_there_are_steps(api, known):
+    sha = known(cycle)
+    space = {}
+    exec(api.get(f"creatures/{sha}/network.py").text, space)
+    # v ← x / 2 + v / 2 comes to x.
+    np.testing.assert_allclose(space["network"](np.ones((3, 1)))[0], 1.0)
+    assert api.get(f"creatures/{sha}/network.svg").status_code == 200
+
+
+@pytest.mark.parametrize("form", TYPES)
+def test_where_there_is_no_network_it_says_so(api, services, form):
+    found = {"genome": {"encoding": "gait", "swimmer": "worm"}}
+    name = naming.name(found)
+    with services.sessions.write.begin() as session:
+        identity = naming.canonical(found)
+        row = Creature(sha256=name, identity=identity, parents=[], licence="CC0-1.0")
+        session.add(row)
+    answer = api.get(f"creatures/{name}/network.{form}")
+    assert answer.status_code == 404
+    assert "'gait'" in answer.json()["detail"]

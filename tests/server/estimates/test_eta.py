@@ -1,0 +1,142 @@
+"""How long a run will take, judged by those before it."""
+
+import pytest
+
+from microcosmos.archive import creature
+from microcosmos.spec import estimate, parse
+from server.attempts.begin import claim
+from server.runs.submission import submit
+from server.tables import Run
+from server.workers import registry
+
+DEVICE = "cpu, AMD EPYC avx2, microcosmos 0.1.0, jax 0.10.2"
+
+
+@pytest.fixture
+def measured(services, report):
+    """Leaves a run whose generations took so many seconds each, the first one more."""
+
+    def run(document, seconds, first=10.0, device=DEVICE, generations=5):
+        made, _ = submit(services, parse(document))
+        attempt = claim(services, made.id, "worker")
+        attempt.use(device)
+        for generation in range(1, generations + 1):
+            attempt.record(report(generation), first if generation == 1 else seconds)
+        return made.id
+
+    return run
+
+
+def ask(api, document):
+    answer = api.post("runs/estimate", json=document)
+    assert answer.status_code == 200
+    return answer.json()
+
+
+def test_nothing_is_said_of_time_before_a_run_was_measured(api, spec, measured):
+    assert (ask(api, spec)["seconds"], ask(api, spec)["pace"]) == (None, None)
+    measured(spec, 1.0, generations=1)  # Which may have compiled all the time.
+    assert ask(api, spec)["seconds"] is None
+
+
+def test_a_run_like_one_before_takes_as_long(api, spec, measured):
+    measured(spec, 0.5, first=10.0)
+    found = ask(api, spec)
+    generations = spec["search"]["generations"]
+    assert found["seconds"] == pytest.approx(10.0 + 0.5 * (generations - 1))
+    assert found["pace"]["runs"] == 1
+    rate = found["pace"]["cell_steps_per_second"]
+    assert rate == pytest.approx(estimate(parse(spec)).cell_steps / generations / 0.5)
+
+
+def test_twice_the_work_takes_twice_as_long_compiling_aside(api, spec, measured):
+    measured(spec, 0.5, first=10.0)
+    once = ask(api, spec)["seconds"]
+    spec["search"]["generations"] *= 2
+    assert ask(api, spec)["seconds"] - 9.5 == pytest.approx(2 * (once - 9.5))
+
+
+def test_several_runs_give_a_middle_and_a_range(api, spec, measured):
+    for seconds in (0.5, 1.0, 4.0):
+        measured(spec, seconds, first=seconds)
+    found = ask(api, spec)
+    generations = spec["search"]["generations"]
+    assert found["pace"]["runs"] == 3
+    told = found["pace"]["low"], found["seconds"], found["pace"]["high"]
+    assert told == pytest.approx([0.5 * generations, generations, 4.0 * generations])
+
+
+def test_runs_most_alike_are_the_judges(api, spec, measured):
+    large = {**spec, "world": {**spec["world"], "width": 128, "height": 128}}
+    for _ in range(5):
+        measured(large, 1.0)
+        measured(spec, 1.0)
+    cells = ask(api, spec)["pace"]["cell_steps_per_second"]
+    assert ask(api, large)["pace"]["cell_steps_per_second"] == pytest.approx(16 * cells)
+
+
+def test_only_runs_of_the_same_experiment_and_of_a_device_that_is_there_count(
+    api, services, spec, sweep, measured
+):
+    measured(spec, 0.5)
+    assert ask(api, sweep)["seconds"] is None
+    registry.report(services.sessions, "fast", "NVIDIA H100", 1 << 40, "idle")
+    assert ask(api, spec)["seconds"] is None
+    registry.report(services.sessions, "slow", "AMD EPYC (2 threads)", 1 << 40, "busy")
+    assert ask(api, spec)["pace"]["device"] == "AMD EPYC"
+
+
+def test_filaments_in_a_fluid_are_not_judged_by_those_without(api, measured):
+    def fold(fluid):
+        return {"experiment": "folding", "world": {"width": 96, "height": 96, "fluid": fluid}}
+
+    measured(fold(False), 1.0)
+    assert ask(api, fold(False))["seconds"] is not None
+    assert ask(api, fold(True))["seconds"] is None
+
+
+def test_a_spec_of_another_version_judges_nothing(api, services, spec, measured):
+    name = measured(spec, 0.5)
+    with services.sessions.write.begin() as session:
+        session.get_one(Run, name).spec = {"experiment": "quality-diversity", "old": True}
+    assert ask(api, spec)["seconds"] is None
+
+
+def test_the_queue_is_told(api, services, spec, run_id):
+    assert ask(api, spec)["queue"] == {"waiting": 1, "workers": 0, "free": 0}
+    registry.report(services.sessions, "one", "cpu", 1 << 40, "idle")
+    assert ask(api, spec)["queue"] == {"waiting": 1, "workers": 1, "free": 1}
+    claim(services, run_id, "two")
+    registry.report(services.sessions, "two", "cpu", 1 << 40, "busy", run_id)
+    assert ask(api, spec)["queue"] == {"waiting": 0, "workers": 2, "free": 1}
+
+
+def test_the_body_is_drawn_in_its_world(api, spec):
+    found = ask(api, {**spec, "body": {"builder": "ring", "nodes": 12}})["drawing"]
+    assert (found["width"], found["height"]) == (32, 32)
+    (body,) = found["bodies"]
+    assert (body["name"], body["nodes"], len(body["positions"])) == ("ring", 12, 12)
+    assert sorted(map(sorted, body["edges"])) == sorted(
+        sorted((i, (i + 1) % 12)) for i in range(12)
+    )
+
+
+def test_a_creature_that_is_refined_is_drawn(api, identity):
+    file = creature.document(identity(), None, None)
+    found = ask(api, {"experiment": "refinement", "creature": file})["drawing"]
+    assert [(body["name"], body["nodes"]) for body in found["bodies"]] == [("chain", 16)]
+
+
+def test_a_long_body_is_thinned(api, spec):
+    world = {"width": 2048, "height": 2048}
+    walk = {"builder": "walk", "nodes": 4000, "deviation": 0.05}
+    folds = {"experiment": "folding", "world": world, "body": walk, "memory": 100}
+    (body,) = ask(api, folds)["drawing"]["bodies"]
+    assert body["nodes"] == 4000
+    assert 500 < len(body["positions"]) < 1100
+
+
+def test_a_wide_drawing_stays_small(api):
+    answer = api.post("runs/estimate", json={"experiment": "scaling"})
+    assert len(answer.content) < 100_000
+    assert answer.json()["drawing"]["bodies"][1]["nodes"] == 500_000

@@ -1,0 +1,206 @@
+"""One stream of everything that happens: in order, nothing twice, nothing lost."""
+
+import json
+import threading
+import time
+from contextlib import ExitStack, contextmanager
+from uuid import uuid4
+
+import httpx
+import pytest
+
+from server.attempts.begin import claim
+from server.events import fanout
+from server.events import stream as events
+from server.runs import lifecycle
+
+
+def read(lines):
+    """Events as (id, kind, data)."""
+    event = {}
+    for line in lines:
+        if not line and event:
+            yield event.get("id"), event.get("event"), json.loads(event.get("data", "null"))
+            event = {}
+        elif line and not line.startswith(":"):
+            key, _, value = line.partition(": ")
+            event[key] = value
+
+
+@contextmanager
+def stream(address, last=None, **query):
+    headers = {"Last-Event-ID": last} if last else {}
+    url = f"{address}/api/v1/events"
+    with httpx.stream("GET", url, params=query, headers=headers, timeout=10) as answer:
+        assert answer.headers["content-type"].startswith("text/event-stream")
+        yield read(answer.iter_lines())
+
+
+def take(found, number):
+    return [next(found) for _ in range(number)]
+
+
+def test_who_listens_is_told_what_happens_to_a_run(address, services, run_id, report):
+    with stream(address) as found:
+        identifier, kind, data = next(found)
+        assert (kind, data) == (None, None)  # The place from which it goes on.
+        assert identifier
+        attempt = claim(services, run_id, "worker")
+        attempt.record(report(1, {3: 1.0, 9: 2.0}), 1.5)
+        attempt.finish()
+        heard = take(found, 5)
+    kinds = [kind for _, kind, _ in heard]
+    assert kinds == ["run", "generation", "elites", "run", "run"]
+    data = [data for _, _, data in heard]
+    assert data[0]["status"] == "running"
+    assert data[1] == {
+        "run": str(run_id),
+        "generation": 1,
+        "qd_score": 10.0,
+        "coverage": 1 / 256,
+        "best": 1.0,
+        "mean": 0.5,
+        "evaluations": 16,
+        "diverged": 1,
+        "seconds": 1.5,
+        "summary": None,
+    }
+    assert (data[2]["cell"], data[2]["fitness"]) == ([3, 9], [1.0, 2.0])
+    assert (data[3]["generation"], data[4]["status"]) == (1, "finished")
+    assert [("spec" in data[i]) for i in (0, 3, 4)] == [True, False, True]
+
+
+def test_taking_a_run_up_again_rewinds(address, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    for generation in (1, 2, 3):
+        attempt.record(report(generation), 1.0)
+        if generation == 2:
+            attempt.save(2, b"state")
+    with stream(address) as found:
+        next(found)
+        claim(services, run_id, "worker")
+        (_, kind, data), (_, then, run) = take(found, 2)
+    assert (kind, data) == ("rewind", {"run": str(run_id), "generation": 2})
+    assert (then, run["generation"]) == ("run", 2)
+
+
+def test_what_people_ask_for_is_told_too(address, api, run_id):
+    with stream(address) as found:
+        next(found)
+        api.post(f"runs/{run_id}/pause")
+        api.post(f"runs/{run_id}/resume")
+        assert [data["status"] for _, _, data in take(found, 2)] == ["paused", "queued"]
+
+
+def test_the_last_word_on_a_run_is_how_it_stands(services, run_id, monkeypatch):
+    """Whoever read it first is slow to tell, and is overtaken by whoever changed it next."""
+    told, publish = [], services.events.publish
+
+    def be_overtaken(kind, run, data):
+        monkeypatch.setattr(services.events, "publish", note)
+        claim(services, run_id, "worker")
+        note(kind, run, data)
+
+    def note(kind, run, data):
+        told.append(data["status"])
+        publish(kind, run, data)
+
+    monkeypatch.setattr(services.events, "publish", be_overtaken)
+    lifecycle.announce(services, run_id)
+    assert told == ["running", "queued", "running"]
+
+
+def test_what_has_not_changed_is_told_once(services, run_id, report, monkeypatch):
+    told = []
+    attempt = claim(services, run_id, "worker")
+    monkeypatch.setattr(services.events, "publish", lambda *event: told.append(event))
+    attempt.record(report(1), 1.0)
+    told.clear()
+    lifecycle.announce(services, run_id, without=["spec"])
+    assert len(told) == 1
+
+
+def test_a_stream_of_one_run_tells_nothing_of_others(address, services):
+    mine, other = uuid4(), uuid4()
+    with stream(address, run=mine) as found:
+        next(found)
+        for number in range(4):
+            services.events.publish("run", other if number % 2 else mine, {"number": number})
+        assert [data["number"] for _, _, data in take(found, 2)] == [0, 2]
+
+
+def test_nothing_is_lost_or_doubled_over_restarts_of_the_server(services, serve):
+    run_id, heard, last = uuid4(), [], None
+    published, total = 0, 400
+    done = threading.Event()
+
+    def publish():
+        nonlocal published
+        while published < total:
+            services.events.publish("run", run_id, {"number": published})
+            published += 1
+            time.sleep(0.002)
+        done.set()
+
+    teller = threading.Thread(target=publish)
+    for _ in range(4):
+        with serve() as address, stream(address, last) as found:
+            if last is None:
+                last = next(found)[0]
+                teller.start()
+            for identifier, _, data in found:
+                last = identifier
+                heard.append(data["number"])
+                if len(heard) % 100 == 0:
+                    break
+    teller.join()
+    assert done.is_set()
+    assert heard == list(range(total))
+
+
+def test_a_stop_of_the_server_ends_its_streams_at_once(serve):
+    with ExitStack() as server:
+        address = server.enter_context(serve())
+        with stream(address) as found:
+            next(found)
+            begun = time.monotonic()
+            server.close()
+            assert list(found) == []
+    assert time.monotonic() - begun < 3
+
+
+@pytest.mark.parametrize("last", ["1-0", "99999999999999-0", "nonsense"])
+def test_who_has_missed_more_than_is_kept_fetches_anew(address, services, last):
+    services.events.publish("run", uuid4(), {})
+    with stream(address, last) as found:
+        identifier, kind, _ = next(found)
+        assert kind == "reset"
+        services.events.publish("run", uuid4(), {"number": 1})
+        later = [event for event in take(found, 1) if event[1] == "run"]
+    assert later
+    assert fanout.place(later[0][0]) > fanout.place(identifier)
+
+
+def test_after_the_stream_was_emptied_a_client_fetches_anew(address, services, flush):
+    with stream(address) as found:
+        next(found)
+        services.events.publish("run", uuid4(), {})
+        last = next(found)[0]
+    flush()
+    with stream(address, last) as found:
+        assert next(found)[1] == "reset"
+
+
+def test_a_slow_listener_is_told_to_fetch_anew():
+    listener = fanout.Listener("0-0")
+    for number in range(fanout.ROOM + 1):
+        listener.put(fanout.Entry(f"{number + 1}-0", "run"))
+    waiting = [listener.waiting.get_nowait() for _ in range(listener.waiting.qsize())]
+    assert [(entry.id, entry.kind) for entry in waiting] == [(f"{fanout.ROOM + 1}-0", "reset")]
+
+
+def test_the_stream_is_trimmed(services, monkeypatch):
+    monkeypatch.setattr(events, "KEPT", 100)
+    for _ in range(500):
+        services.events.publish("run", uuid4(), {})
+    assert services.redis.xlen(services.events.stream) <= 200

@@ -1,0 +1,175 @@
+"""Runs survive the death of workers, of jobs and of Redis."""
+
+import pytest
+from redis import ConnectionError
+from rq.registry import StartedJobRegistry
+from sqlalchemy import update
+
+from server.attempts.begin import claim
+from server.attempts.claim import Fenced
+from server.core.database import ago
+from server.maintenance.reconcile import job_died, job_stopped, reconcile
+from server.tables import Run, Worker
+
+pytestmark = pytest.mark.postgresql
+
+
+def put(services, table, **values):
+    with services.sessions.write.begin() as session:
+        session.execute(update(table).values(**values))
+
+
+def silence(services):
+    """Every worker's last heartbeat is a lease ago, and a little more."""
+    with services.sessions.read() as session:
+        then = ago(session, services.settings.lease + 0.1)
+    put(services, Run, heartbeat_at=then)
+
+
+def enqueued(services):
+    return services.jobs.runs.get_job_ids()
+
+
+def test_redis_may_be_emptied_without_losing_a_run(services, run_id, flush):
+    assert enqueued(services) == [str(run_id)]
+    flush()
+    assert enqueued(services) == []
+    reconcile(services)
+    assert enqueued(services) == [str(run_id)]
+
+
+def test_a_server_reconciles_when_it_starts(services, run_id, flush, serve, eventually):
+    flush()
+    with serve(reconcile_interval=0.05):
+        eventually(lambda: enqueued(services))
+    assert enqueued(services) == [str(run_id)]
+
+
+def test_a_run_that_waits_in_the_queue_is_left_alone(services, run_id):
+    before = services.jobs.find(str(run_id)).enqueued_at
+    reconcile(services)
+    assert services.jobs.find(str(run_id)).enqueued_at == before
+
+
+def test_a_run_that_a_worker_has_just_taken_is_left_alone(services, run_id):
+    services.redis.lrem(services.jobs.runs.key, 0, str(run_id))
+    registry = StartedJobRegistry(queue=services.jobs.runs)
+    services.redis.zadd(registry.key, {f"{run_id}:execution": 4e9})
+    reconcile(services)
+    assert enqueued(services) == []
+
+
+def test_runs_are_enqueued_in_the_order_in_which_they_came(services, api, spec, flush):
+    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(4)]
+    flush()
+    reconcile(services)
+    assert enqueued(services) == ids
+
+
+def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, report):
+    attempt = claim(services, run_id, "worker")
+    flush()
+    reconcile(services)
+    assert (row().status, enqueued(services)) == ("running", [])
+    silence(services)
+    reconcile(services)
+    assert (row().status, enqueued(services)) == ("queued", [str(run_id)])
+    with pytest.raises(Fenced):
+        attempt.record(report(1), 1.0)
+
+
+def test_three_silent_workers_end_a_run(services, run_id, row):
+    for _ in range(3):
+        claim(services, run_id, "worker")
+        silence(services)
+        reconcile(services)
+    assert row().status == "failed"
+    assert "no word from worker worker for 20 s" in row().error
+
+
+@pytest.mark.parametrize(("action", "status"), [("pause", "paused"), ("cancel", "cancelled")])
+def test_a_wish_to_a_dead_worker_is_granted(services, api, run_id, row, action, status):
+    claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/{action}")
+    silence(services)
+    reconcile(services)
+    assert (row().status, row().wish) == (status, None)
+    assert (row().finished_at is None) == (status == "paused")
+
+
+def test_who_does_not_obey_a_cancellation_loses_the_run(services, api, run_id, row):
+    attempt = claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/cancel")
+    reconcile(services)
+    assert row().status == "running"
+    put(services, Run, wished_at=row().created_at.replace(year=2000))
+    reconcile(services)
+    assert row().status == "cancelled"
+    with pytest.raises(Fenced):
+        attempt.wish()
+
+
+def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
+    claim(services, run_id, "worker")
+    flush()
+    job_died(services, run_id, "another", "killed")
+    assert row().status == "running"
+    job_died(services, run_id, "worker", "killed by signal 9")
+    assert (row().status, row().error) == ("queued", "killed by signal 9")
+    assert enqueued(services) == [str(run_id)]
+
+
+def test_a_job_killed_because_its_worker_stops_is_no_lost_chance(services, run_id, row, flush):
+    for _ in range(4):
+        attempt = claim(services, run_id, "worker")
+        job_stopped(services, run_id, "another")
+        assert row().status == "running"
+        job_stopped(services, run_id, "worker")
+        assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
+        with pytest.raises(Fenced):
+            attempt.wish()
+    assert enqueued(services) == [str(run_id)]
+
+
+def test_a_run_can_be_submitted_while_redis_is_away(api, services, spec, serve, row, flush):
+    import httpx
+
+    with serve(redis_url="redis://127.0.0.1:1/0") as address:
+        client = httpx.Client(base_url=f"{address}/api/v1", timeout=30)
+        answer = client.post("/runs", json={**spec, "seed": 7})
+        assert client.get(f"{address}/readyz").status_code == 503
+        client.close()
+    assert answer.status_code == 202
+    run_id = answer.json()["id"]
+    assert run_id not in enqueued(services)
+    reconcile(services)
+    assert run_id in enqueued(services)
+
+
+def test_an_outage_of_redis_does_not_end_the_reconciler(serve, monkeypatch, eventually):
+    from server.maintenance import reconcile as module
+
+    calls = []
+
+    def sometimes(given):
+        calls.append(given)
+        if len(calls) < 3:
+            raise ConnectionError("Connection refused")
+
+    monkeypatch.setattr(module, "reconcile", sometimes)
+    with serve(reconcile_interval=0.01):
+        eventually(lambda: len(calls) >= 5)
+
+
+def test_workers_that_were_silent_for_long_are_forgotten(services, api):
+    from server.workers import registry
+
+    registry.report(services.sessions, "worker", "cpu", 1, "idle")
+    assert [worker["name"] for worker in api.get("workers").json()] == ["worker"]
+    with services.sessions.read() as session:
+        then = session.get_one(Worker, "worker").heartbeat_at.replace(year=2000)
+    put(services, Worker, heartbeat_at=then)
+    assert api.get("workers").json() == []
+    reconcile(services)
+    with services.sessions.read() as session:
+        assert session.get(Worker, "worker") is None

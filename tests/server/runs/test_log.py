@@ -1,0 +1,147 @@
+"""The journal tells what happened to a run, in the words of the page's log."""
+
+from uuid import uuid4
+
+import pytest
+
+from server.attempts.begin import claim
+from server.maintenance import reconcile
+from server.runs import lifecycle
+from server.tables import Run
+
+
+@pytest.fixture
+def log(api, run_id):
+    """The entries as (level, attempt, text)."""
+
+    def read(**params):
+        answer = api.get(f"runs/{run_id}/log", params=params)
+        assert answer.status_code == 200, answer.text
+        return [(e["level"], e["attempt"], e["text"]) for e in answer.json()["entries"]]
+
+    return read
+
+
+@pytest.fixture
+def texts(log):
+    return lambda **params: [text for _, _, text in log(**params)]
+
+
+def ask(services, run_id, wish):
+    with services.sessions.write.begin() as session:
+        wish(session, session.get_one(Run, run_id))
+
+
+def test_a_run_that_goes_well_is_told_from_end_to_end(services, run_id, report, log):
+    attempt = claim(services, run_id, "worker 1")
+    attempt.use("cpu: a processor")
+    attempt.record(report(1), 1.0)
+    attempt.save(1, b"the archive")
+    attempt.finish()
+    assert log()[1:] == [
+        ("info", 1, "Attempt 1 begins on worker worker 1, from the beginning."),
+        ("info", 1, "Computing on cpu: a processor."),
+        ("info", 1, "Checkpoint of generation 1 written, 11 B."),
+        ("info", 1, "Finished."),
+    ]
+    level, before, submitted = log()[0]
+    assert (level, before) == ("info", 0)
+    assert submitted.startswith("Submitted: quality-diversity")
+
+
+def test_of_many_checkpoints_the_first_and_the_last_stay(services, run_id, report, texts):
+    attempt = claim(services, run_id, "worker")
+    for generation in range(1, 8):
+        attempt.record(report(generation), 1.0)
+        attempt.save(generation, b"archive %d" % generation)
+        attempt.warn("it is crowded")
+    saved = [text for text in texts() if text.startswith("Checkpoint")]
+    assert [text.split()[3] for text in saved] == ["1", "7"]
+    assert texts().count("it is crowded") == 2
+
+
+def test_a_failed_attempt_keeps_its_traceback_and_the_next_says_where_it_goes_on(
+    services, run_id, report, log
+):
+    first = claim(services, run_id, "worker")
+    for generation in (1, 2, 3):
+        first.record(report(generation), 1.0)
+        if generation == 1:
+            first.save(1, b"the archive")
+    first.fail("Traceback:\nZeroDivisionError: twice nothing")
+    claim(services, run_id, "another")
+    assert log()[-4:] == [
+        (
+            "error",
+            1,
+            "Attempt 1 ended badly: Traceback:\nZeroDivisionError: twice nothing",
+        ),
+        ("info", 1, "Queued for another attempt."),
+        ("info", 2, "Attempt 2 begins on worker another, from the checkpoint of generation 1."),
+        ("warning", 2, "Went back: what was recorded of generations 2 to 3 is dropped."),
+    ]
+
+
+def test_the_third_attempt_without_a_checkpoint_is_told_as_the_last(services, run_id, log):
+    for _ in range(lifecycle.ATTEMPTS):
+        claim(services, run_id, "worker").fail("no luck")
+    assert log()[-1] == ("error", 3, "Failed: 3 attempts without a new checkpoint.")
+
+
+def test_what_people_ask_is_told_when_it_is_asked_and_when_it_is_done(
+    services, run_id, report, api, texts
+):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1), 1.0)
+    attempt.save(1, b"the archive")
+    api.post(f"runs/{run_id}/pause")
+    attempt.pause()
+    api.post(f"runs/{run_id}/resume")
+    api.post(f"runs/{run_id}/cancel")
+    assert texts()[-5:] == [
+        "Asked to pause.",
+        "Stopped after generation 1.",
+        "Paused.",
+        "Resumed: queued again.",
+        "Cancelled.",
+    ]
+
+
+def test_a_worker_that_is_told_to_stop_hands_its_run_back(services, run_id, texts):
+    claim(services, run_id, "worker").requeue()
+    assert texts()[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
+
+
+def test_a_job_that_died_is_told(services, run_id, log):
+    claim(services, run_id, "worker")
+    reconcile.job_died(services, run_id, "worker", "killed by signal 9")
+    assert ("error", 1, "Attempt 1 ended badly: killed by signal 9") in log()
+
+
+def test_a_refused_wish_leaves_no_entry(services, run_id, api, texts):
+    before = texts()
+    assert api.post(f"runs/{run_id}/resume").status_code == 409
+    assert texts() == before
+
+
+def test_the_newest_entries_are_told_and_those_that_follow_one(api, services, run_id):
+    for _ in range(3):
+        ask(services, run_id, lifecycle.pause)
+        ask(services, run_id, lifecycle.resume)
+    whole = api.get(f"runs/{run_id}/log").json()["entries"]
+    ids = [entry["id"] for entry in whole]
+    assert len(ids) == 7
+    assert ids == sorted(ids)
+    newest = api.get(f"runs/{run_id}/log", params={"limit": 2}).json()["entries"]
+    assert newest == whole[-2:]
+    after = api.get(f"runs/{run_id}/log", params={"after": ids[2], "limit": 2}).json()
+    assert after["entries"] == whole[3:5]
+
+
+@pytest.mark.postgresql
+def test_the_log_of_no_run_is_not_found_and_a_limit_has_to_make_sense(api, run_id):
+    assert api.get(f"runs/{uuid4()}/log").status_code == 404
+    for wrong in ({"limit": 0}, {"after": -1}, {"after": 1 << 63}):
+        refused = api.get(f"runs/{run_id}/log", params=wrong)
+        assert refused.status_code == 422
+        assert refused.json()["errors"][0]["field"] in wrong

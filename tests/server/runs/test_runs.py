@@ -1,0 +1,326 @@
+"""Submitting, listing, reading and steering runs, over HTTP."""
+
+from concurrent.futures import ThreadPoolExecutor
+from uuid import uuid4
+
+import pytest
+from sqlalchemy.exc import TimeoutError
+
+from server.attempts.begin import claim
+from server.runs import routes
+from server.workers import registry
+
+PROBLEM = "application/problem+json"
+
+FINE = [{"name": name, "bins": 1024} for name in ("bending_effort", "stretching_effort")]
+
+
+def changed(spec, path, value):
+    *parts, last = path.split(".")
+    part = spec
+    for name in parts:
+        part = part[name]
+    part[last] = value
+    return spec
+
+
+def test_experiments_carry_schema_and_presets_that_can_be_submitted(api):
+    experiments = api.get("experiments").json()
+    names = [found["experiment"] for found in experiments]
+    searches, others = ["quality-diversity", "neuroevolution"], ["gaits", "scaling"]
+    assert names == [*searches, "folding", "refinement", *others]
+    for found in experiments:
+        assert set(found) == {"experiment", "title", "schema", "presets"}
+        assert found["schema"]["properties"]["experiment"]
+        if found["experiment"] == "refinement":  # It begins at a creature.
+            assert not found["presets"]
+            continue
+        assert {"demo", "paper"} <= {preset["name"] for preset in found["presets"]}
+        for preset in found["presets"]:
+            assert api.post("runs/estimate", json=preset["spec"]).status_code == 200
+
+
+def test_a_submitted_run_is_queued_and_enqueued(api, services, spec):
+    answer = api.post("runs", json=spec)
+    assert answer.status_code == 202
+    run = answer.json()
+    assert run["status"] == "queued"
+    assert run["generations"] == spec["search"]["generations"]
+    assert run["spec"] == spec
+    assert answer.headers["location"] == f"/api/v1/runs/{run['id']}"
+    assert services.jobs.runs.get_job_ids() == [run["id"]]
+    assert api.get(f"runs/{run['id']}").json() == run
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "field", "words"),
+    [
+        ("surprise", 1, "surprise", "no field of this name"),
+        ("world.colour", "red", "world.colour", "no field of this name"),
+        ("world.viscosity", -1, "world.viscosity", "greater than or equal to 0.001"),
+        ("body.nodes", 10**9, "body.nodes", "less than or equal to 4096"),
+        ("body.nodes", 32, "world.width", "at least 42 cells"),
+        ("search.block", 4096, "search.block", "bytes of memory"),
+        ("experiment", "x", "experiment", "quality-diversity"),
+        ("seed", "one", "seed", "valid integer"),
+    ],
+)
+def test_bad_input_is_refused_with_field_and_reason(
+    api, services, spec, path, value, field, words
+):
+    if path == "search.block":
+        spec["world"] |= {"width": 1024, "height": 1024}
+    answer = api.post("runs", json=changed(spec, path, value))
+    assert answer.status_code == 422
+    assert answer.headers["content-type"] == PROBLEM
+    (error,) = answer.json()["errors"]
+    assert error["field"] == field
+    assert words in error["message"]
+    if "got" in error and path != "search.block":
+        assert error["got"] == value
+    assert api.get("runs").json()["items"] == []
+    assert services.jobs.runs.count == 0
+
+
+@pytest.mark.parametrize(
+    ("experiment", "change", "field"),
+    [
+        ("quality-diversity", {}, "search.block"),
+        ("quality-diversity", {"search": {"batch": 65_536}}, "search.batch"),
+        ("neuroevolution", {}, "search.block"),
+        ("neuroevolution", {"search": {"batch": 65_536}}, "search.batch"),
+        ("quality-diversity", {"archive": {"descriptors": FINE}}, "archive"),
+        ("gaits", {}, "block"),
+        ("scaling", {}, "nodes"),
+        ("folding", {}, "memory"),
+    ],
+)
+def test_a_run_that_needs_too_much_memory_is_told_which_field_decides(
+    api, services, experiment, change, field
+):
+    registry.report(services.sessions, "small", "cpu", 1000, "idle")
+    answer = api.post("runs", json={"experiment": experiment, **change})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == field
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "words"),
+    [
+        (b"{", 422, "JSON is needed"),
+        (b"[]", 422, "object is needed"),
+        (b'{"seed": NaN}', 422, "finite"),
+        (b'{"seed": 1e999}', 422, "finite"),
+        (b'{"a":' + b"[" * 50 + b"]" * 50 + b"}", 422, "At most 32 levels"),
+        (b'{"a":' + b"[" * 100_000, 422, "At most 32 levels"),
+        (b"\xff\xfe", 422, "JSON is needed"),
+        (b'{"experiment": "\\ud800"}', 422, "must be Unicode; got '\\ud800'"),
+        (b'{"\\udfff": 1}', 422, "must be Unicode"),
+        (b'{"body": {"kind": "\\u0000"}}', 422, "without NUL"),
+        (b'"' + b"a" * (1 << 21) + b'"', 413, "At most 1,048,576 bytes"),
+    ],
+)
+def test_what_is_not_a_plain_json_object_is_refused(api, body, status, words):
+    answer = api.post("runs", content=body)
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == PROBLEM
+    assert words in answer.json()["detail"]
+
+
+def test_a_run_must_fit_the_largest_live_worker(api, services, spec):
+    needed = api.post("runs/estimate", json=spec).json()
+    assert needed["memory_limit_bytes"] == services.settings.max_bytes
+    registry.report(services.sessions, "small", "cpu", 1000, "idle")
+    answer = api.post("runs", json=spec)
+    assert answer.status_code == 422
+    assert f"{needed['memory_bytes']:,}" in answer.json()["detail"]
+    assert "1,000 bytes are available" in answer.json()["detail"]
+    registry.report(services.sessions, "large", "cpu", needed["memory_bytes"], "idle")
+    assert api.post("runs", json=spec).status_code == 202
+    registry.report(services.sessions, "huge", "cpu", 1 << 50, "idle")
+    capped = api.post("runs/estimate", json=spec).json()
+    assert capped["memory_limit_bytes"] == services.settings.max_bytes
+
+
+@pytest.mark.postgresql
+def test_the_same_key_at_once_gives_one_run(api, services, spec):
+    headers = {"Idempotency-Key": "a key"}
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(
+            pool.map(lambda _: api.post("runs", json=spec, headers=headers), range(8))
+        )
+    assert sorted(answer.status_code for answer in answers) == [200] * 7 + [202]
+    assert len({answer.json()["id"] for answer in answers}) == 1
+    assert len(api.get("runs").json()["items"]) == 1
+    assert services.jobs.runs.count == 1
+
+
+def test_a_key_cannot_be_used_for_another_spec(api, spec):
+    headers = {"Idempotency-Key": "a key"}
+    run = api.post("runs", json=spec, headers=headers).json()
+    answer = api.post("runs", json={**spec, "seed": 1}, headers=headers)
+    assert answer.status_code == 422
+    assert run["id"] in answer.json()["detail"]
+
+
+def test_a_key_stands_for_a_spec_with_numbers_that_canonical_json_has_not(api, spec):
+    spec["search"]["stop"] = {"evaluations": 2**53 + 1}
+    headers = {"Idempotency-Key": "large"}
+    first, second = (api.post("runs", json=spec, headers=headers) for _ in range(2))
+    assert (first.status_code, second.status_code) == (202, 200)
+    assert first.json()["id"] == second.json()["id"]
+    spec["search"]["stop"]["evaluations"] += 1
+    assert api.post("runs", json=spec, headers=headers).status_code == 422
+
+
+def test_what_was_accepted_once_is_not_refused_when_it_is_asked_again(api, services, spec):
+    """A worker with the memory may have gone meanwhile."""
+    headers = {"Idempotency-Key": "a key"}
+    registry.report(services.sessions, "large", "cpu", 1 << 29, "idle")
+    first = api.post("runs", json=spec, headers=headers)
+    registry.report(services.sessions, "large", "cpu", 1000, "idle")
+    assert api.post("runs", json=spec).status_code == 422
+    assert api.post("runs", json=spec, headers=headers).json()["id"] == first.json()["id"]
+
+
+def test_runs_are_listed_newest_first_in_pages(api, spec):
+    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(5)]
+    seen, cursor = [], None
+    while True:
+        query = {"limit": 2, **({"cursor": cursor} if cursor else {})}
+        page = api.get("runs", params=query).json()
+        seen += [run["id"] for run in page["items"]]
+        cursor = page["next"]
+        if cursor is None:
+            break
+    assert seen == ids[::-1]
+    api.post(f"runs/{ids[2]}/cancel")
+    found = api.get("runs", params={"status": "cancelled"}).json()["items"]
+    assert [run["id"] for run in found] == [ids[2]]
+
+
+def test_queries_are_checked(api):
+    assert api.get("runs", params={"cursor": "nonsense"}).status_code == 422
+    answer = api.get("runs", params={"limit": 0})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == "limit"
+
+
+@pytest.mark.parametrize("path", ["runs/00000000-0000-0000-0000-000000000000", "nothing"])
+def test_what_is_not_there_is_a_problem(api, path):
+    answer = api.get(path)
+    assert answer.status_code == 404
+    assert answer.headers["content-type"] == PROBLEM
+
+
+def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, run_id, flush):
+    assert api.post(f"runs/{run_id}/pause").json()["status"] == "paused"
+    assert claim(services, run_id, "worker") is None
+    flush()
+    assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
+    assert services.jobs.runs.get_job_ids() == [str(run_id)]
+    cancelled = api.post(f"runs/{run_id}/cancel").json()
+    assert cancelled["status"] == "cancelled"
+    assert cancelled["finished_at"]
+    assert claim(services, run_id, "worker") is None
+
+
+def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    paused = api.post(f"runs/{run_id}/pause").json()
+    assert (paused["status"], paused["wish"]) == ("running", "pause")
+    assert attempt.record(report(1), 1.0) == "pause"
+    attempt.pause()
+    run = api.get(f"runs/{run_id}").json()
+    assert (run["status"], run["wish"]) == ("paused", None)
+    api.post(f"runs/{run_id}/resume")
+    attempt = claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/cancel")
+    assert attempt.wish() == "cancel"
+    attempt.cancel()
+    assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"
+
+
+def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run_id):
+    claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/pause")
+    assert api.post(f"runs/{run_id}/cancel").json()["wish"] == "cancel"
+    assert api.post(f"runs/{run_id}/pause").status_code == 409
+
+
+def test_what_the_state_forbids_is_a_conflict_that_says_why(api, services, run_id):
+    answer = api.post(f"runs/{run_id}/resume")
+    assert answer.status_code == 409
+    assert answer.json()["detail"] == "to resume a run it must be paused; it is queued"
+    claim(services, run_id, "worker").finish()
+    for action in ("pause", "resume", "cancel"):
+        answer = api.post(f"runs/{run_id}/{action}")
+        assert answer.status_code == 409
+        assert "it is finished" in answer.json()["detail"]
+
+
+def test_progress_is_what_was_recorded(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    attempt.use("a device")
+    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
+        attempt.record(report(generation), seconds)
+    run = api.get(f"runs/{run_id}").json()
+    assert run["generation"] == 3
+    assert run["progress"] == 3 / run["generations"]
+    assert run["evaluations"] == 48
+    assert run["evaluations_per_second"] == 8.0
+    assert run["eta_seconds"] == (run["generations"] - 3) * 16 / 8
+    assert run["sparkline"] == [10, 20, 30]
+    assert run["device"] == "a device"
+
+
+def test_of_a_run_that_is_done_the_rate_is_that_of_all_but_the_first_generation(
+    api, services, run_id, report
+):
+    attempt = claim(services, run_id, "worker")
+    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
+        attempt.record(report(generation), seconds)
+    attempt.finish()
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 32 / 8
+
+
+def test_a_single_generation_has_a_rate_with_its_compilation(api, services, run_id, report):
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
+    claim(services, run_id, "worker").record(report(1), 20.0)
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 16 / 20
+
+
+def test_curves_are_columns_of_all_or_some_generations(api, services, run_id, report):
+    empty = api.get(f"runs/{run_id}/generations").json()
+    assert empty["generation"] == []
+    attempt = claim(services, run_id, "worker")
+    for generation in range(1, 41):
+        attempt.record(report(generation), 0.5)
+    curves = api.get(f"runs/{run_id}/generations").json()
+    assert curves["generation"] == list(range(1, 41))
+    assert curves["seconds"][-1] == 20.0
+    assert curves["mean"][3] == 2.0
+    some = api.get(f"runs/{run_id}/generations", params={"points": 5}).json()
+    assert some["generation"] == [1, 11, 21, 30, 40]
+
+
+@pytest.mark.postgresql
+def test_many_that_steer_at_once_do_not_wait_for_each_other(api, run_id):
+    with ThreadPoolExecutor(24) as pool:
+        answers = list(pool.map(lambda _: api.post(f"runs/{run_id}/cancel"), range(24)))
+    assert sorted(answer.status_code for answer in answers) == [202] + 23 * [409]
+
+
+def test_a_database_without_a_free_connection_is_unavailable(api, run_id, monkeypatch):
+    def exhausted(*_):
+        raise TimeoutError("QueuePool limit reached")
+
+    monkeypatch.setattr(routes, "read_run", exhausted)
+    answer = api.get(f"runs/{run_id}")
+    assert (answer.status_code, answer.headers["content-type"]) == (503, PROBLEM)
+
+
+def test_an_unknown_run_cannot_be_steered(api):
+    for action in ("pause", "resume", "cancel"):
+        assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
+        assert api.post(f"runs/nonsense/{action}").status_code == 422

@@ -1,0 +1,77 @@
+"""The page of a share: what other sites are told of it, and that names are only text there."""
+
+import re
+
+import httpx
+import pytest
+
+from microcosmos.archive import creature
+from server.core import page
+
+INDEX = "<!doctype html><html><head><title>Microcosmos</title>\n</head><body></body></html>"
+HOSTILE = """</title><script>alert("x")</script>'&"""
+
+
+@pytest.fixture
+def known(api, identity) -> str:
+    file = creature.document(identity(3), None, None)
+    return api.post("creatures", json={**file, "credit": ["Ada"]}).json()["creature"]
+
+
+@pytest.fixture
+def built(tmp_path, monkeypatch):
+    (tmp_path / "dist").mkdir()
+    (tmp_path / "dist" / "index.html").write_text(INDEX)
+    monkeypatch.setattr(page, "BUILT", tmp_path / "dist")
+
+
+def test_the_page_tells_other_sites_what_it_shows(api, address, built, known, services):
+    sent = {"creature": known, "title": HOSTILE, "credit": [HOSTILE]}
+    slug = api.post("shares", json=sent).json()["slug"]
+    answer = api.get(f"{address}/s/{slug}")
+    assert answer.status_code == 200
+    tags = dict(
+        re.findall(r'<meta (?:property|name)="([\w:]+)" content="([^"]*)" />', answer.text)
+    )
+    assert tags["og:image"] == f"{address}/api/v1/shares/{slug}/preview.png"
+    assert (tags["og:image:width"], tags["og:image:height"]) == ("1200", "630")
+    assert tags["twitter:card"] == "summary_large_image"
+    assert f'<link rel="canonical" href="{address}/s/{slug}" />' in answer.text
+    escaped = "&lt;/title&gt;&lt;script&gt;alert(&quot;x&quot;)&lt;/script&gt;&#x27;&amp;"
+    assert tags["og:title"] == escaped
+    assert escaped in tags["og:description"]
+    assert f"<title>{escaped} · Microcosmos</title>" in answer.text
+    assert "<script>" not in answer.text
+    for name in ("x-robots-tag", "referrer-policy"):
+        assert name in answer.headers
+
+
+def test_the_address_outside_is_what_the_settings_say(serve, built, known):
+    asked = {"X-Forwarded-Host": "evil.example", "X-Forwarded-Proto": "https"}
+    with serve(public_url="https://swim.example/lab/") as address, httpx.Client() as client:
+        share = client.post(f"{address}/api/v1/shares", json={"creature": known}).json()
+        assert share["url"] == f"https://swim.example/lab/s/{share['slug']}"
+        text = client.get(f"{address}/s/{share['slug']}", headers=asked).text
+        assert f"https://swim.example/lab/api/v1/shares/{share['slug']}/preview.png" in text
+    with serve() as address, httpx.Client() as client:
+        assert (
+            "evil.example" not in client.get(f"{address}/s/{share['slug']}", headers=asked).text
+        )
+
+
+def test_the_page_of_what_is_gone_says_so_and_shows_nothing(api, address, built, known):
+    slug = api.post("shares", json={"creature": known}).json()["slug"]
+    api.delete(f"shares/{slug}")
+    gone = api.get(f"{address}/s/{slug}")
+    assert (gone.status_code, "og:title" in gone.text) == (410, False)
+    assert api.get(f"{address}/s/none/creatures/x").status_code == 404
+
+
+@pytest.mark.parametrize("name", ["%00", "a" * 10_000, "%ED%A0%80", "%0A"])
+def test_what_cannot_be_an_address_is_nobodys(api, address, built, name):
+    """Databases do not take every text; whoever sends it anyway is told no more than others."""
+    for path in (f"{address}/s/{name}", f"{address}/s/{name}/creatures/x", f"shares/{name}"):
+        assert api.get(path).status_code in (404, 422), path
+    assert api.delete(f"shares/{name}").status_code in (404, 422)
+    assert api.get(f"commons?cursor={name}").status_code == 422
+    assert api.get(f"shares?cursor={name}").status_code == 422

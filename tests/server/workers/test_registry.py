@@ -1,0 +1,175 @@
+"""What workers are at, the queue, and why runs wait, over HTTP."""
+
+from uuid import UUID
+
+import pytest
+from sqlalchemy import event
+
+from server.attempts.begin import claim
+from server.estimates.position import in_line
+from server.runs.overview import read_runs
+from server.tables import Run
+from server.workers import registry
+
+
+@pytest.fixture
+def alive(services):
+    """A worker that reports."""
+
+    def alive(name="worker", status="idle", run=None, memory=1 << 40, **usage):
+        registry.report(services.sessions, name, "some device", memory, status, run, **usage)
+
+    return alive
+
+
+@pytest.fixture
+def waiting(api):
+    return lambda run: api.get(f"runs/{run}").json()["waiting"]
+
+
+def test_a_worker_tells_its_device_its_load_and_its_run(
+    api, services, spec, run_id, alive, report
+):
+    claim(services, run_id, "worker").record(report(5), 1.0)
+    api.patch(f"runs/{run_id}", json={"name": "Wide"})
+    alive("worker", "busy", run_id, kind="gpu", memory_used_bytes=1 << 30, load=0.75)
+    (found,) = api.get("workers").json()
+    assert (found["status"], found["run"]) == ("busy", str(run_id))
+    assert (found["kind"], found["load"]) == ("gpu", 0.75)
+    assert (found["memory_used_bytes"], found["memory_bytes"]) == (1 << 30, 1 << 40)
+    carried = found["carries"]
+    assert (carried["id"], carried["name"], carried["attempt"]) == (str(run_id), "Wide", 1)
+    assert carried["generation"] == 5
+    assert carried["generations"] == spec["search"]["generations"]
+    assert carried["progress"] == 5 / carried["generations"]
+
+
+def test_since_when_changes_with_what_a_worker_is_at(api, services, run_id, alive):
+    def since():
+        return api.get("workers").json()[0]["since"]
+
+    alive(load=0.0)
+    first = since()
+    alive(load=1.0)
+    assert since() == first
+    alive(status="busy")
+    second = since()
+    assert second > first
+    alive(status="busy", run=run_id)
+    assert since() > second
+
+
+def test_an_idle_worker_carries_nothing_out(api, alive):
+    alive()
+    (found,) = api.get("workers").json()
+    assert (found["status"], found["run"], found["carries"]) == ("idle", None, None)
+    assert (found["memory_used_bytes"], found["load"]) == (None, None)
+
+
+def test_the_queue_has_the_runs_that_wait_in_their_order(api, services, spec, alive):
+    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(4)]
+    api.post(f"runs/{ids[0]}/pause")
+    claim(services, UUID(ids[1]), "worker")
+    api.post(f"runs/{ids[0]}/resume")
+    queue = api.get("queue").json()
+    assert (queue["total"], [run["id"] for run in queue["items"]]) == (3, [*ids[2:], ids[0]])
+    assert services.jobs.runs.get_job_ids()[-3:] == [*ids[2:], ids[0]]
+    needed = api.post("runs/estimate", json=spec).json()["memory_bytes"]
+    assert {run["memory_bytes"] for run in queue["items"]} == {needed}
+    first = api.get("queue", params={"limit": 1}).json()
+    assert (first["total"], [run["id"] for run in first["items"]]) == (3, [ids[2]])
+    assert first["items"][0]["waiting"] == api.get(f"runs/{ids[2]}").json()["waiting"]
+
+
+def test_a_run_tells_since_when_it_waits(api, services, run_id):
+    first = api.get(f"runs/{run_id}").json()
+    assert first["queued_at"] >= first["created_at"]
+    assert first["queued_at"] == api.get("queue").json()["items"][0]["queued_at"]
+    attempt = claim(services, run_id, "worker")
+    assert api.get(f"runs/{run_id}").json()["queued_at"] == first["queued_at"]
+    attempt.pause()
+    assert api.post(f"runs/{run_id}/resume").json()["queued_at"] > first["queued_at"]
+
+
+def test_without_a_worker_a_run_says_how_to_start_one(run_id, waiting):
+    assert "`make run` or `python -m worker.supervisor`" in waiting(run_id)
+
+
+def test_a_run_says_who_is_busy_and_how_many_are_before_it(api, services, spec, alive, waiting):
+    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(4)]
+    claim(services, UUID(ids[0]), "worker")
+    alive("worker", "busy", UUID(ids[0]))
+    busy = f"Waits for a worker: the only one is busy with run {ids[0][:8]}; "
+    assert waiting(ids[0]) is None
+    assert waiting(ids[1]) == busy + "this run is next."
+    assert waiting(ids[2]) == busy + "1 run is before it."
+    assert waiting(ids[3]) == busy + "2 runs are before it."
+    claim(services, UUID(ids[1]), "another")
+    alive("another", "busy", UUID(ids[1]))
+    assert waiting(ids[2]) == "Waits for a worker: all 2 are busy; this run is next."
+    alive("third")
+    assert waiting(ids[3]) == "A worker is free; 1 run is before it."
+
+
+def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, alive, waiting):
+    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(2)]
+    alive("worker", "busy")
+    assert waiting(ids[0]) == "A worker is about to begin."
+    assert waiting(ids[1]) == "Waits for a worker: the only one is busy; this run is next."
+    ahead = {"waiting": 1, "workers": 1, "free": 0}
+    assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
+    third = api.post("runs", json={**spec, "seed": 2}).json()["id"]
+    busy = "Waits for a worker: the only one is busy; "
+    assert waiting(third) == busy + "1 run is before it."
+    told = {run["id"]: run["waiting"] for run in api.get("queue").json()["items"]}
+    assert told == {run: waiting(run) for run in (*ids, third)}
+
+
+def test_more_workers_that_begin_than_runs_leave_none_before_a_new_one(api, spec, alive):
+    alive("one", "busy"), alive("two", "busy")
+    api.post("runs", json=spec)
+    ahead = {"waiting": 0, "workers": 2, "free": 0}
+    assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
+
+
+def test_a_run_that_no_worker_can_hold_says_how_much_it_needs(api, spec, alive, waiting):
+    needed = api.post("runs/estimate", json=spec).json()["memory_bytes"]
+    run = api.post("runs", json=spec).json()["id"]
+    alive(memory=1000)
+    words = f"Needs {needed / 1e6:.3g} MB; the largest live worker has 1 kB."
+    assert waiting(run) == words
+    alive("large", memory=needed)
+    assert waiting(run) == "A worker is free; this run is next."
+
+
+def test_only_runs_that_are_queued_wait(api, services, run_id, waiting, report):
+    assert waiting(run_id)
+    api.post(f"runs/{run_id}/pause")
+    assert waiting(run_id) is None
+    api.post(f"runs/{run_id}/resume")
+    attempt = claim(services, run_id, "worker")
+    assert waiting(run_id) is None
+    attempt.record(report(1), 1.0)
+    attempt.finish()
+    assert waiting(run_id) is None
+
+
+def test_a_list_asks_the_queue_once_however_many_runs_wait(api, services, spec, alive):
+    alive()
+    for seed in range(3):
+        api.post("runs", json={**spec, "seed": seed})
+    asked = []
+
+    def note(_connection, _cursor, statement, *_):
+        asked.append(statement)
+
+    def count(limit):
+        with services.sessions.read() as session:
+            runs = [session.get(Run, run_id) for run_id, *_ in in_line(session)[:limit]]
+            asked.clear()
+            event.listen(services.sessions.engine, "before_cursor_execute", note)
+            read_runs(services, session, runs)
+            event.remove(services.sessions.engine, "before_cursor_execute", note)
+        return len(asked)
+
+    assert count(1) == count(3) > 0

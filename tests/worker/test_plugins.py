@@ -1,0 +1,119 @@
+"""What a worker has of users' own: found out in another process, again when a file changes."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from server.settings import Settings
+from worker import plugins
+
+ROOT = Path(__file__).parents[2]
+GOOD = """
+from microcosmos import plugins
+print("modules may print")
+
+@plugins.body("stick", title="A stick", nodes=10)
+def stick(): ...
+"""
+
+
+@pytest.fixture
+def settings(tmp_path, monkeypatch):
+    """A function that writes modules and makes the settings that name them."""
+    monkeypatch.chdir(ROOT)
+
+    def make(**modules):
+        files = [tmp_path / f"{name}.py" for name in modules]
+        for file, text in zip(files, modules.values(), strict=True):
+            file.write_text(text)
+        named = ":".join(map(str, files))
+        monkeypatch.setenv("MICROCOSMOS_MODULES", named)
+        return Settings(modules=named)
+
+    return make
+
+
+def test_a_worker_tells_what_it_has_and_what_it_could_not_load(settings):
+    told = plugins.ask(settings(mine=GOOD, broken="nothing", gone="raise SystemExit"))
+    assert [one["name"] for one in told.plugins] == ["mine.stick"]
+    assert len(told.sources) == 1
+    reasons = {Path(one["module"]).stem: one["reason"] for one in told.unloaded}
+    assert "NameError" in reasons["broken"]
+    assert "SystemExit" in reasons["gone"]
+
+
+def test_a_module_that_ends_its_process_does_not_end_the_worker(settings):
+    told = plugins.ask(settings(mine=GOOD, bad="import os; os._exit(3)"))
+    assert told.plugins == ()
+    assert all("ended badly" in one["reason"] for one in told.unloaded)
+
+
+def test_a_module_that_never_ends_is_given_up(settings, monkeypatch):
+    monkeypatch.setattr(plugins, "SECONDS", 0.1)
+    (failed,) = plugins.ask(settings(slow="while True: pass")).unloaded
+    assert "not imported within 0.1 s" in failed["reason"]
+
+
+def test_without_modules_no_process_is_started(monkeypatch):
+    monkeypatch.setattr(plugins, "entry_points", lambda group: ())
+    monkeypatch.setattr(subprocess, "run", None)
+    assert plugins.ask(Settings(modules="")) == plugins.Told()
+
+
+def test_a_changed_file_is_looked_at_again(settings, monkeypatch):
+    chosen, asked = settings(mine=GOOD), []
+    monkeypatch.setattr(
+        plugins, "ask", lambda settings: asked.append(settings) or plugins.Told()
+    )
+    shelf = plugins.Shelf(chosen, 0.01)
+    assert len(asked) == 1
+    plugins.files(chosen)[0].write_text(f"{GOOD}# Changed.")
+    shelf.start()
+    for _ in range(1000):
+        if len(asked) > 1:
+            break
+        shelf.join(0.01)
+    shelf.end()
+    shelf.join()
+    assert len(asked) == 2
+
+
+CARRY_OUT = """
+import json, sys
+from types import SimpleNamespace
+from server.settings import Settings
+from worker.evolution import carry_out
+
+said = {}
+attempt = SimpleNamespace(
+    spec=json.loads(sys.argv[1]),
+    settings=Settings(),
+    use=lambda device: None,
+    restore=lambda: None,
+    origin=lambda: [],
+    set_aside=lambda text: said.update(aside=text),
+    refuse=lambda text: said.update(refused=text),
+)
+carry_out(attempt)
+print(json.dumps(said))
+"""
+
+
+def test_a_run_that_came_to_the_wrong_worker_is_set_aside_or_refused_not_tried_again(settings):
+    wrong = GOOD.replace("...", "return 3")
+    chosen = settings(mine=wrong)
+    (stick,) = plugins.ask(chosen).plugins
+    spec = {"experiment": "quality-diversity", "task": {"steps": 20}}
+
+    def said(source):
+        version = {"source": source, "title": "A stick"}
+        document = {**spec, "body": {"builder": "mine.stick", "own": version}}
+        command = [sys.executable, "-c", CARRY_OUT, json.dumps(document)]
+        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
+        return json.loads(done.stdout.splitlines()[-1])
+
+    assert "must be of version aaaaaaaaaaaa, got version" in said("a" * 64)["aside"]
+    assert "mine.stick must give a body, got int" in said(stick["source"])["refused"]

@@ -1,0 +1,173 @@
+/** The frame around every page: where one can go, how the connection is, notes. */
+
+import { useEffect } from "preact/hooks";
+import { later } from "../ui/lazy";
+import { learnCaller, useRefusal, useUnknown } from "../store/principal";
+import { useLive } from "../store/store";
+import { type Toast, dismiss, undo, useToasts } from "../store/toasts";
+import { DropTarget, OpenButton } from "../ui/DropTarget";
+import { RunsPage } from "../runs/RunsPage";
+import { type Place, usePlace } from "../store/router";
+import "./app.css";
+
+const ComparePage = later(async () => (await import("../compare/ComparePage")).ComparePage);
+const CreaturePage = later(async () => (await import("../creature/CreaturePage")).CreaturePage);
+const NewRunPage = later(async () => (await import("../new-run/NewRunPage")).NewRunPage);
+const RunPage = later(async () => (await import("../run/RunPage")).RunPage);
+const SharesPage = later(async () => (await import("../shares/SharesPage")).SharesPage);
+const SettingsPage = later(async () => (await import("../settings/SettingsPage")).SettingsPage);
+const SignInPage = later(async () => (await import("../settings/SignInPage")).SignInPage);
+const SweepPage = later(async () => (await import("../sweeps/SweepPage")).SweepPage);
+const WorkersPage = later(async () => (await import("../workers/WorkersPage")).WorkersPage);
+
+const TITLES: Record<string, string> = {
+  runs: "Runs",
+  new: "New run",
+  compare: "Compare",
+  workers: "Workers",
+  shares: "Shares",
+  settings: "Settings",
+  unknown: "Not found",
+};
+
+export function App() {
+  const place = usePlace();
+  const { page } = place.route;
+  const unknown = useUnknown();
+  useEffect(() => void learnCaller(), []);
+  useEffect(() => {
+    const title = unknown ? "Sign in" : TITLES[page];
+    if (title) document.title = `${title} · Microcosmos`;
+  }, [page, unknown]);
+  return (
+    <>
+      <header class="top">
+        <a class="brand" href="/">
+          <svg viewBox="0 0 32 20" aria-hidden="true">
+            <path d="M2 11c4-9 8-9 12 0s8 9 12 0c1.3-3 2.5-4.5 4-5" />
+          </svg>
+          Microcosmos
+        </a>
+        {!unknown && <Ways page={page} />}
+      </header>
+      {unknown ? <SignInPage /> : <Page {...place} />}
+      {!unknown && <DropTarget />}
+      <Toasts />
+    </>
+  );
+}
+
+/** Where one can go and what one can open, once the server knows who asks. */
+function Ways({ page }: { page: string }) {
+  const refusal = useRefusal();
+  return (
+    <>
+      <nav aria-label="Pages">
+        <a href="/" aria-current={page === "runs" ? "page" : undefined}>
+          Runs
+        </a>
+        <a href="/new" aria-current={page === "new" ? "page" : undefined}>
+          New run
+        </a>
+        <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
+          Workers
+        </a>
+        <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
+          Shares
+        </a>
+        <a href="/commons" target="_self">
+          Commons
+        </a>
+        <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
+          Settings
+        </a>
+      </nav>
+      <span class="spring" />
+      {!refusal && <OpenButton />}
+      <Connection />
+    </>
+  );
+}
+
+function Page({ route, query }: Place) {
+  switch (route.page) {
+    case "runs":
+      return <RunsPage query={query} />;
+    case "new":
+      return <NewRunPage query={query} />;
+    case "compare":
+      return <ComparePage query={query} />;
+    case "workers":
+      return <WorkersPage />;
+    case "settings":
+      return <SettingsPage />;
+    case "run":
+      return <RunPage key={route.id} id={route.id} query={query} />;
+    case "sweep":
+      return <SweepPage key={route.id} id={route.id} query={query} />;
+    case "creature":
+      return <CreaturePage key={route.sha} sha={route.sha} query={query} />;
+    case "shares":
+      return <SharesPage />;
+    default:
+      return (
+        <main>
+          <section class="empty card">
+            <h1>Nothing lives here</h1>
+            <p>
+              This address belongs to no run and no creature. <a href="/">See all runs.</a>
+            </p>
+          </section>
+        </main>
+      );
+  }
+}
+
+const CONNECTIONS = {
+  connecting: "Connecting …",
+  live: "Live",
+  lost: "Connection lost, trying again",
+};
+
+function Connection() {
+  const connection = useLive((state) => state.connection);
+  const text = CONNECTIONS[connection];
+  return (
+    <span class={`connection ${connection}`} role="status" title={text}>
+      <span class="dot" aria-hidden="true" />
+      <span class={connection === "lost" ? "" : "wide-only"}>{text}</span>
+    </span>
+  );
+}
+
+export function Toasts() {
+  const toasts = useToasts();
+  useEffect(() => {
+    document.addEventListener("keydown", undo);
+    return () => document.removeEventListener("keydown", undo);
+  }, []);
+  return (
+    <div class="toasts" role="status" aria-live="polite">
+      {toasts.map((toast) => (
+        <Note key={toast.id} {...toast} />
+      ))}
+    </div>
+  );
+}
+
+function Note({ id, text, kind, action }: Toast) {
+  return (
+    <div class={`toast ${kind}`}>
+      <span>{text}</span>
+      {action ? (
+        <button onClick={action.run} aria-keyshortcuts="Control+Z" title="Ctrl + Z">
+          {action.label}
+        </button>
+      ) : (
+        <button class="plain" aria-label="Dismiss" onClick={() => dismiss(id)}>
+          ✕
+        </button>
+      )}
+    </div>
+  );
+}

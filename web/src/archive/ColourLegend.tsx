@@ -1,0 +1,21 @@
+/** What the colours of the map mean, in numbers. */
+
+import { ColourBar } from "../ui/ColourBar";
+import { css, sequential } from "../ui/colours";
+import { count, number } from "../ui/format";
+import { type Colouring, AGE, valueAlong } from "./colouring";
+
+export function Legend({ colouring }: { colouring: Colouring }) {
+  const { measure, palette } = colouring;
+  const write = measure.name === AGE ? count : number;
+  const numbers = [0, 0.5, 1].map((t) => write(valueAlong(colouring, t)));
+  const label = measure.unit ? `${measure.title} (${measure.unit})` : measure.title;
+  return (
+    <ColourBar
+      name={label}
+      label={`${label} from ${numbers[0]} to ${numbers[2]}`}
+      colourAt={(share) => css(sequential(share, palette))}
+      numbers={numbers}
+    />
+  );
+}

@@ -1,0 +1,58 @@
+/** Descriptors that the map does not show: folded, or only a part of them let through. */
+
+import { number } from "../ui/format";
+import type { MapAxis } from "./axes";
+import type { Slice } from "./projection";
+
+interface Props {
+  slices: Slice[];
+  onChange: (slice: Slice, from: number, to: number) => void;
+}
+
+export function Slices({ slices, onChange }: Props) {
+  if (slices.length === 0) return null;
+  return (
+    <div class="slices">
+      {slices.map((slice) => (
+        <One key={slice.axis.name} slice={slice} onChange={onChange} />
+      ))}
+    </div>
+  );
+}
+
+function One({ slice, onChange }: { slice: Slice; onChange: Props["onChange"] }) {
+  const { axis, from, to } = slice;
+  const all = from === 0 && to === axis.bins - 1;
+  const [low, high] = [number(edgeOf(axis, from)), number(edgeOf(axis, to + 1))];
+  const common = { type: "range", min: 0, max: axis.bins - 1 } as const;
+  return (
+    <fieldset class="slice">
+      <legend>{axis.title}</legend>
+      <input
+        {...common}
+        aria-label={`${axis.title}, from`}
+        aria-valuetext={low}
+        value={from}
+        onInput={({ currentTarget: { valueAsNumber } }) =>
+          onChange(slice, valueAsNumber, Math.max(valueAsNumber, to))
+        }
+      />
+      <input
+        {...common}
+        aria-label={`${axis.title}, to`}
+        aria-valuetext={high}
+        value={to}
+        onInput={({ currentTarget: { valueAsNumber } }) =>
+          onChange(slice, Math.min(from, valueAsNumber), valueAsNumber)
+        }
+      />
+      <output class="quiet small">{all ? "all of it" : `${low} to ${high} ${axis.unit}`}</output>
+    </fieldset>
+  );
+}
+
+/** The raw value where a bin begins. */
+export function edgeOf({ low, high, bins, scale }: MapAxis, bin: number): number {
+  const t = bin / bins;
+  return scale === "log10" ? low * (high / low) ** t : low + (high - low) * t;
+}

@@ -1,0 +1,168 @@
+import { describe, expect, it } from "vitest";
+import type { Archive } from "../api/types";
+import type { Elite, Elites } from "../store/elites";
+import { axisOf, choicesOf, missingOf, namesOf } from "./axes";
+import { binOf, project } from "./projection";
+import { voronoiLayout } from "./layout";
+import { Delaunay } from "d3-delaunay";
+
+const AXES = [
+  { name: "a", low: 0, high: 1, bins: 2, scale: "linear" },
+  { name: "b", low: 1, high: 100, bins: 4, scale: "log10" },
+  { name: "c", low: 0, high: 1, bins: 3, scale: "linear" },
+] as const;
+
+const recorded = ["a", "b", "c", "turning", "nodes"].map((name) => {
+  return { name, title: name.toUpperCase(), unit: "rad", low: 0.01, high: 1, scale: "linear" };
+});
+
+function archiveOf(count: number, kind: Archive["kind"] = "grid"): Archive {
+  return { kind, axes: AXES.slice(0, count), recorded } as unknown as Archive;
+}
+
+function elite(fitness: number, ...descriptors: number[]): Elite {
+  return { fitness, descriptors, generation: 1, creature: `c${fitness}`, told: 1 };
+}
+
+const NONE = new Map();
+
+const over = (archive: Archive, elites: Elites, names: [string, string], features = NONE) =>
+  project(elites, [axisOf(names[0], archive, elites, features), axisOf(names[1], archive, elites, features)]);
+
+describe("the axes of a map", () => {
+  it("are the archive's first two, and fitness where there is but one", () => {
+    expect(namesOf(archiveOf(3), null, null)).toEqual(["a", "b"]);
+    expect(namesOf(archiveOf(1), null, null)).toEqual(["a", "fitness"]);
+    expect(namesOf(archiveOf(2), "turning", "c")).toEqual(["turning", "c"]);
+    expect(namesOf(archiveOf(2), "b", null)).toEqual(["b", "a"]);
+    expect(namesOf(archiveOf(2), "unheard of", "fitness")).toEqual(["a", "fitness"]);
+  });
+
+  it("can be everything that was recorded, of which elites carry their descriptors", () => {
+    expect(choicesOf(archiveOf(2)).at(-1)).toEqual(["fitness", "Fitness"]);
+    expect(missingOf(archiveOf(2), ["a", "turning"])).toEqual(["turning"]);
+    expect(missingOf(archiveOf(2), ["b", "fitness"])).toEqual([]);
+  });
+
+  it("have round ends around values, whole bins for whole numbers, decades on a log scale", () => {
+    const elites = new Map([
+      [0, elite(0.31, 0)],
+      [1, elite(1.18, 0)],
+    ]);
+    const fitness = axisOf("fitness", archiveOf(1), elites, NONE);
+    expect(fitness.low).toBeLessThanOrEqual(0.31);
+    expect(fitness.high).toBeGreaterThanOrEqual(1.18);
+    expect(fitness.high - fitness.low).toBeLessThan(1.3);
+    const nodes = new Map([
+      [
+        "nodes",
+        new Map([
+          ["c0.31", 3],
+          ["c1.18", 9],
+        ]),
+      ],
+    ]);
+    expect(axisOf("nodes", archiveOf(1), elites, nodes)).toMatchObject({ low: 3, high: 10, bins: 7 });
+    const log = archiveOf(1);
+    log.recorded[3]!.scale = "log10";
+    const turning = new Map([
+      [
+        "turning",
+        new Map([
+          ["c0.31", 0.02],
+          ["c1.18", 30],
+        ]),
+      ],
+    ]);
+    const axis = axisOf("turning", log, elites, turning);
+    log.recorded[3]!.scale = "linear";
+    expect([axis.low, axis.high]).toEqual([0.01, 100]);
+    expect(axisOf("turning", archiveOf(1), elites, NONE)).toMatchObject({ low: 0.01, high: 1 });
+  });
+});
+
+describe("an archive on a map", () => {
+  it("of its own two axes has each cell at its place, whatever its descriptors round to", () => {
+    const elites = new Map(Array.from({ length: 8 }, (_, cell) => [cell, elite(cell, 9, 9)]));
+    const { layout, tiles, bins } = over(archiveOf(2), elites, ["a", "b"]);
+    expect(layout.count).toBe(8);
+    expect([...tiles].map(([bin, { cell }]) => [bin, cell])).toEqual([...bins].map(([c, b]) => [b, c]));
+    expect([...bins]).toEqual(Array.from({ length: 8 }, (_, cell) => [cell, cell]));
+  });
+
+  it("of three axes shows the best of those that fall together, and counts the others", () => {
+    // Cells of a 2 × 4 × 3 grid: 12 k + 3 j + i.
+    const elites = new Map([
+      [3, elite(1, 0, 2, 0)],
+      [4, elite(5, 0, 2, 0.5)],
+      [5, elite(2, 0, 2, 1)],
+      [20, elite(3, 1, 9, 1)],
+    ]);
+    const { tiles, bins } = over(archiveOf(3), elites, ["a", "b"]);
+    expect([...tiles.keys()]).toEqual([1, 6]);
+    expect(tiles.get(1)).toMatchObject({ cell: 4, behind: 2 });
+    expect(tiles.get(6)).toMatchObject({ cell: 20, behind: 0 });
+    expect([3, 4, 5, 20].map((cell) => bins.get(cell))).toEqual([1, 1, 1, 6]);
+    const turned = over(archiveOf(3), elites, ["c", "a"]);
+    expect([turned.layout.count, turned.bins.get(20)]).toEqual([6, 5]);
+  });
+
+  it("of Voronoi cells is binned by what was measured, until they are known", () => {
+    const elites = new Map([[777, elite(1, 0.99, 1)]]);
+    const { layout, bins } = over(archiveOf(2, "cvt"), elites, ["a", "b"]);
+    expect(layout.centre(bins.get(777)!)).toEqual([47 / 48, 47 / 48]);
+  });
+
+  it("of Voronoi cells shows each cell around its centroid", () => {
+    const cells = voronoiLayout(
+      [
+        [0.2, 0.2],
+        [0.8, 0.2],
+        [0.5, 0.9],
+      ],
+      Delaunay,
+    );
+    const elites = new Map([[2, elite(1, 0.99, 1)]]);
+    const axis = (name: string) => axisOf(name, archiveOf(2, "cvt"), elites, NONE);
+    const { tiles, layout } = project(elites, [axis("a"), axis("b")], [], cells);
+    expect([...tiles.keys()]).toEqual([2]);
+    expect([layout.at(0.1, 0.1), layout.at(0.9, 0.1), layout.at(0.5, 0.99)]).toEqual([0, 1, 2]);
+    expect(layout.at(1, 0.5)).toBeNull();
+    for (const [x, y] of layout.outline(0)) expect(x <= 0.5 && y <= 1).toBe(true);
+  });
+
+  it("shows what passes the slices of the axes that it folds", () => {
+    const elites = new Map([
+      [3, elite(1, 0, 2, 0)],
+      [4, elite(5, 0, 2, 0.5)],
+      [5, elite(2, 0, 2, 1)],
+    ]);
+    const axis = (name: string) => axisOf(name, archiveOf(3), elites, NONE);
+    const through = (from: number, to: number) =>
+      project(elites, [axis("a"), axis("b")], [{ axis: axis("c"), from, to }]).tiles.get(1);
+    expect(through(0, 2)).toMatchObject({ cell: 4, behind: 2 });
+    expect(through(2, 2)).toMatchObject({ cell: 5, behind: 0 });
+    expect(through(0, 0)).toMatchObject({ cell: 3, behind: 0 });
+  });
+
+  it("along a feature leaves out whom it is not known of", () => {
+    const elites = new Map([
+      [0, elite(1, 0, 1)],
+      [1, elite(2, 0, 1)],
+    ]);
+    const features = new Map([["turning", new Map([["c2", 0.5]])]]);
+    const { tiles } = over(archiveOf(2), elites, ["turning", "fitness"], features);
+    expect([...tiles.values()].map(({ cell }) => cell)).toEqual([1]);
+  });
+
+  it.each([
+    [0.5, 0],
+    [1, 0],
+    [3.17, 1],
+    [99, 3],
+    [100, 3],
+    [1e9, 3],
+  ])("puts %s into bin %s of a log axis from 1 to 100", (value, bin) => {
+    expect(binOf(AXES[1], value)).toBe(bin);
+  });
+});

@@ -1,0 +1,118 @@
+/** What of an archive is shown and how: read from the address, put together from the store. */
+
+import { useEffect, useMemo, useState } from "preact/hooks";
+import type { Archive, Run } from "../api/types";
+import { type Elites } from "../store/elites";
+import { useCentroids, useFeatures, useHistory } from "../store/fetch";
+import { walkThrough } from "../store/history";
+import { setQuery } from "../store/router";
+import { type Features, type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
+import { type Colouring, AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
+import { type Layout, voronoiLayout } from "./layout";
+import { type Projection, type Slice, project } from "./projection";
+import { type Palette, PALETTES } from "../ui/colours";
+
+export interface ArchiveView {
+  axes: readonly [MapAxis, MapAxis];
+  /** The archive's axes that are not shown, each with what of it is let through. */
+  slices: Slice[];
+  colour: string;
+  palette: Palette;
+  elites: Elites;
+  generation: number;
+  /** Whether what is shown is what was asked for; the past takes a moment to come. */
+  ready: boolean;
+  /** Why the past cannot be shown. */
+  error: string | null;
+  map: Projection;
+  /** The same on even bins, where the map shows Voronoi cells. */
+  grid: Projection;
+  colouring: Colouring;
+}
+
+/** `at` is a generation of the past; null for the newest. */
+export function useArchiveView(
+  run: Run,
+  archive: Archive,
+  live: Elites,
+  query: URLSearchParams,
+  at: number | null,
+): ArchiveView {
+  const [x, y] = namesOf(archive, query.get("x"), query.get("y"));
+  const colour = colourOf(archive, query.get("colour"));
+  const palette = PALETTES.find((name) => name === query.get("palette")) ?? PALETTES[0]!;
+  const names = missingOf(archive, [x, y, colour]).filter((name) => name !== AGE);
+  const now = useFeatures(run.id, names, live);
+  const { value: past, error } = useHistory(run.id, names, at);
+  const features = at !== null && past ? past.features : now;
+  const walk = useMemo(() => past && walkThrough(past.history), [past]);
+  const elites = useMemo(() => (at !== null && walk ? walk(at) : live), [at, walk, live]);
+  // Axes follow what is there now: they must not move while the past is played.
+  const axes = useMemo(() => axesOf([x, y], archive, live, features), [x, y, archive, live, features]);
+  const asked = hiddenAxes(archive, x, y)
+    .map(({ name }) => query.get(`only.${name}`))
+    .join();
+  const slices = useMemo(
+    () => hiddenAxes(archive, x, y).map(({ name }) => sliceOf(axisOf(name, archive, live, features), query)),
+    [x, y, archive, live, features, asked],
+  );
+  const cells = useCells(run.id, archive, [x, y]);
+  const map = useMemo(() => project(elites, axes, slices, cells), [elites, axes, slices, cells]);
+  const grid = useMemo(() => (cells ? project(elites, axes, slices) : map), [map, cells]);
+  const generation = at ?? run.generation;
+  const colouring = useMemo(() => {
+    const measure = colourMeasure(colour, archive, features, generation);
+    const steady = at === null || colour === AGE ? map : project(live, axes, slices, cells);
+    return colouringOf(measure, palette, steady.tiles);
+  }, [colour, palette, archive, features, generation, map]);
+  const ready = at === null || past !== null;
+  return { axes, slices, colour, palette, elites, generation, ready, error, map, grid, colouring };
+}
+
+function colourOf(archive: Archive, asked: string | null): string {
+  return coloursOf(archive).some(([name]) => name === asked) ? asked! : FITNESS;
+}
+
+function axesOf([x, y]: [string, string], archive: Archive, elites: Elites, features: Features) {
+  const axis = (name: string) => axisOf(name, archive, elites, features);
+  return [axis(x), axis(y)] as const;
+}
+
+const hiddenAxes = ({ axes }: Archive, x: string, y: string) =>
+  axes.filter(({ name }) => name !== x && name !== y);
+
+/** Bins as the address has them, `3-7`; all of them where it has none. */
+function sliceOf(axis: MapAxis, query: URLSearchParams): Slice {
+  const [, from, to] = /^(\d+)-(\d+)$/.exec(query.get(`only.${axis.name}`) ?? "") ?? [];
+  const last = axis.bins - 1;
+  if (from === undefined) return { axis, from: 0, to: last };
+  const low = Math.min(last, Number(from));
+  return { axis, from: low, to: Math.max(low, Math.min(last, Number(to))) };
+}
+
+export function setSlice({ axis }: Slice, from: number, to: number): void {
+  const all = from === 0 && to === axis.bins - 1;
+  setQuery({ [`only.${axis.name}`]: all ? null : `${from}-${to}` });
+}
+
+/** The Voronoi cells, where the map is drawn over both descriptors of a CVT. */
+function useCells(id: string, archive: Archive, names: [string, string]): Layout | null {
+  const [x, y] = names.map((name) => archive.axes.findIndex((axis) => axis.name === name));
+  const wanted = archive.kind === "cvt" && archive.axes.length === 2 && x! >= 0 && y! >= 0;
+  const centroids = useCentroids(id, wanted);
+  const [layout, setLayout] = useState<Layout | null>(null);
+  useEffect(() => {
+    setLayout(null);
+    if (!wanted || !centroids) return;
+    const points = centroids.map((place) => [place[x!]!, 1 - place[y!]!] as const);
+    let current = true;
+    // Few archives have such cells: the others need not load what draws them.
+    void import("d3-delaunay").then(({ Delaunay }) => {
+      if (current) setLayout(voronoiLayout(points, Delaunay));
+    });
+    return () => {
+      current = false;
+    };
+  }, [wanted, centroids, x, y]);
+  return layout;
+}

@@ -1,0 +1,105 @@
+/** What an archive can be looked at along: its own axes, and everything recorded. */
+
+import type { Archive, Axis } from "../api/types";
+import type { Elite, Elites } from "../store/elites";
+import { words } from "../ui/format";
+import { roundStep } from "./geometry";
+
+/** Columns of features by name: what was recorded of each creature. */
+export type Features = ReadonlyMap<string, ReadonlyMap<string, number>>;
+
+export const FITNESS = "fitness";
+/** Bins of an axis that is not the grid's. */
+const BINS = 24;
+
+/** Everything that a map can be drawn over, by name. */
+export const choicesOf = (archive: Archive) => [
+  ...archive.recorded.map(({ name, title }): [string, string] => [name, title]),
+  [FITNESS, "Fitness"] as [string, string],
+];
+
+/** The names of both axes: those asked for, else the archive's first two, else fitness. */
+export function namesOf(archive: Archive, x: string | null, y: string | null): [string, string] {
+  const known = new Set(choicesOf(archive).map(([name]) => name));
+  const own = [...archive.axes.map(({ name }) => name), FITNESS];
+  const first = x && known.has(x) ? x : own[0]!;
+  return [first, y && known.has(y) ? y : (own.slice(0, 2).find((name) => name !== first) ?? FITNESS)];
+}
+
+/** The names that no elite carries itself, and that have to be asked for. */
+export function missingOf(archive: Archive, names: string[]): string[] {
+  const there = [...archive.axes.map(({ name }) => name), FITNESS];
+  return names.filter((name) => !there.includes(name));
+}
+
+/** An axis of the map, and how an elite finds its place along it. */
+export interface MapAxis extends Axis, Measure {
+  /** The bin of an elite's own cell, where the axis is one of the grid's. */
+  binOf: ((cell: number) => number) | null;
+}
+
+/** A number that each elite has, under a name that people read. */
+export interface Measure {
+  name: string;
+  title: string;
+  unit: string;
+  scale: Axis["scale"];
+  valueOf: (elite: Elite) => number | null;
+}
+
+export function measureOf(name: string, archive: Archive, features: Features): Measure {
+  const own = archive.axes.findIndex((axis) => axis.name === name);
+  const recorded = archive.recorded.find((feature) => feature.name === name);
+  const scale = archive.axes[own]?.scale ?? recorded?.scale ?? "linear";
+  const told = { name, title: recorded?.title ?? words(name), unit: recorded?.unit ?? "", scale };
+  if (own >= 0) return { ...told, valueOf: ({ descriptors }) => descriptors[own] ?? null };
+  if (name === FITNESS) return { ...told, valueOf: ({ fitness }) => fitness };
+  const column = features.get(name);
+  return { ...told, valueOf: ({ creature }) => column?.get(creature) ?? null };
+}
+
+export function axisOf(name: string, archive: Archive, elites: Elites, features: Features): MapAxis {
+  const measure = measureOf(name, archive, features);
+  const own = archive.axes.findIndex((axis) => axis.name === name);
+  if (own >= 0) {
+    const grid = archive.kind === "grid";
+    const bins = grid ? archive.axes[own]!.bins : BINS;
+    const binOf = grid ? placeAlong(archive.axes, own) : null;
+    return { ...archive.axes[own]!, ...measure, bins, binOf };
+  }
+  const recorded = archive.recorded.find((feature) => feature.name === name);
+  const values = [...elites.values()].map(measure.valueOf).filter((value) => value !== null);
+  const [least, most] = [recorded?.low ?? 0, recorded?.high ?? 1];
+  const [low, high, bins] = endsOf(values, measure.scale, least, most);
+  return { ...measure, low, high, bins, binOf: null };
+}
+
+/** Cells count in C order: the bin along one of the axes. */
+function placeAlong(axes: readonly Axis[], own: number): (cell: number) => number {
+  const after = axes.slice(own + 1).reduce((product, { bins }) => product * bins, 1);
+  return (cell) => Math.floor(cell / after) % axes[own]!.bins;
+}
+
+/** Round ends around the values there are; the feature's own where there are none. */
+function endsOf(
+  values: readonly number[],
+  scale: Axis["scale"],
+  low: number,
+  high: number,
+): [number, number, number] {
+  if (values.length === 0) return [low, high, BINS];
+  const most = values.reduce((a, b) => Math.max(a, b));
+  const least = values.reduce((a, b) => Math.min(a, b));
+  if (scale === "log10") {
+    const from = Math.floor(Math.log10(Math.max(least, low)) + 1e-9);
+    const to = Math.ceil(Math.log10(Math.max(most, low)) - 1e-9);
+    return [10 ** from, 10 ** Math.max(to, from + 1), BINS];
+  }
+  if (values.every(Number.isInteger) && most - least < 4 * BINS) {
+    const wide = Math.max(most + 1 - least, 4);
+    return [least, least + wide, wide];
+  }
+  const step = roundStep(Math.max(most - least, 1e-9 * Math.abs(most), 1e-12) / 8);
+  const from = step * Math.floor(least / step + 1e-9);
+  return [from, Math.max(step * Math.ceil(most / step - 1e-9), from + step), BINS];
+}

@@ -1,0 +1,67 @@
+/** A box drawn over an element with the mouse or a pen; a finger scrolls instead. */
+
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { Box } from "./selection";
+import type { Spot } from "./layout";
+
+/** Fewer pixels are a click. */
+const LEAST = 5;
+
+interface Started {
+  event: PointerEvent;
+  from: Spot;
+}
+
+/** `onEnd` is told the box once the button is released. The click that follows is none. */
+export function useDrag(enabled: boolean, onEnd: (box: Box, event: PointerEvent) => void) {
+  const started = useRef<Started | null>(null);
+  const [box, setBox] = useState<Box | null>(null);
+  const dragged = useRef(false);
+  const stop = () => {
+    started.current = null;
+    setBox(null);
+  };
+  useEffect(() => {
+    if (!box) return;
+    const press = (event: KeyboardEvent) => event.key === "Escape" && stop();
+    window.addEventListener("keydown", press);
+    return () => window.removeEventListener("keydown", press);
+  }, [box !== null]);
+  return {
+    box,
+    /** Whether a click was the end of a drag. */
+    wasDrag: () => dragged.current,
+    /** True while a box is drawn. */
+    onMove: (event: PointerEvent): boolean => {
+      if (!started.current) return false;
+      const { event: first, from } = started.current;
+      const far = Math.hypot(event.clientX - first.clientX, event.clientY - first.clientY);
+      if (!dragged.current && far < LEAST) return false;
+      if (!dragged.current) (event.currentTarget as Element).setPointerCapture(event.pointerId);
+      dragged.current = true;
+      setBox({ from, to: spotOf(event) });
+      return true;
+    },
+    handlers: {
+      onPointerDown: (event: PointerEvent) => {
+        dragged.current = false;
+        if (!enabled || event.button !== 0 || event.pointerType === "touch") return;
+        started.current = { event, from: spotOf(event) };
+      },
+      onPointerUp: (event: PointerEvent) => {
+        if (started.current && dragged.current) {
+          onEnd({ from: started.current.from, to: spotOf(event) }, event);
+        }
+        stop();
+      },
+      onPointerCancel: stop,
+    },
+  };
+}
+
+/** Where on the element, from 0 to just below 1; beyond its edge is at the edge. */
+function spotOf(event: PointerEvent): Spot {
+  const { left, top, width, height } = (event.currentTarget as Element).getBoundingClientRect();
+  const bounded = (share: number) => Math.min(1 - 1e-9, Math.max(0, share));
+  return [bounded((event.clientX - left) / width), bounded((event.clientY - top) / height)];
+}

@@ -1,0 +1,82 @@
+/** The part of a wall that is seen, as it is at one moment. */
+
+import type { Motion } from "../decode/motion";
+import { type Size, prepare } from "../ui/canvas";
+import { css, sequential } from "../ui/colours";
+import { type Colouring, placeOf } from "./colouring";
+import { FADED } from "./drawMap";
+import type { Shape } from "./geometry";
+import type { Tiles } from "./projection";
+import { traceBody } from "../replay/bodyPath";
+import { cornerOf } from "./galleryTiles";
+
+export interface WallPicture {
+  shape: Shape;
+  side: number;
+  tiles: Tiles;
+  /** The bins to draw. */
+  bins: readonly number[];
+  colouring: Colouring;
+  motions: ReadonlyMap<string, Motion>;
+  theme: "light" | "dark";
+  marked: number | null;
+  /** The bins that stand out before all others; null: none does. */
+  chosen: ReadonlySet<number> | null;
+}
+
+const INKS = {
+  light: { body: "#12222c", quiet: "rgb(18 34 44 / 0.3)", tint: 0.3 },
+  dark: { body: "#fdf8ec", quiet: "rgb(240 244 246 / 0.3)", tint: 0.38 },
+};
+
+/** `share` of a replay's time has passed; the window begins at `left` and `top` of the wall. */
+export function drawWall(
+  canvas: HTMLCanvasElement,
+  size: Size,
+  picture: WallPicture,
+  [left, top]: readonly [number, number],
+  share: number,
+): void {
+  const context = prepare(canvas, size);
+  const { side, theme } = picture;
+  context.lineJoin = context.lineCap = "round";
+  context.lineWidth = Math.max(1.25, side / 32);
+  for (const bin of picture.bins) {
+    const [x, y] = cornerOf(bin, picture.shape, side);
+    drawTile(context, picture, bin, [x - left, y - top, side], share);
+  }
+  if (picture.marked === null) return;
+  const [x, y] = cornerOf(picture.marked, picture.shape, side);
+  context.strokeStyle = INKS[theme].body;
+  context.lineWidth = 2;
+  context.strokeRect(x - left + 1, y - top + 1, side - 2, side - 2);
+}
+
+function drawTile(
+  context: CanvasRenderingContext2D,
+  { tiles, colouring, motions, theme, chosen }: WallPicture,
+  bin: number,
+  [left, top, side]: readonly [number, number, number],
+  share: number,
+): void {
+  const { body, quiet, tint } = INKS[theme];
+  const tile = tiles.get(bin)!;
+  const place = placeOf(colouring, tile);
+  context.fillStyle = place === null ? quiet : css(sequential(place, colouring.palette));
+  const strength = !chosen || chosen.has(bin) ? 1 : FADED;
+  context.globalAlpha = tint * strength;
+  context.fillRect(left + 1, top + 1, side - 2, side - 2);
+  context.globalAlpha = strength;
+  context.fillRect(left + 1, top + side - 4, side - 2, 3);
+  const motion = motions.get(tile.elite.creature);
+  if (motion) {
+    traceBody(context, motion, share, [left, top, side - 3]);
+    context.strokeStyle = body;
+  } else {
+    context.beginPath();
+    context.arc(left + side / 2, top + side / 2, 2, 0, 2 * Math.PI);
+    context.strokeStyle = quiet;
+  }
+  context.stroke();
+  context.globalAlpha = 1;
+}

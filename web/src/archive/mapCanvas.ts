@@ -1,0 +1,59 @@
+/** The canvas of a map, always as the archive is now. */
+
+import type { RefObject } from "preact";
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import type { Elites } from "../store/elites";
+import { useSize } from "../ui/canvas";
+import { prefersStillness, useTheme } from "../ui/theme";
+import { FLASH_MS, MapPainter, type Picture } from "./drawMap";
+
+type Shown = Pick<Picture, "layout" | "tiles" | "colouring" | "chosen">;
+
+/** A canvas that always shows the picture, and flashes where it changed. */
+export function useDrawing(plot: RefObject<HTMLElement | null>, drawn: Shown, elites: Elites) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const painter = useMemo(() => new MapPainter(), []);
+  const size = useSize(plot);
+  const theme = useTheme();
+  const changed = useChanges(elites);
+  useEffect(() => {
+    const element = canvas.current;
+    if (!element || size.width === 0) return;
+    const picture = { ...drawn, theme, changed };
+    const stop = animate((now) => {
+      painter.draw(element, size, picture, now);
+      return [...changed.values()].some((time) => now - time < FLASH_MS);
+    });
+    performance.clearMarks("map");
+    performance.mark("map");
+    return stop;
+  }, [size, theme, changed, ...Object.values(drawn)]);
+  return canvas;
+}
+
+/** When each cell last got another elite; what is there at first has not changed. */
+function useChanges(elites: Elites): ReadonlyMap<number, number> {
+  const seen = useRef<Elites | null>(null);
+  const times = useRef<ReadonlyMap<number, number>>(new Map());
+  if (seen.current !== elites) {
+    const before = seen.current;
+    const now = performance.now();
+    const next = new Map([...times.current].filter(([, time]) => now - time < FLASH_MS));
+    for (const [cell, elite] of before && !prefersStillness() ? elites : []) {
+      if (before!.get(cell)?.creature !== elite.creature) next.set(cell, now);
+    }
+    seen.current = elites;
+    times.current = next;
+  }
+  return times.current;
+}
+
+/** Draws a picture at once, and again with every frame for as long as `draw` asks for it. */
+function animate(draw: (now: number) => boolean): () => void {
+  let frame = 0;
+  const step = () => {
+    if (draw(performance.now())) frame = requestAnimationFrame(step);
+  };
+  step();
+  return () => cancelAnimationFrame(frame);
+}

@@ -1,0 +1,52 @@
+/** How curves are drawn, as the address holds it. */
+
+import type { ComponentChildren } from "preact";
+import { setQuery } from "../../store/router";
+import { Choice } from "../../ui/Select";
+import { AXES, type Look, OVER, WINDOWS } from "./look";
+import "./curves.css";
+
+const MEANS = WINDOWS.map((size): [string, string] => [String(size), size === 1 ? "none" : `over ${size}`]);
+
+export function CurveChoices({ look: { over, smooth, log } }: { look: Look }) {
+  return (
+    <CurveBar log={log}>
+      <Choice
+        title="Over"
+        choices={AXES.map((name) => [name, OVER[name]])}
+        value={over}
+        onChange={(name) => setQuery({ over: name === "generation" ? null : name })}
+      />
+      <Choice
+        title="Smooth"
+        choices={MEANS}
+        value={String(smooth)}
+        onChange={(size) => setQuery({ smooth: size === "1" ? null : size })}
+      />
+    </CurveBar>
+  );
+}
+
+/** What can be chosen for all curves, beside what only some have. */
+export function CurveBar({ log, children }: { log: boolean; children: ComponentChildren }) {
+  return (
+    <div class="curve-choices" role="group" aria-label="How curves are drawn">
+      {children}
+      <Check title="Log scale" name="log" on={log} />
+    </div>
+  );
+}
+
+/** Something that is so or not: `1` under its name in the address. */
+export function Check({ title, name, on }: { title: string; name: string; on: boolean }) {
+  return (
+    <label class="compact">
+      <input
+        type="checkbox"
+        checked={on}
+        onChange={(event) => setQuery({ [name]: event.currentTarget.checked ? "1" : null })}
+      />
+      {title}
+    </label>
+  );
+}

@@ -1,0 +1,106 @@
+/** Lines and dots over the generations, the evaluations, or the time that a run took. */
+
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import uPlot from "uplot";
+import { useSize } from "../../ui/canvas";
+import { useTheme } from "../../ui/theme";
+import { type Look, OVER, tableOf } from "./look";
+import { optionsOf } from "./options";
+import { type Band, type Plot, type Series, newest } from "./plots";
+import "uplot/dist/uPlot.min.css";
+import "./curves.css";
+
+interface Props {
+  plots: Plot[];
+  x: readonly number[];
+  look: Look;
+}
+
+export function Curves({ plots, x, look }: Props) {
+  return (
+    <div class="curves">
+      {plots.map((plot) => (
+        <Curve key={plot.title} {...{ plot, x, look }} />
+      ))}
+    </div>
+  );
+}
+
+const NONE: readonly Band[] = [];
+
+interface CurveProps extends Omit<Props, "plots"> {
+  plot: Plot;
+}
+
+function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveProps) {
+  const host = useRef<HTMLDivElement>(null);
+  const plot = useRef<uPlot | null>(null);
+  const { width, height } = useSize(host);
+  const theme = useTheme();
+  const drawn = width > 0;
+  const { over, log } = look;
+  const form = series
+    .map(({ name, colour, dots, dash, faint, edge }) => [name, colour, dots, dash, faint, edge].join(" "))
+    .join();
+  const table = useMemo(() => tableOf(series, x, log), [x, log, ...series.flatMap(partsOf)]);
+  const changed = [drawn, theme, form, over, log, write];
+
+  useEffect(() => {
+    if (!drawn) return;
+    const style = getComputedStyle(host.current!);
+    const ink = (name: string) => style.getPropertyValue(name).trim();
+    const options = optionsOf({ series, bands, write, over, log, ink });
+    plot.current = new uPlot(options, [[], ...series.map(() => [])], host.current!);
+    return () => plot.current?.destroy();
+  }, changed);
+
+  useEffect(() => {
+    if (drawn) plot.current?.setSize({ width, height });
+  }, [width, height, ...changed]);
+
+  useEffect(() => {
+    plot.current?.setData(table);
+  }, [table, ...changed]);
+
+  const told = series.filter(({ faint, edge }) => !faint && !edge);
+  const now = told.map(({ name, y }) => [...(told.length > 1 ? [name] : []), write(newest(y))]);
+  const label = `${title} over ${OVER[over]}: now ${now.map((each) => each.join(" ")).join(", ")}`;
+  return (
+    <figure class="curve">
+      <figcaption>
+        <span>{title}</span>
+        <Keys series={told} write={write} />
+      </figcaption>
+      <div ref={host} class="plot" role="img" aria-label={label} />
+      {!series.some(({ y }) => y.some((value) => value !== null && (!log || value > 0))) && (
+        <p class="quiet small">
+          {log ? "Nothing here is above zero, where a log scale begins." : "Nothing is told of it yet."}
+        </p>
+      )}
+    </figure>
+  );
+}
+
+/** What a table of curves is made of: it is made anew where one of them changes. */
+const partsOf = ({ x, y }: Series) => [x, y];
+
+/** The newest values; other runs are named where they are chosen. */
+function Keys({ series, write }: { series: Series[]; write: Plot["write"] }) {
+  if (series.every(({ other }) => other)) return null;
+  const several = series.filter(({ other }) => !other).length > 1;
+  return (
+    <span class="curve-keys">
+      {series.map(({ name, colour, dots, other, y }) => (
+        <span key={name} class="curve-key" title={name}>
+          {series.length > 1 && (
+            <>
+              <i class={dots ? "dot" : ""} style={{ background: `var(${colour})` }} />{" "}
+              {!other && several && `${name} `}
+            </>
+          )}
+          <b>{write(newest(y))}</b>
+        </span>
+      ))}
+    </span>
+  );
+}

@@ -1,0 +1,91 @@
+import { describe, expect, it } from "vitest";
+import { type Curves, LONGEST, NO_CURVES, appendCurves } from "../../store/curves";
+import { dressed, lookOf, runningMean, tableOf } from "./look";
+import { divergedBy, scoresOf, workOf } from "./plots";
+
+const curvesOf = (qd_score: (number | null)[], batch = 16, summary = {}): Curves => {
+  const generation = qd_score.map((_, i) => i + 1);
+  const evaluations = generation.map((each) => batch * each);
+  const rest = { coverage: qd_score, best: qd_score, seconds: generation, summary };
+  return { generation, evaluations, qd_score, ...rest };
+};
+
+describe("how curves are looked at", () => {
+  const plain = lookOf(new URLSearchParams());
+
+  it("is in the address, and what is no choice there is none", () => {
+    expect(plain).toEqual({ over: "generation", log: false, smooth: 1 });
+    const asked = new URLSearchParams("over=seconds&log=1&smooth=20");
+    expect(lookOf(asked)).toEqual({ over: "seconds", log: true, smooth: 20 });
+    expect(lookOf(new URLSearchParams("over=moons&log=yes&smooth=7"))).toEqual(plain);
+  });
+
+  it("smooths by the mean of so many generations, of what was told in them", () => {
+    expect(runningMean([1, 2, 3, 4], [1, 2, 3, 4], 1)).toEqual([1, 2, 3, 4]);
+    expect(runningMean([1, 2, 3, 4], [1, 2, 3, 4], 3)).toEqual([1, 1.5, 2, 3]);
+    expect(runningMean([4, null, 8], [1, 2, 3], 5)).toEqual([4, null, 6]);
+    // Thinned curves: the window counts generations, not points.
+    expect(runningMean([1, 3, 5], [10, 20, 30], 20)).toEqual([1, 2, 4]);
+  });
+
+  it("keeps what was measured faintly behind the smooth line", () => {
+    const [score] = dressed(scoresOf, curvesOf([1, 3]), [], { ...plain, smooth: 5 });
+    expect(score!.series.map(({ faint }) => faint ?? false)).toEqual([true, false]);
+    expect(score!.series.map(({ y }) => y)).toEqual([
+      [1, 3],
+      [1, 2],
+    ]);
+  });
+
+  it("puts other runs beside, each in its colour and at its own places", () => {
+    const others = [{ name: "Demo 12", colour: "--series-2", curves: curvesOf([5, 6], 32) }];
+    const look = { ...plain, over: "evaluations" } as const;
+    const [score] = dressed(scoresOf, curvesOf([1, 2]), others, look);
+    expect(score!.series.map(({ colour }) => colour)).toEqual(["--series-1", "--series-2"]);
+    expect(score!.series.map(({ other }) => other ?? false)).toEqual([false, true]);
+    expect(tableOf(score!.series, [16, 32], false)).toEqual([
+      [16, 32, 64],
+      [1, 2, undefined],
+      [undefined, 5, 6],
+    ]);
+  });
+
+  it("leaves out on a log scale what is not above zero", () => {
+    const series = [{ name: "a", colour: "", y: [0, -1, 2] }];
+    expect(tableOf(series, [1, 2, 3], true)).toEqual([
+      [1, 2, 3],
+      [null, null, 2],
+    ]);
+    expect(tableOf(series, [1, 2, 3], false)[1]).toEqual([0, -1, 2]);
+  });
+});
+
+describe("diverged evaluations", () => {
+  const summary = { "diverged: supersonic": [null, 2, 1], "diverged: non-finite": [4, null, 3] };
+
+  it("are counted for each reason, most first, and drawn as sums", () => {
+    const curves = curvesOf([1, 2, 3], 16, summary);
+    expect(divergedBy(curves)).toEqual([
+      ["non-finite", 7],
+      ["supersonic", 3],
+    ]);
+    const plot = workOf(curves).find(({ title }) => title === "Diverged so far");
+    expect(plot!.series.map(({ y }) => y)).toEqual([
+      [4, 4, 7],
+      [0, 2, 3],
+    ]);
+  });
+
+  it("are not lost where a long history is thinned out", () => {
+    let curves = NO_CURVES;
+    const length = 2 * LONGEST + 3;
+    for (let generation = 1; generation <= length; generation++) {
+      const figures = { qd_score: 1, coverage: 1, best: 1, mean: 1, diverged: 0, evaluations: 1 };
+      const told = { "diverged: non-finite": 1, ...(generation === 2 && { rare: 5 }) };
+      curves = appendCurves(curves, { run: "", generation, seconds: 1, ...figures, summary: told });
+    }
+    expect(curves.generation.length).toBeLessThanOrEqual(LONGEST + 1);
+    expect(divergedBy(curves)).toEqual([["non-finite", length]]);
+    expect(curves.summary["rare"]!.filter((value) => value !== null)).toEqual([5]);
+  });
+});

@@ -1,0 +1,135 @@
+/** How curves are looked at: over what, on which scale, how smooth, beside which runs. */
+
+import { type Column, type Curves, NO_CURVES } from "../../store/curves";
+import type { Plot, Series } from "./plots";
+
+/** Generations that a running mean is taken over; 1: none is. */
+export const WINDOWS = [1, 5, 20, 100] as const;
+
+export const AXES = ["generation", "evaluations", "seconds"] as const;
+export type Axis = (typeof AXES)[number];
+
+/** What the axes are called. */
+export const OVER: Record<Axis, string> = {
+  generation: "generations",
+  evaluations: "evaluations",
+  seconds: "seconds",
+};
+
+export interface Look {
+  over: Axis;
+  log: boolean;
+  smooth: number;
+}
+
+export function lookOf(query: URLSearchParams): Look {
+  const over = AXES.find((name) => name === query.get("over")) ?? "generation";
+  const smooth = WINDOWS.find((size) => String(size) === query.get("smooth")) ?? 1;
+  return { over, log: query.get("log") === "1", smooth };
+}
+
+/** Another run whose curves stand beside. */
+export interface Other {
+  name: string;
+  colour: string;
+  /** Where there are more runs than colours. */
+  dash?: number[];
+  curves: Curves;
+}
+
+/** Plots of a run as they are looked at; `plotsOf` makes those of the others. */
+export function dressed(
+  plotsOf: (curves: Curves) => Plot[],
+  curves: Curves,
+  others: readonly Other[],
+  look: Look,
+): Plot[] {
+  const beside = others.map((other) => besideOf(plotsOf, other, look));
+  return plotsOf(curves).map((plot) => {
+    const own = others.length > 0 ? plot.series.map(inOneColour) : plot.series;
+    const mine = own.flatMap((each) => faded({ ...each, x: curves[look.over] }, curves, look));
+    return { ...plot, series: [...mine, ...alike(plot, beside)] };
+  });
+}
+
+/** Plots of several runs of which none is the first. */
+export function overlaid(plotsOf: (curves: Curves) => Plot[], runs: readonly Other[], look: Look): Plot[] {
+  const plots = runs.map((run) => besideOf(plotsOf, run, look));
+  return plotsOf(NO_CURVES).map((plot) => ({ ...plot, series: alike(plot, plots) }));
+}
+
+const alike = ({ title }: Plot, plots: Plot[][]) =>
+  plots.flatMap((each) => each.find((other) => other.title === title)?.series ?? []);
+
+/** Another run's plots in its own colour, at its own places. */
+function besideOf(plotsOf: (curves: Curves) => Plot[], other: Other, look: Look): Plot[] {
+  const { name, colour, dash, curves } = other;
+  return plotsOf(curves).map((plot) => ({
+    ...plot,
+    series: plot.series.map((each, k) => ({
+      ...inOneColour(each, k),
+      name: plot.series.length > 1 ? `${name}: ${each.name}` : name,
+      colour,
+      ...(dash && { dash }),
+      x: curves[look.over],
+      other: true,
+      y: smoothed(each, curves.generation, look.smooth),
+    })),
+  }));
+}
+
+/** Where a colour stands for a run, its lines differ by their dashes. */
+function inOneColour(series: Series, k: number): Series {
+  return { ...series, colour: "--series-1", ...(k > 0 && { dash: [6, 2 + 2 * k] }) };
+}
+
+/** The smooth line, and what was measured faintly behind it. */
+function faded(series: Series, curves: Curves, { smooth }: Look): Series[] {
+  if (smooth === 1 || series.dots) return [series];
+  const mean = smoothed(series, curves.generation, smooth);
+  return [
+    { ...series, faint: true },
+    { ...series, y: mean },
+  ];
+}
+
+const smoothed = ({ y, dots }: Series, generation: readonly number[], window: number) =>
+  dots || window === 1 ? y : runningMean(y, generation, window);
+
+/** At each place the mean of what was told in so many generations up to there. */
+export function runningMean(y: Column, generation: readonly number[], window: number): Column {
+  let [sum, count, first] = [0, 0, 0];
+  return y.map((value, i) => {
+    if (value !== null) [sum, count] = [sum + value, count + 1];
+    for (; generation[first]! <= generation[i]! - window; first++) {
+      const gone = y[first]!;
+      if (gone !== null) [sum, count] = [sum - gone, count - 1];
+    }
+    return value === null || count === 0 ? null : sum / count;
+  });
+}
+
+type Cell = number | null | undefined;
+
+/**
+ * Columns over one axis, as uPlot wants them: undefined where nothing is told, which a line
+ * passes over, and null where a log scale has no place for a value, which breaks it.
+ */
+export function tableOf(
+  series: readonly Series[],
+  x: readonly number[],
+  log: boolean,
+): [x: number[], ...columns: Cell[][]] {
+  const places = new Set(x);
+  for (const each of series) each.x?.forEach((at) => at !== null && places.add(at));
+  const all = [...places].sort((a, b) => a - b);
+  const shown = (value: Cell) => (log && value != null && value <= 0 ? null : (value ?? undefined));
+  return [
+    all,
+    ...series.map((each) => {
+      const at = each.x ?? x;
+      const known = new Map(at.map((place, i) => [place, each.y[i]]));
+      return all.map((place) => shown(known.get(place)));
+    }),
+  ];
+}

@@ -1,0 +1,21 @@
+/** Colour and dash of the lines of several runs or cases in one plot. */
+
+import "./lineStyle.css";
+
+/** As many lines as can be told apart at a glance. */
+export const MAX_LINES = 8;
+
+const SOLID_LINES = 4;
+
+export const colourOf = (index: number) => `--series-${1 + (index % MAX_LINES)}`;
+export const dashOf = (index: number) => (index >= SOLID_LINES ? [7, 4] : undefined);
+
+/** A sample of a line, for legends and tables. */
+export function LineKey({ index }: { index: number }) {
+  const strokeDasharray = dashOf(index)?.join(" ");
+  return (
+    <svg class="compare-key" viewBox="0 0 26 10" aria-hidden="true">
+      <path d="M1 5h24" style={{ stroke: `var(${colourOf(index)})`, strokeDasharray }} />
+    </svg>
+  );
+}

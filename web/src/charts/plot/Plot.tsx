@@ -1,0 +1,168 @@
+/** Lines of marked points over two axes; a mark with something to see is a link to it. */
+
+import { useEffect, useRef, useState } from "preact/hooks";
+import { useSize } from "../../ui/canvas";
+import { Frame, type Room, type Upper } from "./Frame";
+import { Mark } from "./Mark";
+import { type Scale, place } from "./scale";
+import "../lineStyle.css";
+import "./plot.css";
+
+export interface Point {
+  x: number;
+  /** Null where there is no value: the point is a cross at the top. */
+  y: number | null;
+  hollow?: boolean;
+  href?: string;
+  /** What is said of it: a name, then figures. */
+  says: [name: string, ...figures: string[]];
+}
+
+export interface Line {
+  name: string;
+  colour: string;
+  dash?: string;
+  width?: number;
+  /** The exponent of the law that it follows, of the x axis. */
+  power?: number | null;
+  points: Point[];
+}
+
+export interface Axis {
+  title: string;
+  scale: Scale;
+  write: (value: number) => string;
+}
+
+interface Props {
+  title: string;
+  x: Axis;
+  y: Axis;
+  lines: Line[];
+  upper?: Upper | null;
+  shaded?: boolean;
+  /** Told of the mark that is pointed at or has the focus. */
+  onNear?: (point: Point | null) => void;
+}
+
+export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear }: Props) {
+  const host = useRef<HTMLDivElement>(null);
+  const { width, height } = useSize(host);
+  const [lit, setLit] = useState<string | null>(null);
+  const [near, setNear] = useState<Point | null>(null);
+  useEffect(() => onNear?.(near), [near]);
+  const room: Room = {
+    left: 78,
+    right: width - 14,
+    top: upper ? 48 : 14,
+    bottom: height - 48,
+  };
+  const spot = ({ x: at, y: value }: Point, k: number): [number, number] => [
+    room.left + place(x.scale, at) * (room.right - room.left),
+    value === null ? room.top + 10 + 12 * k : room.bottom - place(y.scale, value) * (room.bottom - room.top),
+  ];
+  const drawn = lines.map((line, k) => ({ line, spots: line.points.map((p) => spot(p, k)) }));
+  const look = lit ?? lines.find(({ points }) => points.includes(near!))?.name ?? null;
+  const faint = (line: Line) => (look !== null && look !== line.name ? "faint" : "");
+  const follow = (event: PointerEvent) => {
+    const box = host.current!.getBoundingClientRect();
+    setNear(nearest(drawn, event.clientX - box.left, event.clientY - box.top));
+  };
+  return (
+    <figure class="xy">
+      {lines.length > 1 && <Legend lines={lines} of={x.title} onLight={setLit} />}
+      <div
+        ref={host}
+        class="xy-plot"
+        role="group"
+        aria-label={title}
+        onPointerMove={follow}
+        onPointerDown={follow}
+        onPointerLeave={() => setNear(null)}
+      >
+        {width > 0 && (
+          <svg width={width} height={height} aria-hidden="true">
+            <Frame {...{ x, y, room, upper, shaded }} />
+            {drawn.map(({ line, spots }) => (
+              <path
+                key={line.name}
+                class={`xy-line ${faint(line)}`}
+                d={pathOf(spots.filter((_, i) => line.points[i]!.y !== null))}
+                style={{
+                  stroke: `var(${line.colour})`,
+                  strokeDasharray: line.dash,
+                  strokeWidth: line.width,
+                }}
+              />
+            ))}
+          </svg>
+        )}
+        {width > 0 &&
+          drawn.map(({ line, spots }) =>
+            line.points.map((point, i) => (
+              <Mark
+                key={`${line.name} ${point.x}`}
+                {...{ point, line, spot: spots[i]!, flip: spots[i]![0] > width / 2 }}
+                look={point === near ? "near" : faint(line)}
+                onNear={setNear}
+              />
+            )),
+          )}
+      </div>
+    </figure>
+  );
+}
+
+interface Drawn {
+  line: Line;
+  spots: [number, number][];
+}
+
+/** Pixels within which a point counts as pointed at. */
+const REACH = 22;
+
+/** The point that a pointer means where several lie close together. */
+function nearest(drawn: Drawn[], x: number, y: number): Point | null {
+  let [found, least]: [Point | null, number] = [null, REACH];
+  for (const { line, spots } of drawn) {
+    spots.forEach(([left, top], i) => {
+      const distance = Math.hypot(left - x, top - y);
+      if (distance < least) [found, least] = [line.points[i]!, distance];
+    });
+  }
+  return found;
+}
+
+function pathOf(spots: [number, number][]): string {
+  return spots.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+}
+
+interface LegendProps {
+  lines: Line[];
+  of: string;
+  onLight: (name: string | null) => void;
+}
+
+function Legend({ lines, of, onLight }: LegendProps) {
+  return (
+    <figcaption class="xy-legend">
+      {lines.map((line) => (
+        <span key={line.name} onPointerEnter={() => onLight(line.name)} onPointerLeave={() => onLight(null)}>
+          <svg viewBox="0 0 26 10" aria-hidden="true">
+            <path
+              d="M1 5h24"
+              style={{ stroke: `var(${line.colour})`, strokeDasharray: line.dash, strokeWidth: 2.2 }}
+            />
+          </svg>
+          {line.name}
+          {line.power != null && (
+            <span class="quiet">
+              ∝ {of.toLowerCase()}
+              <sup>{line.power.toFixed(2)}</sup>
+            </span>
+          )}
+        </span>
+      ))}
+    </figcaption>
+  );
+}

@@ -1,0 +1,95 @@
+/** Several runs side by side: their curves, their figures, and where their specs differ. */
+
+import type { Experiment, Run } from "../api/types";
+import type { Curves as Columns } from "../store/curves";
+import { useCurvesOf, useExperiments } from "../store/fetch";
+import { useRuns } from "../store/store";
+import { Curves } from "../charts/curves/Curves";
+import { type Other, lookOf, overlaid } from "../charts/curves/look";
+import { type Plot, scoresOf } from "../charts/curves/plots";
+import { short, titleOf } from "../ui/format";
+import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
+import { type Compared, Legend } from "./Legend";
+import { Figures, Specs } from "./Tables";
+import { CurveChoices } from "../charts/curves/CurveOptions";
+import "./compare.css";
+
+export function ComparePage({ query }: { query: URLSearchParams }) {
+  const asked = [...new Set((query.get("runs") ?? "").split(",").filter(Boolean))];
+  const ids = asked.slice(0, MAX_LINES);
+  const { value: curves, error } = useCurvesOf(ids);
+  const known = useRuns(ids);
+  const experiments = useExperiments().value ?? [];
+  const runs = known.flatMap((run, place): Compared[] =>
+    run ? [{ run, place, name: nameOf(run, experiments) }] : [],
+  );
+  return (
+    <main>
+      <nav class="crumbs" aria-label="Where you are">
+        <a href="/">Runs</a>
+      </nav>
+      <header class="page-head">
+        <h1>Compare</h1>
+      </header>
+      {error && <p class="banner wrong">{error}</p>}
+      {asked.length > MAX_LINES && (
+        <p class="banner warning">
+          At most {MAX_LINES} runs can be compared: the first {MAX_LINES} of {asked.length} are shown.
+        </p>
+      )}
+      {ids.length === 0 && <Nothing />}
+      {ids.length > 0 && runs.length === 0 && !error && <p class="quiet loading">Loading runs …</p>}
+      {runs.length > 0 && (
+        <div class="compare">
+          <Legend runs={runs} ids={ids} />
+          <Plots runs={runs} curves={curves ?? new Map()} query={query} />
+          <Figures runs={runs} />
+          <Specs runs={runs} />
+        </div>
+      )}
+    </main>
+  );
+}
+
+const nameOf = (run: Run, experiments: Experiment[]) =>
+  run.name ?? `${titleOf(run, experiments)} ${short(run.id)}`;
+
+function Nothing() {
+  return (
+    <section class="empty card">
+      <h2>Nothing to compare yet</h2>
+      <p>Choose two or more runs by their boxes in the list, then press Compare.</p>
+      <a class="button primary" href="/">
+        See all runs
+      </a>
+    </section>
+  );
+}
+
+interface PlotsProps {
+  runs: Compared[];
+  curves: ReadonlyMap<string, Columns>;
+  query: URLSearchParams;
+}
+
+function Plots({ runs, curves, query }: PlotsProps) {
+  const look = lookOf(query);
+  const drawn = runs.flatMap(({ run, name, place }): Other[] => {
+    const own = curves.get(run.id);
+    return own ? [{ name, colour: colourOf(place), dash: dashOf(place), curves: own }] : [];
+  });
+  return (
+    <section class="card" aria-labelledby="compare-curves">
+      <h2 id="compare-curves">Curves</h2>
+      <CurveChoices look={look} />
+      <Curves plots={overlaid(asFound, drawn, look)} x={NOWHERE} look={look} />
+    </section>
+  );
+}
+
+/** Each run has its own places. */
+const NOWHERE: readonly number[] = [];
+
+/** One line a run. */
+const asFound = (curves: Columns): Plot[] =>
+  scoresOf(curves).map((plot) => ({ ...plot, series: plot.series.slice(0, 1) }));

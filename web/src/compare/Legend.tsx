@@ -1,0 +1,35 @@
+/** Which runs are compared, and how each of them is drawn. */
+
+import type { Run } from "../api/types";
+import { LineKey } from "../charts/lineStyle";
+import { setQuery } from "../store/router";
+import { Badge } from "../run/RunStatus";
+
+export interface Compared {
+  run: Run;
+  name: string;
+  /** Which of the series' colours, from 0; later ones are dashed too. */
+  place: number;
+}
+
+export function Legend({ runs, ids }: { runs: Compared[]; ids: string[] }) {
+  const without = (id: string) => ids.filter((each) => each !== id).join() || null;
+  return (
+    <ul class="compare-legend" aria-label="Runs">
+      {runs.map(({ run, name, place }) => (
+        <li key={run.id}>
+          <LineKey index={place} />
+          <a href={`/runs/${run.id}`}>{name}</a>
+          <Badge run={run} />
+          <button
+            class="plain small-button"
+            aria-label={`Leave ${name} out`}
+            onClick={() => setQuery({ runs: without(run.id) })}
+          >
+            ✕
+          </button>
+        </li>
+      ))}
+    </ul>
+  );
+}

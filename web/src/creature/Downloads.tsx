@@ -1,0 +1,65 @@
+/** Everything a creature can be kept as; films are made when somebody wants them. */
+
+import { useEffect, useState } from "preact/hooks";
+import { proveRendering } from "../api/files";
+import { type Picture, creatureFileUrl, creatureH5Url, pictureUrl } from "../api/urls";
+import { share } from "../api/address";
+import { poll } from "../store/polling";
+import { tell } from "../store/toasts";
+import { copyText } from "../ui/clipboard";
+import { FileLink, save } from "../ui/FileLink";
+
+const KINDS: [Picture, string][] = [
+  ["strip.png", "PNG"],
+  ["film.gif", "GIF"],
+  ["film.mp4", "MP4"],
+];
+
+export function Keep({ sha }: { sha: string }) {
+  return (
+    <p class="links pictures" role="group" aria-label="Keep it as">
+      <span class="quiet small">Keep it as</span>
+      {!share && (
+        <button onClick={() => void copyText(`${location.origin}/creatures/${sha}`, "Link copied.")}>
+          Copy link
+        </button>
+      )}
+      <a
+        class="button"
+        href={creatureFileUrl(sha)}
+        download={`creature-${sha.slice(0, 12)}.json`}
+        title="The creature file with its ancestors, which others can bring to their own installation"
+      >
+        JSON
+      </a>
+      <FileLink url={creatureH5Url(sha)} name="HDF5" />
+      {(share ? [] : KINDS).map(([kind, title]) => (
+        <Download key={kind} url={pictureUrl(sha, kind)} title={title} />
+      ))}
+    </p>
+  );
+}
+
+/** A button that waits for the rendering and then saves it. */
+function Download({ url, title }: { url: string; title: string }) {
+  const [busy, setBusy] = useState(false);
+  useEffect(() => {
+    if (!busy) return;
+    return poll(() => proveRendering(url), {
+      value: () => {
+        setBusy(false);
+        save(url);
+      },
+      note: () => {},
+      error: (text) => {
+        setBusy(false);
+        tell({ kind: "wrong", text });
+      },
+    });
+  }, [busy, url]);
+  return (
+    <button disabled={busy} onClick={() => setBusy(true)}>
+      {busy ? `Rendering ${title} …` : title}
+    </button>
+  );
+}

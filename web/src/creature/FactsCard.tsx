@@ -1,0 +1,52 @@
+/** What was measured of a creature, in which form, and where it comes from. */
+
+import type { Creature } from "../api/types";
+import { formOf, groupsOf, originOf } from "./facts";
+
+export function Facts({ creature }: { creature: Creature }) {
+  const form = formOf(creature);
+  return (
+    <section class="card whole-facts" aria-labelledby="facts-title">
+      <h2 id="facts-title">Measurements and origin</h2>
+      <div class="facts-columns">
+        {groupsOf(creature).map(({ title, rows }) => (
+          <div key={title}>
+            <h3>{title}</h3>
+            <dl class="rows">
+              <Rows rows={rows} />
+            </dl>
+          </div>
+        ))}
+        {form.length > 0 && (
+          <div>
+            <h3>Coupling</h3>
+            <dl class="rows">
+              <Rows rows={form} />
+            </dl>
+          </div>
+        )}
+        <div>
+          <h3>Origin</h3>
+          <dl class="rows">
+            <Rows rows={originOf(creature)} />
+            <div>
+              <dt>SHA-256</dt>
+              <dd>
+                <code class="long">{creature.sha256}</code>
+              </dd>
+            </div>
+          </dl>
+        </div>
+      </div>
+    </section>
+  );
+}
+
+function Rows({ rows }: { rows: [name: string, value: string][] }) {
+  return rows.map(([name, value]) => (
+    <div key={name}>
+      <dt>{name}</dt>
+      <dd>{value}</dd>
+    </div>
+  ));
+}

@@ -1,0 +1,120 @@
+/** Parents at the left, children at the right; bars show fitness, the longest the fittest. */
+
+import type { Relative } from "../api/types";
+import { number, short } from "../ui/format";
+import { HIGH, type Kin, type Tree, WIDE } from "./relatives";
+
+interface Props {
+  tree: Tree;
+  self: string;
+  /** Null where a page of its own cannot be seen. */
+  hrefOf: (creature: string) => string | null;
+}
+
+const HEAD = 26;
+const TALL = HIGH - 8;
+
+export function FamilyTree({ tree, self, hrefOf }: Props) {
+  const known = tree.kin.map(({ relative }) => relative.fitness ?? 0);
+  const most = Math.max(1e-12, ...known.map(Math.abs));
+  return (
+    <div
+      class="scroll"
+      tabIndex={0}
+      role="group"
+      aria-label="Family tree"
+      ref={(box) => void box?.scrollTo(box.scrollWidth, 0)}
+    >
+      <div class="family" style={px({ width: tree.width, height: tree.height + HEAD })}>
+        <svg width={tree.width} height={tree.height + HEAD} aria-hidden="true">
+          {tree.lines.map(([parent, child]) => (
+            <path key={`${parent.relative.creature}${child.relative.creature}`} d={pathOf(parent, child)} />
+          ))}
+        </svg>
+        {tree.columns.map(({ x, title }) => (
+          <span key={title} class="family-title" style={px({ left: x, width: WIDE })}>
+            {title}
+          </span>
+        ))}
+        <ul>
+          {tree.kin.map(({ relative, x, y }) => (
+            <li
+              key={relative.creature}
+              style={px({ left: x, top: HEAD + y - TALL / 2, width: WIDE, height: TALL })}
+            >
+              <Name
+                {...{ relative, most }}
+                own={relative.creature === self}
+                href={hrefOf(relative.creature)}
+              />
+            </li>
+          ))}
+        </ul>
+      </div>
+    </div>
+  );
+}
+
+const px = (sizes: Record<string, number>) =>
+  Object.fromEntries(Object.entries(sizes).map(([name, value]) => [name, `${value}px`]));
+
+function pathOf(parent: Kin, child: Kin): string {
+  const [x, end] = [parent.x + WIDE, child.x];
+  const middle = (x + end) / 2;
+  const [from, to] = [HEAD + parent.y, HEAD + child.y];
+  return `M${x},${from}C${middle},${from} ${middle},${to} ${end},${to}`;
+}
+
+interface NameProps {
+  relative: Relative;
+  most: number;
+  own: boolean;
+  href: string | null;
+}
+
+function Name({ relative, most, own, href }: NameProps) {
+  const { creature, kept, fitness } = relative;
+  const title = aboutOf(relative);
+  const inside = (
+    <>
+      <code>{short(creature)}</code>
+      {fitness !== null && (
+        <span class="family-fitness" style={{ width: `${(100 * Math.abs(fitness)) / most}%` }} />
+      )}
+    </>
+  );
+  if (own)
+    return (
+      <span class="family-name own" title={title}>
+        {inside}
+      </span>
+    );
+  if (!kept)
+    return (
+      <span class="family-name lost" title={title}>
+        {inside}
+      </span>
+    );
+  if (href === null)
+    return (
+      <span class="family-name" title={title}>
+        {inside}
+      </span>
+    );
+  return (
+    <a class="family-name" href={href} title={title} aria-label={title}>
+      {inside}
+    </a>
+  );
+}
+
+/** What is known of somebody, in words. */
+function aboutOf({ creature, kept, fitness, operator, generation }: Relative): string {
+  if (!kept) return `${short(creature)}: never an elite, so not kept`;
+  const parts = [
+    fitness === null ? null : `fitness ${number(fitness)}`,
+    generation === null ? null : `generation ${generation}`,
+    operator && `made by ${operator}`,
+  ];
+  return [short(creature), ...parts.filter(Boolean)].join(", ");
+}

@@ -1,0 +1,49 @@
+/** Genes that are numbers from −1 to 1, as bars side by side. */
+
+import { useMemo } from "preact/hooks";
+import { count, number, percent } from "../ui/format";
+
+/** More bars than this are too thin to see: then each stands for the farthest of several. */
+const MOST = 400;
+
+export function GeneStrip({ values }: { values: Float32Array }) {
+  const bars = useMemo(() => barsOf(values), [values]);
+  const size = values.reduce((sum, value) => sum + Math.abs(value), 0) / (values.length || 1);
+  const bound = values.filter((value) => Math.abs(value) >= 1).length / (values.length || 1);
+  const summary = `${count(values.length)} genes, mean size ${number(size)}`;
+  return (
+    <figure class="genes">
+      <svg viewBox={`0 -1 ${bars.length} 2`} preserveAspectRatio="none" role="img" aria-label={summary}>
+        <path class="positive" d={pathOf(bars, (value) => Math.max(0, value))} />
+        <path class="negative" d={pathOf(bars, (value) => Math.min(0, value))} />
+        <path class="zero" d={`M0,0H${bars.length}`} />
+      </svg>
+      <figcaption>
+        <span class="key positive">up to 1</span>
+        <span class="key negative">down to −1</span>
+        <span class="quiet">
+          {summary}
+          {bound > 0 && `, ${percent(bound)} at their bounds`}
+        </span>
+      </figcaption>
+    </figure>
+  );
+}
+
+/** At most `MOST` values, each the farthest from zero of those it stands for. */
+export function barsOf(values: Float32Array): number[] {
+  const each = Math.max(1, Math.ceil(values.length / MOST));
+  return Array.from({ length: Math.ceil(values.length / each) }, (_, k) =>
+    values
+      .subarray(k * each, (k + 1) * each)
+      .reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most), 0),
+  );
+}
+
+function pathOf(bars: number[], part: (value: number) => number): string {
+  return bars
+    .map((value, i) => [i, part(value)] as const)
+    .filter(([, value]) => value !== 0)
+    .map(([i, value]) => `M${i + 0.1},0V${-value.toFixed(4)}h0.8V0z`)
+    .join("");
+}

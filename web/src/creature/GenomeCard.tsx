@@ -1,0 +1,76 @@
+/** What a creature has inherited: a network, or a row of numbers. */
+
+import { useMemo, useState } from "preact/hooks";
+import { type Form, networkUrl } from "../api/urls";
+import type { Creature, Spec, Vector } from "../api/types";
+import { decodeFloats } from "../decode/base64";
+import { layeredOf } from "../decode/layers";
+import { type Network as Graph, networkOf } from "../decode/network";
+import { GeneStrip } from "./GeneStrip";
+import { NetworkGraph } from "./NetworkGraph";
+import { Outputs } from "./NetworkOutputs";
+import type { Moment } from "../replay/moment";
+import { FileLink } from "../ui/FileLink";
+
+const FORMS: [Form, string][] = [
+  ["svg", "SVG"],
+  ["dot", "DOT"],
+  ["py", "Python"],
+  ["npz", "TensorNEAT"],
+];
+
+interface Props {
+  creature: Creature;
+  moment: Moment;
+  /** Steps between the frames that a moment counts; null while there is no replay. */
+  every: number | null;
+}
+
+export function Genome({ creature, ...shown }: Props) {
+  const { genome, task } = creature.identity;
+  const network = useMemo(() => {
+    if ("nodes" in genome) return networkOf(genome);
+    return "values" in genome ? layeredOf(genome) : null;
+  }, [genome]);
+  if (genome.encoding === "gait" || genome.encoding === "fold") return null;
+  if (!network) return <Numbers genes={genome as Vector} />;
+  const files = "nodes" in genome ? creature.sha256 : null;
+  return <Network {...shown} {...{ network, files }} control={genome.control} steps={Number(task.steps)} />;
+}
+
+interface NetworkProps extends Omit<Props, "creature"> {
+  network: Graph;
+  /** The creature whose network can be had as files. */
+  files: string | null;
+  control: Spec;
+  steps: number;
+}
+
+function Network({ network, files, ...rest }: NetworkProps) {
+  const [chosen, choose] = useState<number | null>(null);
+  return (
+    <section class="card" aria-labelledby="network-title">
+      <h2 id="network-title">Network</h2>
+      <NetworkGraph network={network} chosen={chosen} onChoose={choose} />
+      <Outputs {...rest} {...{ network, chosen }} />
+      {files && (
+        <p class="links network-files">
+          <span class="quiet small">Keep it as</span>
+          {FORMS.map(([form, title]) => (
+            <FileLink key={form} url={networkUrl(files, form)} name={title} />
+          ))}
+        </p>
+      )}
+    </section>
+  );
+}
+
+function Numbers({ genes }: { genes: Vector }) {
+  const values = useMemo(() => decodeFloats(genes.values), [genes]);
+  return (
+    <section class="card" aria-labelledby="genes-title">
+      <h2 id="genes-title">Genes</h2>
+      <GeneStrip values={values} />
+    </section>
+  );
+}

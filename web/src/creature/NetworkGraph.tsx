@@ -1,0 +1,158 @@
+/** A creature's network: inputs at the left, outputs at the right, weights as lines. */
+
+import { useMemo } from "preact/hooks";
+import type { Link, Network } from "../decode/network";
+import { number } from "../ui/format";
+import { type Spot, layoutOf } from "./networkLayout";
+import "./creature.css";
+import "./details.css";
+
+const RADIUS = 13;
+/** A small network is not blown up beyond this, a large one scrolls rather than shrink. */
+const [LARGEST, SMALLEST] = [1.2, 0.5];
+
+interface Props {
+  network: Network;
+  /** The node whose links stand out. */
+  chosen?: number | null;
+  onChoose?: (id: number) => void;
+}
+
+export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
+  const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
+  const strongest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
+  const enabled = network.links.filter((link) => link.enabled).length;
+  const summary = `${network.neurons.length} nodes, ${enabled} connections in use`;
+  return (
+    <figure class="network">
+      <div class="scroll">
+        <svg
+          viewBox={`0 0 ${width} ${height}`}
+          style={{ maxWidth: `${LARGEST * width}px`, minWidth: `${SMALLEST * width}px` }}
+          role={onChoose ? "group" : "img"}
+          class={chosen === null ? "" : "choosing"}
+          aria-label={`Network: ${summary}`}
+        >
+          {network.links.map((link, i) => (
+            <Wire key={i} link={link} spots={spots} strongest={strongest} into={link.target === chosen} />
+          ))}
+          {[...spots.values()].map((spot) => (
+            <Node key={spot.neuron.id} spot={spot} chosen={spot.neuron.id === chosen} onChoose={onChoose} />
+          ))}
+        </svg>
+      </div>
+      <figcaption>
+        <span class="key positive">positive</span>
+        <span class="key negative">negative</span>
+        <span class="key off">switched off</span>
+        <span class="quiet">
+          {summary}; width: weight, up to {number(strongest, 2)}
+        </span>
+      </figcaption>
+    </figure>
+  );
+}
+
+interface WireProps {
+  link: Link;
+  spots: Map<number, Spot>;
+  strongest: number;
+  into: boolean;
+}
+
+function Wire({ link, spots, strongest, into }: WireProps) {
+  const [from, to] = [spots.get(link.source), spots.get(link.target)];
+  if (!from || !to) return null;
+  const sign = link.weight < 0 ? "negative" : "positive";
+  return (
+    <path
+      class={`wire ${sign} ${link.enabled ? "" : "off"} ${into ? "into" : ""}`}
+      d={pathOf(from, to)}
+      stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / strongest}
+    >
+      <title>
+        weight {number(link.weight)}
+        {link.enabled ? "" : ", switched off"}
+      </title>
+    </path>
+  );
+}
+
+function pathOf(from: Spot, to: Spot): string {
+  if (from === to) {
+    const [side, top] = [2.2 * RADIUS, from.y - 4 * RADIUS];
+    return `M${from.x},${from.y} C${from.x - side},${top} ${from.x + side},${top} ${to.x},${to.y}`;
+  }
+  // Where a wire leads back, or stays in its column, it leaves and arrives at the left.
+  const bend = to.x > from.x ? (to.x - from.x) / 2 : -4 * RADIUS;
+  const [a, b] = [from.x + bend, to.x - Math.abs(bend)];
+  return `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
+}
+
+interface NodeProps {
+  spot: Spot;
+  chosen: boolean;
+  onChoose?: (id: number) => void;
+}
+
+function Node({ spot, chosen, onChoose }: NodeProps) {
+  const { neuron, x, y } = spot;
+  const choose = () => onChoose?.(neuron.id);
+  const named = `${neuron.label || `node ${neuron.id}`} ${neuron.activation}`;
+  const widget = onChoose && {
+    tabIndex: 0,
+    role: "button" as const,
+    "aria-pressed": chosen,
+    "aria-label": `${named}: what it computes`,
+    onFocus: choose,
+    onClick: choose,
+    onPointerEnter: choose,
+  };
+  const beside = neuron.role === "input" ? -1 : 1;
+  return (
+    <g
+      class={`neuron ${neuron.role} ${chosen ? "chosen" : ""}`}
+      transform={`translate(${x},${y})`}
+      {...widget}
+    >
+      <title>
+        {neuron.label || `node ${neuron.id}`}: {neuron.activation}, bias {number(neuron.bias)}
+      </title>
+      <circle r={RADIUS} />
+      {neuron.role !== "input" && <Curve activation={neuron.activation} />}
+      {neuron.role !== "hidden" && (
+        <text class="name" x={beside * (RADIUS + 6)} dy="0.32em" data-side={neuron.role}>
+          {neuron.label}
+        </text>
+      )}{" "}
+      {neuron.role !== "input" && (
+        <text class="activation" y={RADIUS + 12}>
+          {neuron.activation}
+        </text>
+      )}
+    </g>
+  );
+}
+
+const SHAPES: Record<string, (x: number) => number> = {
+  identity: (x) => x,
+  sigmoid: (x) => 2 / (1 + Math.exp(-4 * x)) - 1,
+  tanh: (x) => Math.tanh(2.5 * x),
+  relu: (x) => 1.6 * Math.max(0, x) - 0.8,
+  sin: (x) => Math.sin(Math.PI * x),
+  cos: (x) => Math.cos(Math.PI * x),
+  gaussian: (x) => 1.8 * Math.exp(-4 * x * x) - 0.9,
+  abs: (x) => 1.6 * Math.abs(x) - 0.8,
+  square: (x) => 1.6 * x * x - 0.8,
+};
+
+/** The shape of a node's function, as a sign inside its circle. */
+function Curve({ activation }: { activation: string }) {
+  const shape = SHAPES[activation];
+  if (!shape) return null;
+  const points = Array.from({ length: 25 }, (_, i) => {
+    const x = i / 12 - 1;
+    return `${(7.5 * x).toFixed(1)},${(-6.5 * shape(x)).toFixed(1)}`;
+  });
+  return <polyline class="shape" points={points.join(" ")} />;
+}

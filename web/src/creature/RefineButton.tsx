@@ -1,0 +1,48 @@
+/** Asks for a creature to be made fitter by gradients, in a run of its own. */
+
+import { useState } from "preact/hooks";
+import * as api from "../api/client";
+import { messageOf } from "../api/problem";
+import type { Creature, Json } from "../api/types";
+import { useRefusal } from "../store/principal";
+import { answer } from "../store/store";
+import { tell } from "../store/toasts";
+import { navigate } from "../store/router";
+import { newKey } from "../ui/idempotencyKey";
+
+interface Props {
+  creature: Creature;
+  /** The run whose cells count, where the creature was reached from one. */
+  run: string | null;
+}
+
+export function Refine({ creature, run }: Props) {
+  const [busy, setBusy] = useState(false);
+  const refusal = useRefusal();
+  if (refusal) return null;
+  const start = async () => {
+    setBusy(true);
+    try {
+      const archive = run ? (await api.readRun(run)).spec.archive : undefined;
+      const spec = {
+        experiment: "refinement",
+        creature: creature as unknown as Json,
+        ...(archive !== undefined && { archive }),
+      };
+      const made = await answer("done", api.createRun(spec, newKey()));
+      navigate(`/runs/${made.id}`);
+    } catch (error) {
+      tell({ kind: "wrong", text: messageOf(error) });
+      setBusy(false);
+    }
+  };
+  return (
+    <button
+      disabled={busy}
+      onClick={() => void start()}
+      title="Gradient steps towards higher fitness that do not leave its cell"
+    >
+      {busy ? "Starting …" : "Refine"}
+    </button>
+  );
+}

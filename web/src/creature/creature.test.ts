@@ -1,0 +1,83 @@
+/** A creature's page: replays of the second format, what they show, networks, relatives. */
+
+import { describe, expect, it } from "vitest";
+import type { Ancestors, Creature, Relative } from "../api/types";
+import { treeOf } from "./relatives";
+import { formOf, groupsOf } from "./facts";
+import { walked } from "./HeatMap";
+
+describe("a picture over time and space", () => {
+  const cells = { columns: 5, rows: 3 };
+
+  it("is read by arrow keys from the moment shown on, and no further than its edges", () => {
+    expect(walked("ArrowUp", null, 2, cells)).toEqual({ column: 2, row: 0 });
+    expect(walked("ArrowDown", null, 2, cells)).toEqual({ column: 2, row: 2 });
+    expect(walked("ArrowRight", null, 2, cells)).toEqual({ column: 3, row: 0 });
+    expect(walked("ArrowLeft", { column: 0, row: 1 }, 4, cells)).toEqual({ column: 0, row: 1 });
+    expect(walked("ArrowUp", { column: 4, row: 2 }, 0, cells)).toEqual({ column: 4, row: 2 });
+    expect(walked("Home", { column: 4, row: 2 }, 0, cells)).toBeNull();
+  });
+});
+
+describe("a family tree", () => {
+  const person = (creature: string, distance: number, parents: string[] = [], fitness = 1): Relative => ({
+    creature,
+    distance,
+    parents,
+    fitness,
+    kept: true,
+    operator: "neat",
+    generation: 1,
+    credit: [],
+  });
+  const me = person("me", 0, ["a", "b"]);
+  const ancestors: Ancestors = {
+    parents: ["a", "b"],
+    items: [person("a", 1, ["old"]), person("b", 1, ["old"]), person("old", 2)],
+    more: false,
+  };
+
+  it("stands in columns, the oldest first, joined as parent and child", () => {
+    const tree = treeOf(me, ancestors, { total: 1, items: [person("child", 1, ["me"])] });
+    expect(tree.columns.map(({ title }) => title)).toEqual([
+      "Grandparents",
+      "Parents",
+      "This creature",
+      "Children",
+    ]);
+    const lines = tree.lines.map(
+      ([parent, child]) => `${parent.relative.creature} ${child.relative.creature}`,
+    );
+    expect(lines.sort()).toEqual(["a me", "b me", "me child", "old a", "old b"]);
+  });
+
+  it("draws the first children, which are the fittest, and says how many it leaves out", () => {
+    const items = Array.from({ length: 12 }, (_, i) => person(`c${i}`, 1, ["me"], 11 - i));
+    const tree = treeOf(me, ancestors, { total: 30, items });
+    const drawn = tree.kin.filter(({ relative }) => relative.creature.startsWith("c"));
+    expect(drawn.map(({ relative }) => relative.fitness)).toEqual([11, 10, 9, 8, 7, 6, 5, 4]);
+    expect(tree.hidden).toBe(22);
+  });
+});
+
+describe("facts", () => {
+  const creature = {
+    identity: { genome: { encoding: "fold" }, world: { fluid: false, coupling: { layers: 1 } } },
+    measured: { fitness: 1, descriptors: {}, features: { displacement: 2, mach: 0.1, connections: 4 } },
+  } as unknown as Creature;
+
+  it("stand in groups, each once", () => {
+    const groups = groupsOf(creature);
+    expect(groups.map(({ title }) => title)).toEqual(["Result", "Network", "Flow"]);
+    expect(groups.flatMap(({ rows }) => rows).map(([name]) => name)).toEqual([
+      "Fitness",
+      "Displacement",
+      "Connections",
+      "Mach number",
+    ]);
+  });
+
+  it("say nothing of the coupling where there is no fluid", () => {
+    expect(formOf(creature)).toEqual([]);
+  });
+});

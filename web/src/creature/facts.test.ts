@@ -1,0 +1,80 @@
+import { describe, expect, it } from "vitest";
+import type { Creature, Spec } from "../api/types";
+import { couplingFacts, freedomOf, isFree } from "../ui/coupling";
+import { measurementsOf, originOf } from "./facts";
+
+describe("a creature file", () => {
+  const identity = {
+    genome: { encoding: "cppn" },
+    body: { nodes: 8 },
+    world: { width: 64, height: 32, viscosity: 0.05 },
+  };
+  const told = (creature: Creature) =>
+    Object.fromEntries([...measurementsOf(creature), ...originOf(creature)]);
+  const bare = { identity, measured: null, provenance: null, licence: "CC0" } as unknown as Creature;
+
+  it("without figures and origin says so", () => {
+    expect(told(bare)).toEqual({
+      Fitness: "not measured",
+      Generation: "unknown",
+      "Made by": "unknown",
+      Seed: "unknown",
+      Genome: "a network that controls",
+      Body: "Chain, 8 nodes",
+      World: "64 × 32 cells, ν = 0.05",
+      Device: "unknown",
+      Licence: "CC0",
+    });
+  });
+
+  it("with figures shows each of them, zeros too", () => {
+    const measured = { fitness: 0, descriptors: { speed: 0.5 }, features: {}, block: 1, device: "cpu" };
+    const provenance = { parents: [], operator: "random", generation: 0, seed: 0, version: "1" };
+    const facts = told({ ...bare, measured, provenance });
+    expect(facts).toMatchObject({ Fitness: "0", Speed: "0.5", Generation: "0", Seed: "0" });
+  });
+
+  it("of a gait names swimmer and period, and figures with their units", () => {
+    const genome = { encoding: "gait", swimmer: "worm", period: 600, ramp: 1 };
+    const measured = {
+      fitness: 2,
+      descriptors: {},
+      features: { cycle: 2, reynolds: 12.5, limited: 0.25 },
+      block: 1,
+      device: "cpu",
+    };
+    const worm = { ...bare, identity: { ...identity, genome }, measured } as unknown as Creature;
+    const facts = told(worm);
+    expect(facts).toMatchObject({
+      Swimmer: "Worm",
+      Period: "600 steps",
+      "In the last cycle": "2 cells",
+      "Reynolds number": "12.5",
+      "Limits active": "25 % of node steps",
+    });
+    expect(facts).not.toHaveProperty("Fitness");
+  });
+
+  it("says in which form its body is coupled, and whether that is force-free", () => {
+    const paper = { projection: "none", theta_feedback: 0, layers: 2 };
+    expect(isFree(paper)).toBe(false);
+    expect(isFree({ projection: "force" })).toBe(true);
+    expect(Object.fromEntries(couplingFacts(paper))).toMatchObject({
+      "Forcing freed of": "nothing: not force-free",
+      "Edge angles": "free, as in the paper",
+      Forcing: "two layers, factor 2",
+      "Actuator strength": "unlimited",
+    });
+  });
+
+  it.each([
+    [{ coupling: { projection: "force" } }, "all"],
+    [{ coupling: { projection: "none" } }, "none"],
+    [{ forms: ["ours", "paper"] }, "some"],
+    [{ forms: ["paper"] }, "none"],
+    [{ forms: ["ours", "strong"] }, "all"],
+    [{}, "all"],
+  ] as [Spec, string][])("of a run with %j is %s force-free", (spec, freedom) => {
+    expect(freedomOf(spec)).toBe(freedom);
+  });
+});

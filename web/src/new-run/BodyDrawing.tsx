@@ -1,0 +1,114 @@
+/** What a spec is about, in scale: bodies at rest in their periodic worlds, and pictures. */
+
+import { useEffect, useRef } from "preact/hooks";
+import type { Drawing, DrawnBody, DrawnPicture } from "../api/types";
+import { GRID, branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
+import { count, words } from "../ui/format";
+
+interface Props {
+  drawing: Drawing | null;
+}
+
+export function BodyDrawing({ drawing }: Props) {
+  if (!drawing) {
+    return (
+      <div class="body-drawing">
+        <p class="quiet">Drawn here once every value can be used.</p>
+      </div>
+    );
+  }
+  const { width, height, bodies, pictures } = drawing;
+  return (
+    <figure class="body-drawing">
+      <div class="worlds" style={{ "--worlds": Math.min(3, bodies.length) }}>
+        {bodies.map((body) => (
+          <World key={body.name} {...{ body, drawing }} />
+        ))}
+      </div>
+      {pictures.length > 0 && (
+        <div class="targets" role="group" aria-label="Pictures to fold into">
+          {pictures.map((picture) => (
+            <Target key={picture.name} picture={picture} />
+          ))}
+        </div>
+      )}
+      <figcaption class="quiet small">
+        {count(width)} × {count(height)} cells, periodic; a grid line every {GRID}
+      </figcaption>
+    </figure>
+  );
+}
+
+function World({ body, drawing }: { body: DrawnBody; drawing: Drawing }) {
+  const { width, height, picture_size: side } = drawing;
+  // A hair's breadth on the screen, in cells.
+  const thin = (Math.max(width, height) / 300) * Math.min(2, drawing.bodies.length);
+  const clip = `world-${body.name.replace(/\W/g, "-")}`;
+  const text = `${words(body.name)}: ${caption(body)}`;
+  return (
+    <div class="world">
+      <svg viewBox={`0 0 ${width} ${height}`} role="img" aria-label={text}>
+        <defs>
+          <pattern id={`${clip}-grid`} width={GRID} height={GRID} patternUnits="userSpaceOnUse">
+            <path class="grid" d={`M0 0H${GRID}M0 0V${GRID}`} stroke-width={thin} />
+          </pattern>
+          <clipPath id={clip}>
+            <rect width={width} height={height} />
+          </clipPath>
+        </defs>
+        <rect class="water" width={width} height={height} />
+        <rect width={width} height={height} fill={`url(#${clip}-grid)`} />
+        {side > 0 && (
+          <rect
+            class="target-place"
+            x={(width - side) / 2}
+            y={(height - side) / 2}
+            width={side}
+            height={side}
+            stroke-width={2 * thin}
+            stroke-dasharray={`${6 * thin}`}
+          />
+        )}
+        {/* In the world y points upwards, on the screen downwards. */}
+        <g clip-path={`url(#${clip})`}>
+          <g transform={`matrix(1 0 0 -1 0 ${height})`}>
+            {tilesOf(body, width, height).map(([x, y]) => (
+              <Filaments key={`${x} ${y}`} {...{ body, x, y, thin }} />
+            ))}
+          </g>
+        </g>
+      </svg>
+      <p class="small">
+        {words(body.name)} <span class="quiet">{caption(body)}</span>
+      </p>
+    </div>
+  );
+}
+
+function Filaments({ body, x, y, thin }: { body: DrawnBody; x: number; y: number; thin: number }) {
+  const line = Math.max(2 * thin, 0.28);
+  return (
+    <g transform={`translate(${x} ${y})`}>
+      <path class="filament" d={linesOf(body)} stroke-width={line} />
+      <path class="joint" d={dotsOf(body, 5 * thin)} stroke-width={2.1 * line} />
+      <path class="branch" d={branchesOf(body)} stroke-width={3 * line} />
+    </g>
+  );
+}
+
+function caption({ nodes, edges, whole }: DrawnBody): string {
+  return `${count(nodes)} nodes${whole ? "" : `; ${count(edges.length)} filaments drawn`}`;
+}
+
+function Target({ picture }: { picture: DrawnPicture }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const { name, width, height, pixels } = picture;
+  useEffect(() => {
+    const context = canvas.current!.getContext("2d")!;
+    const image = context.createImageData(width, height);
+    const ink = atob(pixels);
+    for (let i = 0; i < ink.length; i++) image.data[4 * i + 3] = ink.charCodeAt(i);
+    context.putImageData(image, 0, 0);
+  }, [pixels, width, height]);
+  return <canvas ref={canvas} width={width} height={height} role="img" aria-label={`Picture ${name}`} />;
+}

@@ -1,0 +1,66 @@
+/** Which experiment, and which preset of it to begin with. */
+
+import type { Estimate, Experiment, Preset } from "../api/types";
+import { about } from "./costText";
+import { bytes, words } from "../ui/format";
+
+interface Props {
+  experiments: Experiment[];
+  chosen: Experiment;
+  /** The preset that the spec was begun from, if any. */
+  preset: Preset | null;
+  estimates: ReadonlyMap<Preset, Estimate>;
+  onExperiment: (experiment: Experiment) => void;
+  onPreset: (preset: Preset, experiment: Experiment) => void;
+}
+
+export function Chooser({ experiments, chosen, preset, estimates, onExperiment, onPreset }: Props) {
+  return (
+    <>
+      <fieldset class="kinds">
+        <legend class="unseen">Experiment</legend>
+        {experiments.map((one) => {
+          const [name, sentence] = one.title.split(": ") as [string, string?];
+          return (
+            <label key={one.experiment} class="kind">
+              <input
+                type="radio"
+                name="experiment"
+                checked={one === chosen}
+                onChange={() => onExperiment(one)}
+              />
+              <b>{name}</b>
+              <span>{words(sentence ?? "")}</span>
+            </label>
+          );
+        })}
+      </fieldset>
+      <fieldset class="presets">
+        <legend class="unseen">{chosen.title}</legend>
+        {chosen.presets.map((each) => (
+          <button
+            type="button"
+            key={each.name}
+            class="preset"
+            aria-pressed={each === preset}
+            onClick={() => onPreset(each, chosen)}
+          >
+            <b>{words(each.name)}</b>
+            <span>{each.title}</span>
+            <span class="preset-cost">{costOf(estimates.get(each))}</span>
+          </button>
+        ))}
+        {chosen.presets.length === 0 && (
+          <p class="quiet begins">
+            It begins at a creature: drop or open a creature file here, or press Refine on a creature’s page.
+          </p>
+        )}
+      </fieldset>
+    </>
+  );
+}
+
+function costOf(estimate: Estimate | undefined): string {
+  if (!estimate) return " ";
+  return `${about(estimate) ?? "time unknown yet"} · ${bytes(estimate.memory_bytes)}`;
+}

@@ -1,0 +1,157 @@
+/** Seeds and a grid over fields: asked for in the form of a new run. */
+
+import type { FieldError, Json } from "../api/types";
+import { number } from "../ui/format";
+import { valueAt } from "./form/document";
+import type { Leaf } from "./form/fields";
+import { nameOf } from "./sweepGrid";
+import { type Sweeping, begun, complaintsOf } from "./sweep";
+import "./sweep.css";
+
+interface Props {
+  sweeping: Sweeping;
+  errors: readonly FieldError[];
+  spec: Json;
+}
+
+export function SweepCard({ sweeping, errors, spec }: Props) {
+  const { seeded, seeds, axes, name, fields, problems, total, change } = sweeping;
+  const add = () => {
+    const free = fields.find(({ path }) => !axes.some((axis) => axis.path === path));
+    const usual = fields.find(({ path }) => path === "world.viscosity") ?? free;
+    const next = axes.some(({ path }) => path === usual?.path) ? free : usual;
+    if (next) change({ axes: [...axes, { path: next.path, text: textOf(valueAt(spec, next.path)) }] });
+  };
+  return (
+    <section class="card sweep-card" aria-labelledby="sweep-title">
+      <h2 id="sweep-title">Seeds and sweep</h2>
+      <p class="help">
+        Several runs at once: the same spec with other seeds, or with other values of any fields. They are
+        summed up on one page, with median and spread.
+      </p>
+      <div class="sweep-entries">
+        {seeded && (
+          <label class="sweep-seeds">
+            <span>How many seeds</span>
+            <input
+              type="text"
+              inputMode="numeric"
+              value={seeds}
+              aria-invalid={problems.seeds !== null}
+              onInput={(event) => change({ seeds: event.currentTarget.value })}
+            />
+          </label>
+        )}
+        {begun(sweeping) && (
+          <label class="sweep-called">
+            <span>Name of the sweep</span>
+            <input
+              type="text"
+              maxLength={200}
+              value={name}
+              placeholder="may be left empty"
+              onInput={(event) => change({ name: event.currentTarget.value })}
+            />
+          </label>
+        )}
+      </div>
+      <Wrong said={[problems.seeds, ...complaintsOf(errors, "seeds")]} />
+      {axes.map((axis, i) => (
+        <Row
+          key={i}
+          fields={fields}
+          path={axis.path}
+          text={axis.text}
+          said={[problems.axes[i] ?? null, ...complaintsOf(errors, `grid.${axis.path}`)]}
+          taken={axes.map(({ path }) => path)}
+          onChange={(next) => change({ axes: axes.with(i, next) })}
+          onRemove={() => change({ axes: axes.toSpliced(i, 1) })}
+        />
+      ))}
+      <Wrong said={[problems.total, ...complaintsOf(errors, "grid")]} />
+      <p class="sweep-foot">
+        <button type="button" onClick={add} disabled={axes.length >= fields.length}>
+          Sweep over {axes.length > 0 ? "another" : "a"} field
+        </button>
+        {begun(sweeping) && (
+          <span role="status" class="quiet">
+            {total === 1 ? "1 run" : `${total.toLocaleString("en")} runs in all`}
+          </span>
+        )}
+      </p>
+    </section>
+  );
+}
+
+export function goToSweep(): void {
+  const card = document.querySelector(".sweep-card");
+  card?.scrollIntoView({ block: "center" });
+  card?.querySelector<HTMLElement>("input, button")?.focus({ preventScroll: true });
+}
+
+const textOf = (value: Json): string =>
+  value === null || typeof value === "object" ? "" : typeof value === "number" ? plain(value) : String(value);
+
+/** As one would type it. */
+const plain = (value: number) => (Math.abs(value) >= 1e-4 ? String(value) : number(value, 6));
+
+interface RowProps {
+  fields: readonly Leaf[];
+  path: string;
+  text: string;
+  said: (string | null)[];
+  taken: string[];
+  onChange: (axis: { path: string; text: string }) => void;
+  onRemove: () => void;
+}
+
+function Row({ fields, path, text, said, taken, onChange, onRemove }: RowProps) {
+  const known = fields.some((field) => field.path === path);
+  const field = fields.find((one) => one.path === path);
+  return (
+    <div class="sweep-axis" role="group" aria-label={`Sweep over ${path}`}>
+      <select
+        aria-label="Field"
+        value={path}
+        onChange={(event) => onChange({ path: event.currentTarget.value, text: "" })}
+      >
+        {!known && <option value={path}>{path}</option>}
+        {fields
+          .filter((one) => one.path === path || !taken.includes(one.path))
+          .map((one) => (
+            <option key={one.path} value={one.path}>
+              {nameOf(one)}
+            </option>
+          ))}
+      </select>
+      <input
+        type="text"
+        aria-label={`Values of ${path}`}
+        placeholder={hintOf(field)}
+        value={text}
+        aria-invalid={said.some(Boolean)}
+        onInput={(event) => onChange({ path, text: event.currentTarget.value })}
+      />
+      <button type="button" class="plain" aria-label={`Do not sweep over ${path}`} onClick={onRemove}>
+        ✕
+      </button>
+      <Wrong said={said} />
+    </div>
+  );
+}
+
+function hintOf(field: Leaf | undefined): string {
+  if (field?.kind === "choice") return field.options.join(", ");
+  if (field?.kind === "flag") return "on, off";
+  if (field?.kind === "number") return "values, with commas between them";
+  return "a JSON list of values";
+}
+
+function Wrong({ said }: { said: (string | null)[] }) {
+  const sentences = [...new Set(said.filter(Boolean))];
+  return sentences.map((sentence) => (
+    <p key={sentence} class="wrong-text small" role="alert">
+      {sentence}
+    </p>
+  ));
+}

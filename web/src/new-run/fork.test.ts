@@ -1,0 +1,218 @@
+/** Runs that begin from creatures: what is sent of them, and how the address names them. */
+
+import { describe, expect, inject, it, vi } from "vitest";
+import type { Json, Spec } from "../api/types";
+import { addressOf } from "../store/draft";
+import { isAboutOrigin } from "./ForkCard";
+import { forkOf } from "./fork";
+import { MOST, addressed, load } from "./sources";
+import { type Section, formOf } from "./form/fields";
+import { placesOf } from "./form/document";
+import { mergePatch, withOrigin, withoutOrigin } from "./initialCreatures";
+
+const EXPERIMENTS = inject("experiments");
+const SEARCH = EXPERIMENTS.find(({ experiment }) => experiment === "quality-diversity")!;
+const SPEC = SEARCH.presets[0]!.spec;
+const SHA = "ab".repeat(32);
+const RUN = "0190a6a0-0000-7000-8000-000000000001";
+
+const RUNS: Record<string, Spec> = {
+  [RUN]: withOrigin(SPEC, [SHA]),
+  table: { experiment: "gaits" },
+};
+/** All of a run, as they are. */
+const ALL = { run: RUN, creature: null, cells: null, at: null, creatures: 3 };
+const ONE = { ...ALL, creature: SHA, creatures: 1 };
+
+const CREATURE = {
+  identity: {
+    format: "microcosmos-creature/1",
+    genome: { encoding: "cppn", control: { period: 50 } },
+    world: { width: 96, height: 64, viscosity: 0.2, coupling: {} },
+    body: { builder: "ring", nodes: 20 },
+    task: { steps: 70, fitness: "displacement" },
+  },
+  sha256: SHA,
+};
+
+vi.mock("../api/client", () => ({
+  readRun: async (id: string) => ({ id, spec: RUNS[id] }),
+  readArchive: async (_: string, __: string[], { generation }: { generation?: number }) =>
+    generation === 0
+      ? { cell: [], creature: [], generation }
+      : { cell: [2, 3, 5, 9], creature: ["x", "y", "z", "x"], generation: Math.min(generation ?? 8, 8) },
+  readCreature: async () => CREATURE,
+}));
+
+/** As the server applies it. */
+function patched(document: Json | undefined, patch: Json): Json {
+  if (patch === null || typeof patch !== "object" || Array.isArray(patch)) return patch;
+  const object = document && typeof document === "object" && !Array.isArray(document);
+  const whole: Spec = object ? { ...document } : {};
+  for (const [key, value] of Object.entries(patch)) {
+    if (value === null) delete whole[key];
+    else whole[key] = patched(whole[key], value);
+  }
+  return whole;
+}
+
+describe("a merge patch", () => {
+  it.each<[string, from: Spec, to: Spec, patch: Spec]>([
+    [
+      "says nothing of what is the same",
+      { a: 1, b: { c: [1, { d: null }] } },
+      { b: { c: [1, { d: null }] }, a: 1 },
+      {},
+    ],
+    [
+      "names only what differs within parts",
+      { a: { b: 1, c: 2 }, d: 3 },
+      { a: { b: 1, c: 4 }, d: 3 },
+      { a: { c: 4 } },
+    ],
+    ["takes away by null", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1 } }, { a: { c: null }, d: null }],
+    ["replaces lists whole", { a: [1, { b: 2 }] }, { a: [1, { b: 2 }, 3] }, { a: [1, { b: 2 }, 3] }],
+    [
+      "puts a part in the place of a value",
+      { a: null, b: [1] },
+      { a: { c: 1 }, b: { d: 2 } },
+      { a: { c: 1 }, b: { d: 2 } },
+    ],
+    ["empties a part", { a: { b: 1 } }, { a: {} }, { a: { b: null } }],
+    ["puts an empty part where there was none", { a: 1 }, { a: {} }, { a: {} }],
+  ])("%s", (_, from, to, patch) => {
+    expect(mergePatch(from, to)).toEqual(patch);
+    expect(patched(from, patch)).toEqual(to);
+  });
+
+  it("leads from each preset of a search to each other", () => {
+    const specs = EXPERIMENTS.filter(({ experiment }) => /quality|neuro/.test(experiment)).flatMap(
+      ({ presets }) => presets.map(({ spec }) => spec),
+    );
+    expect(specs.length).toBeGreaterThan(3);
+    const bare = (spec: Spec) => JSON.parse(JSON.stringify(spec, (_, value) => value ?? undefined));
+    for (const from of specs) {
+      for (const to of specs) expect(bare(patched(from, mergePatch(from, to)) as Spec)).toEqual(bare(to));
+    }
+  });
+});
+
+describe("a fork", () => {
+  const base = { kind: "run" as const, name: RUN, spec: withOrigin(SPEC, []) };
+  const spec = { ...base.spec, world: { ...(SPEC.world as Spec), viscosity: 0.3 } };
+
+  it("is sent as what differs, with whom it begins from", () => {
+    const all = { ...base, fork: ALL };
+    expect(forkOf({ base: all, spec }, "  thick ")).toEqual({
+      fork: { run: RUN, from: { archive: true }, spec: { world: { viscosity: 0.3 } }, name: "thick" },
+    });
+    const one = { ...base, fork: ONE };
+    expect(forkOf({ base: one, spec: base.spec }, "")).toEqual({
+      fork: { run: RUN, from: { creatures: [SHA] }, spec: {}, name: null },
+    });
+  });
+
+  it("names the cells, and the generation after which they lived there", () => {
+    const some = { ...base, fork: { ...ALL, cells: [2, 3, 9], at: 4 } };
+    expect(forkOf({ base: some, spec: base.spec }, "")).toEqual({
+      fork: { run: RUN, from: { cells: [2, 3, 9] }, generation: 4, spec: {}, name: null },
+    });
+  });
+
+  it("takes no other names of creatures, typed as JSON or into a field", () => {
+    const sent = forkOf({ base: { ...base, fork: ALL }, spec: withOrigin(spec, [SHA]) }, "");
+    expect(sent).toMatchObject({ fork: { spec: { world: { viscosity: 0.3 } } } });
+    const form = formOf(SEARCH.schema);
+    const places = placesOf(form, spec).filter((path) => path !== "search.origin");
+    expect(placesOf(form, spec)).toContain("search.origin");
+    expect(placesOf(withoutOrigin(form), spec)).toEqual(places);
+  });
+
+  it("is a run as any other where no run is known, or nobody to begin from", () => {
+    const alone = { ...base, fork: { ...ONE, run: null } };
+    expect(forkOf({ base: alone, spec }, "")).toBeNull();
+    expect(forkOf({ base, spec }, "")).toBeNull();
+  });
+
+  it.each([
+    [`fork=${RUN}`, [["fork", RUN]], ALL],
+    [
+      `fork=${RUN}&creature=${SHA}`,
+      [
+        ["fork", RUN],
+        ["creature", SHA],
+      ],
+      ONE,
+    ],
+    [
+      `fork=${RUN}&cells=2-3,9`,
+      [
+        ["fork", RUN],
+        ["cells", "2-3,9"],
+      ],
+      { ...ALL, cells: [9, 2, 3] },
+    ],
+    [
+      `fork=${RUN}&at=0`,
+      [
+        ["fork", RUN],
+        ["at", "0"],
+      ],
+      { ...ALL, at: 0 },
+    ],
+    [`begin=${SHA}`, [["begin", SHA]], { ...ONE, run: null }],
+  ])("is named by the address %s", (text, address, fork) => {
+    expect(addressed(new URLSearchParams(text))).toEqual(address);
+    expect(addressOf({ ...base, fork })).toEqual(address);
+  });
+
+  it.each(["from", "from.region.speed", "search.origin", "name", "generation"])(
+    "shows %s beside it",
+    (field) => {
+      expect(isAboutOrigin(field)).toBe(true);
+    },
+  );
+
+  it.each(["search.batch", "genome.max_nodes", "control", "search.generations"])(
+    "leaves %s in the form",
+    (field) => {
+      expect(isAboutOrigin(field)).toBe(false);
+    },
+  );
+});
+
+describe("what an address of a fork names", () => {
+  it("is the run's spec, with how many creatures live there", async () => {
+    const base = await load([["fork", RUN]], EXPERIMENTS);
+    expect(base.fork).toEqual(ALL);
+    expect((base.spec.search as Spec).origin).toEqual([]);
+  });
+
+  it("is whoever lives in the cells, each once, and not later than there are generations", async () => {
+    const some = async (...words: [string, string][]) =>
+      (await load([["fork", RUN], ...words], EXPERIMENTS)).fork;
+    expect(await some(["cells", "0-2,8-9"])).toEqual({ ...ALL, cells: [2, 9], creatures: 1 });
+    expect(await some(["at", "99"])).toEqual({ ...ALL, at: 8 });
+    await expect(some(["cells", "4,6-8"])).rejects.toThrow("nobody lives there");
+    await expect(some(["at", "0"])).rejects.toThrow("nobody lives there");
+    await expect(some(["at", "then"])).rejects.toThrow("“at” must be a generation; got then.");
+  });
+
+  it("is of no more creatures than the schema has room for", () => {
+    const { fields } = formOf(SEARCH.schema).fields.find(({ path }) => path === "search") as Section;
+    expect(JSON.stringify(fields.find(({ path }) => path === "search.origin"))).toContain(`${MOST}`);
+  });
+
+  it("is the creature's own world where its run was no search", async () => {
+    const base = await load(
+      [
+        ["fork", "table"],
+        ["creature", SHA],
+      ],
+      EXPERIMENTS,
+    );
+    expect(base).toMatchObject({ kind: "creature", fork: { run: null, creature: SHA } });
+    expect(base.spec).toMatchObject({ world: { width: 96 }, search: { origin: [SHA] } });
+    await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("fills no archive");
+  });
+});

@@ -1,0 +1,45 @@
+/** The sections of a form: where something was changed, and where something is wrong. */
+
+import { countWithin } from "./changes";
+import type { FormState } from "./Entry";
+import type { Section, Union } from "./fields";
+
+interface Props {
+  parts: (Section | Union)[];
+  state: FormState;
+}
+
+export function Outline({ parts, state }: Props) {
+  return (
+    <nav class="outline" aria-label="Sections of the form">
+      {parts.map((part) => {
+        const wrong = within(part, state.messages.keys(), parts);
+        const changed = within(part, state.changed, parts);
+        return (
+          <button type="button" key={part.path} class="plain" onClick={() => go(part.path, state)}>
+            {part.title}
+            {wrong > 0 && <span class="wrong-text">{wrong} to mend</span>}
+            {wrong === 0 && changed > 0 && <span class="tally">{changed} changed</span>}
+          </button>
+        );
+      })}
+    </nav>
+  );
+}
+
+/** How many paths lie in a section; what lies in no other is in the first. */
+function within({ path }: Props["parts"][0], paths: Iterable<string>, parts: Props["parts"]): number {
+  const all = [...paths];
+  if (path) return countWithin(all, path);
+  const others = parts.reduce((sum, part) => sum + (part.path ? countWithin(all, part.path) : 0), 0);
+  return all.length - others;
+}
+
+function go(path: string, state: FormState): void {
+  state.close(path, false);
+  requestAnimationFrame(() => {
+    const section = document.getElementById(`section-${path || "general"}`);
+    section?.scrollIntoView({ block: "start" });
+    section?.querySelector<HTMLElement>("input, select, textarea")?.focus({ preventScroll: true });
+  });
+}

@@ -1,0 +1,39 @@
+/** What of a spec was changed in the form, and which preset it equals. */
+
+import type { Experiment, Json, Preset, Spec } from "../../api/types";
+import { isObject } from "../readDocument";
+import { join } from "./schema";
+
+/** Paths of values that differ; of parts and lists that are made otherwise, their own. */
+export function changedPaths(a: Json, b: Json, path = ""): string[] {
+  if (isObject(a) && isObject(b) && sameKeys(a, b)) {
+    return keysOf(a, b).flatMap((key) => changedPaths(a[key] ?? null, b[key] ?? null, join(path, key)));
+  }
+  if (Array.isArray(a) && Array.isArray(b) && a.length === b.length && a.every(isObject)) {
+    return a.flatMap((item, i) => changedPaths(item, b[i]!, join(path, String(i))));
+  }
+  return JSON.stringify(a) === JSON.stringify(b) ? [] : [path];
+}
+
+/** What belongs to a word of users' own is there with that word alone. */
+const COMES_AND_GOES = "own";
+
+function keysOf(...parts: Spec[]): string[] {
+  return [...new Set(parts.flatMap(Object.keys))];
+}
+
+function sameKeys(a: Spec, b: Spec): boolean {
+  return keysOf(a, b).every((key) => key === COMES_AND_GOES || (key in a && key in b));
+}
+
+/** How many of the paths lie in a part of the spec. */
+export function countWithin(paths: Iterable<string>, part: string): number {
+  return [...paths].filter((path) => path === part || path.startsWith(`${part}.`)).length;
+}
+
+/** The preset that a spec equals, its seed aside. */
+export function equalPreset(spec: Spec, experiments: Experiment[]): Preset | null {
+  const own = experiments.find(({ experiment }) => experiment === spec.experiment);
+  const same = (preset: Preset) => changedPaths(spec, preset.spec).every((path) => path === "seed");
+  return own?.presets.find(same) ?? null;
+}

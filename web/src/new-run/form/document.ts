@@ -1,0 +1,169 @@
+/** The spec under a form: reading, changing and checking its values by path. */
+
+import type { FieldError, Json, Spec } from "../../api/types";
+import { number } from "../../ui/format";
+import { join } from "./schema";
+import type { Field, List, NumberField, Section, Several, Union } from "./fields";
+
+export function valueAt(document: Json, path: string): Json {
+  const keys = path === "" ? [] : path.split(".");
+  return keys.reduce<Json>((part, key) => {
+    if (part === null || typeof part !== "object") return null;
+    return (part as Record<string, Json>)[key] ?? null;
+  }, document);
+}
+
+/** The document with another value at the path; nothing is changed in place. */
+export function withValue(document: Json, path: string, value: Json): Json {
+  if (path === "") return value;
+  const [key, ...rest] = path.split(".") as [string, ...string[]];
+  if (Array.isArray(document)) {
+    return document.map((item, i) => (String(i) === key ? withValue(item, rest.join("."), value) : item));
+  }
+  const parts = (document ?? {}) as Spec;
+  return { ...parts, [key]: withValue(parts[key] ?? null, rest.join("."), value) };
+}
+
+/** What a person typed into a number field: a number, null for empty, else the text itself. */
+export function typed(text: string): Json {
+  const trimmed = text.trim();
+  if (trimmed === "") return null;
+  const value = Number(trimmed.replace("−", "-"));
+  return Number.isFinite(value) ? value : text;
+}
+
+/** What is wrong with a number, as far as the schema alone can say; else null. */
+export function complaint(field: NumberField, value: Json): string | null {
+  if (value === null) return field.nullable ? null : "Needs a number.";
+  if (typeof value !== "number") return `Needs a number, got “${String(value)}”.`;
+  if (field.whole && !Number.isInteger(value)) return `Needs a whole number, got ${value}.`;
+  const { low, lowOpen, high, highOpen } = field.range;
+  if (low !== undefined && (value < low || (lowOpen && value === low))) {
+    return `Needs ${lowOpen ? "more than" : "at least"} ${number(low, 6)}.`;
+  }
+  if (high !== undefined && (value > high || (highOpen && value === high))) {
+    return `Needs ${highOpen ? "less than" : "at most"} ${number(high, 6)}.`;
+  }
+  return null;
+}
+
+/**
+ * Messages by the path of what shows them: the field that is named, else what is around it.
+ * `descriptors[0].low` and `descriptors.0.low` are the same place.
+ */
+export function messagesByPath(errors: FieldError[], form: Section, document: Json): Map<string, string[]> {
+  const shown = new Set(placesOf(form, document));
+  const messages = new Map<string, string[]>();
+  for (const { field, message } of errors) {
+    let path = field.replace(/\[(\d+)\]/g, ".$1").replace(/^\./, "");
+    while (!shown.has(path)) path = path.slice(0, Math.max(0, path.lastIndexOf(".")));
+    const known = messages.get(path) ?? [];
+    if (!known.includes(message)) messages.set(path, [...known, message]);
+  }
+  return messages;
+}
+
+/** What a person typed into a field for several numbers; what is none stays text. */
+export function typedList(text: string): Json[] {
+  return text
+    .split(/[\s,;]+/)
+    .filter(Boolean)
+    .map(typed);
+}
+
+/** What a person typed as JSON; where it is none, the text itself. */
+export function typedJson(text: string): Json {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return text;
+  }
+}
+
+/** What the schema alone finds wrong with the values of a document. */
+export function complaints(form: Section, document: Json): FieldError[] {
+  return leavesOf(form, document).flatMap((field) => {
+    const message = wrongWith(field, valueAt(document, field.path));
+    return message ? [{ field: field.path, message }] : [];
+  });
+}
+
+function wrongWith(field: Field, value: Json): string | null {
+  if (field.kind === "number") return complaint(field, value);
+  if (field.kind === "list") return listComplaint(field, value);
+  if (field.kind === "several") return severalComplaint(field, value);
+  if (field.kind === "nested" && !Array.isArray(value)) return "Needs a list, [[0, 1], [2, 3]].";
+  return null;
+}
+
+function listComplaint({ item, least, most }: List, value: Json): string | null {
+  const items = Array.isArray(value) ? value : [];
+  const wrong = items.map((one) => complaint(item, one)).find((message) => message !== null);
+  if (wrong) return wrong;
+  if (items.length < least) return `Needs at least ${least} ${least === 1 ? "number" : "numbers"}.`;
+  return items.length > most ? `Needs at most ${most} numbers.` : null;
+}
+
+function severalComplaint({ least }: Several, value: Json): string | null {
+  const chosen = Array.isArray(value) ? value.length : 0;
+  return chosen < least ? `Needs at least ${least} of them.` : null;
+}
+
+/** The part of a union that a document has. */
+export function partOf(union: Union, document: Json): Section | null {
+  return union.parts.get(String(valueAt(document, `${union.path}.${union.tag}`))) ?? null;
+}
+
+/** The document with another value; what follows from a changed choice is left out again. */
+export function withChoice(document: Json, section: Section, field: Field, value: Json): Json {
+  const next = withValue(document, field.path, value);
+  const following = section.following.map((name) => join(section.path, name));
+  if (field.kind !== "choice" || following.includes(field.path)) return next;
+  const left = following.reduce((changed, path) => withValue(changed, path, null), next);
+  return withOwn(left, section, field, value);
+}
+
+/** The settings of something of users' own come and go with the word for it. */
+function withOwn(document: Json, { path, settings }: Section, field: Field, value: Json): Json {
+  const own = join(path, "own");
+  const fresh = settings?.path === field.path ? settings.fresh[String(value)] : undefined;
+  if (fresh === undefined && valueAt(document, own) === null) return document;
+  return withValue(document, own, fresh ?? null);
+}
+
+/** Whether a field belongs to what a document has chosen. */
+export function isThere({ when }: Field, document: Json): boolean {
+  return when === undefined || valueAt(document, when.path) === when.is;
+}
+
+/** Whether a section that can be switched off is. */
+export function isOff(section: Section, document: Json): boolean {
+  return section.fresh !== undefined && valueAt(document, section.path) === null;
+}
+
+/** What a document has of a field: the fields of a part, of the one chosen, of each row. */
+function insideOf(field: Field, document: Json): Field[] {
+  return within(field, document).filter((each) => isThere(each, document));
+}
+
+function within(field: Field, document: Json): Field[] {
+  if (field.kind === "union") return partOf(field, document)?.fields ?? [];
+  if (field.kind === "section") return isOff(field, document) ? [] : field.fields;
+  if (field.kind !== "rows") return [];
+  const items = valueAt(document, field.path);
+  return (Array.isArray(items) ? items : []).map((_, i) => field.row(i));
+}
+
+const COMPOUND = ["union", "section", "rows"];
+
+export function leavesOf(field: Field, document: Json): Field[] {
+  if (!COMPOUND.includes(field.kind)) return [field];
+  return insideOf(field, document).flatMap((each) => leavesOf(each, document));
+}
+
+/** Every path at which a form can show a message; the whole form's is empty. */
+export function placesOf(field: Field, document: Json): string[] {
+  if (field.kind === "constant") return [];
+  const inside = insideOf(field, document).flatMap((each) => placesOf(each, document));
+  return [field.path, ...inside];
+}

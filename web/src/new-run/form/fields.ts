@@ -1,0 +1,263 @@
+/** The fields of a form, read from a JSON schema. */
+
+import type { Json, Schema, Spec } from "../../api/types";
+import { words } from "../../ui/format";
+import { type Range, defaultOf, join, notNull, rangeOf, resolve, text } from "./schema";
+
+export type { Range } from "./schema";
+
+interface Common {
+  /** Where the value is in the spec: `world.viscosity`, `archive.descriptors.0.low`. */
+  path: string;
+  title: string;
+  help: string;
+  /** The choice with which alone it is there: the settings of something of users' own. */
+  when?: { path: string; is: string };
+}
+
+/** What is told of a choice of users' own. */
+export interface Own {
+  title: string;
+  about: string;
+  /** Names of those who have it. */
+  workers: string[];
+}
+
+export interface Section extends Common {
+  kind: "section";
+  fields: Field[];
+  /** Names of fields that follow from the others where they are left out. */
+  following: string[];
+  /** What belongs to a choice of users' own, by its path and word, when it is made. */
+  settings?: { path: string; fresh: Record<string, Json> };
+  /** What it begins with when it is switched on; not there where it cannot be switched off. */
+  fresh?: Json;
+  /** Whether people seldom change what is in it. */
+  seldom?: boolean;
+}
+
+/** One of several parts, told apart by the word at `tag`. */
+export interface Union extends Common {
+  kind: "union";
+  tag: string;
+  parts: ReadonlyMap<string, Section>;
+}
+
+export interface Rows extends Common {
+  kind: "rows";
+  row: (index: number) => Section | Union;
+  least: number;
+  most: number;
+  fresh: Json;
+}
+
+export interface NumberField extends Common {
+  kind: "number";
+  whole: boolean;
+  nullable: boolean;
+  unit: string;
+  /** Where the unit depends on another value: that value's path, and the units. */
+  unitBy?: { path: string; units: Record<string, string> };
+  range: Range;
+}
+
+export interface Choice extends Common {
+  kind: "choice";
+  nullable: boolean;
+  options: Json[];
+  own?: Record<string, Own>;
+}
+
+/** Several numbers in a row. */
+export interface List extends Common {
+  kind: "list";
+  item: NumberField;
+  least: number;
+  most: number;
+}
+
+/** Some of a few words. */
+export interface Several extends Common {
+  kind: "several";
+  options: Json[];
+  least: number;
+}
+
+/** Lists within a list, which are written as JSON. */
+interface Nested extends Common {
+  kind: "nested";
+}
+
+interface Flag extends Common {
+  kind: "flag";
+}
+
+interface TextField extends Common {
+  kind: "text";
+}
+
+interface Constant extends Common {
+  kind: "constant";
+}
+
+export type Leaf = NumberField | Choice | List | Several | Nested | Flag | TextField;
+export type Field = Section | Union | Rows | Constant | Leaf;
+
+export function formOf(schema: Schema): Section {
+  return sectionOf(schema, schema, { path: "", title: "", help: text(schema.description) });
+}
+
+function sectionOf(schema: Schema, root: Schema, common: Common): Section {
+  const properties = (schema.properties ?? {}) as Record<string, Schema>;
+  const following = followingOf(schema, root);
+  const fields = Object.entries(properties).flatMap(([key, property]) => {
+    const path = join(common.path, key);
+    if (property.parts) return settingsOf(property, root, common.path, path);
+    // A part that has a unit has it for all that is in it.
+    const field = fieldOf({ ...unitIn(schema), ...property }, root, key, path, following.includes(key));
+    return property.inline === true ? (field as Section).fields : [field];
+  });
+  const seldom = schema.seldom === true && { seldom: true };
+  return { ...common, kind: "section", fields, following, ...seldom, ...freshSettings(schema, common.path) };
+}
+
+/** The settings that go with words of users' own for a choice, each shown with its word. */
+function settingsOf(property: Schema, root: Schema, beside: string, path: string): Field[] {
+  const choice = join(beside, String(property.settings_of));
+  return Object.entries(property.parts as Record<string, Schema>).flatMap(([is, part]) =>
+    sectionOf(part, root, { path, title: "", help: "" }).fields.map((field) => ({
+      ...field,
+      when: { path: choice, is },
+    })),
+  );
+}
+
+function freshSettings(schema: Schema, path: string): Pick<Section, "settings"> {
+  const own = (schema.properties as Record<string, Schema> | undefined)?.own;
+  if (!own?.parts) return {};
+  const parts = Object.entries(own.parts as Record<string, Schema>);
+  const fresh = Object.fromEntries(parts.map(([name, part]) => [name, part.default!]));
+  return { settings: { path: join(path, String(own.settings_of)), fresh } };
+}
+
+const unitIn = ({ unit }: Schema): Schema => (unit === undefined ? {} : { unit });
+
+/** What may be left out and has no default of its own takes it from the other fields. */
+function followingOf(schema: Schema, root: Schema): string[] {
+  const needed = (schema.required ?? []) as string[];
+  const properties = Object.entries((schema.properties ?? {}) as Record<string, Schema>);
+  return properties
+    .filter(([key, part]) => !needed.includes(key) && !("default" in resolve(part, root)))
+    .map(([key]) => key);
+}
+
+function fieldOf(property: Schema, root: Schema, key: string, path: string, follows: boolean): Field {
+  const schema = resolve(property, root);
+  const inner = notNull(schema, root);
+  const nullable = inner !== schema || follows;
+  const common = { path, title: words(key), help: text(schema.description) };
+  if (Array.isArray(inner.oneOf)) return unionOf(inner, root, common);
+  if ("const" in inner) return { ...common, kind: "constant" };
+  if (Array.isArray(inner.enum)) {
+    const own = inner.own && { own: inner.own as unknown as Record<string, Own> };
+    return { ...common, kind: "choice", nullable, options: inner.enum, ...own };
+  }
+  switch (inner.type) {
+    case "object": {
+      const section = sectionOf({ ...inner, ...unitIn(schema) }, root, common);
+      if (inner === schema) return section;
+      return { ...section, fresh: schema.default ?? defaultOf(inner, root) };
+    }
+    case "array":
+      return arrayOf(inner, root, common);
+    case "boolean":
+      return { ...common, kind: "flag" };
+    case "integer":
+    case "number":
+      return numberOf(
+        { ...inner, ...unitsBy(schema) },
+        {
+          ...common,
+          nullable,
+          unit: text(schema.unit ?? inner.unit),
+        },
+      );
+    default:
+      return { ...common, kind: "text" };
+  }
+}
+
+const unitsBy = ({ unit_of = null, units = null }: Schema): Schema =>
+  unit_of === null ? {} : { unit_of, units };
+
+function numberOf(schema: Schema, known: Common & { nullable: boolean; unit: string }): NumberField {
+  const whole = schema.type === "integer";
+  return { ...known, kind: "number", whole, range: rangeOf(schema), ...unitByOf(schema, known.path) };
+}
+
+/** The unit follows from a value beside it. */
+function unitByOf({ unit_of, units }: Schema, path: string): Pick<NumberField, "unitBy"> {
+  if (typeof unit_of !== "string") return {};
+  const beside = path.split(".").slice(0, -1).join(".");
+  return { unitBy: { path: join(beside, unit_of), units: units as Record<string, string> } };
+}
+
+function arrayOf(schema: Schema, root: Schema, common: Common): Field {
+  const item = resolve((schema.items ?? {}) as Schema, root);
+  const [least, most] = [Number(schema.minItems ?? 0), Number(schema.maxItems ?? Infinity)];
+  if (Array.isArray(item.enum)) return { ...common, kind: "several", options: item.enum, least };
+  if (item.type === "array") return { ...common, kind: "nested" };
+  if (Array.isArray(item.oneOf)) return rowsOf(schema, root, common);
+  if (item.type !== "integer" && item.type !== "number") return rowsOf(schema, root, common);
+  const number = numberOf(item, { ...common, nullable: false, unit: text(item.unit) });
+  return { ...common, kind: "list", item: number, least, most };
+}
+
+/** The word that a part is known by is its constant, or any of several. */
+function unionOf(schema: Schema, root: Schema, common: Common): Union {
+  const parts = (schema.oneOf as Schema[]).map((part) => resolve(part, root));
+  const tag = tagOf(parts);
+  const named = parts.flatMap((part) => {
+    const { [tag]: names, ...properties } = part.properties as Record<string, Schema>;
+    const rest = { ...part, properties };
+    return ((names!.enum ?? [names!.const]) as string[]).map((name): [string, Section] => {
+      const fresh = { [tag]: name, ...(defaultOf(rest, root) as Spec | null) };
+      return [name, { ...sectionOf(rest, root, common), help: text(part.description), fresh }];
+    });
+  });
+  return { ...common, kind: "union", tag, parts: new Map(named) };
+}
+
+export function tagOf(parts: Schema[]): string {
+  const [first, ...rest] = parts.map((part) => (part.properties ?? {}) as Record<string, Schema>);
+  const fixed = (part: Record<string, Schema>, key: string) =>
+    part[key] !== undefined && ("const" in part[key] || Array.isArray(part[key].enum));
+  const found = Object.keys(first ?? {}).find(
+    (key) => "const" in first![key]! && rest.every((part) => fixed(part, key)),
+  );
+  if (found === undefined) throw new Error("a union of parts needs a word to tell them apart");
+  return found;
+}
+
+function rowsOf(schema: Schema, root: Schema, common: Common): Rows {
+  const item = resolve((schema.items ?? {}) as Schema, root);
+  const row = (index: number) => {
+    const path = join(common.path, String(index));
+    const known = { path, title: `${common.title} ${index + 1}`, help: "" };
+    return Array.isArray(item.oneOf) ? unionOf(item, root, known) : sectionOf(item, root, known);
+  };
+  const first = row(0);
+  return {
+    ...common,
+    kind: "rows",
+    row,
+    least: Number(schema.minItems ?? 0),
+    most: Number(schema.maxItems ?? Infinity),
+    fresh: first.kind === "union" ? [...first.parts.values()][0]!.fresh! : freshOf(item, root, first),
+  };
+}
+
+function freshOf(item: Schema, root: Schema, { following }: Section): Json {
+  const leftOut = Object.fromEntries(following.map((name) => [name, null]));
+  return { ...(defaultOf(item, root) as Spec | null), ...leftOut };
+}

@@ -1,0 +1,202 @@
+import { describe, expect, it } from "vitest";
+import type { Schema, Spec } from "../../api/types";
+import { complaints, messagesByPath, partOf, valueAt, withChoice } from "./document";
+import { type Field, type Section, formOf } from "./fields";
+
+const SCHEMA: Schema = {
+  description: "A run.",
+  $defs: {
+    World: {
+      type: "object",
+      description: "A box of fluid.",
+      required: ["width", "viscosity", "magic", "factor", "open"],
+      properties: {
+        width: { type: "integer", minimum: 16, maximum: 2048, unit: "cells", description: "Along x." },
+        viscosity: { type: "number", exclusiveMinimum: 0, maximum: 2 },
+        limit: { anyOf: [{ type: "number", minimum: 0 }, { type: "null" }], default: null, unit: "m" },
+        magic: { type: "string", enum: ["capped", "fixed"] },
+        factor: { type: "integer", enum: [1, 2] },
+        open: { type: "boolean" },
+        steric: { anyOf: [{ $ref: "#/$defs/Steric" }, { type: "null" }], default: null },
+      },
+    },
+    Steric: {
+      type: "object",
+      properties: { strength: { type: "number", default: 4, maximum: 20 } },
+    },
+    Chain: {
+      type: "object",
+      description: "A straight filament.",
+      properties: {
+        stretch: { type: "number", default: 1 },
+        builder: { const: "chain", default: "chain", type: "string" },
+        nodes: { type: "integer", default: 32, minimum: 3 },
+      },
+    },
+    Line: {
+      type: "object",
+      properties: {
+        builder: { const: "line", type: "string" },
+        points: {
+          type: "array",
+          minItems: 2,
+          items: { type: "array", prefixItems: [{ type: "number" }, { type: "number" }] },
+        },
+      },
+    },
+    Known: {
+      type: "object",
+      properties: { builder: { enum: ["worm", "ray"], type: "string" } },
+    },
+    Axis: {
+      type: "object",
+      required: ["name"],
+      properties: {
+        name: { enum: ["a", "b"] },
+        bins: { type: "integer", default: 20 },
+        low: { type: "number", minimum: -5 },
+        scale: { enum: ["log10", "linear"], type: "string" },
+      },
+    },
+    Line2: {
+      type: "object",
+      properties: {
+        operator: { const: "line", default: "line", type: "string" },
+        step: { type: "number", default: 0.5, exclusiveMinimum: 0 },
+      },
+    },
+    Any: {
+      type: "object",
+      properties: { operator: { const: "any", default: "any", type: "string" } },
+    },
+  },
+  properties: {
+    experiment: { const: "quality-diversity", type: "string" },
+    world: { $ref: "#/$defs/World", default: {} },
+    body: {
+      oneOf: [{ $ref: "#/$defs/Chain" }, { $ref: "#/$defs/Line" }, { $ref: "#/$defs/Known" }],
+    },
+    swimmers: { type: "array", items: { enum: ["worm", "ray"], type: "string" }, minItems: 1 },
+    viscosities: {
+      type: "array",
+      items: { type: "number", minimum: 0.001, maximum: 2 },
+      minItems: 1,
+      maxItems: 3,
+    },
+    axes: { type: "array", items: { $ref: "#/$defs/Axis" }, minItems: 1, maxItems: 2 },
+    emitters: {
+      type: "array",
+      default: [],
+      items: { oneOf: [{ $ref: "#/$defs/Any" }, { $ref: "#/$defs/Line2" }] },
+      minItems: 1,
+      maxItems: 3,
+    },
+  },
+};
+
+const FORM = formOf(SCHEMA);
+
+const part = (section: Section, path: string) => section.fields.find((field) => field.path === path) as Field;
+
+const WORLD = part(FORM, "world") as Section;
+
+describe("a form", () => {
+  it("has a section for a referenced object, with its own help", () => {
+    expect(WORLD).toMatchObject({ kind: "section", title: "World", help: "A box of fluid." });
+  });
+
+  it("has numbers with unit, range and help", () => {
+    expect(part(WORLD, "world.width")).toEqual({
+      kind: "number",
+      path: "world.width",
+      title: "Width",
+      help: "Along x.",
+      whole: true,
+      nullable: false,
+      unit: "cells",
+      range: { low: 16, lowOpen: false, high: 2048, highOpen: false },
+    });
+    expect(part(WORLD, "world.viscosity")).toMatchObject({ range: { low: 0, lowOpen: true } });
+  });
+
+  it("has a number that may be left empty where null is allowed", () => {
+    expect(part(WORLD, "world.limit")).toMatchObject({ kind: "number", nullable: true, unit: "m" });
+  });
+
+  it("keeps the type of what can be chosen", () => {
+    expect(part(WORLD, "world.factor")).toMatchObject({ kind: "choice", options: [1, 2] });
+    expect(part(WORLD, "world.open")).toMatchObject({ kind: "flag" });
+    expect(part(FORM, "experiment")).toMatchObject({ kind: "constant" });
+  });
+
+  it("has a section that can be switched on with its defaults where null is allowed", () => {
+    expect(part(WORLD, "world.steric")).toMatchObject({ kind: "section", fresh: { strength: 4 } });
+    expect(WORLD.fresh).toBeUndefined();
+  });
+
+  it("has a part for each word of a union, which begins as its defaults say", () => {
+    const union = part(FORM, "body");
+    if (union.kind !== "union") throw new Error(union.kind);
+    expect([union.tag, ...union.parts.keys()]).toEqual(["builder", "chain", "line", "worm", "ray"]);
+    const chain = union.parts.get("chain")!;
+    expect(chain.fresh).toEqual({ builder: "chain", stretch: 1, nodes: 32 });
+    expect(chain.help).toBe("A straight filament.");
+    expect(chain.fields.map(({ path }) => path)).toEqual(["body.stretch", "body.nodes"]);
+    expect(union.parts.get("line")!.fresh).toEqual({
+      builder: "line",
+      points: [
+        [0, 0],
+        [1, 1],
+      ],
+    });
+    expect(union.parts.get("ray")!.fresh).toEqual({ builder: "ray" });
+    expect(partOf(union, { body: { builder: "worm" } })).toBe(union.parts.get("worm"));
+    expect(partOf(union, { body: { builder: "unheard of" } })).toBeNull();
+  });
+
+  it("has lists of numbers and of words for arrays of them", () => {
+    expect(part(FORM, "swimmers")).toMatchObject({ kind: "several", options: ["worm", "ray"] });
+    expect(part(FORM, "viscosities")).toMatchObject({ kind: "list", least: 1, most: 3 });
+  });
+
+  it("has rows for arrays of objects, and a fresh row from their defaults", () => {
+    const rows = part(FORM, "axes");
+    if (rows.kind !== "rows") throw new Error(rows.kind);
+    const fresh = { name: "a", bins: 20, low: null, scale: null };
+    expect([rows.least, rows.most, rows.fresh]).toEqual([1, 2, fresh]);
+    const row = rows.row(1) as Section;
+    const names = ["name", "bins", "low", "scale"];
+    expect(row.fields.map(({ path }) => path)).toEqual(names.map((name) => `axes.1.${name}`));
+  });
+
+  it("leaves out again what follows from a choice when another is made", () => {
+    const rows = part(FORM, "axes");
+    if (rows.kind !== "rows") throw new Error(rows.kind);
+    const row = rows.row(0) as Section;
+    const [name, bins, low, scale] = row.fields as [Field, Field, Field, Field];
+    expect(row.following).toEqual(["low", "scale"]);
+    expect([bins, low, scale]).toMatchObject([{ nullable: false }, { nullable: true }, { nullable: true }]);
+    const spec = { axes: [{ name: "a", bins: 4, low: -1, scale: "linear" }] };
+    const chosen = withChoice(spec, row, name, "b");
+    expect(chosen).toEqual({ axes: [{ name: "b", bins: 4, low: null, scale: null }] });
+    expect(valueAt(withChoice(spec, row, scale, "log10"), "axes.0.low")).toBe(-1);
+    expect(valueAt(withChoice(spec, row, bins, 9), "axes.0.low")).toBe(-1);
+  });
+
+  it("has rows of parts for arrays of a union, each row of its own kind", () => {
+    const rows = part(FORM, "emitters");
+    if (rows.kind !== "rows") throw new Error(rows.kind);
+    expect(rows.fresh).toEqual({ operator: "any" });
+    const row = rows.row(2);
+    if (row.kind !== "union") throw new Error(row.kind);
+    expect([row.path, row.tag]).toEqual(["emitters.2", "operator"]);
+    const chosen = row.parts.get("line")!;
+    expect(chosen.fresh).toEqual({ operator: "line", step: 0.5 });
+    expect(chosen.fields.map(({ path }) => path)).toEqual(["emitters.2.step"]);
+    const spec: Spec = { emitters: [{ operator: "any" }, { operator: "line", step: 0 }] };
+    const wrong = complaints(FORM, spec).filter(({ field }) => field.startsWith("emitters"));
+    expect(wrong).toEqual([{ field: "emitters.1.step", message: "Needs more than 0." }]);
+    const error = { field: "emitters.1.step", message: "no" };
+    expect([...messagesByPath([error], FORM, spec).keys()]).toEqual(["emitters.1.step"]);
+  });
+});

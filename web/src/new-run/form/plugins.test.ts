@@ -1,0 +1,98 @@
+/** What workers have of users' own, in forms: choices, and settings that come and go with them. */
+
+import { describe, expect, it } from "vitest";
+import type { Schema, Spec } from "../../api/types";
+import { completed } from "./defaults";
+import { changedPaths } from "./changes";
+import { complaints, valueAt, withChoice } from "./document";
+import { type Choice, type Section, formOf } from "./fields";
+
+const settings: Schema = {
+  type: "object",
+  inline: true,
+  properties: { strictness: { type: "number", default: 1, minimum: 0, maximum: 10 } },
+};
+const own: Schema = {
+  type: "object",
+  inline: true,
+  default: { settings: { strictness: 1 } },
+  properties: { settings },
+};
+const about = { title: "Straight way", about: "How far.", workers: ["gpu-1"] };
+const SCHEMA: Schema = {
+  type: "object",
+  properties: {
+    body: {
+      default: { builder: "chain" },
+      oneOf: [
+        { type: "object", properties: { builder: { const: "chain", default: "chain" } } },
+        { type: "object", properties: { builder: { const: "mine.cross" }, own } },
+      ],
+    },
+    task: {
+      type: "object",
+      properties: {
+        fitness: {
+          default: "displacement",
+          enum: ["displacement", "mine.straight"],
+          own: { "mine.straight": about },
+        },
+        own: { settings_of: "fitness", parts: { "mine.straight": own } },
+      },
+    },
+  },
+};
+const SPEC: Spec = { body: { builder: "chain" }, task: { fitness: "displacement" } };
+const form = formOf(SCHEMA);
+const task = form.fields.find(({ path }) => path === "task") as Section;
+const fitness = task.fields.find(({ path }) => path === "task.fitness") as Choice;
+
+describe("a choice of users' own", () => {
+  it("tells its title and who has it", () => {
+    expect(fitness.options).toContain("mine.straight");
+    expect(fitness.own?.["mine.straight"]).toEqual(about);
+  });
+
+  it("brings its settings with it, and takes them away again", () => {
+    const chosen = withChoice(SPEC, task, fitness, "mine.straight");
+    expect(valueAt(chosen, "task.own.settings.strictness")).toBe(1);
+    const left = withChoice(chosen, task, fitness, "displacement");
+    expect(valueAt(left, "task.own")).toBeNull();
+    expect(changedPaths(chosen, SPEC)).toEqual(["task.fitness", "task.own"]);
+    expect(changedPaths(left, SPEC)).toEqual([]);
+  });
+
+  it("has its settings checked where it is chosen, and only there", () => {
+    const wrong = { fitness: "mine.straight", own: { settings: { strictness: 11 } } };
+    expect(complaints(form, { ...SPEC, task: wrong })).toEqual([
+      { field: "task.own.settings.strictness", message: "Needs at most 10." },
+    ]);
+    expect(complaints(form, { ...SPEC, task: { ...wrong, fitness: "displacement" } })).toEqual([]);
+  });
+});
+
+describe("a body of users' own", () => {
+  it("has its settings as fields, and begins with their defaults", () => {
+    const body = form.fields.find(({ path }) => path === "body");
+    const cross = body?.kind === "union" ? body.parts.get("mine.cross") : undefined;
+    expect(cross?.fields.map(({ path }) => path)).toEqual(["body.own.settings.strictness"]);
+    expect(cross?.fresh).toEqual({ builder: "mine.cross", own: { settings: { strictness: 1 } } });
+  });
+});
+
+describe("a spec of another run", () => {
+  const version = { source: "a".repeat(64), title: "T", sizes: {}, settings: { strictness: 3 } };
+
+  it("takes the version that there is now, with its settings", () => {
+    const spec = { ...SPEC, task: { fitness: "mine.straight", own: version } };
+    expect(completed(SCHEMA, spec).task).toEqual({
+      fitness: "mine.straight",
+      own: { settings: { strictness: 3 } },
+    });
+  });
+
+  it("leaves a creature what it is", () => {
+    const creature = { identity: { task: { own: version } } };
+    expect(completed(SCHEMA, { ...SPEC, creature }).creature).toEqual(creature);
+  });
+});

@@ -1,0 +1,96 @@
+import { describe, expect, inject, it } from "vitest";
+import type { Experiment, Json } from "../../api/types";
+import {
+  complaints,
+  isOff,
+  messagesByPath,
+  partOf,
+  typed,
+  typedJson,
+  typedList,
+  valueAt,
+  withValue,
+} from "./document";
+import { type Field, formOf } from "./fields";
+
+declare module "vitest" {
+  interface ProvidedContext {
+    experiments: Experiment[];
+  }
+}
+
+/** What is shown of a value, read again as if a person had typed it. */
+function retyped(field: Field, value: Json): Json {
+  switch (field.kind) {
+    case "number":
+      return typed(value === null ? "" : String(value));
+    case "list":
+      return typedList((value as Json[]).join(", "));
+    case "nested":
+      return typedJson(JSON.stringify(value));
+    case "choice":
+      return field.options.find((option) => option === value) ?? null;
+    case "several":
+      return field.options.filter((option) => (value as Json[]).includes(option));
+    default:
+      return value;
+  }
+}
+
+/** The document as the form alone would write it, field by field. */
+function rebuilt(field: Field, document: Json, made: Json): Json {
+  const into = (fields: Field[], start: Json) =>
+    fields.reduce((changed, each) => rebuilt(each, document, changed), start);
+  if (field.kind === "section") {
+    if (isOff(field, document)) return withValue(made, field.path, null);
+    return into(field.fields, withValue(made, field.path, {}));
+  }
+  if (field.kind === "union") {
+    const tag = `${field.path}.${field.tag}`;
+    const start = withValue(withValue(made, field.path, {}), tag, valueAt(document, tag));
+    return into(partOf(field, document)!.fields, start);
+  }
+  if (field.kind === "rows") {
+    const items = valueAt(document, field.path) as Json[];
+    const start = withValue(
+      made,
+      field.path,
+      items.map(() => ({})),
+    );
+    return into(
+      items.map((_, i) => field.row(i)),
+      start,
+    );
+  }
+  return withValue(made, field.path, retyped(field, valueAt(document, field.path)));
+}
+
+const PRESETS = inject("experiments").flatMap(({ experiment, schema, presets }) =>
+  presets.map(({ name, spec }) => [`${experiment}, ${name}`, schema, spec] as const),
+);
+
+describe("the form of a preset", () => {
+  it.each(PRESETS)("of %s holds every value and changes none", (_, schema, spec) => {
+    const form = formOf(schema);
+    expect(rebuilt(form, spec, {})).toEqual(spec);
+    expect(complaints(form, spec)).toEqual([]);
+  });
+
+  it.each(PRESETS)("of %s shows an error at each of its fields", (_, schema, spec) => {
+    const form = formOf(schema);
+    const paths = pathsOf(spec).filter((path) => path !== "experiment");
+    for (const path of paths) {
+      const [[place]] = [...messagesByPath([{ field: path, message: "no" }], form, spec).keys()].map(
+        (key) => [key],
+      ) as [[string]];
+      expect(path === place || path.startsWith(`${place}.`)).toBe(true);
+      expect(place).not.toBe("");
+    }
+  });
+});
+
+function pathsOf(value: Json, path = ""): string[] {
+  if (value === null || typeof value !== "object") return [path];
+  const inside = Object.entries(value);
+  return inside.flatMap(([key, part]) => pathsOf(part, path ? `${path}.${key}` : key));
+}

@@ -1,0 +1,141 @@
+import { beforeEach, describe, expect, inject, it, vi } from "vitest";
+import type { DrawnBody, Estimate } from "../api/types";
+import { type Work, addressOf, discard, draftFor, keep } from "../store/draft";
+import { load, ofPreset, titleOfBase } from "./sources";
+import { branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
+import { about, basis, rough, wait } from "./costText";
+
+const EXPERIMENTS = inject("experiments");
+
+const experiment = (name: string) => EXPERIMENTS.find((one) => one.experiment === name)!;
+
+describe("a draft", () => {
+  const base = ofPreset(experiment("gaits").presets[0]!, experiment("gaits"));
+  const work: Work = { base, spec: { ...base.spec, period: 77 } };
+  const stored = new Map<string, string>();
+  beforeEach(() => {
+    stored.clear();
+    vi.stubGlobal("sessionStorage", {
+      getItem: (key: string) => stored.get(key) ?? null,
+      setItem: (key: string, text: string) => void stored.set(key, text),
+      removeItem: (key: string) => void stored.delete(key),
+    });
+  });
+
+  it("is there again until it is discarded", () => {
+    keep(work);
+    expect(draftFor(null)).toEqual(work);
+    discard();
+    expect(draftFor(null)).toBeNull();
+  });
+
+  it("gives way where the address names something else", () => {
+    keep(work);
+    expect(draftFor([["preset", "gaits/demo"]])).toEqual(work);
+    expect(draftFor([["preset", "gaits/paper"]])).toBeNull();
+    expect(draftFor([["from", "a run"]])).toBeNull();
+  });
+
+  it("that cannot be read is none", () => {
+    stored.set("microcosmos:draft", "{");
+    expect(draftFor(null)).toBeNull();
+    stored.set("microcosmos:draft", "{}");
+    expect(draftFor(null)).toBeNull();
+  });
+
+  it("has an address where it was begun from something with a name", async () => {
+    expect(addressOf(base)).toEqual([["preset", "gaits/demo"]]);
+    expect(addressOf({ kind: "run", name: "a" })).toEqual([["from", "a"]]);
+    expect(addressOf({ kind: "pasted", name: "spec.json" })).toBeNull();
+    expect(addressOf({ kind: "run", name: "a", foreign: true })).toBeNull();
+    expect(await load([["preset", "gaits/demo"]], EXPERIMENTS)).toEqual(base);
+    await expect(load([["preset", "gaits/none"]], EXPERIMENTS)).rejects.toThrow(
+      /gaits\/paper.*got gaits\/none/,
+    );
+    expect(titleOfBase(base)).toBe("preset “demo”");
+  });
+});
+
+describe("costs in words", () => {
+  const queue = { waiting: 0, workers: 1, free: 1 };
+  const pace = { device: "a CPU", runs: 3, cell_steps_per_second: 1e6, low: 600, high: 700 };
+  const estimate = (changes: object) => ({ seconds: 650, pace, queue, ...changes }) as Estimate;
+
+  it.each([
+    [3, "10 s"],
+    [42, "40 s"],
+    [700, "12 min"],
+    [9000, "2.5 h"],
+    [200000, "2 days"],
+    [1e9, "more than a year"],
+  ])("has %f s as %s", (seconds, text) => expect(rough(seconds)).toBe(text));
+
+  it("tells what a time rests on, and a range where it is wide", () => {
+    expect(about(estimate({}))).toBe("about 11 min");
+    expect(about(estimate({ seconds: 2 }))).toBe("a few seconds");
+    expect(basis(estimate({}))).toBe("on a CPU, judged by 3 earlier runs");
+    expect(basis(estimate({ pace: { ...pace, runs: 1, high: 1300 } }))).toBe(
+      "on a CPU, judged by 1 earlier run; at their paces 10 min to 22 min",
+    );
+    expect(about(estimate({ seconds: null }))).toBeNull();
+    expect(basis(estimate({ pace: null }))).toMatch(/^unknown until a first run/);
+  });
+
+  it.each([
+    [{ workers: 0 }, /No worker/],
+    [{ waiting: 2 }, /2 queued runs go/],
+    [{}, /at once/],
+    [{ free: 0 }, /when a worker is free/],
+  ])("says what a run waits for with %j", (changes, words) =>
+    expect(wait(estimate({ queue: { ...queue, ...changes } }))).toMatch(words),
+  );
+});
+
+describe("a body that is drawn", () => {
+  const fork: DrawnBody = {
+    name: "fork",
+    nodes: 4,
+    positions: [
+      [0, 0],
+      [2, 0],
+      [4, 1],
+      [4, -1],
+    ],
+    edges: [
+      [0, 1],
+      [1, 2],
+      [1, 3],
+    ],
+    whole: true,
+  };
+
+  it("has a line for every edge, a dot at every node, and marks where it branches", () => {
+    expect(linesOf(fork)).toBe("M0 0L2 0M2 0L4 1M2 0L4 -1");
+    expect(dotsOf(fork, 1)).toBe("M0 0h0M2 0h0M4 1h0M4 -1h0");
+    expect(branchesOf(fork)).toBe("M2 0h0");
+  });
+
+  it("has no dots where they would touch, or where nodes were left out", () => {
+    expect(dotsOf(fork, 2.1)).toBe("");
+    expect(dotsOf({ ...fork, nodes: 9 }, 1)).toBe("");
+  });
+
+  it("is seen again on the other side of its periodic world", () => {
+    const within = {
+      ...fork,
+      positions: [
+        [1, 1],
+        [3, 3],
+      ],
+    };
+    expect(tilesOf(within, 10, 10).map(String)).toEqual(["0,0"]);
+    const across = {
+      ...fork,
+      positions: [
+        [8, 1],
+        [12, -1],
+      ],
+    };
+    expect(tilesOf(across, 10, 10).map(String).sort()).toEqual(["-10,0", "-10,10", "0,0", "0,10"]);
+  });
+});

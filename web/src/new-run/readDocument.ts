@@ -1,0 +1,109 @@
+/** What a person pastes or drops: a spec, a run that has one, a creature that lived by one. */
+
+import type { Creature, Json, Spec, Stroke } from "../api/types";
+
+export type Found =
+  | { kind: "spec"; spec: Spec }
+  | { kind: "run"; spec: Spec; id: string }
+  | { kind: "creature"; spec: Spec; creature: Creature };
+
+export const TAKEN = "a spec, a run as the API gives it, or a creature file, all of them JSON";
+
+const HDF5 = "\u0089HDF";
+
+/** Reads a text; throws an `Error` that says what was needed and what came. */
+export function readText(text: string, refine = false): Found {
+  if (text.startsWith(HDF5) || text.startsWith("\ufffdHDF")) {
+    throw new Error(`An archive or checkpoint (HDF5) cannot be read here. Needs ${TAKEN}.`);
+  }
+  return readDocument(parsed(text), refine);
+}
+
+function parsed(text: string): Json {
+  try {
+    return JSON.parse(text);
+  } catch (error) {
+    throw new Error(`Needs ${TAKEN}; this is no JSON (${(error as Error).message}).`);
+  }
+}
+
+/** Which of the three a document is; a creature becomes the spec of a search, or of its refinement. */
+export function readDocument(document: Json, refine = false): Found {
+  if (!isObject(document)) throw new Error(`Needs ${TAKEN}; got ${named(document)}.`);
+  const { identity, spec, id } = document;
+  if (isObject(identity)) {
+    const creature = document as unknown as Creature;
+    const made = refine ? { experiment: "refinement", creature: document } : specOf(creature);
+    return { kind: "creature", creature, spec: made };
+  }
+  if (isObject(spec)) return { kind: "run", spec: known(spec, "spec.experiment"), id: String(id ?? "") };
+  return { kind: "spec", spec: known(document, "experiment") };
+}
+
+function known(spec: Spec, field: string): Spec {
+  if (typeof spec.experiment === "string") return spec;
+  throw new Error(`“${field}” must name the experiment; got ${named(spec.experiment)}. Needs ${TAKEN}.`);
+}
+
+function named(value: Json | undefined): string {
+  if (value === undefined) return "nothing";
+  if (Array.isArray(value)) return "a list";
+  return value === null ? "null" : `${typeof value} ${JSON.stringify(value).slice(0, 40)}`;
+}
+
+export function isObject(value: Json | undefined): value is Spec {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+
+/** Whose genes are numbers, which NEAT's mutations do not vary. */
+const NUMBERS = ["direct", "weights"];
+
+/** A run in a creature's world, with its body, coupling, controller and task. */
+export function specOf(creature: Creature): Spec {
+  const { genome, body, task } = creature.identity;
+  const { coupling, ...world } = creature.identity.world as Spec & { coupling: Json };
+  if (genome.encoding === "gait") return gaitSpec(genome, world);
+  const scene = { world, body, coupling };
+  const control = { ...genome.control, encoding: genome.encoding };
+  if (genome.encoding === "fold") return foldSpec({ ...scene, control }, world, task);
+  const room = roomOf(creature);
+  return {
+    experiment: "quality-diversity",
+    ...scene,
+    control,
+    ...(room && { genome: room }),
+    task,
+    ...((NUMBERS.includes(genome.encoding) || isOwn(genome.encoding)) && {
+      search: { emitters: [{ operator: "iso+line" }] },
+    }),
+  };
+}
+
+/** Names of users' own have a dot. */
+const isOwn = (name: string) => name.includes(".");
+
+/** What networks had room for where the creature was evaluated. */
+function roomOf({ measured }: Creature): Spec | null {
+  const room = (measured as { room?: [number, number] | null } | null)?.room;
+  return room ? { max_nodes: room[0], max_connections: room[1] } : null;
+}
+
+function gaitSpec(stroke: Stroke, world: Spec): Spec {
+  return {
+    experiment: "gaits",
+    swimmers: [stroke.swimmer],
+    ...(stroke.own && { own: { [stroke.swimmer]: stroke.own } }),
+    viscosities: [world.viscosity ?? null],
+    width: world.width ?? null,
+    height: world.height ?? null,
+    period: stroke.period,
+    ramp: stroke.ramp,
+    steric: world.steric ?? null,
+  };
+}
+
+/** Pictures take up about two thirds of the world's shorter side, as in the presets. */
+function foldSpec(scene: Spec, world: Spec, task: Spec): Spec {
+  const size = Math.floor((2 / 3) * Math.min(Number(world.width), Number(world.height)));
+  return { experiment: "folding", ...scene, steps: task.steps ?? null, size };
+}

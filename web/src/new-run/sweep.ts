@@ -1,0 +1,100 @@
+/** Many runs by one request: how many seeds, and which fields a grid runs over. */
+
+import { useEffect, useMemo, useState } from "preact/hooks";
+import * as api from "../api/client";
+import { Problem, messageOf } from "../api/problem";
+import type { Experiment, FieldError, Spec, SweepEstimate, SweepSent } from "../api/types";
+import type { Leaf, Section } from "./form/fields";
+import { type Axis, MOST, hasSeed, readSeeds, readValues, sweepable } from "./sweepGrid";
+
+const SETTLED_MS = 350;
+
+export interface Sweeping {
+  seeded: boolean;
+  seeds: string;
+  axes: readonly Axis[];
+  name: string;
+  /** Fields that a grid can run over. */
+  fields: readonly Leaf[];
+  problems: { seeds: string | null; axes: (string | null)[]; total: string | null };
+  /** How many runs; one is no sweep. */
+  total: number;
+  /** What is to be sent; null for a single run, or where something is wrong. */
+  sent: SweepSent | null;
+  change: (change: Partial<Typed>) => void;
+}
+
+interface Typed {
+  seeds: string;
+  axes: readonly Axis[];
+  name: string;
+}
+
+const SINGLE: Typed = { seeds: "1", axes: [], name: "" };
+
+/** What was typed is kept while the spec changes; fields that it has no more are complained of. */
+export function useSweeping(form: Section, spec: Spec, experiment: Experiment): Sweeping {
+  const [typed, setTyped] = useState(SINGLE);
+  useEffect(() => setTyped(SINGLE), [experiment]);
+  const read = useMemo(() => readAll(form, spec, hasSeed(experiment), typed), [form, spec, typed]);
+  const change = (next: Partial<Typed>) => setTyped((now) => ({ ...now, ...next }));
+  return { ...typed, ...read, change };
+}
+
+function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
+  const fields = sweepable(form, spec);
+  const { seeds, problem } = seeded ? readSeeds(typed.seeds) : { seeds: 1, problem: null };
+  const readings = typed.axes.map(({ path, text }) => {
+    const field = fields.find((one) => one.path === path);
+    return field ? readValues(field, text) : { values: [], problem: "The spec has it no more." };
+  });
+  const total = readings.reduce((product, { values }) => product * values.length, seeds);
+  const many = total > MOST ? `At most ${MOST.toLocaleString("en")} runs; these are ${total}.` : null;
+  const problems = { seeds: problem, axes: readings.map((one) => one.problem), total: many };
+  const right = !problem && !many && readings.every((one) => one.problem === null);
+  const grid = Object.fromEntries(typed.axes.map(({ path }, i) => [path, readings[i]!.values]));
+  const wanted = right && (total > 1 || typed.axes.length > 0);
+  const sent = wanted ? { spec, seeds, grid, name: typed.name.trim() || null } : null;
+  return { seeded, fields, problems, total, sent };
+}
+
+/** Whether a sweep was begun, right or wrong. */
+export const begun = ({ seeds, axes }: Sweeping) => axes.length > 0 || seeds.trim() !== "1";
+
+export interface SweepCheck {
+  estimate: SweepEstimate | null;
+  errors: FieldError[];
+  problem: string | null;
+}
+
+const UNCHECKED: SweepCheck = { estimate: null, errors: [], problem: null };
+
+/** What all runs together will cost, asked once typing has settled. */
+export function useSweepEstimate(sent: SweepSent | null): SweepCheck {
+  const [check, setCheck] = useState(UNCHECKED);
+  useEffect(() => {
+    setCheck(UNCHECKED);
+    if (!sent) return;
+    let wanted = true;
+    const show = (next: Partial<SweepCheck>) => wanted && setCheck({ ...UNCHECKED, ...next });
+    const timer = setTimeout(() => {
+      api
+        .estimateSweep(sent)
+        .then((estimate) => show({ estimate }))
+        .catch((error) =>
+          show({ errors: error instanceof Problem ? error.errors : [], problem: messageOf(error) }),
+        );
+    }, SETTLED_MS);
+    return () => {
+      wanted = false;
+      clearTimeout(timer);
+    };
+  }, [sent]);
+  return check;
+}
+
+/** The server's complaints of one value of the grid, or of the seeds. */
+export function complaintsOf(errors: readonly FieldError[], path: string): string[] {
+  const mine = errors.filter(({ field }) => field === path || field.startsWith(`${path}[`));
+  return mine.map(({ message }) => message);
+}

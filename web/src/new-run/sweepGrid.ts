@@ -1,0 +1,104 @@
+/** The values that a sweep gives to a field, as people type them. */
+
+import type { Experiment, Json, Spec } from "../api/types";
+import { words } from "../ui/format";
+import { complaint, leavesOf, typed } from "./form/document";
+import type { Leaf, Section } from "./form/fields";
+
+/** One field of a grid, and what was typed for it. */
+export interface Axis {
+  path: string;
+  text: string;
+}
+
+/** Fields that a grid can run over; the seed has a place of its own. */
+export function sweepable(form: Section, spec: Spec): Leaf[] {
+  const leaves = leavesOf(form, spec) as Leaf[];
+  return leaves.filter(({ kind, path }) => (kind as string) !== "constant" && path !== "seed");
+}
+
+/** A field by its section and its own name: “World: viscosity”. */
+export function nameOf({ path, title }: Leaf): string {
+  const around = path.split(".").slice(0, -1).map(words);
+  return around.length > 0 ? `${around.join(" ")}: ${title.toLowerCase()}` : title;
+}
+
+export interface Reading {
+  values: Json[];
+  /** What is wrong with what was typed; null where nothing is. */
+  problem: string | null;
+}
+
+/** Values between commas or blanks; a JSON list stands for itself. */
+export function readValues(field: Leaf, text: string): Reading {
+  const values = valuesOf(field, text.trim());
+  if (values === null) return { values: [], problem: "Needs a JSON list of values." };
+  if (values.length === 0) return { values, problem: "Needs values, with commas between them." };
+  const wrong = values.map((value) => wrongWith(field, value)).find((said) => said !== null);
+  const twice = values.find((value, i) => values.findIndex((one) => same(one, value)) < i);
+  const repeated = twice === undefined ? null : `Has ${JSON.stringify(twice)} more than once.`;
+  return { values, problem: wrong ?? repeated };
+}
+
+const COMPOUND = ["list", "several", "nested"];
+
+function valuesOf(field: Leaf, text: string): Json[] | null {
+  if (text.startsWith("[") || COMPOUND.includes(field.kind)) return listOf(text);
+  return text
+    .split(/[\s,;]+/)
+    .filter(Boolean)
+    .map((word) => valueOf(field, word));
+}
+
+function listOf(text: string): Json[] | null {
+  if (text === "") return [];
+  try {
+    const found = JSON.parse(text) as Json;
+    return Array.isArray(found) ? found : null;
+  } catch {
+    return null;
+  }
+}
+
+const FLAGS: Record<string, boolean> = {
+  true: true,
+  on: true,
+  yes: true,
+  false: false,
+  off: false,
+  no: false,
+};
+const NOTHING = ["null", "none", "auto"];
+
+function valueOf(field: Leaf, word: string): Json {
+  if (field.kind === "flag") return FLAGS[word.toLowerCase()] ?? word;
+  if ("nullable" in field && field.nullable && NOTHING.includes(word)) return null;
+  if (field.kind === "number") return typed(word);
+  if (field.kind !== "choice") return word;
+  return field.options.find((option) => String(option) === word) ?? word;
+}
+
+function wrongWith(field: Leaf, value: Json): string | null {
+  if (field.kind === "number") return complaint(field, value);
+  if (field.kind === "flag" && typeof value !== "boolean") return `Needs on or off, got “${value}”.`;
+  if (field.kind !== "choice" || value === null) return null;
+  const known = field.options.includes(value);
+  return known ? null : `Needs any of ${field.options.join(", ")}, got “${String(value)}”.`;
+}
+
+const same = (one: Json, other: Json) => JSON.stringify(one) === JSON.stringify(other);
+
+/** How many runs: a number of seeds, as typed, else what is wrong with it. */
+export function readSeeds(text: string): { seeds: number; problem: string | null } {
+  const seeds = typed(text);
+  const whole = typeof seeds === "number" && Number.isInteger(seeds);
+  if (whole && seeds >= 1 && seeds <= MOST) return { seeds, problem: null };
+  return { seeds: 1, problem: `Needs a whole number from 1 to ${MOST.toLocaleString("en")}.` };
+}
+
+/** Runs that one request may ask for. */
+export const MOST = 1000;
+
+/** Whether anything is left to chance in an experiment. */
+export const hasSeed = ({ schema }: Experiment) =>
+  "seed" in ((schema.properties ?? {}) as Record<string, Json>);

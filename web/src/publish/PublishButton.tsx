@@ -1,0 +1,19 @@
+/** The way to publish something; few go it, and the dialog comes with who does. */
+
+import { useState } from "preact/hooks";
+import { later } from "../ui/lazy";
+import { useRefusal } from "../store/principal";
+import type { Props } from "./PublishDialog";
+
+const PublishDialog = later(async () => (await import("./PublishDialog")).PublishDialog, "section");
+
+export function Publish(props: Props) {
+  const [opened, setOpened] = useState(0);
+  if (useRefusal()) return null;
+  return (
+    <>
+      <button onClick={() => setOpened((times) => times + 1)}>Publish</button>
+      {opened > 0 && <PublishDialog {...props} opened={opened} />}
+    </>
+  );
+}

@@ -1,0 +1,34 @@
+/** A creature that swims beside the cell that holds it. */
+
+import type { Replay } from "../decode/replay";
+import { Loop } from "./Loop";
+import "./replay.css";
+
+interface Props {
+  replay: Replay | null;
+  /** What is being waited for, or what went wrong. */
+  note: string;
+}
+
+export function Inset({ replay, note }: Props) {
+  return (
+    <div class="inset" data-inset>
+      {replay ? (
+        <Loop
+          key={replay.header.creature}
+          replay={replay}
+          name="The elite of this cell, swimming"
+          onFirst={() => mark("inset")}
+        />
+      ) : (
+        <p>{note}</p>
+      )}
+    </div>
+  );
+}
+
+/** For whoever measures how long one waits for it: the newest alone. */
+function mark(name: string): void {
+  performance.clearMarks(name);
+  performance.mark(name);
+}

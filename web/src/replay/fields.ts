@@ -1,0 +1,148 @@
+/** What of the fluid can be shown: planes of whole numbers, what one means, and its colours. */
+
+import type { Replay } from "../decode/replay";
+import { type Rgb, diverging, table, viridis } from "../ui/colours";
+
+export type FieldName = "vorticity" | "speed" | "energy" | "none";
+
+export interface Field {
+  name: FieldName;
+  title: string;
+  unit: string;
+  /** The ends of the colours; beyond them nothing changes any more. */
+  range: [number, number];
+  colour: (t: number) => Rgb;
+  /** Whether a dark or a light ink stands out. */
+  ground: "light" | "dark";
+  /** (width, height) of a replay's frame; level + `zero` is the place in a table of colours. */
+  plane: (replay: Replay, frame: number) => ArrayLike<number>;
+  zero: number;
+  /** The value of one level in this replay. */
+  quantum: (replay: Replay) => number;
+}
+
+/** The fields that every one of the replays has. */
+export function fieldsOf(replays: Replay[]): FieldName[] {
+  const driven = replays.every(({ drive }) => drive);
+  const energy = replays.every(({ header }) => header.energy?.frames);
+  const fluid = replays.some((replay) => strongest(replay) > 0);
+  return [
+    ...(fluid ? (["vorticity"] as const) : []),
+    ...(fluid && driven ? (["speed"] as const) : []),
+    ...(energy ? (["energy"] as const) : []),
+    "none",
+  ];
+}
+
+/** One field on one scale of colours for all replays; null where the water is left blank. */
+export function fieldOf(name: FieldName, replays: Replay[], theme: "light" | "dark"): Field | null {
+  if (name === "vorticity") return vorticityOf(replays, theme);
+  if (name === "speed") return speedOf(replays);
+  return name === "energy" ? energyOf(replays, theme) : null;
+}
+
+function vorticityOf(replays: Replay[], theme: "light" | "dark"): Field {
+  const most = Math.max(...replays.map(strongest));
+  return {
+    name: "vorticity",
+    title: "Vorticity",
+    unit: "1/step",
+    range: [-most, most],
+    colour: (t) => diverging(2 * t - 1, theme),
+    ground: theme,
+    plane: ({ vorticity, header }, frame) => planeOf(vorticity, header, frame),
+    zero: 127,
+    quantum: ({ header }) => header.vorticity.scale / 127,
+  };
+}
+
+function speedOf(replays: Replay[]): Field {
+  const speeds = new Map(replays.map((replay) => [replay, new Speeds(replay)]));
+  return {
+    name: "speed",
+    title: "Speed",
+    unit: "cells/step",
+    range: [0, Math.max(...[...speeds.values()].map((each) => each.strongest()))],
+    colour: viridis,
+    ground: "dark",
+    plane: (replay, frame) => speeds.get(replay)!.plane(frame),
+    zero: 0,
+    quantum: quantumOfSpeed,
+  };
+}
+
+function energyOf(replays: Replay[], theme: "light" | "dark"): Field {
+  return {
+    name: "energy",
+    title: "Energy",
+    unit: "density",
+    range: [0, Math.max(...replays.map(({ header }) => header.energy!.scale))],
+    colour: (t) => diverging(0.85 * t, theme),
+    ground: theme,
+    plane: ({ drive, header }, frame) =>
+      planeOf(drive!.energy, header, Math.min(frame, header.energy!.frames - 1)),
+    zero: 0,
+    quantum: ({ header }) => header.energy!.scale / 255,
+  };
+}
+
+function planeOf<T extends Int8Array | Uint8Array>(levels: T, { size }: Replay["header"], frame: number) {
+  const cells = size[0] * size[1];
+  return levels.subarray(frame * cells, (frame + 1) * cells);
+}
+
+/** Levels of speed reach as far as both parts of the velocity at their largest. */
+const quantumOfSpeed = ({ header }: Replay) => (Math.SQRT2 * header.velocity!.scale) / 255;
+
+/** |u| of every frame that was asked for. */
+class Speeds {
+  private readonly planes: (Uint8Array | undefined)[] = [];
+
+  constructor(private readonly replay: Replay) {}
+
+  plane(frame: number): Uint8Array {
+    return (this.planes[frame] ??= this.made(frame));
+  }
+
+  private made(frame: number): Uint8Array {
+    const { header, drive } = this.replay;
+    const cells = header.size[0] * header.size[1];
+    const start = 2 * frame * cells;
+    const levels = header.velocity!.scale / 127 / quantumOfSpeed(this.replay);
+    return Uint8Array.from({ length: cells }, (_, i) => {
+      const [x, y] = [drive!.velocity[start + i]!, drive!.velocity[start + cells + i]!];
+      return Math.min(255, Math.round(levels * Math.sqrt(x * x + y * y)));
+    });
+  }
+
+  /** The speed that one value in a hundred exceeds, over a few moments. */
+  strongest(): number {
+    const { frames } = this.replay.header;
+    const looked = [0.25, 0.5, 0.75, 1].map((share) => this.plane(Math.round(share * (frames - 1))));
+    const values = Uint8Array.from(looked.flatMap((plane) => [...plane])).sort();
+    return (values[Math.floor(0.99 * values.length)]! || 1) * quantumOfSpeed(this.replay);
+  }
+}
+
+/** The vorticity that only one value in a hundred exceeds, of those that are not zero; 0: none. */
+export function strongest({ vorticity, header }: Replay): number {
+  const counts = new Array<number>(129).fill(0);
+  for (const value of vorticity) counts[Math.abs(value)]!++;
+  const moving = vorticity.length - counts[0]!;
+  if (moving === 0) return 0;
+  let above = 0;
+  for (let level = 128; level > 1; level--) {
+    above += counts[level]!;
+    if (above > moving / 100) return (level / 127) * header.vorticity.scale;
+  }
+  return header.vorticity.scale / 127;
+}
+
+/** The colour of each level, from −`zero` on. */
+export function coloursOf(field: Field, replay: Replay): Uint32Array {
+  const [low, high] = field.range;
+  const quantum = field.quantum(replay);
+  const count = field.zero ? 2 * field.zero + 1 : 256;
+  const at = (level: number) => ((level - field.zero) * quantum - low) / (high - low);
+  return table(field.colour, count, [at(0), at(count - 1)]);
+}

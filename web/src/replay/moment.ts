@@ -1,0 +1,55 @@
+/** The moment of a replay that everything on a page shows, whoever moves it. */
+
+import { useEffect, useState } from "preact/hooks";
+import { prefersStillness } from "../ui/theme";
+
+export class Moment {
+  /** In frames, a fraction among them. */
+  time = 0;
+  playing: boolean;
+  private readonly listeners = new Set<() => void>();
+
+  constructor(playing: boolean) {
+    this.playing = playing;
+  }
+
+  listen(listener: () => void): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  move(time: number): void {
+    this.time = time;
+    this.tell();
+  }
+
+  play(playing: boolean): void {
+    this.playing = playing;
+    this.tell();
+  }
+
+  /** Stops at a moment somebody has chosen. */
+  scrub(time: number): void {
+    this.playing = false;
+    this.move(time);
+  }
+
+  /** One frame on or back, and stops there. */
+  step(by: 1 | -1, last: number): void {
+    const whole = by > 0 ? Math.floor(this.time + 1e-6) + 1 : Math.ceil(this.time - 1e-6) - 1;
+    this.scrub(Math.min(last, Math.max(0, whole)));
+  }
+
+  private tell(): void {
+    for (const listener of [...this.listeners]) listener();
+  }
+}
+
+export const newMoment = () => new Moment(!prefersStillness());
+
+/** Draws a component anew whenever the moment changes. */
+export function useMoment(moment: Moment): Moment {
+  const [, draw] = useState(0);
+  useEffect(() => moment.listen(() => draw((n) => n + 1)), [moment]);
+  return moment;
+}

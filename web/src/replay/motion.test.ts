@@ -1,0 +1,66 @@
+import { describe, expect, it } from "vitest";
+import type { Replay } from "../decode/replay";
+import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
+
+describe("motion", () => {
+  const replay = {
+    header: { frames: 2, nodes: 2 },
+    positions: Float32Array.from([0, 0, 2, 0, 1, 2, 3, 2]),
+  } as Replay;
+
+  it("is linear between recorded frames and stops at the last", () => {
+    expect(positionsAt(replay, 0.5)).toEqual([
+      [0.5, 1],
+      [2.5, 1],
+    ]);
+    expect(meanOf(positionsAt(replay, 1))).toEqual([2, 2]);
+  });
+
+  it("draws a chain as one line, a ring closed, a star as its arms", () => {
+    expect(
+      chainsOf([
+        [0, 1],
+        [1, 2],
+        [2, 3],
+      ]),
+    ).toEqual([[0, 1, 2, 3]]);
+    expect(
+      chainsOf([
+        [0, 1],
+        [1, 2],
+        [2, 0],
+      ]),
+    ).toEqual([[0, 1, 2, 0]]);
+    expect(
+      chainsOf([
+        [0, 1],
+        [0, 2],
+        [0, 3],
+      ]),
+    ).toEqual([
+      [0, 1],
+      [0, 2],
+      [0, 3],
+    ]);
+    expect(
+      chainsOf([
+        [0, 1],
+        [2, 3],
+      ]),
+    ).toEqual([
+      [0, 1],
+      [2, 3],
+    ]);
+  });
+
+  it("goes through every node, and straight where the nodes are in line", () => {
+    const line: Point[] = [
+      [0, 0],
+      [1, 1],
+      [2, 2],
+    ];
+    const pieces = splineOf(line);
+    expect(pieces.map(([, , end]) => end)).toEqual(line.slice(1));
+    for (const [a, b] of pieces) for (const [x, y] of [a, b]) expect(y).toBeCloseTo(x, 12);
+  });
+});

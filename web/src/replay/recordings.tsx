@@ -1,0 +1,86 @@
+/** Replays that a worker renders when they are asked for. */
+
+import { useEffect, useState } from "preact/hooks";
+import * as api from "../api/client";
+import { type Replay, decodeReplay } from "../decode/replay";
+import { poll } from "../store/polling";
+import "./replay.css";
+
+interface Rendered {
+  /** In the order in which they were asked for, once all of them are there. */
+  replays: Replay[] | null;
+  note: string | null;
+  error: string | null;
+}
+
+/** Bytes of replays that a tab keeps for who comes back to them. */
+const KEPT = 64e6;
+const kept = new Map<string, Replay>();
+
+const sizeOf = ({ positions, vorticity }: Replay) => positions.byteLength + vorticity.buffer.byteLength;
+
+/** As the newest; the oldest ones beyond what is kept go, but never this one. */
+function keep(sha: string, replay: Replay): void {
+  kept.delete(sha);
+  kept.set(sha, replay);
+  let total = [...kept.values()].reduce((sum, each) => sum + sizeOf(each), 0);
+  for (const [oldest, each] of kept) {
+    if (total <= KEPT || oldest === sha) break;
+    kept.delete(oldest);
+    total -= sizeOf(each);
+  }
+}
+
+interface State {
+  /** Whom this is about. */
+  asked: string;
+  found: ReadonlyMap<string, Replay>;
+  note: string | null;
+  error: string | null;
+}
+
+const NOTHING: Omit<State, "asked"> = { found: new Map(), note: null, error: null };
+
+/** Creatures' replays, asked for until they have been rendered. */
+export function useReplays(shas: string[]): Rendered {
+  const asked = shas.join();
+  const [state, setState] = useState<State>({ ...NOTHING, asked });
+  useEffect(() => {
+    const change = (part: Partial<State>) => setState((old) => ({ ...old, ...part }));
+    const there = (sha: string, replay: Replay) => {
+      keep(sha, replay);
+      setState((old) => ({ ...old, found: new Map(old.found).set(sha, replay) }));
+    };
+    setState({ ...NOTHING, asked });
+    const ends = shas.map((sha) => {
+      const known = kept.get(sha);
+      if (known) return there(sha, known);
+      return poll(async () => decoded(await api.readReplay(sha)), {
+        value: (replay) => there(sha, replay),
+        note: (note) => change({ note }),
+        error: (error) => change({ error }),
+      });
+    });
+    return () => ends.forEach((end) => end?.());
+  }, [asked]);
+  const { found, note, error } = state.asked === asked ? state : NOTHING;
+  const replays = shas.flatMap((sha) => found.get(sha) ?? []);
+  return { replays: replays.length === shas.length ? replays : null, note, error };
+}
+
+const decoded = (bytes: ArrayBuffer | null) => bytes && decodeReplay(bytes);
+
+/** What to see until then. */
+export function Rendering({ replays, note, error, what }: Rendered & { what: string }) {
+  if (error) return <p class="banner wrong">{error}</p>;
+  if (replays) return null;
+  return (
+    <div class="stage rendering" role="status">
+      <p>
+        <span class="ripple" aria-hidden="true" />
+        <span>{what}</span>
+        <span class="small">{note ? `${note} Trying again …` : "The first one takes longest."}</span>
+      </p>
+    </div>
+  );
+}

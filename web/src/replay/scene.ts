@@ -1,0 +1,112 @@
+/** One moment of a replay: flow, way gone, body, and the body's neighbours in other tiles. */
+
+import type { Replay } from "../decode/replay";
+import { type Size, prepare } from "../ui/canvas";
+import type { FluidPainter } from "./fluid";
+import { type Point, meanOf, positionsAt, splineOf } from "./motion";
+import { type Tracers, drawTracers } from "./tracers";
+
+/** Cells between the points of the grid that stands still while the camera moves. */
+const GRID = 8;
+
+export interface Scene {
+  replay: Replay;
+  /** Null: bodies alone. */
+  painter: FluidPainter | null;
+  chains: number[][];
+  /** The body's mean position in each frame. */
+  way: Point[];
+  follow: boolean;
+  /** Of the ink: for a light or a dark ground. */
+  theme: "light" | "dark";
+  tracers?: Tracers | null;
+}
+
+const INK = {
+  light: { body: "#12222c", halo: "rgb(255 255 255 / 0.85)", faint: "rgb(18 34 44 / 0.28)" },
+  dark: { body: "#fdf8ec", halo: "rgb(4 10 14 / 0.75)", faint: "rgb(230 240 245 / 0.26)" },
+};
+
+export function wayOf(replay: Replay): Point[] {
+  const { frames } = replay.header;
+  return Array.from({ length: frames }, (_, frame) => meanOf(positionsAt(replay, frame)));
+}
+
+export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, time: number) {
+  const context = prepare(canvas, size);
+  const [width, height] = scene.replay.header.size;
+  const scale = size.width / width;
+  const points = positionsAt(scene.replay, time);
+  const mean = meanOf(points);
+  const camera = scene.follow ? mean : scene.way[0]!;
+  const screen = ([x, y]: Point): Point => [
+    (x - camera[0] + width / 2) * scale,
+    (camera[1] - y + height / 2) * scale,
+  ];
+  scene.painter?.paint(context, time, camera, scale);
+  drawGrid(context, camera, [width, height], screen, INK[scene.theme].faint);
+  if (scene.tracers) {
+    drawTracers(context, scene.tracers, { time, camera, scale, colour: INK[scene.theme].body });
+  }
+  for (const shift of tiles(mean, camera, [width, height])) {
+    const moved = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
+    drawWay(context, [...scene.way.slice(0, Math.floor(time) + 1), mean].map(moved), scene.theme);
+    const lines = scene.chains.map((chain) => chain.map((node) => moved(points[node]!)));
+    drawBody(context, lines, Math.min(11, Math.max(3, 0.6 * scale)), scene.theme);
+  }
+}
+
+/** Shifts by whole worlds that bring the body near the view, the ones beside it included. */
+function tiles(mean: Point, camera: Point, [width, height]: [number, number]): Point[] {
+  const i = Math.round((camera[0] - mean[0]) / width);
+  const j = Math.round((camera[1] - mean[1]) / height);
+  return [-1, 0, 1].flatMap((di) => [-1, 0, 1].map((dj): Point => [(i + di) * width, (j + dj) * height]));
+}
+
+function drawGrid(
+  context: CanvasRenderingContext2D,
+  camera: Point,
+  [width, height]: [number, number],
+  screen: (point: Point) => Point,
+  colour: string,
+) {
+  context.fillStyle = colour;
+  const first = (centre: number, side: number) => Math.ceil((centre - side / 2) / GRID) * GRID;
+  for (let x = first(camera[0], width); x <= camera[0] + width / 2; x += GRID) {
+    for (let y = first(camera[1], height); y <= camera[1] + height / 2; y += GRID) {
+      const [left, top] = screen([x, y]);
+      context.fillRect(left - 1, top - 1, 2, 2);
+    }
+  }
+}
+
+function drawWay(context: CanvasRenderingContext2D, way: Point[], theme: "light" | "dark") {
+  context.strokeStyle = INK[theme].body;
+  context.globalAlpha = 0.55;
+  context.lineWidth = 1.25;
+  context.beginPath();
+  context.arc(...way[0]!, 3, 0, 2 * Math.PI);
+  way.forEach((point, i) => (i === 0 ? context.moveTo(...point) : context.lineTo(...point)));
+  context.stroke();
+  context.globalAlpha = 1;
+}
+
+function drawBody(
+  context: CanvasRenderingContext2D,
+  lines: Point[][],
+  width: number,
+  theme: "light" | "dark",
+) {
+  context.lineCap = context.lineJoin = "round";
+  context.beginPath();
+  for (const line of lines) {
+    context.moveTo(...line[0]!);
+    for (const [a, b, end] of splineOf(line)) context.bezierCurveTo(...a, ...b, ...end);
+  }
+  context.strokeStyle = INK[theme].halo;
+  context.lineWidth = width + 3;
+  context.stroke();
+  context.strokeStyle = INK[theme].body;
+  context.lineWidth = width;
+  context.stroke();
+}

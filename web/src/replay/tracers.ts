@@ -1,0 +1,161 @@
+/**
+ * Passive particles carried by the recorded flow. They are let go together at the start, so that
+ * where they are depends on the moment alone: going back in time takes them back.
+ */
+
+import type { Replay } from "../decode/replay";
+import type { Point } from "./motion";
+
+/** Cells for each particle, and how many there are at most. */
+const [ROOM, MOST] = [7, 1500];
+/** Cells that a particle may go in one step of the integration. */
+const STRIDE = 0.5;
+/** Frames that a trail shows, in pieces that fade. */
+const TRAIL = 32;
+const PIECES = 4;
+
+export class Tracers {
+  readonly count: number;
+  /** (particle, 2) for each frame so far, unwrapped. */
+  private readonly tracks: Float32Array[];
+
+  /** Of the world, in cells. */
+  get size(): [number, number] {
+    return this.replay.header.size;
+  }
+
+  constructor(private readonly replay: Replay) {
+    const [width, height] = replay.header.size;
+    this.count = Math.min(MOST, Math.round((width * height) / ROOM));
+    this.tracks = [spread(this.count, width, height)];
+  }
+
+  /** Where they are at a frame. */
+  at(frame: number): Float32Array {
+    while (this.tracks.length <= frame) {
+      this.tracks.push(this.carried(this.tracks.at(-1)!, this.tracks.length - 1));
+    }
+    return this.tracks[frame]!;
+  }
+
+  private carried(from: Float32Array, frame: number): Float32Array {
+    const { every, velocity } = this.replay.header;
+    const parts = Math.max(1, Math.ceil((every * velocity!.scale) / STRIDE));
+    const dt = every / parts;
+    const to = from.slice();
+    for (let i = 0; i < to.length; i += 2) {
+      let [x, y] = [to[i]!, to[i + 1]!];
+      for (let part = 0; part < parts; part++) {
+        // The midpoint rule.
+        const [u, v] = velocityAt(this.replay, frame + part / parts, x, y);
+        const half = frame + (part + 0.5) / parts;
+        const [mu, mv] = velocityAt(this.replay, half, x + 0.5 * dt * u, y + 0.5 * dt * v);
+        [x, y] = [x + dt * mu, y + dt * mv];
+      }
+      [to[i], to[i + 1]] = [x, y];
+    }
+    return to;
+  }
+}
+
+/** Evenly but in no pattern: the additive recurrence of the plastic number (M. Roberts, 2018). */
+function spread(count: number, width: number, height: number): Float32Array {
+  const plastic = 1.324717957244746;
+  return Float32Array.from({ length: 2 * count }, (_, i) => {
+    const share = (0.5 + ((i >> 1) + 1) / plastic ** (1 + (i & 1))) % 1;
+    return share * (i & 1 ? height : width);
+  });
+}
+
+/** The fluid's velocity in cells a step, linear between cells and frames. */
+export function velocityAt({ header, drive }: Replay, time: number, x: number, y: number): Point {
+  const [width, height] = header.size;
+  const cells = width * height;
+  const before = Math.min(header.frames - 1, Math.floor(time));
+  const after = Math.min(header.frames - 1, before + 1);
+  const t = time - before;
+  const [i, j] = [Math.floor(x), Math.floor(y)];
+  const [a, b] = [x - i, y - j];
+  const [west, east] = [wrap(i, width) * height, wrap(i + 1, width) * height];
+  const [south, north] = [wrap(j, height), wrap(j + 1, height)];
+  const plane = (first: number) => {
+    const at = (cell: number) => drive!.velocity[first + cell]!;
+    const low = (1 - a) * at(west + south) + a * at(east + south);
+    const high = (1 - a) * at(west + north) + a * at(east + north);
+    return (1 - b) * low + b * high;
+  };
+  const unit = header.velocity!.scale / 127;
+  const part = (k: number) =>
+    unit * ((1 - t) * plane((2 * before + k) * cells) + t * plane((2 * after + k) * cells));
+  return [part(0), part(1)];
+}
+
+interface Look {
+  time: number;
+  camera: Point;
+  scale: number;
+  colour: string;
+}
+
+/** Every particle once, in the tile around the camera, with the way it has come. */
+export function drawTracers(context: CanvasRenderingContext2D, tracers: Tracers, look: Look) {
+  const now = Math.floor(look.time);
+  const first = Math.max(0, now - TRAIL);
+  const share = look.time - now;
+  const frames = [...Array(now - first + 1).keys()].map((k) => tracers.at(first + k));
+  if (share > 0) frames.push(mixed(tracers.at(now), tracers.at(now + 1), share));
+  const shifts = shiftsOf(frames.at(-1)!, tracers, look);
+  context.strokeStyle = context.fillStyle = look.colour;
+  context.lineWidth = 1;
+  const step = Math.max(1, Math.ceil((frames.length - 1) / PIECES));
+  for (let start = 0; start < frames.length - 1; start += step) {
+    context.globalAlpha = 0.12 + (0.4 * (start + step)) / frames.length;
+    drawWays(context, frames.slice(start, start + step + 1), shifts, look);
+  }
+  context.globalAlpha = 0.75;
+  const heads = frames.at(-1)!;
+  for (let i = 0; i < heads.length; i += 2) {
+    const [x, y] = screen(heads, i, shifts, look);
+    context.fillRect(x - 1, y - 1, 2, 2);
+  }
+  context.globalAlpha = 1;
+}
+
+function drawWays(
+  context: CanvasRenderingContext2D,
+  frames: Float32Array[],
+  shifts: Float32Array,
+  look: Look,
+) {
+  context.beginPath();
+  for (let i = 0; i < shifts.length; i += 2) {
+    frames.forEach((frame, k) => {
+      const [x, y] = screen(frame, i, shifts, look);
+      if (k === 0) context.moveTo(x, y);
+      else context.lineTo(x, y);
+    });
+  }
+  context.stroke();
+}
+
+/** What brings each particle into the tile of which the camera is the middle, in pixels. */
+function shiftsOf(heads: Float32Array, tracers: Tracers, { camera, scale }: Look): Float32Array {
+  const size = tracers.size;
+  return heads.map((value, i) => {
+    const [side, middle] = [size[i & 1]!, camera[i & 1]!];
+    const away = wrap(value - middle + side / 2, side) - value;
+    return scale * (i & 1 ? side - away : away);
+  });
+}
+
+function screen(frame: Float32Array, i: number, shifts: Float32Array, { scale }: Look): Point {
+  return [frame[i]! * scale + shifts[i]!, shifts[i + 1]! - frame[i + 1]! * scale];
+}
+
+function mixed(a: Float32Array, b: Float32Array, t: number): Float32Array {
+  return a.map((value, i) => (1 - t) * value + t * b[i]!);
+}
+
+function wrap(value: number, size: number): number {
+  return ((value % size) + size) % size;
+}

@@ -1,0 +1,36 @@
+/** A run that searches: its archive, how good it is, and what the search is doing. */
+
+import type { Run } from "../api/types";
+import type { Detail } from "../store/detail";
+import { ArchiveCard } from "../archive/ArchiveCard";
+import { CurvesCard, SearchCard, useOthers } from "./RunCurves";
+import "./run.css";
+
+interface Props {
+  run: Run;
+  detail: Detail | undefined;
+  query: URLSearchParams;
+}
+
+export function ArchiveRun({ run, detail, query }: Props) {
+  const curves = detail?.curves && detail.curves.generation.length > 0 ? detail.curves : null;
+  const beside = useOthers(query, run.id);
+  return (
+    <>
+      <div class={`run-columns ${query.get("view") === "gallery" ? "wide" : ""}`}>
+        <section class="card archive-card" id="archive" aria-labelledby="archive-title" tabIndex={-1}>
+          {detail?.archive ? (
+            <ArchiveCard run={run} archive={detail.archive} elites={detail.elites} query={query} />
+          ) : (
+            <>
+              <h2 id="archive-title">Archive</h2>
+              <p class="quiet waiting">Loading the archive …</p>
+            </>
+          )}
+        </section>
+        <CurvesCard {...{ run, curves, query, beside }} />
+      </div>
+      {curves && <SearchCard {...{ run, curves, query, beside }} />}
+    </>
+  );
+}

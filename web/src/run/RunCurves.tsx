@@ -1,0 +1,155 @@
+/** The curves of a search, as they are asked for, and beside them those of other runs. */
+
+import type { ComponentChildren } from "preact";
+import { share } from "../api/address";
+import type { Run } from "../api/types";
+import type { Curves as Columns } from "../store/curves";
+import { hasArchive, useCurvesOf, useExperiments } from "../store/fetch";
+import { useRuns } from "../store/store";
+import { setQuery } from "../store/router";
+import { Curves } from "../charts/curves/Curves";
+import { type Look, type Other, dressed, lookOf } from "../charts/curves/look";
+import { REASONS, divergedBy, scoresOf, workOf } from "../charts/curves/plots";
+import { count, percent, short, titleOf, words } from "../ui/format";
+import { CurveChoices } from "../charts/curves/CurveOptions";
+import { RunChoice } from "./RunPicker";
+
+/** More lines than this are not told apart. */
+const MOST = 4;
+
+interface Props {
+  run: Run;
+  curves: Columns | null;
+  query: URLSearchParams;
+  beside: Others;
+}
+
+interface Others {
+  ids: string[];
+  others: Other[];
+  error: string | null;
+}
+
+export function CurvesCard({ run, curves, query, beside: { ids, others, error } }: Props) {
+  const look = lookOf(query);
+  return (
+    <section class="card curves-card" id="curves" aria-labelledby="curves-title" tabIndex={-1}>
+      <h2 id="curves-title">Curves</h2>
+      {curves && <CurveChoices look={look} />}
+      {curves && !share && <Beside {...{ run, ids, others }} />}
+      {error && <p class="wrong-text small">{error}</p>}
+      {curves ? (
+        <Curves plots={dressed(scoresOf, curves, others, look)} x={placesOf(curves, look)} look={look} />
+      ) : (
+        <p class="quiet waiting">They begin with the first generation.</p>
+      )}
+    </section>
+  );
+}
+
+/** What the search is doing, over the same axis and beside the same runs. */
+export function SearchCard({ run, curves, query, beside }: Props & { curves: Columns }) {
+  const look = lookOf(query);
+  const plots = dressed(workOf, curves, beside.others, look);
+  const diverged = divergedBy(curves);
+  if (plots.length === 0 && run.diverged === 0) return null;
+  return (
+    <section class="card work-card" id="search" aria-labelledby="work-title" tabIndex={-1}>
+      <h2 id="work-title">Search, generation by generation</h2>
+      <Curves plots={plots} x={placesOf(curves, look)} look={look} />
+      <Diverged run={run} reasons={diverged} />
+    </section>
+  );
+}
+
+/** Why evaluations do not count; runs of before know only how many. */
+function Diverged({ run, reasons }: { run: Run; reasons: [reason: string, count: number][] }) {
+  const known = reasons.reduce((sum, [, number]) => sum + number, 0);
+  const unknown = run.diverged - known;
+  if (run.diverged === 0) {
+    return <p class="quiet small">No evaluation has diverged.</p>;
+  }
+  const share = (number: number) => percent(number / Math.max(1, run.evaluations));
+  return (
+    <table class="plain-table diverged">
+      <caption>Evaluations that diverged: they count as nothing</caption>
+      <tbody>
+        {reasons.map(([reason, number]) => (
+          <tr key={reason}>
+            <th scope="row">{words(reason)}</th>
+            <td class="figure">{count(number)}</td>
+            <td class="figure quiet">{share(number)}</td>
+            <td class="quiet">{REASONS[reason] ?? ""}</td>
+          </tr>
+        ))}
+        {unknown > 0 && (
+          <tr>
+            <th scope="row">Unknown</th>
+            <td class="figure">{count(unknown)}</td>
+            <td class="figure quiet">{share(unknown)}</td>
+            <td class="quiet">They were computed before reasons were recorded.</td>
+          </tr>
+        )}
+      </tbody>
+    </table>
+  );
+}
+
+const placesOf = (curves: Columns, { over }: Look) => curves[over] as readonly number[];
+
+/** The runs that the address asks to stand beside, without doubles and the run itself. */
+export function useOthers(query: URLSearchParams, id: string): Others {
+  const asked = (query.get("with") ?? "").split(",").filter((other) => other && other !== id);
+  const ids = [...new Set(asked)].slice(0, MOST);
+  const { value, error } = useCurvesOf(ids);
+  const runs = useRuns(ids);
+  const experiments = useExperiments().value ?? [];
+  const others = ids.flatMap((id, i): Other[] => {
+    const [curves, run] = [value?.get(id), runs[i]];
+    if (!curves || !run || curves.generation.length === 0) return [];
+    const name = `${titleOf(run, experiments)} ${short(id)}`;
+    return [{ name, colour: `--series-${2 + i}`, curves }];
+  });
+  return { ids, others, error };
+}
+
+function Beside({ run, ids, others }: { run: Run; ids: string[]; others: Other[] }) {
+  const set = (next: string[]) => setQuery({ with: next.length > 0 ? next.join() : null });
+  const without = (id: string) => set(ids.filter((other) => other !== id));
+  const nameOf = (id: string) => others.find(({ name }) => name.endsWith(short(id)))?.name ?? short(id);
+  return (
+    <div class="beside-runs" role="group" aria-label="Runs beside this one">
+      {ids.length > 0 && <Chip colour="--series-1">This run</Chip>}
+      {ids.map((id, i) => (
+        <Chip key={id} colour={`--series-${2 + i}`}>
+          <a href={`/runs/${id}`}>{nameOf(id)}</a>
+          <button class="plain" aria-label={`Remove ${nameOf(id)}`} onClick={() => without(id)}>
+            ✕
+          </button>
+        </Chip>
+      ))}
+      {ids.length < MOST && (
+        <RunChoice
+          run={run}
+          label="Compare with a run"
+          fits={(other) => hasArchive(other) && other.generation > 0 && !ids.includes(other.id)}
+          onChoose={(id) => set([...ids, id])}
+        />
+      )}
+    </div>
+  );
+}
+
+interface ChipProps {
+  colour: string;
+  children: ComponentChildren;
+}
+
+function Chip({ colour, children }: ChipProps) {
+  return (
+    <span class="chip">
+      <i style={{ background: `var(${colour})` }} />
+      {children}
+    </span>
+  );
+}

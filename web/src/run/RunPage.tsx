@@ -1,0 +1,225 @@
+/** One run: how it is doing, what it has come to, and its files. */
+
+import { useEffect } from "preact/hooks";
+import type { Run } from "../api/types";
+import type { Detail } from "../store/detail";
+import type { Elites } from "../store/elites";
+import { hasArchive, useExperiments, useRunDetail } from "../store/fetch";
+import { useFresh } from "../store/refresh";
+import { later } from "../ui/lazy";
+import { useRefusal } from "../store/principal";
+import { useLive } from "../store/store";
+import { useNow } from "../store/runPage";
+import { say } from "../store/edit";
+import { freedomOf } from "../ui/coupling";
+import { Doing, doingOf } from "./RunActivity";
+import { endingOf } from "./endReason";
+import { count, number, short, titleOf } from "../ui/format";
+import { NotFree } from "../ui/NotForceFree";
+import { NotThere } from "../ui/NotFound";
+import { type Figure, figuresOf, generationsOf } from "./figures";
+import { Actions, Badge, Progress, timeOf } from "./RunStatus";
+import { Name } from "./RunLabels";
+import { ArchiveRun } from "./ArchiveRun";
+import { Files } from "./FilesCard";
+import { ForkLink } from "../ui/ForkLink";
+import { ForkedFrom, InBin, Life } from "./Lifecycle";
+import { LogCard } from "./LogCard";
+import { Publish } from "../publish/PublishButton";
+import { SpecCard } from "./spec/SpecCard";
+import { ON } from "./runCommands";
+import "./run.css";
+
+const GaitsRun = later(async () => (await import("./gaits/GaitsRun")).GaitsRun, "section");
+const LearningRun = later(async () => (await import("./learning/LearningRun")).LearningRun, "section");
+const PopulationCards = later(
+  async () => (await import("./population/PopulationCards")).PopulationCards,
+  "section",
+);
+const ScalingRun = later(async () => (await import("./scaling/ScalingRun")).ScalingRun, "section");
+
+interface Props {
+  id: string;
+  query: URLSearchParams;
+}
+
+export function RunPage({ id, query }: Props) {
+  const { error } = useRunDetail(id);
+  const run = useLive((state) => state.runs.get(id));
+  const detail = useLive((state) => state.details.get(id));
+  const title = useTitle(run);
+  const refusal = useRefusal(run);
+  useEffect(() => {
+    document.title = `${title} · Microcosmos`;
+  }, [title]);
+  if (!run) {
+    return (
+      <main>
+        {error ? <NotThere what="No such run" reason={error} /> : <p class="quiet loading">Loading run …</p>}
+      </main>
+    );
+  }
+  const freedom = freedomOf(run.spec);
+  return (
+    <main>
+      <nav class="crumbs" aria-label="Where you are">
+        <a href="/">Runs</a>
+        {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
+      </nav>
+      <header class="page-head">
+        <Name
+          of={run}
+          title={title}
+          fixed={!!refusal || !!run.deleted_at}
+          onName={(name) => void say(id, { name })}
+        >
+          <h1>
+            {title} <code>{short(run.id)}</code>
+          </h1>
+        </Name>
+        <Badge run={run} />
+        {freedom !== "all" && <NotFree some={freedom === "some"} />}
+        <span class="spring" />
+        {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
+          <Publish of={{ run: run.id }} title={run.name ?? ""} />
+        )}
+        {hasArchive(run) && !!run.coverage && !run.deleted_at && (
+          <ForkLink run={run.id} title="A new run that begins from the creatures of this one" />
+        )}
+        {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
+        {!refusal && !run.deleted_at && <Actions run={run} on={ON(title)} name={title} />}
+        {!refusal && <Life run={run} title={title} />}
+      </header>
+      {run.deleted_at ? <InBin run={run} /> : <Whole {...{ run, query, error, detail }} />}
+    </main>
+  );
+}
+
+interface WholeProps {
+  run: Run;
+  query: URLSearchParams;
+  error: string | null;
+  detail: Detail | undefined;
+}
+
+function Whole({ run, query, error, detail }: WholeProps) {
+  return (
+    <>
+      {error && <p class="banner wrong">{error}</p>}
+      <Banners run={run} />
+      <ForkedFrom run={run} />
+      <Standing run={run} />
+      <Now run={run} />
+      <Sections run={run} />
+      {run.status === "finished" && hasArchive(run) && <p class="quiet ending">{endingOf(run)}</p>}
+      {run.experiment === "gaits" && <GaitsRun run={run} query={query} />}
+      {learns(run) && <LearningRun run={run} query={query} />}
+      {run.experiment === "scaling" && <ScalingRun run={run} query={query} />}
+      {hasArchive(run) && <ArchiveRun run={run} detail={detail} query={query} />}
+      {run.experiment === "neuroevolution" && <PopulationCards run={run} elites={detail?.elites ?? NOBODY} />}
+      <div class="run-columns record">
+        <div class="stack">
+          <LogCard run={run} query={query} />
+          <Files run={run} />
+        </div>
+        <SpecCard run={run} query={query} />
+      </div>
+    </>
+  );
+}
+
+const NOBODY: Elites = new Map();
+
+/** What it is doing while its figures do not tell yet; how long it has been at it. */
+function Now({ run }: { run: Run }) {
+  const asked = doingOf(run) !== null;
+  const now = useNow(asked);
+  useFresh(run.id, run.status === "queued");
+  return asked ? <Doing run={run} now={now} /> : null;
+}
+
+/** Ways within a long page. */
+function Sections({ run }: { run: Run }) {
+  const kinds: Record<string, [id: string, name: string][]> = {
+    folding: [["folds", "Pictures"]],
+    neuroevolution: [
+      ["species", "Species"],
+      ["network", "Network"],
+    ],
+  };
+  const sections: [id: string, name: string][] = [
+    ...(hasArchive(run)
+      ? ([
+          ["archive", "Archive"],
+          ["curves", "Curves"],
+        ] as [string, string][])
+      : []),
+    ...(kinds[run.experiment] ?? []),
+    ["log", "Log"],
+    ["spec", "Spec"],
+    ["files", "Files"],
+  ];
+  return (
+    <nav class="sections" aria-label="Parts of this page">
+      {sections.map(([id, name]) => (
+        <a key={id} href={`#${id}`}>
+          {name}
+        </a>
+      ))}
+    </nav>
+  );
+}
+
+/** By gradients, from step to step. */
+const learns = (run: Run) => ["folding", "refinement"].includes(run.experiment);
+
+function useTitle(run: Run | undefined): string {
+  const experiments = useExperiments().value ?? [];
+  return run ? titleOf(run, experiments) : "Run";
+}
+
+function Banners({ run }: { run: Run }) {
+  return (
+    <>
+      {run.warning && (
+        <p class="banner warning" role="status">
+          {run.warning}
+        </p>
+      )}
+      {run.error && (
+        <details class="banner wrong" open={run.status === "failed"}>
+          <summary>{run.error.trim().split("\n").at(-1)}</summary>
+          <pre>{run.error}</pre>
+        </details>
+      )}
+    </>
+  );
+}
+
+const searching = (run: Run): Figure[] => [
+  ["Evaluations", count(run.evaluations)],
+  ["Evaluations/s", number(run.evaluations_per_second)],
+];
+
+function Standing({ run }: { run: Run }) {
+  const time = timeOf(run);
+  const facts: Figure[] = [
+    [generationsOf(run), `${count(run.generation)} / ${count(run.generations)}`],
+    [time.label, time.text],
+    ...(hasArchive(run) ? searching(run) : []),
+    ...figuresOf(run),
+  ];
+  return (
+    <section class="standing" aria-label="How the run is doing">
+      <Progress run={run} />
+      <dl class="facts">
+        {facts.map(([name, value]) => (
+          <div key={name}>
+            <dt>{name}</dt>
+            <dd>{value}</dd>
+          </div>
+        ))}
+      </dl>
+    </section>
+  );
+}

@@ -1,0 +1,69 @@
+/** A button that turns into a choice of another run. */
+
+import { useEffect, useRef } from "preact/hooks";
+import type { Run } from "../api/types";
+import { useExperiments } from "../store/fetch";
+import { useRunChoices } from "../store/runPage";
+import { moment, short, titleOf } from "../ui/format";
+import { useOpening } from "../ui/disclosure";
+
+interface Props {
+  run: Run;
+  /** What the button says. */
+  label: string;
+  fits: (other: Run) => boolean;
+  onChoose: (id: string) => void;
+}
+
+export function RunChoice(props: Props) {
+  const { open, setOpen, button } = useOpening();
+  if (open) return <Choosing {...props} onClose={() => setOpen(false)} />;
+  return (
+    <button ref={button} class="slim" onClick={() => setOpen(true)}>
+      {props.label}
+    </button>
+  );
+}
+
+function Choosing({ run, label, fits, onChoose, onClose }: Props & { onClose: () => void }) {
+  const { value, error } = useRunChoices(run.id);
+  const experiments = useExperiments().value ?? [];
+  const select = useRef<HTMLSelectElement>(null);
+  const close = useRef<HTMLButtonElement>(null);
+  const fitting = value?.filter(fits) ?? [];
+  const none = error ?? (value && fitting.length === 0 ? "There is no other run that it could be." : null);
+  useEffect(() => (select.current ?? close.current)?.focus(), [none, value === null]);
+  const choose = (event: Event) => {
+    event.preventDefault();
+    const id = select.current?.value;
+    if (!id) return select.current?.focus();
+    onClose();
+    onChoose(id);
+  };
+  return (
+    <form class="run-choice" onSubmit={choose} onKeyDown={(event) => event.key === "Escape" && onClose()}>
+      {none ? (
+        <span class={error ? "wrong-text" : "quiet"} role="status">
+          {none}
+        </span>
+      ) : (
+        <>
+          <select ref={select} aria-label={label} aria-busy={!value}>
+            <option value="">{value ? "Choose a run …" : "Loading runs …"}</option>
+            {fitting.map((other) => (
+              <option key={other.id} value={other.id}>
+                {titleOf(other, experiments)} {short(other.id)}, {moment(other.created_at)}
+              </option>
+            ))}
+          </select>
+          <button class="slim" disabled={!value}>
+            Choose
+          </button>
+        </>
+      )}
+      <button ref={close} type="button" class="slim" onClick={onClose}>
+        Close
+      </button>
+    </form>
+  );
+}

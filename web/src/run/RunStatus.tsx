@@ -1,0 +1,73 @@
+/** The small parts that say how a run is doing. */
+
+import type { Run } from "../api/types";
+import { DASH, duration } from "../ui/format";
+import "./run.css";
+
+export const STATES = ["queued", "running", "paused", "finished", "failed", "cancelled"] as const;
+
+const WISHES = { pause: "pausing", cancel: "cancelling" };
+
+export function Badge({ run }: { run: Run }) {
+  const text = run.wish ? WISHES[run.wish] : run.status;
+  return <span class={`badge ${run.status}`}>{text}</span>;
+}
+
+export function Progress({ run }: { run: Run }) {
+  const share = Math.round(1000 * run.progress) / 10;
+  return (
+    <div
+      class={`progress ${run.status}`}
+      role="progressbar"
+      aria-label="Progress"
+      aria-valuenow={share}
+      aria-valuemin={0}
+      aria-valuemax={100}
+    >
+      <div style={{ width: `${share}%` }} />
+    </div>
+  );
+}
+
+/** Generations after which a rate is worth telling: the first ones compile. */
+const SETTLED = 3;
+
+/** How long a run will take, or what it took, and which of both. */
+export function timeOf(run: Run): { label: string; text: string } {
+  if (run.status === "running") {
+    const left = run.generation < SETTLED ? null : run.eta_seconds;
+    return { label: "Time left", text: duration(left) };
+  }
+  if (!run.started_at || !run.finished_at) return { label: "Time", text: DASH };
+  const seconds = (Date.parse(run.finished_at) - Date.parse(run.started_at)) / 1000;
+  return { label: "Took", text: duration(seconds) };
+}
+
+interface Wishes {
+  pause: (run: Run) => void;
+  resume: (run: Run) => void;
+  cancel: (run: Run) => void;
+}
+
+/** Only what the run's state allows. */
+export function Actions({ run, on, name }: { run: Run; on: Wishes; name: string }) {
+  const alive = ["queued", "running", "paused"].includes(run.status);
+  if (!alive || run.wish === "cancel") return null;
+  return (
+    <span class="actions">
+      {run.status === "paused" && (
+        <button onClick={() => on.resume(run)} aria-label={`Resume ${name}`}>
+          Resume
+        </button>
+      )}
+      {run.status !== "paused" && run.wish !== "pause" && (
+        <button onClick={() => on.pause(run)} aria-label={`Pause ${name}`}>
+          Pause
+        </button>
+      )}
+      <button class="danger" onClick={() => on.cancel(run)} aria-label={`Cancel ${name}`}>
+        Cancel
+      </button>
+    </span>
+  );
+}

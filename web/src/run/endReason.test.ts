@@ -1,0 +1,17 @@
+import { describe, expect, it } from "vitest";
+import type { Run } from "../api/types";
+import { endingOf } from "./endReason";
+
+describe("why a run ended", () => {
+  const run = { generations: 50, spec: { search: { stop: { evaluations: 5000 } } } } as unknown as Run;
+  it.each([
+    [null, "It ended with the last of its 50 generations."],
+    [
+      "evaluations after generation 12",
+      "It ended after generation 12: its budget of 5,000 evaluations was used up.",
+    ],
+    ["device_hours after generation 3", "It ended early: device hours after generation 3."],
+  ])("%j is told as %j", (ended, sentence) => {
+    expect(endingOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
+  });
+});

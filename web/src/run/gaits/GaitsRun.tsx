@@ -1,0 +1,114 @@
+/** A sweep of gaits: how far each swimmer comes at each viscosity, in each form. */
+
+import { useMemo, useState } from "preact/hooks";
+import type { ResultRow } from "../../api/types";
+import { setQuery } from "../../store/router";
+import { formOf } from "../../ui/coupling";
+import { NotFree } from "../../ui/NotForceFree";
+import { Plot, type Point } from "../../charts/plot/Plot";
+import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
+import { Segments } from "../../ui/Select";
+import { MarkReplay, useLastMark } from "./MarkReplay";
+import { type Props, TableCard, hrefOf, useTable } from "../results/resultsPage";
+import "./gaits.css";
+
+const BESIDE = "beside";
+
+export function GaitsRun({ run, query }: Props) {
+  const { results, missing } = useTable(run);
+  const forms = formsOf(run.spec);
+  const wanted = query.get("form") ?? "";
+  const asked = [...forms, BESIDE].includes(wanted) ? wanted : forms[0]!;
+  const shown = asked === BESIDE ? forms : [asked];
+  const rows = (results?.rows ?? []).filter((row) => shown.includes(String(row.form)));
+  const [near, setNear] = useState<Point | null>(null);
+  const settled = useLastMark(near);
+  return (
+    <>
+      <section class="card plot-card" aria-labelledby="sweep-title">
+        <div class="card-head">
+          <h2 id="sweep-title">Displacement against viscosity</h2>
+          <span class="spring" />
+          {forms.length > 1 && <Forms forms={forms} chosen={asked} />}
+        </div>
+        {missing ? (
+          <p class="quiet waiting">{missing}</p>
+        ) : (
+          <div class={shown.length > 1 ? "" : "with-replay"}>
+            <div class={shown.length > 1 ? "beside" : ""}>
+              {shown.map((form) => (
+                <Sweep key={form} {...{ run, query, form }} all={results!.rows} onNear={setNear} />
+              ))}
+            </div>
+            <MarkReplay point={settled} />
+          </div>
+        )}
+        {rows.length > 0 && <Key rows={rows} />}
+      </section>
+      {rows.length > 0 && <TableCard run={run} query={query} rows={rows} />}
+    </>
+  );
+}
+
+function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
+  const choices = forms.map((form): [string, string] => [form, formOf(form).title]);
+  return (
+    <Segments
+      label="Form of the coupling"
+      choices={[...choices, [BESIDE, "Side by side"]]}
+      value={chosen}
+      onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
+    />
+  );
+}
+
+interface SweepProps extends Props {
+  form: string;
+  all: ResultRow[];
+  onNear: (point: Point | null) => void;
+}
+
+function Sweep({ run, form, all, onNear }: SweepProps) {
+  const rows = useMemo(() => all.filter((row) => row.form === form), [all, form]);
+  // Marks stay the same while one of them is pointed at.
+  const lines = useMemo(() => sweepLines(run.spec, rows, hrefOf(run)), [run.id, run.spec, rows]);
+  const { title, about, free } = formOf(form);
+  // Bodies that push themselves go many times as far: the others would lie along the axis.
+  const peers = all.filter((row) => formOf(String(row.form)).free === free);
+  return (
+    <div class="sweep">
+      <p class="sweep-title">
+        <b>{title}</b> <span class="quiet">{about}</span> {!free && <NotFree />}
+      </p>
+      <Plot
+        title={`Displacement against viscosity, ${title}`}
+        {...sweepAxes(run.spec, peers)}
+        lines={lines}
+        upper={reynoldsAxis(rows)}
+        shaded={!free}
+        onNear={onNear}
+      />
+    </div>
+  );
+}
+
+/** What the marks say, as far as there are such. */
+function Key({ rows }: { rows: ResultRow[] }) {
+  const doubtful = rows.some((row) => row.status === "ok" && (row.limited || row.warnings));
+  const failed = rows.some((row) => row.status !== "ok");
+  return (
+    <p class="quiet small marks">
+      <span>Each mark leads to the creature’s replay.</span>
+      {doubtful && (
+        <span>
+          <i class="mark-sample hollow" /> with a warning, or limits were active
+        </span>
+      )}
+      {failed && (
+        <span>
+          <i class="mark-sample cross" /> did not finish
+        </span>
+      )}
+    </p>
+  );
+}

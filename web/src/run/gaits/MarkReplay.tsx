@@ -1,0 +1,51 @@
+/** The replay of the mark that is pointed at, beside its plot. */
+
+import { useState } from "preact/hooks";
+import { useSettled } from "../../store/throttle";
+import type { Point } from "../../charts/plot/Plot";
+import { Loop } from "../../replay/Loop";
+import { Rendering, useReplays } from "../../replay/recordings";
+import "./gaits.css";
+
+/** A pointer on its way passes marks that nobody wants to see. */
+const SETTLE_MS = 120;
+
+/** The last mark that was pointed at for a moment: leaving it keeps its replay. */
+export function useLastMark(near: Point | null): Point | null {
+  const [last, setLast] = useState<Point | null>(null);
+  useSettled(near?.href ? near : null, SETTLE_MS, setLast);
+  return last;
+}
+
+export function MarkReplay({ point }: { point: Point | null }) {
+  return (
+    <aside class="mark-replay" aria-label="Replay of the mark">
+      {point ? (
+        <Playing key={point.href} point={point} />
+      ) : (
+        <p class="quiet small">Point at a mark, or focus it, to see it swim here.</p>
+      )}
+    </aside>
+  );
+}
+
+function Playing({ point }: { point: Point }) {
+  const rendering = useReplays([shaOf(point.href!)]);
+  const replay = rendering.replays?.[0];
+  const [name, ...figures] = point.says;
+  return (
+    <>
+      <Rendering {...rendering} what="Simulating it again …" />
+      {replay && <Loop replay={replay} name={`${name}, swimming`} />}
+      <p class="small">
+        <b>{name}</b>
+        <br />
+        <span class="quiet">{figures.join(", ")}</span>
+        <br />
+        <a href={point.href}>Open the creature</a>
+      </p>
+    </>
+  );
+}
+
+const shaOf = (href: string) => href.split("/").at(-1)!.split("?")[0]!;

@@ -1,0 +1,53 @@
+import { describe, expect, it } from "vitest";
+import type { ResultRow, Spec } from "../../api/types";
+import { reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
+
+const row = (values: Partial<ResultRow>): ResultRow => ({ creature: null, ...values });
+
+describe("a sweep of gaits", () => {
+  const spec: Spec = { swimmers: ["worm", "ray"], viscosities: [0.01, 1], forms: ["ours"] };
+  const point = (values: Partial<ResultRow>) =>
+    row({ form: "ours", status: "ok", swimmer: "worm", limited: 0, warnings: "", ...values });
+  const rows = [
+    point({ viscosity: 1, displacement: 0.5, reynolds: 2, creature: "ab" }),
+    point({ viscosity: 0.01, displacement: 3, reynolds: 200, limited: 0.1 }),
+    point({ viscosity: 0.01, swimmer: "ray", displacement: null, status: "non-finite" }),
+  ];
+  const [worm, ray] = sweepLines(spec, rows, (sha) => `/creatures/${sha}`);
+
+  it("has a line for each swimmer, from the lowest viscosity to the highest", () => {
+    expect(worm!.points.map(({ x, y }) => [x, y])).toEqual([
+      [0.01, 3],
+      [1, 0.5],
+    ]);
+    expect(worm!.points[1]!.href).toBe("/creatures/ab");
+    expect(worm!.points[1]!.says).toEqual(["Worm at ν = 1", "0.5 cells a cycle", "Reynolds number 2"]);
+  });
+
+  it("marks what limits or warnings make doubtful, and what did not finish", () => {
+    expect(worm!.points.map(({ hollow }) => hollow)).toEqual([true, false]);
+    expect(worm!.points[0]!.says).toContain("limited in 10 % of node steps");
+    expect(ray!.points[0]!.y).toBeNull();
+    expect(ray!.points[0]!.says[1]).toBe("Non-finite");
+  });
+
+  it("has the worm's Reynolds numbers above its viscosities", () => {
+    expect(reynoldsAxis(rows)).toEqual({
+      title: "Reynolds number of the worm",
+      ticks: [
+        { at: 0.01, text: "200" },
+        { at: 1, text: "2" },
+      ],
+    });
+    expect(reynoldsAxis([rows[2]!])).toBeNull();
+  });
+
+  it("leaves out of its axis what did not finish", () => {
+    const burst = point({ viscosity: 1, displacement: 1e6, status: "supersonic" });
+    expect(sweepAxes(spec, [...rows, burst]).y.scale).toEqual(sweepAxes(spec, rows).y.scale);
+  });
+
+  it("has the same axes before its results and after", () => {
+    expect(sweepAxes(spec, []).x).toEqual(expect.objectContaining({ scale: sweepAxes(spec, rows).x.scale }));
+  });
+});

@@ -1,0 +1,86 @@
+/** A sweep of gaits as lines: displacement against viscosity, one line a swimmer. */
+
+import type { ResultRow, Spec } from "../../api/types";
+import { number, percent, words } from "../../ui/format";
+import type { Upper } from "../../charts/plot/Frame";
+import type { Axis, Line, Point } from "../../charts/plot/Plot";
+import { fromZero, logAround } from "../../charts/plot/scale";
+
+/** In the order of the paper, so that a swimmer has the same colour in every run. */
+const SWIMMERS = ["worm", "tadpole", "ray", "cilia", "jellyfish"];
+
+type Href = (creature: string) => string;
+
+const numbers = (value: unknown) => (Array.isArray(value) ? value.map(Number) : []);
+const strings = (value: unknown) => (Array.isArray(value) ? value.map(String) : []);
+const measure = (row: ResultRow, name: string) =>
+  typeof row[name] === "number" ? (row[name] as number) : null;
+
+export const formsOf = (spec: Spec) => strings(spec.forms);
+
+/** The same for all forms whose rows are given, so that they can be compared. */
+export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
+  const ways = rows.filter(finished).map((row) => Number(row.displacement));
+  const text = (value: number) => number(value, 2);
+  return {
+    x: {
+      title: "Viscosity (cells²/step)",
+      scale: logAround(numbers(spec.viscosities)),
+      write: text,
+    },
+    y: { title: "Displacement (cells/cycle)", scale: fromZero(ways), write: text },
+  };
+}
+
+export function sweepLines(spec: Spec, rows: readonly ResultRow[], hrefOf: Href): Line[] {
+  return strings(spec.swimmers).map((swimmer) => ({
+    name: swimmer,
+    colour: `--series-${1 + Math.max(0, SWIMMERS.indexOf(swimmer))}`,
+    points: rows
+      .filter((row) => row.swimmer === swimmer)
+      .map((row) => pointOf(row, hrefOf))
+      .sort((a, b) => a.x - b.x),
+  }));
+}
+
+/** Whether the simulation ended as it should, so that its figures count. */
+const finished = (row: ResultRow) => row.status === "ok" && measure(row, "displacement") !== null;
+
+/** Whether something reduces the worth of a point's figures. */
+const doubtful = (row: ResultRow) => Number(row.limited) > 0 || Boolean(row.warnings);
+
+function doubtsOf(row: ResultRow): string[] {
+  const said = String(row.warnings ?? "")
+    .split("; ")
+    .filter(Boolean);
+  if (said.length > 0 || !doubtful(row)) return said;
+  return [`limited in ${percent(Number(row.limited))} of node steps`];
+}
+
+function pointOf(row: ResultRow, hrefOf: Href): Point {
+  const way = finished(row) ? measure(row, "displacement") : null;
+  const figures = [
+    way === null ? words(String(row.status)) : `${number(way)} cells a cycle`,
+    `Reynolds number ${number(measure(row, "reynolds"))}`,
+    ...doubtsOf(row),
+  ];
+  return {
+    x: Number(row.viscosity),
+    y: way,
+    hollow: doubtful(row),
+    ...(row.creature && { href: hrefOf(row.creature) }),
+    says: [`${words(String(row.swimmer))} at ν = ${number(Number(row.viscosity))}`, ...figures],
+  };
+}
+
+/** One swimmer's Reynolds numbers at its viscosities: the worm's where it swims. */
+export function reynoldsAxis(rows: readonly ResultRow[]): Upper | null {
+  const known = rows.filter((row) => finished(row) && Number(row.reynolds) > 0);
+  const swimmer = SWIMMERS.find((name) => known.some((row) => row.swimmer === name));
+  if (!swimmer) return null;
+  const own = known.filter((row) => row.swimmer === swimmer);
+  const ticks = own
+    .map((row) => ({ at: Number(row.viscosity), text: number(Number(row.reynolds), 2) }))
+    .sort((a, b) => a.at - b.at);
+  return { title: `Reynolds number of the ${swimmer}`, ticks };
+}

@@ -1,0 +1,102 @@
+/** A filament that folds over its picture: to play and scrub, and moments of it in a row. */
+
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Target } from "../../api/types";
+import type { Replay } from "../../decode/replay";
+import { useSize } from "../../ui/canvas";
+import { prefersStillness, useTheme } from "../../ui/theme";
+import { useClock } from "../../replay/clock";
+import { type Fold, drawFold, pictureOf } from "./fold";
+import { chainsOf } from "../../replay/motion";
+
+/** Seconds that a whole life takes, and those for which its end is looked at. */
+const [LIFE_S, REST_S] = [4, 1.5];
+/** Shares of a life that are shown beside each other. */
+const MOMENTS = [0, 0.1, 0.4, 1];
+
+const INK = {
+  light: { body: "#12222c", halo: "rgb(255 255 255 / 0.7)", picture: [214, 106, 42] },
+  dark: { body: "#fdf8ec", halo: "rgb(4 10 14 / 0.6)", picture: [226, 132, 66] },
+};
+
+export function FoldPlayer({ replay, target }: { replay: Replay; target: Target }) {
+  const { frames, every, steps } = replay.header;
+  const last = frames - 1;
+  const theme = useTheme();
+  const [playing, setPlaying] = useState(() => !prefersStillness());
+  const [time, setTime] = useState(() => (prefersStillness() ? last : 0));
+  const [shown, setShown] = useState(0.6);
+  useClock(playing, (seconds) => {
+    const whole = last * (1 + REST_S / LIFE_S);
+    setTime((now) => (now + (seconds * last) / LIFE_S) % Math.max(1, whole));
+  });
+  const fold = useMemo((): Fold => {
+    const { picture, ...ink } = INK[theme];
+    const chains = chainsOf(replay.header.edges);
+    return { replay, target, chains, picture: pictureOf(target, picture), shown, ink };
+  }, [replay, target, theme, shown]);
+  const moment = Math.min(last, time);
+  const step = Math.min(steps, Math.round(moment * every));
+  const scrub = (value: number) => {
+    setPlaying(false);
+    setTime(value);
+  };
+  return (
+    <div class="fold-player">
+      <Still fold={fold} time={moment} name={`The filament for ${target.name} over its picture`} />
+      <div class="controls">
+        <button onClick={() => setPlaying(!playing)}>{playing ? "Pause" : "Play"}</button>
+        <input
+          type="range"
+          class="scrub"
+          aria-label="Moment of the replay"
+          aria-valuetext={`step ${step} of ${steps}`}
+          min="0"
+          max={last}
+          step="any"
+          value={moment}
+          onInput={(event) => scrub(event.currentTarget.valueAsNumber)}
+        />
+        <output class="moment">
+          {step} / {steps}
+        </output>
+        <label class="compact">
+          Picture
+          <input
+            type="range"
+            min="0"
+            max="1"
+            step="0.05"
+            value={shown}
+            onInput={(event) => setShown(event.currentTarget.valueAsNumber)}
+          />
+        </label>
+      </div>
+      <ol class="fold-moments" aria-label="Moments of its life">
+        {MOMENTS.map((share) => (
+          <li key={share}>
+            <button class="plain" onClick={() => scrub(share * last)}>
+              <Still fold={fold} time={share * last} name={`After ${Math.round(share * steps)} steps`} />
+              <span class="small quiet">step {Math.round(share * steps)}</span>
+            </button>
+          </li>
+        ))}
+      </ol>
+    </div>
+  );
+}
+
+function Still({ fold, time, name }: { fold: Fold; time: number; name: string }) {
+  const stage = useRef<HTMLDivElement>(null);
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const size = useSize(stage);
+  const [width, height] = fold.replay.header.size;
+  useEffect(() => {
+    if (size.width > 0) drawFold(canvas.current!, size, fold, time);
+  }, [size, fold, time]);
+  return (
+    <div ref={stage} class="stage" style={{ aspectRatio: `${width} / ${height}` }}>
+      <canvas ref={canvas} role="img" aria-label={name} />
+    </div>
+  );
+}

@@ -1,0 +1,98 @@
+/** Filaments over the pictures that they fold into; while they learn, the pictures alone. */
+
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import * as api from "../../api/client";
+import type { ResultRow, Run, Target } from "../../api/types";
+import { useFetched } from "../../store/fetch";
+import { useLive } from "../../store/store";
+import { setQuery } from "../../store/router";
+import { number, short } from "../../ui/format";
+import { FoldPlayer } from "./FoldPlayer";
+import { pictureOf } from "./fold";
+import { Rendering, useReplays } from "../../replay/recordings";
+import { hrefOf } from "../results/resultsPage";
+import "./folds.css";
+
+interface Props {
+  run: Run;
+  query: URLSearchParams;
+  rows: ResultRow[];
+}
+
+export function FoldsCard({ run, query, rows }: Props) {
+  const { value: targets, error } = useFetched(() => api.readTargets(run.id), [run.id]);
+  const chosen = targets?.find(({ name }) => name === query.get("picture")) ?? targets?.[0];
+  const row = rows.find(({ picture }) => picture === chosen?.name);
+  return (
+    <section class="card folds" id="folds" aria-labelledby="folds-title" tabIndex={-1}>
+      <h2 id="folds-title">{rows.length > 0 ? "Filaments over their pictures" : "Pictures"}</h2>
+      {error && <p class="wrong-text small">{error}</p>}
+      {targets && <Pictures {...{ run, targets, rows, chosen: chosen!.name }} />}
+      {row?.creature && <Fold key={row.creature} {...{ run, row }} target={chosen!} />}
+      {targets && rows.length === 0 && (
+        <p class="quiet small">Filaments can be watched here once all updates are done.</p>
+      )}
+    </section>
+  );
+}
+
+interface PicturesProps {
+  run: Run;
+  targets: Target[];
+  rows: ResultRow[];
+  chosen: string;
+}
+
+function Pictures({ run, targets, rows, chosen }: PicturesProps) {
+  const summary = useLive((state) => state.runs.get(run.id))?.summary;
+  const lossOf = (name: string) => {
+    const loss = rows.find(({ picture }) => picture === name)?.least ?? summary?.[`loss of ${name}`];
+    return typeof loss === "number" ? `loss ${number(loss)}` : "no loss yet";
+  };
+  return (
+    <div class="fold-choice" role="group" aria-label="Pictures">
+      {targets.map((target) => (
+        <button
+          key={target.name}
+          aria-pressed={rows.length > 0 ? target.name === chosen : undefined}
+          disabled={rows.length === 0}
+          onClick={() => setQuery({ picture: target.name })}
+        >
+          <Thumb target={target} />
+          <span class="small">
+            <b>{target.name}</b> {lossOf(target.name)}
+          </span>
+        </button>
+      ))}
+    </div>
+  );
+}
+
+const GREY = [128, 140, 148];
+
+function Thumb({ target }: { target: Target }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const picture = useMemo(() => pictureOf(target, GREY), [target]);
+  useEffect(() => {
+    canvas.current!.getContext("2d")!.drawImage(picture, 0, 0);
+  }, [picture]);
+  return <canvas ref={canvas} width={target.width} height={target.height} aria-hidden="true" />;
+}
+
+function Fold({ run, row, target }: { run: Run; row: ResultRow; target: Target }) {
+  const rendering = useReplays([row.creature!]);
+  const replay = rendering.replays?.[0];
+  return (
+    <>
+      <Rendering {...rendering} what="Simulating this filament again to record how it folds …" />
+      {replay && <FoldPlayer replay={replay} target={target} />}
+      <p class="quiet small">
+        Loss {number(Number(row.first))} before it learnt, {number(Number(row.least))} at best; without a
+        filament it would be {number(Number(row.empty))}.{" "}
+        <a href={hrefOf(run)(row.creature!)}>
+          Open the creature <code>{short(row.creature!)}</code>
+        </a>
+      </p>
+    </>
+  );
+}

@@ -1,0 +1,87 @@
+/** A run that learns by gradients: its course, and the creatures it has come to. */
+
+import { useMemo } from "preact/hooks";
+import type { ResultRow, Run } from "../../api/types";
+import { useLive } from "../../store/store";
+import { number, short } from "../../ui/format";
+import { Plot } from "../../charts/plot/Plot";
+import { ReplayPlayer } from "../../replay/ReplayPlayer";
+import { courseOf } from "./learning";
+import { FoldsCard } from "./FoldsCard";
+import { Rendering, useReplays } from "../../replay/recordings";
+import { type Props, TableCard, hrefOf, useTable } from "../results/resultsPage";
+
+export function LearningRun({ run, query }: Props) {
+  const curves = useLive((state) => state.details.get(run.id))?.curves;
+  const { results } = useTable(run);
+  const course = curves && courseOf(run, curves);
+  const rows = results?.rows ?? [];
+  return (
+    <>
+      <section class="card plot-card" aria-labelledby="course-title">
+        <h2 id="course-title">{course?.title ?? "Course"}</h2>
+        {course && course.lines.length > 0 ? (
+          <Plot {...course} />
+        ) : (
+          <p class="quiet waiting">The first step is being computed …</p>
+        )}
+      </section>
+      {run.experiment === "folding" && <FoldsCard {...{ run, query, rows }} />}
+      {run.experiment === "refinement" && run.status === "finished" && rows.length > 1 && (
+        <Improvement run={run} before={rows[0]!} after={rows[rows.length - 1]!} />
+      )}
+      {rows.length > 0 && <TableCard run={run} query={query} rows={rows} />}
+    </>
+  );
+}
+
+interface Ends {
+  run: Run;
+  before: ResultRow;
+  after: ResultRow;
+}
+
+function Improvement({ run, before, after }: Ends) {
+  return (
+    <section class="card films" aria-labelledby="films-title">
+      <h2 id="films-title">Before and after</h2>
+      {before.creature === after.creature ? (
+        <p class="quiet">No step made it fitter: it is as it was.</p>
+      ) : (
+        <SideBySide {...{ run, before, after }} />
+      )}
+    </section>
+  );
+}
+
+function SideBySide({ run, before, after }: Ends) {
+  const rendering = useReplays([before.creature!, after.creature!]);
+  const [first, last] = rendering.replays ?? [];
+  const films = useMemo(
+    () =>
+      first && last
+        ? [
+            { replay: first, name: <Name {...{ run, row: before }} title="Before" /> },
+            { replay: last, name: <Name {...{ run, row: after }} title="After" /> },
+          ]
+        : [],
+    [run.id, first, last],
+  );
+  return (
+    <>
+      <Rendering {...rendering} what="Simulating both creatures to record their motion …" />
+      {films.length > 0 && <ReplayPlayer films={films} />}
+    </>
+  );
+}
+
+function Name({ run, row, title }: { run: Run; row: ResultRow; title: string }) {
+  return (
+    <>
+      <b>{title}</b> fitness {number(Number(row.fitness), 4)},{" "}
+      <a href={hrefOf(run)(row.creature!)}>
+        <code>{short(row.creature!)}</code>
+      </a>
+    </>
+  );
+}

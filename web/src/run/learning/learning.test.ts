@@ -1,0 +1,28 @@
+import { describe, expect, it } from "vitest";
+import { NO_CURVES } from "../../store/curves";
+import type { Run } from "../../api/types";
+import { ticksOf } from "../../charts/plot/scale";
+import { courseOf } from "./learning";
+
+describe("a course", () => {
+  const curves = (summary: Record<string, number[]>) => ({ ...NO_CURVES, generation: [1, 2, 3], summary });
+  const run = (experiment: string) => ({ experiment, generations: 3 }) as unknown as Run;
+
+  it("names values apart that hardly differ", () => {
+    const { y } = courseOf(run("refinement"), curves({ fitness: [2.956, 3.01, 3.018] }));
+    const names = ticksOf(y.scale, 8).map(y.write);
+    expect(names.length).toBeGreaterThan(3);
+    expect(new Set(names).size).toBe(names.length);
+  });
+
+  it("has a line for each picture that a filament folds into", () => {
+    const told = {
+      "loss of 3": [0.1, 0.05, 0.02],
+      "loss of 7": [0.1, 0.04, 0.01],
+      loss: [0.1, 0.045, 0.015],
+    };
+    const { lines } = courseOf(run("folding"), curves(told));
+    expect(lines.map(({ name }) => name)).toEqual(["3", "7"]);
+    expect(lines[1]!.points.map(({ y }) => y)).toEqual([0.1, 0.04, 0.01]);
+  });
+});

@@ -1,0 +1,60 @@
+/** Species over the generations as areas upon each other. */
+
+import type { SpeciesHistory } from "../../api/types";
+import { css, viridis } from "../../ui/colours";
+
+export interface Area {
+  number: number;
+  /** Where its area begins and ends in each generation, from 0 to the population's size. */
+  from: number[];
+  to: number[];
+}
+
+export interface Stack {
+  generation: readonly number[];
+  areas: Area[];
+  size: number;
+}
+
+/** The oldest species lie lowest, so that a species keeps its neighbours while it lives. */
+export function stackOf({ generation, number, members }: SpeciesHistory): Stack {
+  const sizes = number.map((row, i) => new Map(row.map((each, k) => [each, members[i]![k]!])));
+  const all = [...new Set(number.flat())].sort((a, b) => a - b);
+  const tops = generation.map(() => 0);
+  const areas = all.map((each) => {
+    const from = [...tops];
+    sizes.forEach((size, i) => (tops[i]! += size.get(each) ?? 0));
+    return { number: each, from, to: [...tops] };
+  });
+  return { generation, areas, size: Math.max(1, ...tops) };
+}
+
+/** Share of the golden section: neighbours in number are far apart in lightness. */
+const GOLDEN = 0.61803398875;
+
+/** Of viridis, which all eyes see alike; the same species always has the same. */
+export function colourOf(number: number): string {
+  return css(viridis(0.08 + 0.88 * ((number * GOLDEN) % 1)));
+}
+
+/** The species at a height in a generation, and its size there. */
+export function speciesAt(stack: Stack, i: number, height: number): [number, number] | null {
+  const area = stack.areas.find(({ from, to }) => height >= from[i]! && height < to[i]!);
+  return area ? [area.number, area.to[i]! - area.from[i]!] : null;
+}
+
+/** An outline in a box: there along the top and back along the bottom, where it has members. */
+export function pathOf({ from, to }: Area, x: (i: number) => number, y: (v: number) => number): string {
+  const [first, last] = lifeOf({ from, to });
+  const there = range(first, last).map((i) => `${x(i).toFixed(1)} ${y(to[i]!).toFixed(1)}`);
+  const back = range(first, last).map((i) => `${x(i).toFixed(1)} ${y(from[i]!).toFixed(1)}`);
+  return `M${there.join("L")}L${back.reverse().join("L")}Z`;
+}
+
+/** From the generation before its first to the one after its last: it grows from nothing. */
+export function lifeOf({ from, to }: Pick<Area, "from" | "to">): [first: number, last: number] {
+  const alive = to.map((top, i) => top > from[i]!);
+  return [Math.max(0, alive.indexOf(true) - 1), Math.min(to.length - 1, alive.lastIndexOf(true) + 1)];
+}
+
+const range = (first: number, last: number) => Array.from({ length: last - first + 1 }, (_, k) => first + k);

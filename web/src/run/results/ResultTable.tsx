@@ -1,0 +1,104 @@
+/** All figures of a run's result, in the order that one wants. */
+
+import { Fragment } from "preact";
+import type { ResultRow, Value } from "../../api/types";
+import { short } from "../../ui/format";
+import { type Column, type Order, columnsOf, sortRows } from "./columns";
+
+/** What is doubtful about a row. */
+const NOTE = "warnings";
+
+interface Props {
+  rows: ResultRow[];
+  order: Order;
+  onOrder: (order: Order) => void;
+  hrefOf: (creature: string) => string;
+}
+
+export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
+  const columns = columnsOf(rows);
+  // Warnings are sentences and have a line of their own; one form alone is named above the plot.
+  const shown = columns.filter(({ name }) => name !== NOTE && (name !== "form" || several(rows, name)));
+  const watchable = rows.some((row) => row.creature !== null);
+  return (
+    <div class="scroll">
+      <table class="results">
+        <thead>
+          <tr>
+            {watchable && <th scope="col">Replay</th>}
+            {shown.map((column) => (
+              <Heading key={column.name} {...{ column, order, onOrder }} />
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {sortRows(rows, order).map((row, i) => (
+            <Fragment key={row.creature ?? i}>
+              <tr class={rowClass(row)}>
+                {watchable && (
+                  <td>
+                    {row.creature && (
+                      <a href={hrefOf(row.creature)}>
+                        <code>{short(row.creature)}</code>
+                      </a>
+                    )}
+                  </td>
+                )}
+                {shown.map((column) => (
+                  <td key={column.name} class={column.numeric ? "numeric" : ""}>
+                    <Cell column={column} value={row[column.name] ?? null} />
+                  </td>
+                ))}
+              </tr>
+              {row[NOTE] && (
+                <tr class="note">
+                  <td colSpan={shown.length + Number(watchable)}>
+                    <span class="warning-text">{row[NOTE]}</span>
+                  </td>
+                </tr>
+              )}
+            </Fragment>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+function Heading({ column, order, onOrder }: { column: Column } & Pick<Props, "order" | "onOrder">) {
+  const mine = order.by === column.name;
+  const sorted = mine ? (order.down ? "descending" : "ascending") : "none";
+  const next = { by: column.name, down: mine ? !order.down : false };
+  return (
+    <th scope="col" aria-sort={sorted} class={column.numeric ? "numeric" : ""}>
+      <button type="button" class="plain" onClick={() => onOrder(next)}>
+        {column.title}
+        <span class="arrow" aria-hidden="true">
+          {mine ? (order.down ? "▾" : "▴") : ""}
+        </span>
+      </button>
+      {column.unit && <span class="unit">{column.unit}</span>}
+    </th>
+  );
+}
+
+function several(rows: ResultRow[], name: string): boolean {
+  return new Set(rows.map((row) => row[name])).size > 1;
+}
+
+function Cell({ column, value }: { column: Column; value: Value }) {
+  const text = column.write(value);
+  const mark = markOf(column.name, value);
+  return mark ? <span class={`mark-word ${mark}`}>{text}</span> : <>{text}</>;
+}
+
+/** Values that people should not overlook. */
+function markOf(name: string, value: Value): "wrong" | "warned" | null {
+  if (name === "status" && value !== "ok") return "wrong";
+  const doubtful = (name === "force_free" && value === false) || (name === "limited" && Number(value) > 0);
+  return doubtful ? "warned" : null;
+}
+
+function rowClass({ status, [NOTE]: note }: ResultRow): string {
+  return `${status !== undefined && status !== "ok" ? "failed" : ""} ${note ? "noted" : ""}`;
+}

@@ -1,0 +1,59 @@
+/** What pages of runs share whose result is a table. */
+
+import type { ResultRow, Results, Run } from "../../api/types";
+import { resultsUrl } from "../../api/urls";
+import { useResults } from "../../store/fetch";
+import { setQuery } from "../../store/router";
+import { count } from "../../ui/format";
+import { ResultTable } from "./ResultTable";
+import type { Order } from "./columns";
+import "./results.css";
+
+export interface Props {
+  run: Run;
+  query: URLSearchParams;
+}
+
+interface Shown {
+  results: Results | null;
+  /** What to say while there is nothing to show. */
+  missing: string | null;
+}
+
+const EMPTY: Record<Run["status"], string> = {
+  queued: "It waits for a worker.",
+  running: "The first results are being computed …",
+  paused: "It was paused before its first results.",
+  finished: "It has no results.",
+  failed: "It failed before its first results.",
+  cancelled: "It was cancelled before its first results.",
+};
+
+export function useTable(run: Run): Shown {
+  const { value, error } = useResults(run.id);
+  // What was fetched stays while fetching it anew fails.
+  if (value && value.rows.length > 0) return { results: value, missing: null };
+  return { results: value, missing: error ?? (value ? EMPTY[run.status] : "Loading the results …") };
+}
+
+export const hrefOf = (run: Run) => (creature: string) => `/creatures/${creature}?run=${run.id}`;
+
+export function TableCard({ run, query, rows }: Props & { rows: ResultRow[] }) {
+  const order: Order = { by: query.get("sort"), down: query.get("order") === "down" };
+  const turn = ({ by, down }: Order) => setQuery({ sort: by, order: down ? "down" : null });
+  return (
+    <section class="card table-card" aria-labelledby="table-title">
+      <div class="card-head">
+        <h2 id="table-title">Table</h2>
+        <span class="quiet">
+          {count(rows.length)} {rows.length === 1 ? "row" : "rows"}
+        </span>
+        <span class="spring" />
+        <a class="button" href={resultsUrl(run.id)}>
+          Download CSV
+        </a>
+      </div>
+      <ResultTable rows={rows} order={order} onOrder={turn} hrefOf={hrefOf(run)} />
+    </section>
+  );
+}

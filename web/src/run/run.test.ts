@@ -1,0 +1,56 @@
+import { describe, expect, it } from "vitest";
+import type { LogEntry, Run } from "../api/types";
+import { doingOf, elapsedOf } from "./RunActivity";
+import { atLeast, summaryOf, textOf } from "./LogList";
+
+describe("a log", () => {
+  const entry = (id: number, level: LogEntry["level"], text: string): LogEntry => ({
+    id,
+    at: `2026-01-01T00:00:0${id}Z`,
+    level,
+    attempt: 1,
+    text,
+  });
+  const entries = [entry(1, "info", "Begins."), entry(2, "warning", "Full."), entry(3, "error", "Ended.")];
+
+  it("shows a level and those above it", () => {
+    expect(atLeast(entries, "info")).toEqual(entries);
+    expect(atLeast(entries, "warning").map(({ id }) => id)).toEqual([2, 3]);
+    expect(atLeast(entries, "error").map(({ id }) => id)).toEqual([3]);
+  });
+
+  it("is copied as lines in the order in which it happened", () => {
+    expect(textOf(entries.slice(0, 2))).toBe(
+      "2026-01-01T00:00:01Z info [attempt 1] Begins.\n2026-01-01T00:00:02Z warning [attempt 1] Full.",
+    );
+  });
+
+  it("tells of a traceback the line that says what went wrong", () => {
+    const text = "Attempt 1 ended badly: Traceback:\n  File x\nValueError: no";
+    expect(summaryOf(text)[0]).toBe("Attempt 1 ended badly: ValueError: no");
+    expect(summaryOf(text).slice(1)).toEqual(text.split("\n"));
+    expect(summaryOf("Finished.")).toEqual(["Finished."]);
+  });
+});
+
+describe("what a run is doing before its figures tell", () => {
+  const run = {
+    status: "running",
+    generation: 0,
+    device: "cpu, a processor",
+    created_at: "2026-01-01T00:00:00Z",
+    started_at: "2026-01-01T00:01:00Z",
+  } as Run;
+
+  it("is said, and for how long", () => {
+    expect(doingOf(run)).toContain("most of a minute on a CPU");
+    expect(doingOf({ ...run, device: "gpu, fast" })).not.toContain("CPU");
+    expect(doingOf({ ...run, generation: 1 })).toBeNull();
+    expect(doingOf({ ...run, status: "finished" })).toBeNull();
+    const queued = { ...run, status: "queued", queued_at: "2026-01-01T00:01:30Z" } as Run;
+    expect(doingOf({ ...queued, waiting: "All workers are busy." })).toBe("All workers are busy.");
+    const now = Date.parse("2026-01-01T00:01:42Z");
+    expect(elapsedOf(run, now)).toBe("42 s");
+    expect(elapsedOf(queued, now)).toBe("12 s");
+  });
+});

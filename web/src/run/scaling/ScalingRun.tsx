@@ -1,0 +1,46 @@
+/** A measurement of wall time: parts, memory and exponents against the number of nodes. */
+
+import { bytes, number } from "../../ui/format";
+import { Plot } from "../../charts/plot/Plot";
+import { logAxis, memoryLines, nodesAxis, timeLines } from "./scaling";
+import { type Props, TableCard, useTable } from "../results/resultsPage";
+
+export function ScalingRun({ run, query }: Props) {
+  const { results, missing } = useTable(run);
+  if (missing || !results) {
+    return (
+      <section class="card">
+        <p class="quiet waiting">{missing}</p>
+      </section>
+    );
+  }
+  const { rows, summary } = results;
+  const times = timeLines(rows, summary);
+  const memory = memoryLines(rows);
+  const x = nodesAxis(run.spec);
+  return (
+    <>
+      <div class="run-columns scaling">
+        <section class="card plot-card" aria-labelledby="time-title">
+          <h2 id="time-title">Wall time</h2>
+          <Plot
+            title="Wall time of 1,000 steps against the number of nodes"
+            x={x}
+            y={logAxis("Seconds for 1,000 steps", times, (value) => number(value, 2))}
+            lines={times}
+          />
+        </section>
+        <section class="card plot-card" aria-labelledby="memory-title">
+          <h2 id="memory-title">Memory</h2>
+          <Plot
+            title="Memory against the number of nodes"
+            x={x}
+            y={logAxis("Memory", memory, bytes)}
+            lines={memory}
+          />
+        </section>
+      </div>
+      <TableCard run={run} query={query} rows={rows} />
+    </>
+  );
+}

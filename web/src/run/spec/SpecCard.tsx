@@ -1,0 +1,137 @@
+/** What a run was asked to do: readable, as JSON, and beside another run's. */
+
+import { useMemo } from "preact/hooks";
+import * as api from "../../api/client";
+import type { Run } from "../../api/types";
+import { useExperiments, useFetched } from "../../store/fetch";
+import { useLive } from "../../store/store";
+import { setQuery } from "../../store/router";
+import { short, titleOf, words } from "../../ui/format";
+import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
+import { differences } from "./difference";
+import { copyText } from "../../ui/clipboard";
+import { RunChoice } from "../RunPicker";
+import "./spec.css";
+
+export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
+  const against = query.get("against");
+  const text = useMemo(() => JSON.stringify(run.spec, null, 2), [run.spec]);
+  const href = `data:application/json;charset=utf-8,${encodeURIComponent(text)}`;
+  return (
+    <section class="card spec-card" id="spec" aria-labelledby="spec-title" tabIndex={-1}>
+      <div class="card-head wraps">
+        <h2 id="spec-title">Spec</h2>
+        <span class="spring" />
+        <RunChoice
+          run={run}
+          label="Difference to a run"
+          fits={() => true}
+          onChoose={(id) => setQuery({ against: id })}
+        />
+        <button class="slim" onClick={() => copyText(text, "Spec copied.")}>
+          Copy JSON
+        </button>
+        <a class="button slim" href={href} download={`${short(run.id)}-spec.json`}>
+          spec.json
+        </a>
+      </div>
+      {against && <DifferenceTo key={against} run={run} id={against} />}
+      <Sections run={run} />
+      <details>
+        <summary>As JSON</summary>
+        <pre tabIndex={0}>{text}</pre>
+      </details>
+    </section>
+  );
+}
+
+function Sections({ run }: { run: Run }) {
+  const experiments = useExperiments().value;
+  const { nearest, sections } = useMemo(() => {
+    const own = experiments?.find(({ experiment }) => experiment === run.experiment);
+    const nearest = nearestPreset(run.spec, own?.presets ?? []);
+    return { nearest, sections: sectionsOf(run.spec, nearest?.changed ?? []) };
+  }, [experiments, run.spec]);
+  return (
+    <>
+      {nearest && <p class="quiet small">{sentenceOf(nearest.preset.name, nearest.changed.length)}</p>}
+      <div class="spec-sections">
+        {sections.map(({ title, fields }) => (
+          <details key={title} open={fields.some(({ usual }) => usual !== null)}>
+            <summary>
+              {title} <span class="quiet small">{fields.length}</span>
+            </summary>
+            <dl>
+              {fields.map(({ path, name, text, usual }) => (
+                <div key={path} class={usual === null ? "" : "unusual"} title={path}>
+                  <dt>{name}</dt>
+                  <dd>
+                    {text}
+                    {usual !== null && <span class="quiet small"> preset: {usual}</span>}
+                  </dd>
+                </div>
+              ))}
+            </dl>
+          </details>
+        ))}
+      </div>
+    </>
+  );
+}
+
+function sentenceOf(preset: string, changed: number): string {
+  if (changed === 0) return `As in the preset ${words(preset)}, whatever the seed.`;
+  return changed === 1
+    ? `One field differs from the preset ${words(preset)}; it stands out below.`
+    : `${changed} fields differ from the preset ${words(preset)}; they stand out below.`;
+}
+
+function DifferenceTo({ run, id }: { run: Run; id: string }) {
+  const known = useLive((state) => state.runs.get(id));
+  const { value, error } = useFetched(() => api.readRun(id), [id]);
+  const experiments = useExperiments().value ?? [];
+  const other = known ?? value;
+  const rows = useMemo(() => (other ? differences([run.spec, other.spec]) : []), [other?.spec, run.spec]);
+  const close = () => setQuery({ against: null });
+  return (
+    <div class="spec-difference" role="region" aria-label="Difference to another run">
+      {error && !other && <p class="wrong-text small">{error}</p>}
+      {!other && !error && <p class="quiet">Loading the other run …</p>}
+      {other && (
+        <table class="plain-table">
+          <caption>
+            {rows.length === 0 ? "No field differs from " : `${rows.length} fields differ from `}
+            <a href={`/runs/${id}`}>
+              {titleOf(other, experiments)} <code>{short(id)}</code>
+            </a>
+          </caption>
+          {rows.length > 0 && (
+            <>
+              <thead>
+                <tr>
+                  <th scope="col">Field</th>
+                  <th scope="col">This run</th>
+                  <th scope="col">The other one</th>
+                </tr>
+              </thead>
+              <tbody>
+                {rows.map(({ path, values }) => (
+                  <tr key={path}>
+                    <th scope="row" title={path}>
+                      {nameOf(path.split("."))}
+                    </th>
+                    <td>{brief(values[0])}</td>
+                    <td>{brief(values[1])}</td>
+                  </tr>
+                ))}
+              </tbody>
+            </>
+          )}
+        </table>
+      )}
+      <button class="slim" onClick={close}>
+        Close the difference
+      </button>
+    </div>
+  );
+}

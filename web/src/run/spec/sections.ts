@@ -1,0 +1,65 @@
+/** A spec as people read it: sections of fields, and which of them are not as usual. */
+
+import type { Json, Preset, Spec } from "../../api/types";
+import { words } from "../../ui/format";
+import { type Difference, differences, written } from "./difference";
+
+/** Characters of a value that are shown; pictures have thousands. */
+const LONGEST = 120;
+
+export interface Field {
+  path: string;
+  name: string;
+  text: string;
+  /** The preset's value, where that is another. */
+  usual: string | null;
+}
+
+export interface Section {
+  title: string;
+  fields: Field[];
+}
+
+/** The preset that a spec is nearest to, whatever its seed, and what differs from it. */
+export function nearestPreset(
+  spec: Spec,
+  presets: readonly Preset[],
+): { preset: Preset; changed: Difference[] } | null {
+  const seedless = (other: Spec) => ({ ...other, seed: spec.seed ?? null });
+  const found = presets.map((preset) => ({
+    preset,
+    changed: differences([seedless(preset.spec), { seed: null, ...spec }]),
+  }));
+  return found.sort((a, b) => a.changed.length - b.changed.length)[0] ?? null;
+}
+
+/** One section for each part of the spec; fields that are no part come first. */
+export function sectionsOf(spec: Spec, changed: readonly Difference[]): Section[] {
+  const usual = new Map(changed.map(({ path, values }) => [path, values[0]]));
+  const sections = new Map<string, Field[]>([["", []]]);
+  for (const { path, values } of differences([{}, spec])) {
+    const [head, ...rest] = path.split(".");
+    const title = rest.length > 0 ? head! : "";
+    if (!sections.has(title)) sections.set(title, []);
+    sections.get(title)!.push({
+      path,
+      name: nameOf(rest.length > 0 ? rest : [head!]),
+      text: brief(values[1]),
+      usual: usual.has(path) ? brief(usual.get(path)) : null,
+    });
+  }
+  return [...sections]
+    .filter(([, fields]) => fields.length > 0)
+    .map(([title, fields]) => ({ title: title ? words(title) : "Run", fields }));
+}
+
+/** `descriptors.0.bins` as `Descriptors 1, bins`. */
+export function nameOf(parts: readonly string[]): string {
+  const text = parts.map((part) => (/^\d+$/.test(part) ? ` ${Number(part) + 1}` : `, ${part}`)).join("");
+  return words(text.replace(/^, /, "").trim());
+}
+
+export function brief(value: Json | undefined): string {
+  const text = written(value);
+  return text.length > LONGEST ? `${text.slice(0, LONGEST)} …` : text;
+}

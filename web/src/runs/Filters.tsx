@@ -1,0 +1,89 @@
+/** What a list of runs leaves out, and its order. */
+
+import { useState } from "preact/hooks";
+import type { Experiment, RunQuery } from "../api/types";
+import { useSettled } from "../store/throttle";
+import { Choice } from "../ui/Select";
+import { words } from "../ui/format";
+import { STATES } from "../run/RunStatus";
+import { ALL, NEWEST, ORDERS, isFiltered } from "./runQuery";
+
+type Pair = [value: string, title: string];
+const ANY: Pair = ["", "any"];
+/** Between the last key and the question. */
+const SETTLE_MS = 200;
+
+interface Props {
+  query: RunQuery;
+  experiments: Experiment[];
+  tags: string[];
+  onChange: (changes: Record<string, string | null>) => void;
+}
+
+export function Filters({ query, experiments, tags, onChange }: Props) {
+  const [typed, setTyped] = useState<string | null>(null);
+  const find = (text: string) => {
+    setTyped(null);
+    onChange({ q: text || null });
+  };
+  useSettled(typed, SETTLE_MS, find);
+  const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
+  return (
+    <form
+      class="filters"
+      role="search"
+      aria-label="Runs"
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (typed !== null) find(typed);
+      }}
+    >
+      <input
+        type="search"
+        aria-label="Find runs by name, tag, note or id"
+        placeholder="Name, tag, note or id"
+        maxLength={200}
+        value={typed ?? query.q ?? ""}
+        onInput={(event) => setTyped(event.currentTarget.value)}
+      />
+      <Choice
+        title="State"
+        value={query.status?.[0] ?? ""}
+        choices={[ANY, ...STATES.map((state): Pair => [state, words(state)])]}
+        onChange={(status) => onChange({ status: status || null })}
+      />
+      <Choice
+        title="Experiment"
+        value={query.experiment?.[0] ?? ""}
+        choices={[ANY, ...experiments.map(({ experiment, title }): Pair => [experiment, title])]}
+        onChange={(experiment) => onChange({ experiment: experiment || null })}
+      />
+      {known.length > 0 && (
+        <Choice
+          title="Tag"
+          value={query.tag ?? ""}
+          choices={[ANY, ...known.map((tag): Pair => [tag, tag])]}
+          onChange={(tag) => onChange({ tag: tag || null })}
+        />
+      )}
+      <Choice
+        title="Order"
+        value={query.sort ?? NEWEST}
+        choices={ORDERS}
+        onChange={(sort) => onChange({ sort: sort === NEWEST ? null : sort })}
+      />
+      {isFiltered(query) && (
+        <button
+          type="button"
+          class="plain"
+          onClick={() => {
+            setTyped(null);
+            onChange(ALL);
+          }}
+        >
+          Show all
+        </button>
+      )}
+    </form>
+  );
+}

@@ -1,0 +1,121 @@
+/** A run in the list: how it is doing, what people say of it, what can be done. */
+
+import type { Experiment } from "../api/types";
+import { useRefusal } from "../store/principal";
+import { restore } from "../store/lifecycle";
+import { useLive } from "../store/store";
+import { addTag, removeNote, removeTag, say } from "../store/edit";
+import { setQuery } from "../store/router";
+import { freedomOf } from "../ui/coupling";
+import { DASH, moment, number, short, titleOf } from "../ui/format";
+import { NotFree } from "../ui/NotForceFree";
+import { keyFigureOf } from "../run/figures";
+import { Actions, Badge, Progress, timeOf } from "../run/RunStatus";
+import { Name, Note, Tags } from "../run/RunLabels";
+import { Sparkline } from "../charts/Sparkline";
+import { ON } from "../run/runCommands";
+
+interface Props {
+  id: string;
+  experiments: Experiment[];
+  chosen: boolean;
+  knownTags: string;
+  onChoose: () => void;
+}
+
+export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) {
+  const run = useLive((state) => state.runs.get(id)!);
+  const title = titleOf(run, experiments);
+  const name = `${title} ${short(run.id)}`;
+  const time = timeOf(run);
+  const mayMake = !useRefusal();
+  const mayChange = !useRefusal(run);
+  const fixed = !mayChange || run.deleted_at !== null;
+  const [figureName, figure] = keyFigureOf(run);
+  return (
+    <tr class={chosen ? "chosen-row" : ""}>
+      <td class="row-choice">
+        {!run.deleted_at && (
+          <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
+        )}
+      </td>
+      <th scope="row">
+        <Name of={run} {...{ title, fixed }} onName={(name) => void say(run.id, { name })}>
+          <a class="run-name" href={`/runs/${run.id}`}>
+            {title} <code>{short(run.id)}</code>
+          </a>
+        </Name>
+        {run.sweep && (
+          <a class="badge of-sweep" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
+            sweep
+          </a>
+        )}
+        {freedomOf(run.spec) === "none" && <NotFree />}
+        {run.status === "running" && run.generation === 0 && (
+          <span class="row-note quiet">compiling and computing its first generation</span>
+        )}
+        {run.purge_at && (
+          <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>
+        )}
+        {run.waiting && <span class="row-note why">{run.waiting}</span>}
+        {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
+        {run.warning && <span class="row-note warning-text">{run.warning}</span>}
+        <span class="said">
+          <Tags
+            {...{ run, name, fixed }}
+            known={knownTags}
+            onPick={(tag) => setQuery({ tag })}
+            onAdd={(tag) => addTag(run, tag)}
+            onRemove={(tag) => removeTag(run, tag)}
+          />
+          <Note
+            {...{ run, name, fixed }}
+            onNote={(note) => void say(run.id, { note })}
+            onRemove={() => removeNote(run)}
+          />
+        </span>
+      </th>
+      <td data-label="State">
+        <Badge run={run} />
+      </td>
+      <td data-label="Progress" class="with-bar">
+        <Progress run={run} />
+        <span class="quiet">
+          {run.generation} / {run.generations}
+        </span>
+      </td>
+      <td data-label={time.label} class="time">
+        {time.text}
+        {run.status === "running" && time.text !== DASH && <span class="quiet"> left</span>}
+      </td>
+      <td data-label="Evaluations/s">{number(run.evaluations_per_second)}</td>
+      <td data-label="Result" class="with-spark">
+        <span>
+          {figure} <span class="quiet small">{figureName}</span>
+        </span>
+        {run.sparkline.length > 1 && (
+          <Sparkline values={run.sparkline} label={`QD score of ${name} over time`} />
+        )}
+      </td>
+      <td class="row-actions">
+        <span class="actions">
+          {mayChange && run.deleted_at && (
+            <button onClick={() => void restore(run.id)} aria-label={`Restore ${name}`}>
+              Restore
+            </button>
+          )}
+          {!fixed && !run.deleted_at && <Actions run={run} on={ON(title)} name={name} />}
+          {mayMake && (
+            <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
+              Clone
+            </a>
+          )}
+        </span>
+      </td>
+    </tr>
+  );
+}
+
+function lastLine(text: string): string {
+  return text.trim().split("\n").at(-1) ?? "";
+}

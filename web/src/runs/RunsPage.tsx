@@ -1,0 +1,204 @@
+/** All runs, alive: found, sorted, named, compared. */
+
+import { useState } from "preact/hooks";
+import { MAX_LINES } from "../charts/lineStyle";
+import { messageOf } from "../api/problem";
+import type { Experiment, RunQuery } from "../api/types";
+import { useRefusal } from "../store/principal";
+import { useExperiments } from "../store/fetch";
+import { moreRuns, useRunList, useTags } from "../store/runList";
+import { useLive } from "../store/store";
+import { useSweeps } from "../store/sweeps";
+import { tell } from "../store/toasts";
+import { setQuery } from "../store/router";
+import { Filters } from "./Filters";
+import { ALL, ALONE, ariaSort, grouped, isFiltered, nextSort, queryOf } from "./runQuery";
+import { RunRow } from "./RunRow";
+import { SweepRows } from "./SweepRows";
+import { Welcome } from "./Welcome";
+import "./runs.css";
+
+/** Sweeps that stand above the list, at first and when more are asked for. */
+const FEW = 5;
+const MANY = 100;
+const TAGS_ID = "known-tags";
+
+const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
+  { title: "Run", key: "name" },
+  { title: "State", key: "status" },
+  { title: "Progress", key: "progress", falling: true },
+  { title: "Time" },
+  { title: "Evaluations/s" },
+  { title: "Result", key: "qd_score", falling: true },
+];
+
+export function RunsPage({ query: address }: { query: URLSearchParams }) {
+  const query = queryOf(address);
+  const together = grouped(query);
+  const listedQuery: RunQuery = together ? { sweep: ALONE } : query;
+  const { value: fetched, error } = useRunList(listedQuery);
+  const [most, setMost] = useState(FEW);
+  const sweeps = useSweeps(most, together).value;
+  const listed = useLive((state) => state.listed);
+  const next = useLive((state) => state.next);
+  const experiments = useExperiments().value ?? [];
+  const tags = useTags();
+  const refusal = useRefusal();
+  const [chosen, setChosen] = useState<string[]>([]);
+  const choose = (id: string) =>
+    setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
+  const swept = together && (sweeps?.items.length ?? 0) > 0;
+  const empty = fetched && listed.length === 0 && !swept;
+  return (
+    <main>
+      <header class="page-head">
+        <h1>{query.deleted ? "Bin" : "Runs"}</h1>
+        <span class="spring" />
+        <a class="button" href={query.deleted ? "/" : "/?deleted=true"}>
+          {query.deleted ? "Runs" : "Bin"}
+        </a>
+        {!refusal && (
+          <a class="button primary" href="/new">
+            New run
+          </a>
+        )}
+      </header>
+      <Welcome />
+      {error && <p class="banner wrong">{error}</p>}
+      {!fetched && !error && listed.length === 0 && <p class="quiet loading">Loading runs …</p>}
+      {(listed.length > 0 || swept || isFiltered(query)) && (
+        <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
+      )}
+      {chosen.length > 0 && <Chosen ids={chosen} onClear={() => setChosen([])} />}
+      {empty && query.deleted && !isFiltered(query) && <p class="quiet">The bin is empty.</p>}
+      {empty && (isFiltered(query) ? <NoneFound /> : !query.deleted && <Empty />)}
+      {query.sweep && <OfSweep sweep={query.sweep} />}
+      {swept && <SweepRows page={sweeps!} onMore={most < MANY ? () => setMost(MANY) : null} />}
+      {listed.length > 0 && <Table {...{ query, listed, experiments, chosen }} onChoose={choose} />}
+      <datalist id={TAGS_ID}>
+        {tags.map((tag) => (
+          <option key={tag} value={tag} />
+        ))}
+      </datalist>
+      {next && <More query={listedQuery} />}
+    </main>
+  );
+}
+
+interface TableProps {
+  query: RunQuery;
+  listed: readonly string[];
+  experiments: Experiment[];
+  chosen: string[];
+  onChoose: (id: string) => void;
+}
+
+function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
+  return (
+    <table class="runs">
+      <thead>
+        <tr>
+          <th scope="col">
+            <span class="unseen">Compare</span>
+          </th>
+          {COLUMNS.map(({ title, key, falling = false }) => (
+            <th key={title} scope="col" aria-sort={key ? ariaSort(query.sort, key) : undefined}>
+              {key ? (
+                <button class="sort" onClick={() => setQuery({ sort: nextSort(query.sort, key, falling) })}>
+                  {title}
+                </button>
+              ) : (
+                title
+              )}
+            </th>
+          ))}
+          <th scope="col">
+            <span class="unseen">Actions</span>
+          </th>
+        </tr>
+      </thead>
+      <tbody>
+        {listed.map((id) => (
+          <RunRow
+            key={id}
+            id={id}
+            experiments={experiments}
+            chosen={chosen.includes(id)}
+            knownTags={TAGS_ID}
+            onChoose={() => onChoose(id)}
+          />
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function Chosen({ ids, onClear }: { ids: string[]; onClear: () => void }) {
+  return (
+    <p class="chosen" role="status">
+      <span>
+        {ids.length} chosen
+        {ids.length === 1 && ": choose another one to compare them"}
+        {ids.length > MAX_LINES && `: at most ${MAX_LINES} can be compared`}
+      </span>
+      <span class="spring" />
+      {ids.length > 1 && ids.length <= MAX_LINES && (
+        <a class="button primary" href={`/compare?runs=${ids.join()}`}>
+          Compare
+        </a>
+      )}
+      <button onClick={onClear}>Choose none</button>
+    </p>
+  );
+}
+
+/** Which sweep the list is of, and the way to it. */
+function OfSweep({ sweep }: { sweep: string }) {
+  if (sweep === ALONE) return null;
+  return (
+    <p class="banner why">
+      Runs of <a href={`/sweeps/${sweep}`}>one sweep</a>: its page has their curves and figures together.
+    </p>
+  );
+}
+
+function NoneFound() {
+  return (
+    <section class="empty card">
+      <h2>No run is like that</h2>
+      <p>Change what is asked for above, or look at all of them.</p>
+      <button onClick={() => setQuery(ALL)}>Show all runs</button>
+    </section>
+  );
+}
+
+function Empty() {
+  return (
+    <section class="empty card">
+      <h2>No runs yet</h2>
+      <p>
+        A run evolves swimmers: from random bodies that twitch to an archive of the best swimmer of every
+        kind. The demo takes minutes on a laptop.
+      </p>
+      <a class="button primary" href="/new">
+        Start the first run
+      </a>
+    </section>
+  );
+}
+
+function More({ query }: { query: RunQuery }) {
+  const [busy, setBusy] = useState(false);
+  const load = async () => {
+    setBusy(true);
+    await moreRuns(query).catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
+    setBusy(false);
+  };
+  return (
+    <p class="more">
+      <button onClick={load} disabled={busy}>
+        {busy ? "Loading …" : "Load more"}
+      </button>
+    </p>
+  );
+}

@@ -1,0 +1,41 @@
+/** Sweeps above the list of runs: each stands as one for all of its runs. */
+
+import type { SweepPage } from "../api/types";
+import { moment } from "../ui/format";
+import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../sweeps/SweepStatus";
+import "./sweepRows.css";
+
+interface Props {
+  page: SweepPage;
+  /** Null where no more are shown. */
+  onMore: (() => void) | null;
+}
+
+export function SweepRows({ page, onMore }: Props) {
+  return (
+    <section class="sweep-rows" aria-label="Sweeps">
+      <ul>
+        {page.items.map((sweep) => (
+          <li key={sweep.id} class="card sweep-row">
+            <span class="sweep-name">
+              <a class="run-name" href={`/sweeps/${sweep.id}`}>
+                {sweepTitle(sweep)}
+              </a>
+              <span class="quiet small">
+                {sizeOf(sweep)} · {moment(sweep.created_at)}
+              </span>
+            </span>
+            <span class="sweep-standing">
+              <SweepProgress sweep={sweep} />
+              <SweepStates sweep={sweep} />
+            </span>
+            <a class="button" href={`/?sweep=${sweep.id}`} aria-label={`Runs of ${sweepTitle(sweep)}`}>
+              Runs
+            </a>
+          </li>
+        ))}
+      </ul>
+      {page.next && onMore && <button onClick={onMore}>Show more sweeps</button>}
+    </section>
+  );
+}

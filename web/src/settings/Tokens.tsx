@@ -1,0 +1,168 @@
+/** The tokens of all: made, shown once, revoked. Only admins come here. */
+
+import { useState } from "preact/hooks";
+import { createToken, readTokens, revokeToken } from "../api/client";
+import { messageOf } from "../api/problem";
+import type { Token, TokenMade, TokenScope } from "../api/types";
+import { useFetched } from "../store/fetch";
+import { tell } from "../store/toasts";
+import { Twice } from "../ui/ConfirmButton";
+import { copyText } from "../ui/clipboard";
+import { TERMS, day, endOf, isOver, standingOf } from "./tokenText";
+
+export function Tokens({ own }: { own: string | null }) {
+  const [turn, setTurn] = useState(0);
+  const [made, setMade] = useState<TokenMade | null>(null);
+  const { value, error } = useFetched(readTokens, [turn]);
+  const again = () => setTurn((count) => count + 1);
+  return (
+    <section class="card" aria-labelledby="tokens-title">
+      <h2 id="tokens-title">Tokens</h2>
+      <NewToken
+        onMade={(token) => {
+          setMade(token);
+          again();
+        }}
+      />
+      {made && <Secret made={made} onDone={() => setMade(null)} />}
+      {error && <p class="banner wrong">{error}</p>}
+      {value?.length === 0 && <p class="quiet">There are none yet.</p>}
+      {value && value.length > 0 && <Table tokens={value} own={own} onRevoked={again} />}
+    </section>
+  );
+}
+
+function NewToken({ onMade }: { onMade: (made: TokenMade) => void }) {
+  const [name, setName] = useState("");
+  const [scope, setScope] = useState<TokenScope>("write");
+  const [days, setDays] = useState(90);
+  const [error, setError] = useState<string | null>(null);
+  const submit = async (event: Event) => {
+    event.preventDefault();
+    try {
+      onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(days) }));
+      setName("");
+      setError(null);
+    } catch (problem) {
+      setError(messageOf(problem));
+    }
+  };
+  return (
+    <form class="new-token" onSubmit={submit}>
+      <label>
+        Whose it is
+        <input
+          value={name}
+          required
+          maxLength={64}
+          autocomplete="off"
+          placeholder="alice, laptop"
+          onInput={({ currentTarget }) => setName(currentTarget.value)}
+        />
+      </label>
+      <label>
+        May
+        <select value={scope} onChange={({ currentTarget }) => setScope(currentTarget.value as TokenScope)}>
+          <option value="read">look (read)</option>
+          <option value="write">look and make (write)</option>
+          <option value="admin">everything (admin)</option>
+        </select>
+      </label>
+      <label>
+        Good for
+        <select value={days} onChange={({ currentTarget }) => setDays(Number(currentTarget.value))}>
+          {TERMS.map(([title, value]) => (
+            <option key={value} value={value}>
+              {title.toLowerCase()}
+            </option>
+          ))}
+        </select>
+      </label>
+      <button class="primary" disabled={!name.trim()}>
+        Make a token
+      </button>
+      {error && (
+        <p class="wrong-text" role="alert">
+          {error}
+        </p>
+      )}
+    </form>
+  );
+}
+
+/** The only time that it can be read. */
+function Secret({ made, onDone }: { made: TokenMade; onDone: () => void }) {
+  return (
+    <div class="banner secret" role="status">
+      <p>
+        The token of <strong>{made.name}</strong>. It is shown only now: keep it where passwords are kept.
+      </p>
+      <code tabIndex={0}>{made.secret}</code>
+      <span class="actions">
+        <button onClick={() => copyText(made.secret, "Token copied.")}>Copy</button>
+        <button class="plain" onClick={onDone}>
+          Done
+        </button>
+      </span>
+    </div>
+  );
+}
+
+interface TableProps {
+  tokens: Token[];
+  own: string | null;
+  onRevoked: () => void;
+}
+
+function Table({ tokens, own, onRevoked }: TableProps) {
+  return (
+    <div class="wide-table" tabIndex={0} role="group" aria-label="Tokens">
+      <table>
+        <thead>
+          <tr>
+            {["Name", "Begins", "May", "Made", "Last used", "Good"].map((title) => (
+              <th key={title} scope="col">
+                {title}
+              </th>
+            ))}
+            <th scope="col">
+              <span class="unseen">Revoke</span>
+            </th>
+          </tr>
+        </thead>
+        <tbody>
+          {tokens.map((token) => (
+            <tr key={token.id} class={isOver(token) ? "quiet" : undefined}>
+              <th scope="row">
+                {token.name}
+                {token.id === own && " (you)"}
+              </th>
+              <td>
+                <code>{token.beginning}…</code>
+              </td>
+              <td>{token.scope}</td>
+              <td>{day(token.created_at)}</td>
+              <td>{token.last_used_at ? day(token.last_used_at) : "Never"}</td>
+              <td>{standingOf(token)}</td>
+              <td>
+                {!isOver(token) && (
+                  <Twice verb="Revoke" what={token.name} onDo={() => revoke(token, onRevoked)} />
+                )}
+              </td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void> {
+  try {
+    await revokeToken(id);
+    tell({ kind: "note", text: `The token of ${name} is revoked.` });
+    onRevoked();
+  } catch (error) {
+    tell({ kind: "wrong", text: messageOf(error) });
+  }
+}

@@ -1,0 +1,50 @@
+import { afterEach, describe, expect, it, vi } from "vitest";
+import type { Token } from "../api/types";
+import { endOf, isOver, standingOf } from "./tokenText";
+
+const NOW = Date.parse("2026-06-15T12:00:00Z");
+
+const token = (changes: Partial<Token>): Token => ({
+  id: "0",
+  name: "alice",
+  beginning: "mc_abcdef",
+  scope: "write",
+  created_at: "2026-01-01T12:00:00Z",
+  expires_at: null,
+  revoked_at: null,
+  last_used_at: null,
+  ...changes,
+});
+
+describe("a token", () => {
+  it.each([
+    [{}, "No end", false],
+    [{ expires_at: "2026-07-01T12:00:00Z" }, "Until 1 Jul 2026", false],
+    [{ expires_at: "2026-06-15T11:59:00Z" }, "Expired 15 Jun 2026", true],
+    [{ revoked_at: "2026-05-02T12:00:00Z" }, "Revoked 2 May 2026", true],
+  ])("stands as %o says", (changes, standing, over) => {
+    expect(standingOf(token(changes), NOW)).toBe(standing);
+    expect(isOver(token(changes), NOW)).toBe(over);
+  });
+
+  it("is good for as many days as were chosen, or for ever", () => {
+    expect(endOf(7, NOW)).toBe("2026-06-22T12:00:00.000Z");
+    expect(endOf(0, NOW)).toBeNull();
+  });
+});
+
+describe("an answer that nobody is signed in", () => {
+  afterEach(() => vi.unstubAllGlobals());
+
+  it("is told to the page once, whichever request got it", async () => {
+    vi.resetModules();
+    const told = vi.fn();
+    vi.stubGlobal("dispatchEvent", told);
+    const { isUnknown, noteStatus } = await import("../api/signedOut");
+    noteStatus(403);
+    expect([isUnknown(), told.mock.calls.length]).toEqual([false, 0]);
+    noteStatus(401);
+    noteStatus(401);
+    expect([isUnknown(), told.mock.calls.length]).toEqual([true, 1]);
+  });
+});

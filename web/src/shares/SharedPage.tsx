@@ -1,0 +1,144 @@
+/** What was shared, as whoever has its address sees it: a creature, or an archive and its elites. */
+
+import { useEffect } from "preact/hooks";
+import * as api from "../api/client";
+import { archiveUrl } from "../api/urls";
+import type { Share } from "../api/types";
+import { useFetched, useRunDetail } from "../store/fetch";
+import { useLive } from "../store/store";
+import { count, moment, short } from "../ui/format";
+import { NotThere } from "../ui/NotFound";
+import { ArchiveRun } from "../run/ArchiveRun";
+import { Whole } from "../creature/CreaturePage";
+import { FileLink } from "../ui/FileLink";
+import { Taking } from "./ImportHint";
+import "./shares.css";
+
+interface Props {
+  slug: string;
+  /** One of the creatures of an archive. */
+  sha: string | null;
+  query: URLSearchParams;
+}
+
+export function SharedPage({ slug, sha, query }: Props) {
+  const { value: share, error } = useFetched(() => api.readShare(slug), [slug]);
+  useEffect(() => {
+    if (share) document.title = `${share.title} · Microcosmos`;
+  }, [share]);
+  if (!share) {
+    return (
+      <main>
+        {error ? (
+          <NotThere what="Nothing to see here" reason={error} />
+        ) : (
+          <p class="quiet loading">Loading …</p>
+        )}
+      </main>
+    );
+  }
+  const creature = sha ?? share.creature;
+  return (
+    <main>
+      {share.run && sha && (
+        <nav class="crumbs" aria-label="Where you are">
+          <a href={`/s/${slug}`}>{share.title}</a>
+        </nav>
+      )}
+      <header class="page-head">
+        <h1>
+          {share.run && sha ? "Creature" : share.title} {creature && <code>{short(creature)}</code>}
+        </h1>
+      </header>
+      <Terms share={share} />
+      {creature && <OneCreature key={creature} {...{ share, query }} sha={creature} />}
+      {share.run && !sha && <OneArchive {...{ share, query }} id={share.run} />}
+    </main>
+  );
+}
+
+const TEXTS: Record<string, string> = {
+  "CC-BY-4.0": "https://creativecommons.org/licenses/by/4.0/",
+  "CC-BY-SA-4.0": "https://creativecommons.org/licenses/by-sa/4.0/",
+  "CC-BY-NC-4.0": "https://creativecommons.org/licenses/by-nc/4.0/",
+  "CC0-1.0": "https://creativecommons.org/publicdomain/zero/1.0/",
+};
+
+/** Whose it is, what may be done with it, and how long it stays. */
+function Terms({ share: { credit, licence, expires_at, created_at } }: { share: Share }) {
+  const text = TEXTS[licence];
+  return (
+    <dl class="facts terms">
+      {credit.length > 0 && <Term name="Credit">{credit.join(", ")}</Term>}
+      <Term name="Licence">
+        {text ? (
+          <a href={text} target="_blank" rel="noreferrer license">
+            {licence}
+          </a>
+        ) : (
+          licence
+        )}
+      </Term>
+      <Term name="Shared">{moment(created_at)}</Term>
+      {expires_at && <Term name="Until">{moment(expires_at)}</Term>}
+    </dl>
+  );
+}
+
+function Term({ name, children }: { name: string; children: preact.ComponentChildren }) {
+  return (
+    <div>
+      <dt>{name}</dt>
+      <dd>{children}</dd>
+    </div>
+  );
+}
+
+interface CreatureProps {
+  share: Share;
+  sha: string;
+  query: URLSearchParams;
+}
+
+function OneCreature({ share, sha, query }: CreatureProps) {
+  const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
+  if (error) return <p class="banner wrong">{error}</p>;
+  if (!creature) return <p class="quiet loading">Loading creature …</p>;
+  return (
+    <>
+      <Whole {...{ creature, query }} />
+      <Taking share={share} sha={sha} />
+    </>
+  );
+}
+
+interface ArchiveProps {
+  share: Share;
+  id: string;
+  query: URLSearchParams;
+}
+
+function OneArchive({ share, id, query }: ArchiveProps) {
+  const { error } = useRunDetail(id);
+  const run = useLive((state) => state.runs.get(id));
+  const detail = useLive((state) => state.details.get(id));
+  if (!run) {
+    return error ? <p class="banner wrong">{error}</p> : <p class="quiet loading">Loading …</p>;
+  }
+  return (
+    <>
+      <ArchiveRun {...{ run, detail, query }} />
+      <section class="card" aria-labelledby="files-title">
+        <h2 id="files-title">Files</h2>
+        <p class="links">
+          <FileLink url={archiveUrl(id, "h5")} name="archive.h5" />
+          <FileLink url={archiveUrl(id, "csv")} name="archive.csv" />
+        </p>
+        <p class="quiet">
+          As they were after generation {count(share.generation ?? 0)}. Computed by version {run.version}
+          {run.device && `, on ${run.device}`}.
+        </p>
+      </section>
+    </>
+  );
+}

@@ -1,0 +1,55 @@
+/** Publishing, and pages that are open to strangers. */
+
+import { describe, expect, it } from "vitest";
+import { isOpen } from "../api/address";
+import { askedIn } from "../publish/PublishDialog";
+import { routeOf } from "../store/router";
+
+const form = (fields: Record<string, string>) => {
+  const data = new FormData();
+  for (const [name, value] of Object.entries(fields)) data.set(name, value);
+  return data;
+};
+
+describe("what a form asks to publish", () => {
+  const plain = { title: " ", credit: "", licence: "CC0-1.0", term: "never" };
+
+  it("leaves what is empty to the server", () => {
+    expect(askedIn(form(plain))).toEqual({
+      credit: [],
+      licence: "CC0-1.0",
+      expires_at: null,
+      listed: false,
+    });
+  });
+
+  it("takes names apart and counts days from now", () => {
+    const now = Date.parse("2026-03-01T00:00:00Z");
+    const asked = askedIn(
+      form({ ...plain, title: "Eel", credit: "Ada, , Bob ", term: "7", listed: "on" }),
+      now,
+    );
+    expect(asked).toMatchObject({ title: "Eel", credit: ["Ada", "Bob"], listed: true });
+    expect(asked.expires_at).toBe("2026-03-08T00:00:00.000Z");
+  });
+
+  it("takes a date as the clock on the wall has it", () => {
+    const asked = askedIn(form({ ...plain, term: "date", until: "2026-03-01T12:00" }));
+    expect(asked.expires_at).toBe(new Date("2026-03-01T12:00").toISOString());
+  });
+});
+
+describe("pages for strangers", () => {
+  it("are shares and the commons", () => {
+    expect(["/s/abc", "/s/abc/creatures/12", "/commons"].every(isOpen)).toBe(true);
+    expect(["/", "/s", "/s/", "/shares", "/creatures/12", "/runs/s/abc"].some(isOpen)).toBe(false);
+  });
+
+  it("hold one thing, or a creature of an archive", () => {
+    expect(routeOf("/s/abc")).toEqual({ page: "share", slug: "abc", sha: null });
+    expect(routeOf("/s/abc/creatures/12")).toEqual({ page: "share", slug: "abc", sha: "12" });
+    for (const path of ["/s", "/s/abc/runs/1", "/s/abc/creatures/1/2"]) {
+      expect(routeOf(path)).toEqual({ page: "unknown" });
+    }
+  });
+});

@@ -1,0 +1,160 @@
+import { describe, expect, it } from "vitest";
+import type { Archive, GenerationEvent, Generations, Run, Values } from "../api/types";
+import { type Action, EMPTY, type State, epochOf, reduce } from "./reducer";
+import { LONGEST, appendCurves } from "./curves";
+import { withPoint } from "./rate";
+
+const RUN = {
+  id: "a",
+  created_at: "2026-01-02T00:00:00Z",
+  generation: 2,
+  generations: 10,
+  evaluations: 32,
+  sparkline: [1, 2],
+  spec: { archive: {} },
+} as unknown as Run;
+
+const ARCHIVE: Archive = {
+  generation: 2,
+  kind: "grid",
+  cells: 16,
+  axes: [],
+  recorded: [],
+  features: {},
+  cell: [0, 5],
+  fitness: [1, 2],
+  descriptors: [
+    [0, 0],
+    [1, 1],
+  ],
+  elite_generation: [1, 2],
+  creature: ["aa", "bb"],
+};
+
+const column = [1, 2];
+
+const GENERATIONS: Generations = {
+  generation: column,
+  qd_score: column,
+  coverage: column,
+  best: column,
+  mean: column,
+  evaluations: [16, 32],
+  diverged: [0, 0],
+  seconds: [1, 2],
+  summary: { inserted: [5, 6], corrected: [null, 0.5] },
+};
+
+function generation(number: number): GenerationEvent {
+  const [evaluations, seconds] = [16 * number, 2 * number];
+  const values = { qd_score: number, coverage: number, best: number, mean: number, diverged: 0 };
+  const summary = { inserted: number, ended: "words", ...(number % 2 === 1 && { late: number }) };
+  return { run: "a", generation: number, evaluations, seconds, ...values, summary };
+}
+
+const snapshot = (state: State): Action => ({
+  type: "snapshot",
+  run: "a",
+  epoch: epochOf(state, "a"),
+  archive: ARCHIVE,
+  generations: GENERATIONS,
+});
+
+function after(...actions: (Action | ((state: State) => Action))[]): State {
+  return actions.reduce<State>((state, action) => {
+    return reduce(state, typeof action === "function" ? action(state) : action);
+  }, EMPTY);
+}
+
+const open: Action = { type: "open", run: "a", more: 1 };
+
+describe("long runs", () => {
+  it("are thinned out instead of growing for ever", () => {
+    const full = Array.from({ length: LONGEST }, (_, i) => i);
+    const rare = full.map((i) => (i === 7 || i === LONGEST - 1 ? i : null));
+    const costs = { evaluations: full, seconds: full };
+    const columns = { generation: full, ...costs, qd_score: full, coverage: full, best: full };
+    const next = appendCurves({ ...columns, summary: { rare } }, generation(LONGEST));
+    expect(next.generation.length).toBe(LONGEST / 2 + 1);
+    expect(next.generation.at(-1)).toBe(LONGEST);
+    const told = next.summary.rare!.flatMap((value, i) => (value === null ? [] : [[i, value]]));
+    expect(told).toEqual([
+      [4, 7],
+      [LONGEST / 2, LONGEST - 1],
+    ]);
+    expect(next.summary.inserted!.length).toBe(LONGEST / 2 + 1);
+  });
+
+  it("keep a straight sparkline straight", () => {
+    let line: number[] = [];
+    for (let g = 1; g <= 200; g++) line = withPoint(line, g - 1, 3 * g, g);
+    expect(line.length).toBe(32);
+    line.forEach((value, k) => expect(value).toBeCloseTo(3 + (k * 597) / 31, 6));
+  });
+});
+
+describe("a run without an archive", () => {
+  const bare = (state: State): Action => ({ ...(snapshot(state) as object), archive: null }) as Action;
+
+  it("has curves and no elites", () => {
+    const detail = after(open, bare).details.get("a")!;
+    expect([detail.archive, detail.elites.size]).toEqual([null, 0]);
+    expect(detail.curves!.generation).toEqual([1, 2]);
+  });
+
+  it("is told of each growth of its table, and others are not", () => {
+    const event = { run: "a", generation: 3, rows: [], summary: null };
+    const state = after({ type: "results", event }, { type: "results", event });
+    expect([state.tables.get("a"), state.tables.get("b")]).toEqual([2, undefined]);
+  });
+
+  it("has the newest summary that was told, and keeps it where none comes", () => {
+    const told = (generation: number, summary: Values | null): Action => {
+      return { type: "results", event: { run: "a", generation, rows: [], summary } };
+    };
+    const run: Action = { type: "run", run: RUN };
+    const state = after(run, told(2, { best: 2 }), told(3, null), told(1, { best: 1 }));
+    expect(state.runs.get("a")!.summary).toEqual({ best: 2 });
+  });
+});
+
+describe("curves of runs that are looked at beside others", () => {
+  const watch = (more: 1 | -1): Action => ({ type: "watch", run: "a", more });
+  const curves = (state: State): Action => ({
+    type: "curves",
+    run: "a",
+    epoch: epochOf(state, "a"),
+    generations: GENERATIONS,
+  });
+  const third: Action = { type: "generation", event: generation(3) };
+  const told = (state: State) => state.watching.get("a")?.curves;
+
+  it("grow with every generation, told before or after the snapshot", () => {
+    expect(told(after(watch(1), third, curves))!.generation).toEqual([1, 2, 3]);
+    const later = told(after(watch(1), curves, third))!;
+    expect([later.evaluations, later.seconds]).toEqual([
+      [16, 32, 48],
+      [1, 2, 6],
+    ]);
+  });
+
+  it("are cut by a rewind, and no snapshot from before it counts", () => {
+    const back: Action = { type: "rewind", event: { run: "a", generation: 1 } };
+    const state = after(watch(1), curves, third, back);
+    expect(told(state)!.generation).toEqual([1]);
+    expect(told(reduce(state, curves(EMPTY)))!.generation).toEqual([1]);
+    expect(told(reduce(state, curves(state)))!.generation).toEqual([1, 2]);
+  });
+
+  it("outlive a reset, but not the next snapshot", () => {
+    const state = after(watch(1), curves, third, { type: "reset" });
+    expect(told(state)!.generation).toEqual([1, 2, 3]);
+    expect(told(reduce(state, curves(state)))!.generation).toEqual([1, 2]);
+  });
+
+  it("are forgotten when the last one has looked away", () => {
+    expect(after(watch(1), watch(1), curves, watch(-1)).watching.size).toBe(1);
+    expect(after(watch(1), watch(1), curves, watch(-1), watch(-1)).watching.size).toBe(0);
+    expect(after(curves, third).watching.size).toBe(0);
+  });
+});

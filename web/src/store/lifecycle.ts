@@ -1,0 +1,34 @@
+/** A run's further life: more generations, the bin and the way out of it. */
+
+import * as api from "../api/client";
+import { messageOf } from "../api/problem";
+import type { Run } from "../api/types";
+import { answer } from "./store";
+import { dismiss, tell } from "./toasts";
+
+/** What the server answers is shown; where it refuses, its words are. */
+async function asked(answered: Promise<Run>): Promise<boolean> {
+  try {
+    await answer("done", answered);
+    return true;
+  } catch (error) {
+    tell({ kind: "wrong", text: messageOf(error) });
+    return false;
+  }
+}
+
+export const extend = (id: string, generations: number) => asked(api.extendRun(id, generations));
+
+export const restore = (id: string) => asked(api.restoreRun(id));
+
+/** Into the bin at once; the note leads back, and so does the bin. */
+export async function remove(id: string, title: string): Promise<boolean> {
+  if (!(await asked(api.deleteRun(id)))) return false;
+  const back = () => {
+    dismiss(toast);
+    void restore(id);
+  };
+  const action = { label: "Undo", run: back };
+  const toast = tell({ kind: "note", text: `${title} is in the bin.`, action });
+  return true;
+}

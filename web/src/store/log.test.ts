@@ -1,0 +1,44 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import type { LogEntry } from "../api/types";
+
+let stored: LogEntry[] = [];
+const asked = vi.fn();
+
+vi.mock("../api/client", () => ({
+  readLog: async (_: string, limit: number, after?: number) => {
+    asked(after);
+    const later = stored.filter(({ id }) => after === undefined || id > after);
+    return { entries: after === undefined ? later.slice(-limit) : later.slice(0, limit) };
+  },
+}));
+
+const { continued } = await import("./log");
+
+const entries = (from: number, to: number, attempt: number) =>
+  Array.from({ length: to - from }, (_, i) => ({ id: from + i, attempt }) as LogEntry);
+
+describe("a journal that is read again", () => {
+  beforeEach(() => asked.mockClear());
+
+  it("begins after what can no longer change, and forgets what was dropped since", async () => {
+    stored = [...entries(1, 401, 1), ...entries(401, 404, 2)];
+    const known = await continued("a", [], false);
+    expect(known).toEqual(stored);
+    stored = [...entries(1, 401, 1), ...entries(401, 402, 2), ...entries(404, 405, 2)];
+    expect(await continued("a", known, false)).toEqual(stored);
+    expect(asked.mock.calls).toEqual([[undefined], [400]]);
+  });
+
+  it("reads on where more has come than the server tells at once", async () => {
+    stored = [...entries(1, 11, 0), ...entries(11, 12, 1)];
+    const known = await continued("a", [], false);
+    stored = [...entries(1, 11, 0), ...entries(11, 1400, 1)];
+    expect(await continued("a", known, false)).toEqual(stored);
+  });
+
+  it("has the last entries at first, and all of them where they are asked for", async () => {
+    stored = entries(1, 1201, 3);
+    expect(await continued("a", [], false)).toEqual(stored.slice(-500));
+    expect(await continued("a", [], true)).toEqual(stored);
+  });
+});

@@ -1,0 +1,14 @@
+/** What of a run is kept while somebody looks at it, and a little longer. */
+
+import { dispatch } from "./store";
+
+/** Whoever comes back by then finds all as it was. */
+export const KEPT_MS = 60_000;
+
+/** Keeps the details or the curves of runs; answers what lets go of them. */
+export function look(type: "open" | "watch", runs: readonly string[]): () => void {
+  for (const run of runs) dispatch({ type, run, more: 1 });
+  return () => {
+    setTimeout(() => runs.forEach((run) => dispatch({ type, run, more: -1 })), KEPT_MS);
+  };
+}

@@ -1,0 +1,171 @@
+import { describe, expect, it } from "vitest";
+import type { Archive, GenerationEvent, Generations, Run } from "../api/types";
+import { type Action, EMPTY, type State, epochOf, reduce } from "./reducer";
+
+const RUN = {
+  id: "a",
+  created_at: "2026-01-02T00:00:00Z",
+  generation: 2,
+  generations: 10,
+  evaluations: 32,
+  sparkline: [1, 2],
+  spec: { archive: {} },
+} as unknown as Run;
+
+const ARCHIVE: Archive = {
+  generation: 2,
+  kind: "grid",
+  cells: 16,
+  axes: [],
+  recorded: [],
+  features: {},
+  cell: [0, 5],
+  fitness: [1, 2],
+  descriptors: [
+    [0, 0],
+    [1, 1],
+  ],
+  elite_generation: [1, 2],
+  creature: ["aa", "bb"],
+};
+
+const column = [1, 2];
+
+const GENERATIONS: Generations = {
+  generation: column,
+  qd_score: column,
+  coverage: column,
+  best: column,
+  mean: column,
+  evaluations: [16, 32],
+  diverged: [0, 0],
+  seconds: [1, 2],
+  summary: { inserted: [5, 6], corrected: [null, 0.5] },
+};
+
+function generation(number: number): GenerationEvent {
+  const [evaluations, seconds] = [16 * number, 2 * number];
+  const values = { qd_score: number, coverage: number, best: number, mean: number, diverged: 0 };
+  const summary = { inserted: number, ended: "words", ...(number % 2 === 1 && { late: number }) };
+  return { run: "a", generation: number, evaluations, seconds, ...values, summary };
+}
+
+function elites(told: number, cell: number, creature: string): Action {
+  const columns = { cell: [cell], fitness: [9], descriptors: [[0, 0]], creature: [creature] };
+  const event = { run: "a", generation: told, elite_generation: [told], ...columns };
+  return { type: "elites", event };
+}
+
+const snapshot = (state: State): Action => ({
+  type: "snapshot",
+  run: "a",
+  epoch: epochOf(state, "a"),
+  archive: ARCHIVE,
+  generations: GENERATIONS,
+});
+
+function after(...actions: (Action | ((state: State) => Action))[]): State {
+  return actions.reduce<State>((state, action) => {
+    return reduce(state, typeof action === "function" ? action(state) : action);
+  }, EMPTY);
+}
+
+const open: Action = { type: "open", run: "a", more: 1 };
+
+const close: Action = { ...open, more: -1 };
+
+const opened = after({ type: "run", run: RUN }, open, snapshot);
+
+const creatures = (state: State) =>
+  [...state.details.get("a")!.elites].map(([cell, { creature }]) => [cell, creature]);
+
+describe("a snapshot", () => {
+  it("keeps what events told of later generations while it was on its way", () => {
+    const later = reduce(reduce(opened, elites(3, 5, "cc")), elites(2, 0, "old"));
+    const next = reduce(later, snapshot(later));
+    expect(creatures(next)).toEqual([
+      [0, "aa"],
+      [5, "cc"],
+    ]);
+  });
+
+  it("that comes first keeps what events told since the run was opened", () => {
+    const told: Action = { type: "generation", event: generation(3) };
+    const waiting = after({ type: "run", run: RUN }, open, elites(3, 5, "cc"), told);
+    expect(waiting.details.get("a")).toMatchObject({ archive: null, curves: null });
+    const next = reduce(waiting, snapshot(waiting));
+    expect(creatures(next)).toEqual([
+      [0, "aa"],
+      [5, "cc"],
+    ]);
+    expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
+  });
+
+  it("stays until the last one has closed the run, and is not taken after that", () => {
+    const twice = reduce(opened, open);
+    expect(creatures(twice)).toEqual(creatures(opened));
+    const once = reduce(twice, close);
+    expect(creatures(once)).toEqual(creatures(opened));
+    const closed = reduce(once, close);
+    expect(closed.details.size).toBe(0);
+    expect([elites(3, 5, "cc"), snapshot(closed)].reduce(reduce, closed).details.size).toBe(0);
+  });
+
+  it("asked for before a reset is not taken", () => {
+    const late = snapshot(EMPTY);
+    expect(after(open, { type: "reset" }, late).details.get("a")!.archive).toBeNull();
+  });
+});
+
+describe("a rewind", () => {
+  const rewind = { type: "rewind", event: { run: "a", generation: 1 } } as const;
+
+  it("drops cells and curves of later generations", () => {
+    const next = reduce(reduce(opened, elites(3, 7, "cc")), rewind);
+    expect(creatures(next)).toEqual([[0, "aa"]]);
+    expect(next.details.get("a")!.curves!.generation).toEqual([1]);
+  });
+
+  it("lets the run's own figures begin again from there", () => {
+    const back = reduce(opened, rewind);
+    expect(back.runs.get("a")).toMatchObject({ generation: 1, progress: 0.1, sparkline: [1] });
+    const next = reduce(back, { type: "generation", event: generation(2) });
+    expect(next.runs.get("a")).toMatchObject({ generation: 2, evaluations: 32 });
+  });
+
+  it("asks for that run to be fetched again, and for no other", () => {
+    const next = reduce(opened, rewind);
+    expect(epochOf(next, "a")).toBe(epochOf(opened, "a") + 1);
+    expect(epochOf(next, "b")).toBe(epochOf(opened, "b"));
+  });
+
+  it("makes a snapshot that was asked for before it worthless", () => {
+    const late = snapshot(opened);
+    const next = reduce(reduce(opened, rewind), late);
+    expect(creatures(next)).toEqual([[0, "aa"]]);
+  });
+});
+
+describe("a reset", () => {
+  it("asks for everything to be fetched again and forgets nothing meanwhile", () => {
+    const next = reduce(opened, { type: "reset" });
+    expect(epochOf(next, "a")).toBe(epochOf(opened, "a") + 1);
+    expect(epochOf(next, "b")).toBe(epochOf(opened, "b") + 1);
+    expect(creatures(next)).toEqual(creatures(opened));
+  });
+
+  it("lets nothing older outlive the next snapshot, but what came after it", () => {
+    const lost = [elites(7, 9, "lost"), { type: "generation", event: generation(7) }] as Action[];
+    const before = lost.reduce(reduce, opened);
+    const shown = reduce(before, { type: "reset" });
+    expect(creatures(shown)).toContainEqual([9, "lost"]);
+    const fresh = [elites(3, 5, "cc"), { type: "generation", event: generation(3) }] as Action[];
+    const waiting = fresh.reduce(reduce, shown);
+    const next = reduce(waiting, snapshot(waiting));
+    expect(creatures(next)).toEqual([
+      [0, "aa"],
+      [5, "cc"],
+    ]);
+    expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
+  });
+});

@@ -1,0 +1,19 @@
+import { describe, expect, it } from "vitest";
+import { routeOf } from "./router";
+
+describe("an address", () => {
+  it.each([
+    ["/", { page: "runs" }],
+    ["/new", { page: "new" }],
+    ["/runs/abc", { page: "run", id: "abc" }],
+    ["/creatures/ff", { page: "creature", sha: "ff" }],
+    ["/runs/abc/more", { page: "unknown" }],
+    ["/runs/a%20b", { page: "run", id: "a b" }],
+    ["/runs/%E0%A4%A", { page: "unknown" }],
+    ["/creatures/%", { page: "unknown" }],
+    ["/runs", { page: "unknown" }],
+    ["/elsewhere", { page: "unknown" }],
+  ])("%s leads to its page", (path, route) => {
+    expect(routeOf(path)).toEqual(route);
+  });
+});

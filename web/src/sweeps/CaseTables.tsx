@@ -1,0 +1,168 @@
+/** The cases of a sweep as a legend, their final values, and every run. */
+
+import type { Spread } from "../api/types";
+import { count, number, percent, words } from "../ui/format";
+import { LineKey } from "../charts/lineStyle";
+import { type Shown, memberName } from "./bands";
+
+interface LegendProps {
+  cases: Shown[];
+  chosen: number[];
+  onChoose: (places: number[]) => void;
+}
+
+/** One legend for all plots; a case that is not chosen is not drawn. */
+export function Cases({ cases, chosen, onChoose }: LegendProps) {
+  const turn = (place: number) =>
+    onChoose(chosen.includes(place) ? chosen.filter((one) => one !== place) : [...chosen, place]);
+  return (
+    <ul class="compare-legend sweep-legend" aria-label="Cases">
+      {cases.map(({ place, name }) => (
+        <li key={place}>
+          <label class="compact">
+            <input type="checkbox" checked={chosen.includes(place)} onChange={() => turn(place)} />
+            <LineKey index={place} />
+            {name}
+          </label>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+const TITLES: Record<string, [title: string, write: (value: number | null) => string]> = {
+  qd_score: ["QD score", number],
+  coverage: ["Coverage", percent],
+  best: ["Best fitness", number],
+  evaluations: ["Evaluations", (value) => (value === null ? "–" : count(value))],
+};
+
+const titleOf = (name: string) => TITLES[name]?.[0] ?? words(name);
+const writerOf = (name: string) => TITLES[name]?.[1] ?? number;
+
+const figuresOf = (cases: Shown[]) => [
+  ...new Set(cases.flatMap(({ summary }) => Object.keys(summary.finals))),
+];
+
+/** The newest figures: of each case the median, and between what the middle half lies. */
+export function Finals({ cases }: { cases: Shown[] }) {
+  const figures = figuresOf(cases);
+  return (
+    <section class="card" aria-labelledby="finals">
+      <div class="card-head">
+        <h2 id="finals">Figures</h2>
+        <span class="quiet small">median, the quartiles below it; as far as the runs are</span>
+      </div>
+      <div class="wide-table" tabIndex={0} role="region" aria-label="Figures of the cases">
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">Case</th>
+              <th scope="col">Runs</th>
+              {figures.map((name) => (
+                <th key={name} scope="col">
+                  {titleOf(name)}
+                </th>
+              ))}
+            </tr>
+          </thead>
+          <tbody>
+            {cases.map(({ summary, place, name }) => (
+              <tr key={place}>
+                <th scope="row">
+                  <LineKey index={place} /> {name}
+                </th>
+                <td>{doneOf(summary.members)}</td>
+                {figures.map((figure) => (
+                  <td key={figure}>
+                    <Figure spread={summary.finals[figure]} write={writerOf(figure)} />
+                  </td>
+                ))}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </div>
+    </section>
+  );
+}
+
+/** How many of a case's runs are finished. */
+function doneOf(members: Shown["summary"]["members"]): string {
+  const done = members.filter(({ status }) => status === "finished").length;
+  return done === members.length ? count(done) : `${done} of ${members.length} finished`;
+}
+
+interface SpreadProps {
+  spread: Spread | undefined;
+  write: (value: number | null) => string;
+}
+
+function Figure({ spread, write }: SpreadProps) {
+  if (!spread || spread.median === null) return <>–</>;
+  const { median, low, high, min, max } = spread;
+  const one = min === max;
+  return (
+    <span title={`from ${write(min)} to ${write(max)}`}>
+      <b>{write(median)}</b>
+      {!one && (
+        <span class="quiet small spread">
+          {write(low)} to {write(high)}
+        </span>
+      )}
+    </span>
+  );
+}
+
+/** Every run with its own figures. */
+export function Members({ cases }: { cases: Shown[] }) {
+  const figures = figuresOf(cases);
+  const several = cases.length > 1;
+  return (
+    <section class="card" aria-labelledby="members">
+      <h2 id="members">Runs</h2>
+      <div class="wide-table sweep-members" tabIndex={0} role="region" aria-label="Every run">
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">Run</th>
+              {several && <th scope="col">Case</th>}
+              <th scope="col">State</th>
+              <th scope="col">Generations</th>
+              {figures.map((name) => (
+                <th key={name} scope="col">
+                  {titleOf(name)}
+                </th>
+              ))}
+            </tr>
+          </thead>
+          <tbody>
+            {cases.flatMap(({ summary, place, name }) =>
+              summary.members.map((member, i) => (
+                <tr key={member.run}>
+                  <th scope="row">
+                    <a href={`/runs/${member.run}`}>{memberName(member)}</a>
+                  </th>
+                  {several && (
+                    <td>
+                      <LineKey index={place} /> {name}
+                    </td>
+                  )}
+                  <td>
+                    <span class={`badge ${member.status}`}>{member.status}</span>
+                  </td>
+                  <td>
+                    {count(member.generation)} / {count(member.generations)}
+                  </td>
+                  {figures.map((figure) => (
+                    <td key={figure}>{writerOf(figure)(summary.finals[figure]?.values[i] ?? null)}</td>
+                  ))}
+                </tr>
+              )),
+            )}
+          </tbody>
+        </table>
+      </div>
+    </section>
+  );
+}

@@ -1,0 +1,171 @@
+/** A sweep: what its runs say together, and how each of them stands. */
+
+import { useEffect } from "preact/hooks";
+import type { CaseSummary, Sweep } from "../api/types";
+import { useRefusal } from "../store/principal";
+import { useExperiments } from "../store/fetch";
+import { type Whole, cancelSweepSoon, remove, rename, restore, steer, useSweep } from "../store/sweeps";
+import { setQuery } from "../store/router";
+import { Curves } from "../charts/curves/Curves";
+import { type Shown, bandsOf, caseName } from "./bands";
+import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "./SweepStatus";
+import { moment } from "../ui/format";
+import { NotThere } from "../ui/NotFound";
+import { Name } from "../run/RunLabels";
+import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
+import { CurveBar, Check } from "../charts/curves/CurveOptions";
+import { Cases, Finals, Members } from "./CaseTables";
+import "./sweeps.css";
+
+interface Props {
+  id: string;
+  query: URLSearchParams;
+}
+
+export function SweepPage({ id, query }: Props) {
+  const each = query.get("each") === "1";
+  const { value, error } = useSweep(id, each);
+  const title = value ? sweepTitle(value.sweep) : "Sweep";
+  useEffect(() => {
+    document.title = `${title} · Microcosmos`;
+  }, [title]);
+  return (
+    <main>
+      <nav class="crumbs" aria-label="Where you are">
+        <a href="/">Runs</a>
+      </nav>
+      {error && value && <p class="banner wrong">{error}</p>}
+      {error && !value && <NotThere what="No such sweep" reason={error} />}
+      {!value && !error && <p class="quiet loading">Loading sweep …</p>}
+      {value && <Loaded {...{ value, query, each }} />}
+    </main>
+  );
+}
+
+function Loaded({ value, query, each }: { value: Whole; query: URLSearchParams; each: boolean }) {
+  const { sweep, summary, curves } = value;
+  const chosen = chosenOf(query, summary.cases.length);
+  const shown = chosen.map((place) => shownOf(summary.cases[place]!, place));
+  const choose = (places: number[]) => setQuery({ cases: places.length > 0 ? places.join() : "-" });
+  return (
+    <>
+      <Head sweep={sweep} />
+      <section class="standing" aria-label="How the sweep is doing">
+        <SweepProgress sweep={sweep} />
+        <SweepStates sweep={sweep} />
+      </section>
+      <section class="card sweep-curves" aria-labelledby="bands">
+        <div class="card-head">
+          <h2 id="bands">Curves</h2>
+          <span class="quiet small">the median of each case, between its quartiles</span>
+        </div>
+        <CurveBar log={query.get("log") === "1"}>
+          <Check title="Each run" name="each" on={each} />
+        </CurveBar>
+        {summary.cases.length > 1 && (
+          <Cases cases={summary.cases.map(shownOf)} chosen={chosen} onChoose={choose} />
+        )}
+        <Bands {...{ shown, query }} curves={each ? curves : null} />
+      </section>
+      <Finals cases={summary.cases.map(shownOf)} />
+      <Members cases={summary.cases.map(shownOf)} />
+    </>
+  );
+}
+
+const shownOf = (summary: CaseSummary, place: number): Shown => ({
+  summary,
+  place,
+  name: caseName(summary.values),
+  colour: colourOf(place),
+  dash: dashOf(place),
+});
+
+/** The cases that the address asks for, else the first ones. */
+function chosenOf(query: URLSearchParams, count: number): number[] {
+  const all = [...Array(count).keys()];
+  const asked = query.get("cases");
+  if (asked === null) return all.slice(0, MAX_LINES);
+  const named = asked.split(",").map(Number);
+  return all.filter((place) => named.includes(place));
+}
+
+function Bands({
+  shown,
+  query,
+  curves,
+}: {
+  shown: Shown[];
+  query: URLSearchParams;
+  curves: Whole["curves"];
+}) {
+  const log = query.get("log") === "1";
+  const plots = bandsOf(shown, curves);
+  if (shown.length === 0) return <p class="quiet">Choose a case to see its curves.</p>;
+  if (plots.length === 0) return <p class="quiet waiting">They begin with the first generation.</p>;
+  return <Curves plots={plots} x={NOWHERE} look={{ over: "generation", log, smooth: 1 }} />;
+}
+
+/** Each case has its own places. */
+const NOWHERE: readonly number[] = [];
+
+function Head({ sweep }: { sweep: Sweep }) {
+  const experiments = useExperiments().value ?? [];
+  const title = sweepTitle(sweep);
+  const fixed = useRefusal(sweep) !== null || sweep.total === 0;
+  const kind = experiments.find(({ experiment }) => experiment === sweep.experiment)?.title;
+  return (
+    <>
+      <header class="page-head">
+        <Name of={sweep} title={title} fixed={fixed} onName={(name) => void rename(sweep.id, name)}>
+          <h1>{title}</h1>
+        </Name>
+        <span class="spring" />
+        <Actions sweep={sweep} title={title} />
+      </header>
+      <p class="quiet sweep-about">
+        {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)}
+        {sweep.owner && <> · by {sweep.owner}</>} · <a href={`/?sweep=${sweep.id}`}>As a list of runs</a>
+      </p>
+      {sweep.deleted > 0 && <InBin sweep={sweep} />}
+    </>
+  );
+}
+
+/** Only what the state of any run allows. */
+function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
+  const { id, standing, total } = sweep;
+  const refusal = useRefusal(sweep);
+  if (refusal) return <span class="quiet small">{refusal}</span>;
+  const { queued = 0, running = 0, paused = 0 } = standing;
+  const going = queued + running;
+  if (total === 0) return null;
+  return (
+    <span class="actions" role="group" aria-label="All runs">
+      {paused > 0 && <button onClick={() => void steer(id, "resume")}>Resume all</button>}
+      {going > 0 && <button onClick={() => void steer(id, "pause")}>Pause all</button>}
+      {going + paused > 0 && (
+        <button class="danger" onClick={() => cancelSweepSoon(id, title)}>
+          Cancel all
+        </button>
+      )}
+      {going === 0 && (
+        <button class="danger" onClick={() => void remove(id)}>
+          Delete all
+        </button>
+      )}
+    </span>
+  );
+}
+
+function InBin({ sweep }: { sweep: Sweep }) {
+  const { id, deleted, total } = sweep;
+  const refusal = useRefusal(sweep);
+  const which =
+    total === 0 ? "Its runs are" : deleted === 1 ? "One of its runs is" : `${deleted} of its runs are`;
+  return (
+    <p class="banner warning" role="status">
+      {which} in the bin. {!refusal && <button onClick={() => void restore(id)}>Restore</button>}
+    </p>
+  );
+}

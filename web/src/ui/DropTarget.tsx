@@ -1,0 +1,110 @@
+/** Opening creature files: dropped anywhere, or chosen; a page may take what is dropped itself. */
+
+import type { ComponentChildren } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { importCreature } from "../api/client";
+import { messageOf } from "../api/problem";
+import { tell } from "../store/toasts";
+import { navigate } from "../store/router";
+
+async function open(file: File): Promise<void> {
+  try {
+    const { creature } = await importCreature(file);
+    navigate(`/creatures/${creature}`);
+  } catch (error) {
+    tell({ kind: "wrong", text: `${file.name}: ${messageOf(error)}` });
+  }
+}
+
+interface Taker {
+  prompt: string;
+  take: (file: File) => void;
+}
+
+const OPENING: Taker = {
+  prompt: "Drop a creature file to open it",
+  take: (file) => void open(file),
+};
+
+let taker = OPENING;
+
+/** While a component is shown, it takes what is dropped. */
+export function useDropTaker(prompt: string, take: Taker["take"]): void {
+  useEffect(() => {
+    taker = { prompt, take };
+    return () => {
+      taker = OPENING;
+    };
+  }, []);
+}
+
+export function OpenButton() {
+  return (
+    <FileButton kind="plain" name="Creature file" take={OPENING.take}>
+      Open creature<span class="wide-only"> file</span>
+    </FileButton>
+  );
+}
+
+interface ButtonProps {
+  kind?: string;
+  name: string;
+  take: Taker["take"];
+  children: ComponentChildren;
+}
+
+/** A button that asks for a creature file, or another in JSON. */
+export function FileButton({ kind = "", name, take, children }: ButtonProps) {
+  const input = useRef<HTMLInputElement>(null);
+  return (
+    <>
+      <button type="button" class={kind} onClick={() => input.current!.click()}>
+        {children}
+      </button>
+      <input
+        ref={input}
+        type="file"
+        class="unseen"
+        tabIndex={-1}
+        aria-label={name}
+        accept="application/json,.json,.h5"
+        onChange={({ currentTarget }) => {
+          const file = currentTarget.files?.[0];
+          if (file) take(file);
+          currentTarget.value = "";
+        }}
+      />
+    </>
+  );
+}
+
+export function DropTarget() {
+  const [over, setOver] = useState(false);
+  useEffect(() => {
+    const drag = (event: DragEvent) => {
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      event.preventDefault();
+      setOver(true);
+    };
+    const leave = (event: DragEvent) => event.relatedTarget === null && setOver(false);
+    const drop = (event: DragEvent) => {
+      event.preventDefault();
+      setOver(false);
+      const file = event.dataTransfer?.files[0];
+      if (file) taker.take(file);
+    };
+    window.addEventListener("dragover", drag);
+    window.addEventListener("dragleave", leave);
+    window.addEventListener("drop", drop);
+    return () => {
+      window.removeEventListener("dragover", drag);
+      window.removeEventListener("dragleave", leave);
+      window.removeEventListener("drop", drop);
+    };
+  }, []);
+  return over ? (
+    <div class="drop-target" aria-hidden="true">
+      <p>{taker.prompt}</p>
+    </div>
+  ) : null;
+}

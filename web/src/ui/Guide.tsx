@@ -1,0 +1,62 @@
+/** A few steps that explain what is on the page, beside it and not over it. */
+
+import { useEffect, useRef, useState } from "preact/hooks";
+import "./guide.css";
+
+export interface Step {
+  title: string;
+  text: string;
+  /** The part of the page that the step is about, as the style sheet knows it. */
+  about: string;
+}
+
+interface Props {
+  steps: Step[];
+  /** Whether somebody asked for it: then it has the focus until it ends. */
+  asked: boolean;
+  onStep: (step: Step) => void;
+  onEnd: () => void;
+}
+
+export function Guide({ steps, asked, onStep, onEnd }: Props) {
+  const [number, setNumber] = useState(0);
+  const panel = useRef<HTMLElement>(null);
+  const step = steps[number]!;
+  const last = number === steps.length - 1;
+  useEffect(() => onStep(step), [number]);
+  useEffect(() => {
+    if (!asked) return;
+    const before = document.activeElement as HTMLElement | null;
+    panel.current!.focus();
+    return () => before?.focus();
+  }, []);
+  useEffect(() => {
+    const press = (event: KeyboardEvent) => {
+      const typing = (event.target as Element).closest?.("input, select, textarea");
+      if (event.key === "Escape" && !typing) onEnd();
+    };
+    window.addEventListener("keydown", press);
+    return () => window.removeEventListener("keydown", press);
+  }, [onEnd]);
+  return (
+    <aside ref={panel} class="guide" aria-label="A short guide" tabIndex={-1}>
+      <p class="guide-count quiet small">
+        {number + 1} of {steps.length}
+      </p>
+      <div aria-live="polite">
+        <h2>{step.title}</h2>
+        <p>{step.text}</p>
+      </div>
+      <p class="guide-buttons">
+        <button class="plain" onClick={onEnd}>
+          {last ? "Close" : "Skip"}
+        </button>
+        <span class="spring" />
+        {number > 0 && <button onClick={() => setNumber(number - 1)}>Back</button>}
+        <button class="primary" onClick={() => (last ? onEnd() : setNumber(number + 1))}>
+          {last ? "Look around" : "Next"}
+        </button>
+      </p>
+    </aside>
+  );
+}

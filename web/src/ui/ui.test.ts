@@ -1,0 +1,60 @@
+import { describe, expect, it } from "vitest";
+import type { Run, Spec } from "../api/types";
+import { diverging, viridis } from "./colours";
+import { bytes, duration, number, titleOf } from "./format";
+
+describe("colours", () => {
+  it("of viridis begin dark violet, end yellow, and grow lighter all the way", () => {
+    const lightness = Array.from({ length: 33 }, (_, i) => {
+      const [red, green, blue] = viridis(i / 32);
+      return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+    });
+    for (let i = 1; i < 33; i++) expect(lightness[i]!).toBeGreaterThan(lightness[i - 1]!);
+    // The ends of the published map are (68, 1, 84) and (253, 231, 37).
+    [68, 1, 84].forEach((value, k) => expect(Math.abs(viridis(0)[k]! - value)).toBeLessThan(5));
+    [253, 231, 37].forEach((value, k) => expect(Math.abs(viridis(1)[k]! - value)).toBeLessThan(5));
+  });
+
+  it.each(["light", "dark"] as const)("for vorticity are clipped and opposite in %s", (theme) => {
+    expect(diverging(-2, theme)).toEqual(diverging(-1, theme));
+    expect(diverging(-1, theme)[2]).toBeGreaterThan(diverging(-1, theme)[0]);
+    expect(diverging(1, theme)[0]).toBeGreaterThan(diverging(1, theme)[2]);
+  });
+});
+
+describe("words for people", () => {
+  it.each([
+    [0, "0"],
+    [0.012345, "0.0123"],
+    [1234.5, "1,235"],
+    [98300000, "9.83 × 10⁷"],
+    [0.0001, "10⁻⁴"],
+    [-0.0343574, "−0.0344"],
+    [null, "–"],
+  ])("write %j as %s", (value, text) => {
+    expect(number(value)).toBe(text);
+  });
+
+  it("keep times and sizes short", () => {
+    expect([0.2, 59, 61, 3700, 90000].map(duration)).toEqual([
+      "under 1 s",
+      "59 s",
+      "1 min 1 s",
+      "1 h 1 min",
+      "1 d 1 h",
+    ]);
+    expect(bytes(15_100_000)).toBe("15.1 MB");
+  });
+
+  it("name a run after its preset whatever its seed, else after its experiment", () => {
+    const spec: Spec = { seed: 0, world: { width: 32, height: 32 } };
+    const presets = [{ name: "demo", title: "", spec }];
+    const known = [{ experiment: "quality-diversity", title: "", schema: {}, presets }];
+    const run = { experiment: "quality-diversity", demonstration: false } as Run;
+    const same = { world: { height: 32, width: 32 }, seed: 9 };
+    expect(titleOf({ ...run, spec: same }, known)).toBe("Demo");
+    expect(titleOf({ ...run, spec: { seed: 0 } }, known)).toBe("Quality diversity");
+    const gaits = known.map((one) => ({ ...one, experiment: "gaits" }));
+    expect(titleOf({ ...run, experiment: "gaits", spec: same }, gaits)).toBe("Gaits, demo");
+  });
+});
