@@ -13,6 +13,7 @@ from microcosmos.build import build
 from microcosmos.experiments import OtherDevice, Stopped
 from microcosmos.spec import parse
 
+LONG = ("lamarckian", "cma-me", "tensorneat")
 LEARNERS = ("cma-mae", "cma-mega", "lamarckian", "cma-me", "tensorneat")
 COMPUTED = ("quality-diversity", "neuroevolution", "folding", "refinement", "gaits")
 OTHER = {
@@ -26,7 +27,11 @@ OTHER = {
 """What makes another run of each."""
 
 
-@pytest.fixture(scope="module", params=[*COMPUTED, *LEARNERS])
+def marked(*names):
+    return [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in names]
+
+
+@pytest.fixture(scope="module", params=marked(*COMPUTED, *LEARNERS))
 def computed(request, course_of):
     """A run whose numbers repeat, those of searches that learn among them."""
     with jax.numpy_rank_promotion("allow" if request.param in LEARNERS else "raise"):
@@ -57,7 +62,7 @@ def test_interrupted_after_any_generation_it_goes_on_with_the_same_bytes(compute
     assert finish(experiment, experiment.restore(files[1])) == files[-1]
 
 
-@pytest.mark.parametrize("name", COMPUTED)
+@pytest.mark.parametrize("name", marked(*COMPUTED))
 def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, finish):
     states, _, experiment, spec = course_of(name)
     again = build(spec)
@@ -153,7 +158,7 @@ def test_its_best_creature_is_a_sound_file_and_there_is_none_at_first(course):
 
 
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("name", LEARNERS)
+@pytest.mark.parametrize("name", marked(*LEARNERS))
 def test_simulations_that_teach_are_counted(name, course_of):
     with jax.numpy_rank_promotion("allow"):
         states, reports, experiment, _ = course_of(name)
