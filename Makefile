@@ -9,7 +9,7 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print) docs/glossary.md
 
-.PHONY: run install web test test-all test-long check peers bench acceptance validate pictures docs \
+.PHONY: run install web test test-all test-long check peers bench acceptance validate pictures docs texts \
 	release-check lock
 
 run: install web
@@ -98,6 +98,10 @@ pictures: install web
 
 validate: install
 	$(BIN)/python -m validation
+
+# All texts of the page, the commands and the server, for review: make texts > texts.md
+texts: install
+	@$(BIN)/python tests/texts.py
 
 # The documentation site; the server shows it at /help from its next start on.
 docs: install
