@@ -3,7 +3,7 @@
 import type { Creature } from "../api/types";
 import { formOf, groupsOf, originOf } from "./facts";
 
-export function Facts({ creature }: { creature: Creature }) {
+export function FactsCard({ creature }: { creature: Creature }) {
   const form = formOf(creature);
   return (
     <section class="card whole-facts" aria-labelledby="facts-title">

@@ -14,7 +14,7 @@ interface Props {
   onPreset: (preset: Preset, experiment: Experiment) => void;
 }
 
-export function Chooser({ experiments, chosen, preset, estimates, onExperiment, onPreset }: Props) {
+export function ExperimentPicker({ experiments, chosen, preset, estimates, onExperiment, onPreset }: Props) {
   return (
     <>
       <fieldset class="kinds">

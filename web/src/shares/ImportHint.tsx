@@ -4,7 +4,7 @@ import { creatureFileUrl } from "../api/urls";
 import type { Share } from "../api/types";
 import { copyText } from "../ui/clipboard";
 
-export function Taking({ share, sha }: { share: Share; sha: string }) {
+export function ImportHint({ share, sha }: { share: Share; sha: string }) {
   const file = new URL(creatureFileUrl(sha), share.url).href;
   const command = `curl -sf '${file}' | curl -sf -H 'Content-Type: application/json' --data-binary @- http://127.0.0.1:8000/api/v1/creatures`;
   return (

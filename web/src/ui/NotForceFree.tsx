@@ -2,7 +2,7 @@
 
 import { NOT_FREE } from "./coupling";
 
-export function NotFree({ some = false }: { some?: boolean }) {
+export function NotForceFree({ some = false }: { some?: boolean }) {
   return (
     <span class="badge not-free" title={NOT_FREE}>
       {some ? "partly not force-free" : "not force-free"}
