@@ -165,7 +165,7 @@ function AxisRail({ class: name, by, length, shown, upright = false, children }:
     : { width: `${length}px`, transform: `translateX(${by}px)` };
   const middle = `${shown / 2 - by}px`;
   return (
-    <div class={`rail ${name}`}>
+    <div class={`axis-rail ${name}`}>
       <div style={{ ...style, "--middle": middle }}>{children}</div>
     </div>
   );

@@ -6,7 +6,7 @@ import { formOf, groupsOf, originOf } from "./facts";
 export function FactsCard({ creature }: { creature: Creature }) {
   const form = formOf(creature);
   return (
-    <section class="card whole-facts" aria-labelledby="facts-title">
+    <section class="card facts-card" aria-labelledby="facts-title">
       <h2 id="facts-title">Measurements and origin</h2>
       <div class="facts-columns">
         {groupsOf(creature).map(({ title, rows }) => (

@@ -29,7 +29,7 @@ export function NetworkOutputs({ network, chosen, control, steps, moment, every 
   const other = network.neurons.find(({ id, role }) => id === chosen && role !== "output");
   const shared = { pictures, sight, moment, every };
   return (
-    <div class="computed">
+    <div class="outputs">
       <h3>What it computes</h3>
       <p class="quiet small">
         {sight.recurrent
@@ -53,7 +53,7 @@ export function NetworkOutputs({ network, chosen, control, steps, moment, every 
           <output>{number(energy)}</output>
         </label>
       )}
-      <div class="computed-pictures">
+      <div class="output-pictures">
         {outputs.map((neuron) => (
           <Picture key={neuron.id} {...{ neuron, ...shared }} chosen={neuron.id === chosen} />
         ))}

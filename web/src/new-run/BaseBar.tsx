@@ -30,7 +30,7 @@ export function BaseBar({ desk, work, experiments, file }: Props) {
   const { size } = desk.changed;
   const equal = size > 0 || base.kind !== "preset" ? equalPreset(spec, experiments) : null;
   return (
-    <p class="beginning" role="status">
+    <p class="base-bar" role="status">
       <span>
         {desk.restored && "Your draft is back: "}
         {size === 0 ? "As in " : `${size} ${size === 1 ? "change" : "changes"} from `}
@@ -39,7 +39,7 @@ export function BaseBar({ desk, work, experiments, file }: Props) {
         {equal && `, the same as preset “${equal.name}”`}.
       </span>
       {base.fork && (
-        <span class="beginning-fork">
+        <span class="base-fork">
           <ForkSourceText fork={base.fork} />
           <button type="button" class="plain" onClick={desk.dropFork}>
             Begin from random ones instead

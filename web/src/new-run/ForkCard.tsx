@@ -20,7 +20,7 @@ export function ForkCard({ name, errors, onName }: Props) {
       </p>
       {name !== null && (
         <div class="sweep-entries">
-          <label class="sweep-called">
+          <label class="sweep-name-field">
             <span>Name of the run</span>
             <input
               type="text"

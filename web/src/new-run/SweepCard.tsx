@@ -43,7 +43,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
           </label>
         )}
         {isSweep(sweeping) && (
-          <label class="sweep-called">
+          <label class="sweep-name-field">
             <span>Name of the sweep</span>
             <input
               type="text"

@@ -39,7 +39,7 @@ interface Props {
 
 export function LookChoice({ names, name, look, change, flows }: Props) {
   return (
-    <div class="look">
+    <div class="view-options">
       {names.length > 1 && (
         <div class="tabs" role="group" aria-label="Field shown">
           {names.map((each) => (

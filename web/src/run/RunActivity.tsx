@@ -26,7 +26,7 @@ export function RunActivity({ run, now }: { run: Run; now: number }) {
   const elapsed = elapsedOf(run, now);
   if (!text) return null;
   return (
-    <p class="doing">
+    <p class="activity">
       <span class="ripple small-ripple" aria-hidden="true" />
       <span role="status">{text}</span>
       {elapsed && (

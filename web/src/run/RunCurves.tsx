@@ -54,7 +54,7 @@ export function SearchCard({ run, curves, query, beside }: Props & { curves: Col
   const diverged = divergedBy(curves);
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
-    <section class="card work-card" id="search" aria-labelledby="work-title" tabIndex={-1}>
+    <section class="card search-card" id="search" aria-labelledby="work-title" tabIndex={-1}>
       <h2 id="work-title">Search, generation by generation</h2>
       <Curves plots={plots} x={placesOf(curves, look)} look={look} />
       <DivergedTable run={run} reasons={diverged} />

@@ -119,7 +119,7 @@ function RunSections({ run, query, error, detail }: WholeProps) {
       {run.experiment === "neuroevolution" && (
         <PopulationCards run={run} elites={detail?.elites ?? NO_ELITES} />
       )}
-      <div class="run-columns record">
+      <div class="run-columns run-record">
         <div class="stack">
           <LogCard run={run} query={query} />
           <FilesCard run={run} />
@@ -212,7 +212,7 @@ function RunFacts({ run }: { run: Run }) {
     ...figuresOf(run),
   ];
   return (
-    <section class="standing" aria-label="How the run is doing">
+    <section class="run-facts" aria-label="How the run is doing">
       <RunProgress run={run} />
       <dl class="facts">
         {facts.map(([name, value]) => (

@@ -46,7 +46,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
           </a>
         </NameField>
         {run.sweep && (
-          <a class="badge of-sweep" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
+          <a class="badge sweep-link" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
             sweep
           </a>
         )}
@@ -57,10 +57,10 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         {run.purge_at && (
           <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>
         )}
-        {run.waiting && <span class="row-note why">{run.waiting}</span>}
+        {run.waiting && <span class="row-note reason">{run.waiting}</span>}
         {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
         {run.warning && <span class="row-note warning-text">{run.warning}</span>}
-        <span class="said">
+        <span class="labels">
           <TagList
             {...{ run, name, fixed }}
             known={knownTags}

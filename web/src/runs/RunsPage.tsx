@@ -156,7 +156,7 @@ function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
 function SweepBanner({ sweep }: { sweep: string }) {
   if (sweep === WITHOUT_SWEEP) return null;
   return (
-    <p class="banner why">
+    <p class="banner reason">
       Runs of <a href={`/sweeps/${sweep}`}>one sweep</a>: its page has their curves and figures together.
     </p>
   );

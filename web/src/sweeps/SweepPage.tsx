@@ -58,7 +58,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
   return (
     <>
       <Head sweep={sweep} />
-      <section class="standing" aria-label="How the sweep is doing">
+      <section class="run-facts" aria-label="How the sweep is doing">
         <SweepProgress sweep={sweep} />
         <SweepStates sweep={sweep} />
       </section>

@@ -27,7 +27,7 @@ export function InlineText({ label, value, limit, long = false, list, onDone }: 
   };
   const common = {
     ref: field,
-    class: "in-place",
+    class: "inline-text",
     "aria-label": label,
     maxLength: limit,
     defaultValue: value,

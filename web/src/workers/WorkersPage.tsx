@@ -100,7 +100,7 @@ function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
   return (
     <>
       {plugins.length > 0 && (
-        <details class="own-things">
+        <details class="plugins">
           <summary>{count(plugins.length)} of users’ own</summary>
           <ul>
             {plugins.map(({ kind, name, title, source }) => (
@@ -169,7 +169,7 @@ function QueueCard({ queue: { total, items } }: { queue: Queue }) {
                 {run.memory_bytes !== null && `${bytes(run.memory_bytes)}, `}
                 waits for {duration(secondsSince(run.queued_at))}
               </span>
-              <span class="why">{run.waiting}</span>
+              <span class="reason">{run.waiting}</span>
             </li>
           ))}
         </ol>
