@@ -9,6 +9,8 @@ import pytest
 
 from microcosmos.viz.figures import experiments
 
+pytestmark = pytest.mark.long
+
 VISCOSITIES = [0.001, 0.01, 0.1, 2.0]
 NODES = [1000, 4000, 16000, 64000]
 

@@ -48,6 +48,7 @@ export async function changeRun(id: string, change: RunChange): Promise<Run> {
 }
 
 export const readPrincipal = () => success(client.GET(`${ROOT}/tokens/current`));
+export const readHealth = () => success(client.GET("/healthz"));
 export const readTokens = () => success(client.GET(`${ROOT}/tokens`));
 export const createToken = (body: TokenCreate) => success(client.POST(`${ROOT}/tokens`, { body }));
 

@@ -1,8 +1,10 @@
 /** The frame around every page: where one can go, how the connection is, notes. */
 
 import { useEffect } from "preact/hooks";
+import { readHealth } from "../api/client";
 import { lazy } from "../ui/lazy";
 import { loadPrincipal, useRefusal, useSignedOut } from "../store/principal";
+import { useFetched } from "../store/fetch";
 import { useStore } from "../store/store";
 import { type Toast, dismissToast, undoLatest, useToasts } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
@@ -60,6 +62,7 @@ export function App() {
 /** Where one can go and what one can open, once the server knows who asks. */
 function Navigation({ page }: { page: string }) {
   const refusal = useRefusal();
+  const health = useFetched(readHealth, []);
   return (
     <>
       <nav aria-label="Pages">
@@ -81,6 +84,11 @@ function Navigation({ page }: { page: string }) {
         <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
           Settings
         </a>
+        {health.value?.help && (
+          <a href="/help/" target="_self">
+            Help
+          </a>
+        )}
       </nav>
       <span class="spring" />
       {!refusal && <OpenButton />}
