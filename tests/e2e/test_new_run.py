@@ -41,7 +41,7 @@ def new(idle_page: Page, idle, complaints: list[str]) -> Iterator[Page]:
 
 
 def beginning(page: Page) -> Locator:
-    return page.locator(".beginning")
+    return page.locator(".base-bar")
 
 
 def paste(page: Page, document: Any) -> None:
