@@ -9,7 +9,6 @@ from typer.testing import CliRunner
 
 from microcosmos.archive import creature
 from microcosmos.cli import app
-from microcosmos.spec import identity
 from microcosmos.viz import networks
 
 pytestmark = pytest.mark.fast
@@ -28,7 +27,7 @@ def file(tmp_path, grown):
         "body": {},
         "task": {},
     }
-    found = identity(creature.Identity.model_validate(whole))
+    found = creature.Identity.model_validate(whole).model_dump(mode="json")
     path = tmp_path / "creature.json"
     path.write_text(json.dumps(creature.document(found, None, None)))
     return path
