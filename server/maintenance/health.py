@@ -7,6 +7,7 @@ from redis import RedisError
 from sqlalchemy import text
 from sqlalchemy.exc import SQLAlchemyError
 
+from ..core import page
 from ..services.deps import ServicesDep
 from ..services.services import Services
 from ..workers.schemas import Health, Readiness
@@ -17,7 +18,7 @@ Answer = Literal["ok", "unreachable"]
 
 @router.get("/healthz")
 def alive() -> Health:
-    return Health()
+    return Health(help=page.HELP.is_dir())
 
 
 @router.get("/readyz", responses={503: {"model": Readiness}})

@@ -77,6 +77,8 @@ class QueueRead(Wire):
 
 class Health(Wire):
     status: Literal["ok"] = "ok"
+    help: bool
+    """The documentation is served at `/help/`."""
 
 
 class Readiness(Wire):
