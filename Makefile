@@ -106,7 +106,7 @@ texts: install
 # The documentation site; the server shows it at /help from its next start on.
 docs: install
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-docs.lock
-	$(BIN)/sphinx-build -q -W --keep-going docs docs/_build
+	$(BIN)/sphinx-build -q -W --keep-going -d .cache/doctrees docs docs/_build
 
 # The wheel in an environment that has nothing else, with the newest versions of what it needs.
 release-check: install

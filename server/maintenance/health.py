@@ -7,6 +7,7 @@ from redis import RedisError
 from sqlalchemy import text
 from sqlalchemy.exc import SQLAlchemyError
 
+from ..core import page
 from ..core.schemas import Wire
 from ..services.deps import ServicesDep
 from ..services.services import Services
@@ -17,6 +18,8 @@ Answer = Literal["ok", "unreachable"]
 
 class Health(Wire):
     status: Literal["ok"] = "ok"
+    help: bool
+    """The documentation is served at `/help/`."""
 
 
 class Readiness(Wire):
@@ -26,7 +29,7 @@ class Readiness(Wire):
 
 @router.get("/healthz")
 def alive() -> Health:
-    return Health()
+    return Health(help=page.HELP.is_dir())
 
 
 @router.get("/readyz", responses={503: {"model": Readiness}})

@@ -1,24 +1,26 @@
 /** The frame around every page: where one can go, how the connection is, notes. */
 
 import { useEffect } from "preact/hooks";
-import { later } from "../ui/lazy";
-import { learnCaller, useRefusal, useUnknown } from "../store/principal";
-import { useLive } from "../store/store";
-import { type Toast, dismiss, undo, useToasts } from "../store/toasts";
+import { readHealth } from "../api/client";
+import { lazy } from "../ui/lazy";
+import { loadPrincipal, useRefusal, useSignedOut } from "../store/principal";
+import { useFetched } from "../store/fetch";
+import { useStore } from "../store/store";
+import { type Toast, dismissToast, undoLatest, useToasts } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
 import { RunsPage } from "../runs/RunsPage";
-import { type Place, usePlace } from "../store/router";
+import { type PageLocation, useLocation } from "../store/router";
 import "./app.css";
 
-const ComparePage = later(async () => (await import("../compare/ComparePage")).ComparePage);
-const CreaturePage = later(async () => (await import("../creature/CreaturePage")).CreaturePage);
-const NewRunPage = later(async () => (await import("../new-run/NewRunPage")).NewRunPage);
-const RunPage = later(async () => (await import("../run/RunPage")).RunPage);
-const SharesPage = later(async () => (await import("../shares/SharesPage")).SharesPage);
-const SettingsPage = later(async () => (await import("../settings/SettingsPage")).SettingsPage);
-const SignInPage = later(async () => (await import("../settings/SignInPage")).SignInPage);
-const SweepPage = later(async () => (await import("../sweeps/SweepPage")).SweepPage);
-const WorkersPage = later(async () => (await import("../workers/WorkersPage")).WorkersPage);
+const ComparePage = lazy(async () => (await import("../compare/ComparePage")).ComparePage);
+const CreaturePage = lazy(async () => (await import("../creature/CreaturePage")).CreaturePage);
+const NewRunPage = lazy(async () => (await import("../new-run/NewRunPage")).NewRunPage);
+const RunPage = lazy(async () => (await import("../run/RunPage")).RunPage);
+const SharesPage = lazy(async () => (await import("../shares/SharesPage")).SharesPage);
+const SettingsPage = lazy(async () => (await import("../settings/SettingsPage")).SettingsPage);
+const SignInPage = lazy(async () => (await import("../settings/SignInPage")).SignInPage);
+const SweepPage = lazy(async () => (await import("../sweeps/SweepPage")).SweepPage);
+const WorkersPage = lazy(async () => (await import("../workers/WorkersPage")).WorkersPage);
 
 const TITLES: Record<string, string> = {
   runs: "Runs",
@@ -31,10 +33,10 @@ const TITLES: Record<string, string> = {
 };
 
 export function App() {
-  const place = usePlace();
+  const place = useLocation();
   const { page } = place.route;
-  const unknown = useUnknown();
-  useEffect(() => void learnCaller(), []);
+  const unknown = useSignedOut();
+  useEffect(() => void loadPrincipal(), []);
   useEffect(() => {
     const title = unknown ? "Sign in" : TITLES[page];
     if (title) document.title = `${title} · Microcosmos`;
@@ -48,7 +50,7 @@ export function App() {
           </svg>
           Microcosmos
         </a>
-        {!unknown && <Ways page={page} />}
+        {!unknown && <Navigation page={page} />}
       </header>
       {unknown ? <SignInPage /> : <Page {...place} />}
       {!unknown && <DropTarget />}
@@ -58,8 +60,9 @@ export function App() {
 }
 
 /** Where one can go and what one can open, once the server knows who asks. */
-function Ways({ page }: { page: string }) {
+function Navigation({ page }: { page: string }) {
   const refusal = useRefusal();
+  const health = useFetched(readHealth, []);
   return (
     <>
       <nav aria-label="Pages">
@@ -81,6 +84,11 @@ function Ways({ page }: { page: string }) {
         <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
           Settings
         </a>
+        {health.value?.help && (
+          <a href="/help/" target="_self">
+            Help
+          </a>
+        )}
       </nav>
       <span class="spring" />
       {!refusal && <OpenButton />}
@@ -89,7 +97,7 @@ function Ways({ page }: { page: string }) {
   );
 }
 
-function Page({ route, query }: Place) {
+function Page({ route, query }: PageLocation) {
   switch (route.page) {
     case "runs":
       return <RunsPage query={query} />;
@@ -130,7 +138,7 @@ const CONNECTIONS = {
 };
 
 function Connection() {
-  const connection = useLive((state) => state.connection);
+  const connection = useStore((state) => state.connection);
   const text = CONNECTIONS[connection];
   return (
     <span class={`connection ${connection}`} role="status" title={text}>
@@ -143,19 +151,19 @@ function Connection() {
 export function Toasts() {
   const toasts = useToasts();
   useEffect(() => {
-    document.addEventListener("keydown", undo);
-    return () => document.removeEventListener("keydown", undo);
+    document.addEventListener("keydown", undoLatest);
+    return () => document.removeEventListener("keydown", undoLatest);
   }, []);
   return (
     <div class="toasts" role="status" aria-live="polite">
       {toasts.map((toast) => (
-        <Note key={toast.id} {...toast} />
+        <ToastNote key={toast.id} {...toast} />
       ))}
     </div>
   );
 }
 
-function Note({ id, text, kind, action }: Toast) {
+function ToastNote({ id, text, kind, action }: Toast) {
   return (
     <div class={`toast ${kind}`}>
       <span>{text}</span>
@@ -164,7 +172,7 @@ function Note({ id, text, kind, action }: Toast) {
           {action.label}
         </button>
       ) : (
-        <button class="plain" aria-label="Dismiss" onClick={() => dismiss(id)}>
+        <button class="plain" aria-label="Dismiss" onClick={() => dismissToast(id)}>
           ✕
         </button>
       )}

@@ -1,14 +1,14 @@
 /** The frame around what strangers may see: they have no runs to go to, and no connection. */
 
 import { Toasts } from "./App";
-import { share } from "../api/address";
+import { sharedSlug } from "../api/address";
 import { CommonsPage } from "../shares/CommonsPage";
 import { SharedPage } from "../shares/SharedPage";
-import { usePlace } from "../store/router";
-import { NotThere } from "../ui/NotFound";
+import { useLocation } from "../store/router";
+import { NotFound } from "../ui/NotFound";
 
-export function Open() {
-  const { route, query } = usePlace();
+export function PublicApp() {
+  const { route, query } = useLocation();
   return (
     <>
       <header class="top">
@@ -19,7 +19,7 @@ export function Open() {
           Microcosmos
         </a>
         <nav aria-label="Pages">
-          <a href="/commons" target="_self" aria-current={share ? undefined : "page"}>
+          <a href="/commons" target="_self" aria-current={sharedSlug ? undefined : "page"}>
             Commons
           </a>
         </nav>
@@ -29,7 +29,7 @@ export function Open() {
       {route.page === "commons" && <CommonsPage />}
       {route.page === "unknown" && (
         <main>
-          <NotThere what="Nothing to see here" reason="Nothing was shared at this address." />
+          <NotFound what="Nothing to see here" reason="Nothing was shared at this address." />
         </main>
       )}
       <Toasts />

@@ -2,7 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
-import { share } from "../api/address";
+import { sharedSlug } from "../api/address";
 import { messageOf } from "../api/problem";
 import type { Measurement } from "../api/types";
 import { useRefusal } from "../store/principal";
@@ -11,7 +11,7 @@ import { number, words } from "../ui/format";
 
 type Standing = "unknown" | "never" | "underway" | Measurement;
 
-export function MeasuredCard({ sha }: { sha: string }) {
+export function RemeasureCard({ sha }: { sha: string }) {
   const [standing, setStanding] = useState<Standing>("unknown");
   const [note, setNote] = useState<string | null>(null);
   const [error, setError] = useState<string | null>(null);
@@ -29,14 +29,14 @@ export function MeasuredCard({ sha }: { sha: string }) {
     setError(null);
     setStanding("underway");
     try {
-      await api.measure(sha);
+      await api.startMeasurement(sha);
       setTurn((count) => count + 1);
     } catch (reason) {
       setError(messageOf(reason));
     }
   };
   const found = typeof standing === "string" ? null : standing;
-  if (share && !found) return null; // Strangers have nothing measured.
+  if (sharedSlug && !found) return null; // Strangers have nothing measured.
   const idle = standing !== "unknown" && standing !== "underway";
   return (
     <section class="card" aria-labelledby="measured-title">
@@ -44,7 +44,7 @@ export function MeasuredCard({ sha }: { sha: string }) {
         <h2 id="measured-title">Measured here</h2>
         {found && <Verdict {...found} />}
         <span class="spring" />
-        {!share && !refusal && (idle || error) && (
+        {!sharedSlug && !refusal && (idle || error) && (
           <button onClick={() => void measure()}>{found ? "Measure once more" : "Measure it here"}</button>
         )}
       </div>
@@ -59,7 +59,7 @@ export function MeasuredCard({ sha }: { sha: string }) {
         </p>
       )}
       {error && <p class="banner wrong">{error}</p>}
-      {found && <Told {...found} />}
+      {found && <MeasurementResult {...found} />}
     </section>
   );
 }
@@ -68,7 +68,7 @@ function Verdict({ exact }: Measurement) {
   return <span class={`badge ${exact ? "finished" : "paused"}`}>{exact ? "identical" : "differs"}</span>;
 }
 
-function Told({ exact, device, recorded_device, fitness, figures }: Measurement) {
+function MeasurementResult({ exact, device, recorded_device, fitness, figures }: Measurement) {
   const same = device === recorded_device;
   return (
     <>

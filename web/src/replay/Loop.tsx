@@ -21,7 +21,7 @@ interface Props {
   onFirst?: () => void;
 }
 
-export function Loop({ replay, name, onFirst }: Props) {
+export function ReplayLoop({ replay, name, onFirst }: Props) {
   const stage = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLCanvasElement>(null);
   const size = useSize(stage);

@@ -9,7 +9,7 @@ import { useClock, useKeys } from "./clock";
 import { FieldLegend, LookChoice, Speed } from "./Controls";
 import { type Field, fieldOf, fieldsOf } from "./fields";
 import { FluidPainter } from "./fluid";
-import { type Look, USUAL } from "./look";
+import { type ReplayView, DEFAULT_VIEW } from "./look";
 import { type Moment, newMoment, useMoment } from "./moment";
 import { chainsOf } from "./motion";
 import { drawScene, wayOf } from "./scene";
@@ -17,7 +17,7 @@ import { Tracers } from "./tracers";
 import "./replay.css";
 
 /** Steps of the simulation in a second at speed 1. */
-const PACE = 40;
+const FRAMES_PER_SECOND = 40;
 
 /** A replay, and what it is called where it is not alone. */
 export interface Film {
@@ -29,8 +29,8 @@ interface Props {
   films: Film[];
   /** Left out, the player keeps its own. */
   moment?: Moment;
-  look?: Look;
-  onLook?: (change: Partial<Look>) => void;
+  look?: ReplayView;
+  onLook?: (change: Partial<ReplayView>) => void;
 }
 
 /** Films of one task: equally long, in one clock and on one scale of colours. */
@@ -38,7 +38,7 @@ export function ReplayPlayer({ films, ...given }: Props) {
   const { frames, every, steps } = films[0]!.replay.header;
   const last = frames - 1;
   const theme = useTheme();
-  const [own, setOwn] = useState(USUAL);
+  const [own, setOwn] = useState(DEFAULT_VIEW);
   const look = given.look ?? own;
   const change = given.onLook ?? ((part) => setOwn((old) => ({ ...old, ...part })));
   const moment = useMoment(useMemo(() => given.moment ?? newMoment(), [given.moment]));
@@ -52,7 +52,7 @@ export function ReplayPlayer({ films, ...given }: Props) {
     );
   }, [films, name, theme]);
   useClock(moment.playing, (seconds) => {
-    moment.move((moment.time + (seconds * look.speed * PACE) / every) % Math.max(1, last));
+    moment.move((moment.time + (seconds * look.speed * FRAMES_PER_SECOND) / every) % Math.max(1, last));
   });
   const toggle = () => moment.play(!moment.playing);
   const step = (by: 1 | -1) => moment.step(by, last);

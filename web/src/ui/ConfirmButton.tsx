@@ -1,16 +1,16 @@
 /** A button for what cannot be taken back: it asks once more, in its own place. */
 
-import { useOpening } from "./disclosure";
+import { useDisclosure } from "./disclosure";
 
 interface Props {
   /** What it does, and to what. */
   verb: string;
   what: string;
-  onDo: () => Promise<void>;
+  onConfirm: () => Promise<void>;
 }
 
-export function Twice({ verb, what, onDo }: Props) {
-  const { open, setOpen, button, first } = useOpening<HTMLButtonElement>();
+export function ConfirmButton({ verb, what, onConfirm: onDo }: Props) {
+  const { open, setOpen, button, first } = useDisclosure<HTMLButtonElement>();
   const keep = () => setOpen(false);
   if (!open) {
     return (

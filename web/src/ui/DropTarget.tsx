@@ -4,7 +4,7 @@ import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { importCreature } from "../api/client";
 import { messageOf } from "../api/problem";
-import { tell } from "../store/toasts";
+import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
 
 async function open(file: File): Promise<void> {
@@ -12,35 +12,35 @@ async function open(file: File): Promise<void> {
     const { creature } = await importCreature(file);
     navigate(`/creatures/${creature}`);
   } catch (error) {
-    tell({ kind: "wrong", text: `${file.name}: ${messageOf(error)}` });
+    showToast({ kind: "wrong", text: `${file.name}: ${messageOf(error)}` });
   }
 }
 
-interface Taker {
+interface DropHandler {
   prompt: string;
   take: (file: File) => void;
 }
 
-const OPENING: Taker = {
+const OPEN_CREATURE: DropHandler = {
   prompt: "Drop a creature file to open it",
   take: (file) => void open(file),
 };
 
-let taker = OPENING;
+let handler = OPEN_CREATURE;
 
 /** While a component is shown, it takes what is dropped. */
-export function useDropTaker(prompt: string, take: Taker["take"]): void {
+export function useFileDrop(prompt: string, take: DropHandler["take"]): void {
   useEffect(() => {
-    taker = { prompt, take };
+    handler = { prompt, take };
     return () => {
-      taker = OPENING;
+      handler = OPEN_CREATURE;
     };
   }, []);
 }
 
 export function OpenButton() {
   return (
-    <FileButton kind="plain" name="Creature file" take={OPENING.take}>
+    <FileButton kind="plain" name="Creature file" take={OPEN_CREATURE.take}>
       Open creature<span class="wide-only"> file</span>
     </FileButton>
   );
@@ -49,7 +49,7 @@ export function OpenButton() {
 interface ButtonProps {
   kind?: string;
   name: string;
-  take: Taker["take"];
+  take: DropHandler["take"];
   children: ComponentChildren;
 }
 
@@ -91,7 +91,7 @@ export function DropTarget() {
       event.preventDefault();
       setOver(false);
       const file = event.dataTransfer?.files[0];
-      if (file) taker.take(file);
+      if (file) handler.take(file);
     };
     window.addEventListener("dragover", drag);
     window.addEventListener("dragleave", leave);
@@ -104,7 +104,7 @@ export function DropTarget() {
   }, []);
   return over ? (
     <div class="drop-target" aria-hidden="true">
-      <p>{taker.prompt}</p>
+      <p>{handler.prompt}</p>
     </div>
   ) : null;
 }

@@ -1,15 +1,15 @@
 /** A download that says why where there is no such file. */
 
-import { proveFile } from "../api/files";
+import { checkFile } from "../api/files";
 import { messageOf } from "../api/problem";
-import { tell } from "../store/toasts";
+import { showToast } from "../store/toasts";
 
 export function FileLink({ url, name }: { url: string; name: string }) {
   const download = (event: MouseEvent) => {
     event.preventDefault();
-    proveFile(url)
+    checkFile(url)
       .then(() => save(url))
-      .catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
+      .catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
   };
   return (
     <a class="button" href={url} onClick={download}>

@@ -1,8 +1,8 @@
 /** The way to a new run that begins from creatures. */
 
-import { share } from "../api/address";
+import { sharedSlug } from "../api/address";
 import { useRefusal } from "../store/principal";
-import { forked } from "../store/draft";
+import { forkAddress } from "../store/draft";
 
 interface Props {
   /** Whose elites; null where no run is known. */
@@ -17,9 +17,9 @@ interface Props {
 }
 
 export function ForkLink({ run, creature, cells, at = null, title, inline = false }: Props) {
-  if (useRefusal() || share) return null;
+  if (useRefusal() || sharedSlug) return null;
   const which = { creature, cells, at: at === null ? null : String(at) };
-  const address = run ? forked(run, which) : [["begin", creature!]];
+  const address = run ? forkAddress(run, which) : [["begin", creature!]];
   return (
     <a
       class={inline ? "" : "button"}

@@ -13,7 +13,7 @@ interface Props {
 }
 
 /** Enter or leaving takes what was typed, Escape takes nothing. */
-export function InPlace({ label, value, limit, long = false, list, onDone }: Props) {
+export function InlineText({ label, value, limit, long = false, list, onDone }: Props) {
   const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null);
   const over = useRef(false);
   useLayoutEffect(() => {
@@ -27,7 +27,7 @@ export function InPlace({ label, value, limit, long = false, list, onDone }: Pro
   };
   const common = {
     ref: field,
-    class: "in-place",
+    class: "inline-text",
     "aria-label": label,
     maxLength: limit,
     defaultValue: value,

@@ -2,9 +2,9 @@
 
 import { NOT_FREE } from "./coupling";
 
-export function NotFree({ some = false }: { some?: boolean }) {
+export function NotForceFree({ some = false }: { some?: boolean }) {
   return (
-    <span class="badge not-free" title={NOT_FREE}>
+    <span class="badge not-force-free" title={NOT_FREE}>
       {some ? "partly not force-free" : "not force-free"}
     </span>
   );

@@ -7,7 +7,7 @@ interface Props {
   reason: string;
 }
 
-export function NotThere({ what, reason }: Props) {
+export function NotFound({ what, reason }: Props) {
   return (
     <section class="empty card">
       <h1>{what}</h1>

@@ -1,19 +1,19 @@
 /** Text into the clipboard, and a word on whether it came there. */
 
 import { messageOf } from "../api/problem";
-import { tell } from "../store/toasts";
+import { showToast } from "../store/toasts";
 
 export async function copyText(text: string, note: string): Promise<void> {
   try {
-    await write(text);
-    tell({ kind: "note", text: note });
+    await writeClipboard(text);
+    showToast({ kind: "note", text: note });
   } catch (error) {
-    tell({ kind: "wrong", text: messageOf(error) });
+    showToast({ kind: "wrong", text: messageOf(error) });
   }
 }
 
 /** Over plain HTTP browsers have no clipboard but for what is selected. */
-async function write(text: string): Promise<void> {
+async function writeClipboard(text: string): Promise<void> {
   if (navigator.clipboard) return navigator.clipboard.writeText(text);
   const focused = document.activeElement as HTMLElement | null;
   const area = document.createElement("textarea");

@@ -40,12 +40,12 @@ const part = (value: Json | undefined): Spec =>
   value && typeof value === "object" && !Array.isArray(value) ? value : {};
 
 /** Whether a body cannot push itself, as far as a coupling says. */
-export const isFree = (coupling: Json | undefined) => part(coupling).projection !== "none";
+export const isForceFree = (coupling: Json | undefined) => part(coupling).projection !== "none";
 
 /** Whether everything that a run simulates is force-free, some of it, or nothing. */
-export function freedomOf(spec: Spec): "all" | "some" | "none" {
+export function forceFreeShare(spec: Spec): "all" | "some" | "none" {
   const forms = Array.isArray(spec.forms) ? spec.forms : null;
-  if (!forms) return isFree(spec.coupling) ? "all" : "none";
+  if (!forms) return isForceFree(spec.coupling) ? "all" : "none";
   const free = forms.filter((name) => formOf(String(name)).free).length;
   if (free === forms.length) return "all";
   return free > 0 ? "some" : "none";

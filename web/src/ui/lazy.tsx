@@ -4,7 +4,7 @@ import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 
 /** A part of a page is a `section` until it is there. */
-export function later<P extends object>(
+export function lazy<P extends object>(
   load: () => Promise<ComponentType<P>>,
   Around: "main" | "section" = "main",
 ): ComponentType<P> {
@@ -23,12 +23,12 @@ export function later<P extends object>(
       );
     }, []);
     if (Found) return <Found {...props} />;
-    return <Around>{failed ? <Gone /> : <p class="quiet loading">Loading …</p>}</Around>;
+    return <Around>{failed ? <LoadFailed /> : <p class="quiet loading">Loading …</p>}</Around>;
   };
 }
 
 /** The server was updated since this tab was opened, or cannot be reached. */
-function Gone() {
+function LoadFailed() {
   return (
     <p class="banner wrong" role="alert">
       This part of the page could not be loaded. <button onClick={() => location.reload()}>Reload</button>

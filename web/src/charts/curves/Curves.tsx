@@ -4,7 +4,7 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import { useSize } from "../../ui/canvas";
 import { useTheme } from "../../ui/theme";
-import { type Look, OVER, tableOf } from "./look";
+import { type CurveView, OVER, tableOf } from "./look";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";
 import "uplot/dist/uPlot.min.css";
@@ -13,7 +13,7 @@ import "./curves.css";
 interface Props {
   plots: Plot[];
   x: readonly number[];
-  look: Look;
+  look: CurveView;
 }
 
 export function Curves({ plots, x, look }: Props) {
