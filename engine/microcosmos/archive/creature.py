@@ -9,7 +9,6 @@ import numpy as np
 from pydantic import Field, StringConstraints, ValidationError, model_validator
 
 from ..spec import Part, Scene, Task, field_path
-from ..spec import identity as identity_of
 from ..spec.plugins import Own
 from .genomes import Network
 from .identity import Identity
@@ -146,7 +145,7 @@ def parse(data: Any) -> dict[str, Any]:
         named = re.match(r"`([\w.]+)`", needed)
         field = field_path(first["loc"]) or (named[1] if named else "file")
         raise CreatureError(field, needed, first["input"]) from error
-    whole = {**file.model_dump(mode="json"), "identity": identity_of(file.identity)}
+    whole = file.model_dump(mode="json")
     expected = name(whole["identity"])
     if expected != file.sha256:
         raise CreatureError("sha256", f"the identity's own hash {expected}", file.sha256)
