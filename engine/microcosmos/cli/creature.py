@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from ..archive.atomic import write_whole
+from ..archive.creature import CreatureError, parse
 from ..plugins import Broken, Missing
 from .app import CACHE, app, fail
 from .modules import Modules, load_modules
@@ -23,7 +25,6 @@ def replay(
 ) -> None:
     """Simulate a creature file again."""
     load_modules(module)
-    from ..archive.creature import CreatureError
     from ..device import prepare
 
     prepare(cache=CACHE)
@@ -44,8 +45,6 @@ def audit(
 ) -> None:
     """Does a creature swim by the fluid, or by the way it is computed?"""
     load_modules(module)
-    from ..archive.atomic import write_whole
-    from ..archive.creature import CreatureError, parse
     from ..device import prepare
 
     prepare(cache=CACHE)
@@ -76,8 +75,6 @@ def gradient(
 ) -> None:
     """How far can the gradient of a creature's fitness, or of a feature, be trusted?"""
     load_modules(module)
-    from ..archive.atomic import write_whole
-    from ..archive.creature import CreatureError, parse
     from ..device import prepare
 
     prepare(cache=CACHE)
@@ -95,7 +92,6 @@ def gradient(
 
 
 def _check(file: Path) -> None:
-    from ..archive.creature import parse
     from ..audit.reproducibility import check
 
     result = check(parse(file.read_bytes()))
@@ -111,8 +107,6 @@ def _check(file: Path) -> None:
 
 
 def _record(file: Path, out: Path) -> None:
-    from ..archive.atomic import write_whole
-    from ..archive.creature import parse
     from ..viz.replay import record
 
     write_whole(out, record(parse(file.read_bytes())))

@@ -10,6 +10,7 @@ from .app import app
 from .monitor import ended
 from .remote import RUNS, Id, Ids, Json, Token, Url, about, found, reaching, say, show, title
 from .submit import Name, Set, Watch, tell
+from .sweeps import cases, members, table
 
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")]
 
@@ -125,16 +126,12 @@ def sweep(
     token: Token = None,
 ) -> None:
     """What the runs of a sweep have come to: median and quarters of each case."""
-    from .sweeps import cases, members
-
     with reaching(url, token) as client:
         one = client.sweep(id)
         rows = members(one) if runs else cases(one)
     if json:
         show(rows)
     else:
-        from .sweeps import table
-
         table(rows)
 
 

@@ -4,6 +4,7 @@ from hashlib import md5
 from pathlib import Path
 from typing import Annotated
 
+import httpx
 import typer
 
 from ..archive.atomic import write_whole
@@ -57,8 +58,6 @@ def mnist(
     ),
 ) -> None:
     """Fetch the test images of MNIST and their labels, and verify them."""
-    import httpx
-
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -8,6 +8,7 @@ import typer
 from pydantic import ValidationError
 
 from ..archive.creature import CreatureError, parse
+from ..archive.table import read_table
 from ..spec import Archive, Refinement
 from .app import CACHE, app, console, fail
 from .modules import Modules, load_modules
@@ -73,8 +74,6 @@ def _archive(like: str | None) -> Archive:
 
 def _tell(path: Path) -> None:
     """The creature before and after, side by side."""
-    from ..archive.table import read_table
-
     rows = read_table(path.read_bytes()).rows
     before, after = rows[0], rows[-1]
     print(f"{'':>20}  {'before':>12}  {'after':>12}")

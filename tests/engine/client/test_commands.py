@@ -8,8 +8,7 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from microcosmos import client
-from microcosmos.cli import app, overrides, tables
+from microcosmos.cli import app, overrides, remote, tables
 from microcosmos.version import VERSION
 
 SHA = "ab" * 32
@@ -56,7 +55,7 @@ def told(fake, record, monkeypatch):
         **{("POST", f"{run}/{do}"): record for do in ("extend", "fork", "restore", "pause")},
     }
     served = fake(answers)
-    monkeypatch.setattr(client, "Client", lambda *_: served.connect())
+    monkeypatch.setattr(remote, "Client", lambda *_: served.connect())
 
     def carry_out(*arguments: str, code: int = 0, **options: Any) -> Any:
         found = CliRunner().invoke(app, list(arguments), **options)

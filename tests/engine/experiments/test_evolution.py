@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from microcosmos.archive import creature, naming
+from microcosmos import naming
+from microcosmos.archive import creature
 from microcosmos.build import build
 from microcosmos.experiments import Stopped
 from microcosmos.experiments.archive_file import OtherDevice

@@ -5,8 +5,8 @@ from pydantic import ValidationError
 
 from microcosmos import spec
 from microcosmos.archive import creature
-from microcosmos.archive.encoding import encode
 from microcosmos.build.creatures import frame
+from microcosmos.naming import encode
 from microcosmos.spec import Scene, identity
 
 OLD = {
