@@ -9,7 +9,7 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print) docs/glossary.md
 
-.PHONY: run install web test test-all test-long check peers bench acceptance validate pictures docs \
+.PHONY: run install web test test-all test-long check peers bench acceptance validate pictures docs texts \
 	release-check lock
 
 run: install web
@@ -99,10 +99,14 @@ pictures: install web
 validate: install
 	$(BIN)/python -m validation
 
+# All texts of the page, the commands and the server, for review: make texts > texts.md
+texts: install
+	@$(BIN)/python tests/texts.py
+
 # The documentation site; the server shows it at /help from its next start on.
 docs: install
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-docs.lock
-	$(BIN)/sphinx-build -q -W --keep-going docs docs/_build
+	$(BIN)/sphinx-build -q -W --keep-going -d .cache/doctrees docs docs/_build
 
 # The wheel in an environment that has nothing else, with the newest versions of what it needs.
 release-check: install

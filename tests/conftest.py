@@ -13,9 +13,8 @@ from collections import Counter
 import pytest
 from xdist.scheduler import LoadScopeScheduling
 
-SHARING = ("tests/faults", "tests/e2e")
-"""Folders, and those in them, whose tests share running products."""
-
+SHARING = ("tests/faults", "tests/e2e", "tests/engine/experiments")
+"""Folders, and those in them, whose tests share running products or finished runs."""
 
 WALK = "tests/e2e/test_walk.py"
 """The one test in a browser that is not long."""

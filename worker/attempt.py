@@ -12,7 +12,7 @@ from uuid import UUID
 from sqlalchemy.exc import OperationalError
 
 from server.attempts.begin import claim
-from server.attempts.claim import Claim, Fenced
+from server.attempts.claim import CheckpointUnavailable, Claim, Fenced
 from server.attempts.report import Report
 from server.services.services import Services
 from server.settings import Settings
@@ -40,6 +40,11 @@ def claimed(services: Services, run_id: UUID, worker: str) -> Iterator["Attempt 
         yield Attempt(held) if held else None
     except Fenced as error:
         log.warning("Lost %s", error)
+    except CheckpointUnavailable as error:
+        log.error("Run %s: %s", run_id, error)
+        if held:
+            with suppress(Fenced):
+                Attempt(held).set_aside(str(error))
     except Exception:
         log.exception("Run %s failed", run_id)
         if held:
@@ -86,8 +91,8 @@ class Attempt:
         persist(lambda: self._claim.wait_for_leave(text))
 
     def set_aside(self, reason: str) -> None:
-        """Pause: this worker lacks something of users' own that can be brought back."""
-        text = f"{reason}. When the worker has it again, resume the run."
+        """Pause: this worker lacks a plug-in or a file that people can bring back."""
+        text = f"{reason}. Resume the run when this is mended."
         persist(lambda: self._claim.set_aside(text))
 
     def refuse(self, reason: str) -> None:

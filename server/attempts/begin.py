@@ -12,8 +12,8 @@ from ..runs.lifecycle import announce, change, lost, release
 from ..services.services import Services
 from ..tables import GIVEN, QUEUED, RUNNING, Run, Worker
 from ..workers import plugins
-from .checkpoints import last_checkpoint, rewind
-from .claim import Claim, stored, tell_rewind
+from .checkpoints import rewind
+from .claim import Claim, tell_rewind
 
 
 def claim(services: Services, run_id: UUID, worker: str) -> Claim | None:
@@ -32,7 +32,7 @@ def claim(services: Services, run_id: UUID, worker: str) -> Claim | None:
         rewound = run is not None and rewind(session, run)
         if run:
             log.note_beginning(session, run, before)
-        begun = _begin(services, session, run) if run else None
+        begun = _begin(services, run) if run else None
     if rewound and begun:
         tell_rewind(begun)
     announce(services, run_id)
@@ -56,15 +56,13 @@ def _begun(worker: str) -> dict[str, Any]:
     }
 
 
-def _begin(services: Services, session: Session, run: Run) -> Claim:
-    row = last_checkpoint(session, run.id)
+def _begin(services: Services, run: Run) -> Claim:
     return Claim(
         services=services,
         run_id=run.id,
         attempt=run.attempt,
         spec=run.spec,
         generation=run.checkpoint_generation,
-        checkpoint=stored(row),
         seconds=run.seconds,
         other_device=run.device_leave == GIVEN,
     )

@@ -1,5 +1,6 @@
 """Which files are a run's checkpoints, which of them can go, and how a run returns to one."""
 
+from collections.abc import Sequence
 from typing import Any
 from uuid import UUID
 
@@ -12,11 +13,15 @@ from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 
 
 def last_checkpoint(session: Session, run_id: UUID) -> Artifact | None:
-    """The newest one, which a run goes on from and people download."""
+    """Return the newest checkpoint: runs resume from it and people download it."""
+    return next(iter(checkpoints(session, run_id, 1)), None)
+
+
+def checkpoints(session: Session, run_id: UUID, limit: int | None = None) -> list[Artifact]:
+    """Return the checkpoints of a run, the newest first."""
     mine = (Artifact.run_id == run_id) & (Artifact.kind == CHECKPOINT)
-    return session.scalars(
-        select(Artifact).where(mine).order_by(Artifact.number.desc()).limit(1)
-    ).one_or_none()
+    newest = select(Artifact).where(mine).order_by(Artifact.number.desc()).limit(limit)
+    return list(session.scalars(newest))
 
 
 def point_at(session: Session, run_id: UUID, generation: int, stored: Stored) -> list[str]:
@@ -46,13 +51,11 @@ def _prune(session: Session, run_id: UUID) -> list[str]:
     return list(session.scalars(gone.returning(Artifact.path)))
 
 
-def fall_back(session: Session, run: Run, path: str) -> Artifact | None:
-    """Return to the checkpoint before one whose file is not sound, if there is one."""
-    session.execute(delete(Artifact).where(Artifact.path == path))
-    before = last_checkpoint(session, run.id)
-    run.checkpoint_generation = (before.generation or 0) if before else 0
+def fall_back(session: Session, run: Run, sound: Artifact, damaged: Sequence[str]) -> None:
+    """Return to a checkpoint whose file is sound, and forget the damaged ones after it."""
+    session.execute(delete(Artifact).where(Artifact.path.in_(damaged)))
+    run.checkpoint_generation = sound.generation or 0
     rewind(session, run)
-    return before
 
 
 def rewind(session: Session, run: Run) -> bool:

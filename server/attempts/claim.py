@@ -2,6 +2,7 @@
 
 import logging
 from dataclasses import dataclass
+from hashlib import sha256
 from time import monotonic
 from typing import Any
 from uuid import UUID
@@ -18,13 +19,17 @@ from ..services.services import Services
 from ..storage.artifacts import Stored, checkpoint_path
 from ..tables import CANCEL, CANCELLED, FAILED, FINISHED, NEEDED, PAUSED, RUNNING, Artifact, Run
 from . import recording
-from .checkpoints import fall_back, point_at
+from .checkpoints import checkpoints, fall_back, point_at
 from .report import Report
 
 logger = logging.getLogger(__name__)
 
 ANNOUNCE_EVERY = 1.0
 """Seconds between two events that tell how a run as a whole stands."""
+
+
+class CheckpointUnavailable(Exception):
+    """The store lacks a sound file of a checkpoint that the run has."""
 
 
 class Fenced(Exception):
@@ -41,8 +46,6 @@ class Claim:
     spec: dict[str, Any]
     generation: int
     """The one that the checkpoint holds; 0 without one."""
-    checkpoint: Stored | None
-    """The file to go on from; None: from the beginning."""
     seconds: float
     """Wall time of the computing that led to the last record."""
     other_device: bool = False
@@ -61,29 +64,49 @@ class Claim:
             return initial.files(session, names)
 
     def restore(self) -> bytes | None:
-        """The content of the newest checkpoint whose file is sound, if there is one.
+        """Return the content of the newest sound checkpoint; None before the first one.
 
-        To be asked before anything is recorded: what is beyond that checkpoint is deleted.
+        Older checkpoints stand in for damaged ones, and what was recorded after them is
+        deleted. Raise `CheckpointUnavailable`, and delete nothing, where a file is missing
+        or all are damaged: then the store may be the wrong one, and a person has to decide.
+        Call it before anything is recorded.
         """
-        while self.checkpoint:
-            if (data := self.services.artifacts.sound(self.checkpoint)) is not None:
+        with self.services.sessions.read() as session:
+            rows = checkpoints(session, self.run_id)
+        damaged: list[str] = []
+        for row in rows:
+            try:
+                data = self.services.artifacts.read(row.path)
+            except FileNotFoundError:
+                raise CheckpointUnavailable(self._unavailable(row, "is missing")) from None
+            if sha256(data).hexdigest() == row.sha256:
+                if damaged:
+                    self._fall_back(row, damaged)
                 return data
-            self._fall_back(self.checkpoint)
+            damaged.append(row.path)
+        if rows:
+            raise CheckpointUnavailable(
+                self._unavailable(rows[0], "and all before it are damaged")
+            )
         return None
 
-    def _fall_back(self, unsound: Stored) -> None:
-        damaged = self.generation
+    def _unavailable(self, row: Artifact, what: str) -> str:
+        return (
+            f"The checkpoint of generation {row.generation} {what}: no sound file `{row.path}` "
+            f"in {self.services.artifacts.root}. Check MICROCOSMOS_ARTIFACTS_URL and the "
+            "folder's mount, or restore the file"
+        )
+
+    def _fall_back(self, sound: Artifact, damaged: list[str]) -> None:
+        text = (
+            f"The checkpoint of generation {self.generation} is damaged; "
+            f"the run resumes from generation {sound.generation}."
+        )
         with self.services.sessions.write.begin() as session:
-            run = self._prove(session)
-            row = fall_back(session, run, unsound.path)
-            place = f"generation {run.checkpoint_generation}" if row else "the beginning"
-            text = run.warning = (
-                f"The checkpoint of generation {damaged} is missing or damaged; "
-                f"the run goes on from {place}."
-            )
+            run = self._prove(session, warning=text)
+            fall_back(session, run, sound, damaged)
             note(session, run, text, "warning")
-        logger.warning("run %s: %s (%s)", self.run_id, run.warning, unsound.path)
-        self.checkpoint = stored(row)
+        logger.warning("run %s: %s (%s)", self.run_id, text, ", ".join(damaged))
         self.generation, self.seconds = run.checkpoint_generation, run.seconds
         tell_rewind(self)
         announce(self.services, self.run_id)
@@ -134,7 +157,7 @@ class Claim:
                     warning=None,
                 )
             log.note_checkpoint(session, before, generation, stored.size)
-        self.checkpoint, self.generation = stored, generation
+        self.generation = generation
         for path in superfluous:
             try:
                 self.services.artifacts.delete(path)
@@ -220,10 +243,6 @@ def _paused() -> dict[str, Any]:
         "wish": None,
         "wished_at": None,
     }
-
-
-def stored(row: Artifact | None) -> Stored | None:
-    return Stored(row.path, row.size, row.sha256) if row else None
 
 
 def tell_rewind(held: Claim) -> None:

@@ -1,4 +1,4 @@
-"""The page, as `make` has built it."""
+"""The page and the documentation, as `make` has built them."""
 
 import gzip
 from functools import lru_cache
@@ -7,10 +7,13 @@ from pathlib import Path
 from typing import Annotated
 
 from fastapi import APIRouter, Header
-from fastapi.responses import FileResponse, HTMLResponse, Response
+from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 from starlette.exceptions import HTTPException
 
-BUILT = Path(__file__).parents[2] / "web" / "dist"
+ROOT = Path(__file__).parents[2]
+BUILT = ROOT / "web" / "dist"
+HELP = ROOT / "docs" / "_build"
+"""The documentation, where `make docs` has built it."""
 MISSING = """<!doctype html><html lang="en"><title>Microcosmos</title>
 <p>The page has not been built yet: <code>make</code> in the checkout builds it.
 The API is at <a href="/api/v1/openapi.json">/api/v1</a>."""
@@ -23,9 +26,13 @@ router = APIRouter(include_in_schema=False)
 @router.get("/{path:path}")
 def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
     """A built file, else the page itself, which knows what its paths mean."""
-    if path == "api" or (path.startswith(("api/", "assets/")) and not _file(path)):
+    if path == "help":
+        return RedirectResponse("/help/")  # Relative links need the slash.
+    if path.startswith("help/"):
+        return _documentation(path.removeprefix("help/"))
+    if path == "api" or (path.startswith(("api/", "assets/")) and not _file(BUILT, path)):
         raise HTTPException(404, f"There is nothing at /{path}")
-    if file := _file(path):
+    if file := _file(BUILT, path):
         if not path.startswith("assets/"):
             return FileResponse(file, headers=FRESH)
         return _asset(file, "gzip" in accept_encoding)
@@ -33,6 +40,12 @@ def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
     if not index.is_file():
         return HTMLResponse(MISSING, 503)
     return FileResponse(index, headers=FRESH)
+
+
+def _documentation(path: str) -> Response:
+    if file := _file(HELP, path or "index.html"):
+        return FileResponse(file, headers=FRESH)
+    raise HTTPException(404, "The documentation has no such page. `make docs` builds it.")
 
 
 def _asset(file: Path, compressed: bool) -> Response:
@@ -50,9 +63,9 @@ def _gzip(file: Path) -> bytes:
     return gzip.compress(file.read_bytes(), mtime=0)
 
 
-def _file(path: str) -> Path | None:
+def _file(folder: Path, path: str) -> Path | None:
     try:
-        file = (BUILT / path).resolve()
-        return file if file.is_file() and file.is_relative_to(BUILT.resolve()) else None
+        file = (folder / path).resolve()
+        return file if file.is_file() and file.is_relative_to(folder.resolve()) else None
     except (OSError, ValueError):  # No file can have such a name.
         raise HTTPException(404, f"There is nothing at /{path:.80}") from None

@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 
 from microcosmos.naming import FORMAT, encode
-from microcosmos.spec import EXPERIMENTS, identity
+from microcosmos.spec import EXPERIMENTS
 
 
 def example() -> dict[str, Any]:
     """The identity of a swimmer without hidden nodes, as the demonstration's have it."""
     spec: Any = EXPERIMENTS["quality-diversity"].presets[0].spec
-    control = spec.control
+    whole, control = spec.model_dump(mode="json"), spec.control
     ends = [*control.inputs, *control.outputs]
     return {
         "format": FORMAT,
@@ -19,7 +19,7 @@ def example() -> dict[str, Any]:
             "encoding": "cppn",
             "inputs": list(control.inputs),
             "outputs": list(control.outputs),
-            "control": identity(control),
+            "control": whole["control"],
             "nodes": {
                 "id": list(range(len(ends))),
                 "activation": ["identity"] * len(ends),
@@ -33,7 +33,10 @@ def example() -> dict[str, Any]:
                 "weight": "",
             },
         },
-        "world": {**identity(spec.world), "coupling": identity(spec.coupling)},
-        "body": identity(spec.body),
-        "task": identity(spec.task),
+        "world": {
+            **spec.world.model_dump(mode="json"),
+            "coupling": spec.coupling.model_dump(mode="json"),
+        },
+        "body": whole["body"],
+        "task": whole["task"],
     }

@@ -6,7 +6,6 @@ at `idle.product` nobody computes. A test that needs a list of runs of its own, 
 server, has an `address` of its own, and is in alone/: two processes share the folders.
 """
 
-import os
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -19,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
 
 from browser import executable, launched, overhear
-from drive import ROOT, Installation
+from drive import COMPILED, ROOT, Installation
 from small import submit_small_runs
 
 from server.local.redis_embedded import prepare
@@ -86,14 +85,11 @@ def browser(chromium: str) -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="session")
-def common(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+def common() -> dict[str, str]:
     """What every product of the session finds in its environment: programs compiled once."""
     if not (ROOT / "web" / "dist" / "index.html").exists():
         pytest.fail("web/dist is missing: build the page first")
-    of_all = tmp_path_factory.getbasetemp()
-    if "PYTEST_XDIST_WORKER" in os.environ:  # Each process has a folder in that of all.
-        of_all = of_all.parent
-    return SETTINGS | {"JAX_COMPILATION_CACHE_DIR": str(of_all / "compiled")}
+    return SETTINGS | {"JAX_COMPILATION_CACHE_DIR": str(COMPILED)}
 
 
 @pytest.fixture

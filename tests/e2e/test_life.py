@@ -91,7 +91,7 @@ def fork_the_chosen(page: Page, address: str, run: str) -> None:
     """The form says whom the run begins from, and leads back to them."""
     text = chosen(page).inner_text().removesuffix(" chosen")
     page.locator(".chosen-bar").get_by_role("link", name="Fork").click()
-    beginning = page.locator(".beginning")
+    beginning = page.locator(".base-bar")
     expect(beginning).to_contain_text(f"Begins from {text} of run {run[:8]}.", timeout=FAST)
     assert "cells=" in page.url
     expect(page.get_by_label("Estimate")).to_be_visible(timeout=FAST)
@@ -104,7 +104,7 @@ def fork_the_past(page: Page, address: str, run: str) -> None:
     bar = page.locator(".chosen-bar")
     expect(bar).to_contain_text(re.compile(r"^\d+ creatures? of generation 1"))
     bar.get_by_role("link", name="Fork").click()
-    expect(page.locator(".beginning")).to_contain_text(
+    expect(page.locator(".base-bar")).to_contain_text(
         f"of run {run[:8]}, as they were after generation 1.", timeout=FAST
     )
 
@@ -115,7 +115,7 @@ def fork_an_elite_in_another_viscosity(page: Page, address: str, run: str) -> st
     map_of(page).focus()
     page.keyboard.press("ArrowRight")
     page.locator("#map-reading").get_by_role("link", name="Fork").click()
-    expect(page.locator(".beginning")).to_contain_text("Begins from 1 creature", timeout=FAST)
+    expect(page.locator(".base-bar")).to_contain_text("Begins from 1 creature", timeout=FAST)
     world = page.get_by_role("group", name="World", exact=True)
     world.get_by_label("Viscosity", exact=True).fill(str(VISCOSITY))
     page.get_by_label("Name of the run").fill(NAME)

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from microcosmos.archive import creature
-from microcosmos.spec import identity, parse
+from microcosmos.spec import parse
 
 FAST = 10_000
 KINDS = {
@@ -41,7 +41,7 @@ def new(idle_page: Page, idle, complaints: list[str]) -> Iterator[Page]:
 
 
 def beginning(page: Page) -> Locator:
-    return page.locator(".beginning")
+    return page.locator(".base-bar")
 
 
 def paste(page: Page, document: Any) -> None:
@@ -215,12 +215,12 @@ def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
 
 def creature_file() -> dict[str, Any]:
     """A swimmer with one weight, as anybody might share it."""
-    small: Any = parse(SMALL)
+    written = parse(SMALL).model_dump(mode="json")
     genome = {
         "encoding": "cppn",
         "inputs": ["position", "sine", "cosine"],
         "outputs": ["rest_angle", "rest_length"],
-        "control": identity(small.control),
+        "control": written["control"],
         "nodes": {
             "id": [0, 1, 2, 3, 4],
             "activation": ["identity"] * 5,
@@ -234,9 +234,9 @@ def creature_file() -> dict[str, Any]:
             "weight": floats(1),
         },
     }
-    world = {**identity(small.world), "coupling": identity(small.coupling)}
-    parts = {"genome": genome, "world": world, "body": identity(small.body)}
-    whole = {"format": creature.FORMAT, **parts, "task": identity(small.task)}
+    world = {**written["world"], "coupling": written["coupling"]}
+    parts = {"genome": genome, "world": world, "body": written["body"]}
+    whole = {"format": creature.FORMAT, **parts, "task": written["task"]}
     return creature.document(whole, None, None)
 
 

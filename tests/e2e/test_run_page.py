@@ -43,7 +43,7 @@ def watch_it_begin(page: Page, run: Written) -> None:
     )
     run.begin("worker 1")
     expect(page.get_by_text("most of a minute on a CPU")).to_be_visible(timeout=FAST)
-    elapsed = page.locator(".doing .quiet")
+    elapsed = page.locator(".activity .quiet")
     before = elapsed.inner_text()
     expect(elapsed).not_to_have_text(before, timeout=FAST)
     run.go_on(1, 4)

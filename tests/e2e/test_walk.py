@@ -11,12 +11,11 @@ FAST, SLOW = 10_000, 120_000
 
 @pytest.mark.e2e
 def test_a_run_is_submitted_watched_opened_and_its_creature_swims_and_travels(
-    shared_page: Page, shared_address: str, tmp_path: Path
+    page: Page, address: str, tmp_path: Path
 ):
-    page = shared_page
-    run = submit_a_short_run(page, shared_address)
+    run = submit_a_short_run(page, address)
     watch_it_live(page)
-    sha = open_an_elite(page, shared_address, run)
+    sha = open_an_elite(page, address, run)
     see_it_move(page)
     file = download_it(page, sha, tmp_path)
     drop_it_back_in(page, file, sha)

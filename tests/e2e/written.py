@@ -7,7 +7,7 @@ from typing import Any
 from uuid import UUID
 
 from microcosmos.archive import creature
-from microcosmos.spec import EXPERIMENTS, identity, parse
+from microcosmos.spec import EXPERIMENTS, parse
 from server.attempts.begin import claim
 from server.attempts.claim import Claim
 from server.runs.submission import submit
@@ -21,6 +21,7 @@ def floats(*values: float) -> str:
 
 
 def swimmer(spec: Any, weight: float) -> dict[str, Any]:
+    written = spec.model_dump(mode="json")
     nodes = {"id": [0, 1, 2, 3, 4], "activation": ["identity"] * 5, "bias": floats(*[0.0] * 5)}
     ends = {"innovation": [0], "source": [1], "target": [3], "enabled": [True]}
     return {
@@ -29,13 +30,13 @@ def swimmer(spec: Any, weight: float) -> dict[str, Any]:
             "encoding": "cppn",
             "inputs": ["position", "sine", "cosine"],
             "outputs": ["rest_angle", "rest_length"],
-            "control": identity(spec.control),
+            "control": written["control"],
             "nodes": nodes,
             "connections": {**ends, "weight": floats(weight)},
         },
-        "world": {**identity(spec.world), "coupling": identity(spec.coupling)},
-        "body": identity(spec.body),
-        "task": identity(spec.task),
+        "world": {**written["world"], "coupling": written["coupling"]},
+        "body": written["body"],
+        "task": written["task"],
     }
 
 

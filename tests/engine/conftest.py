@@ -5,10 +5,10 @@ without optimising. What is marked `optimised` is about the very bits that come 
 `make test` runs it with MICROCOSMOS_TEST_OPTIMISED set, as the product compiles.
 """
 
-import atexit
+import hashlib
 import os
-import shutil
-import tempfile
+import platform
+from pathlib import Path
 
 QUICK = (
     "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false "
@@ -24,10 +24,21 @@ import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 from jaxtyping import install_import_hook  # noqa: E402
 
+
+def compiled() -> str:
+    """The folder of compiled programs: one for each kind of processor that the checkout meets.
+
+    JAX's own key has the flags and versions, not the instructions that the processor knows.
+    """
+    info = Path("/proc/cpuinfo")
+    lines = info.read_text().splitlines() if info.exists() else [platform.processor()]
+    kind = {line for line in lines if line.startswith(("model name", "flags", "Features"))}
+    digest = hashlib.sha256(" ".join([platform.machine(), *sorted(kind)]).encode()).hexdigest()
+    return str(Path(__file__).parents[2] / ".cache" / "jax" / digest[:12])
+
+
 CACHE = "MICROCOSMOS_TEST_COMPILED"
-if CACHE not in os.environ:  # The processes that share the tests find the first one's.
-    os.environ[CACHE] = tempfile.mkdtemp(prefix="microcosmos-compiled-")
-    atexit.register(shutil.rmtree, os.environ[CACHE], ignore_errors=True)
+os.environ.setdefault(CACHE, compiled())  # Tests that start processes tell them.
 jax.config.update("jax_compilation_cache_dir", os.environ[CACHE])
 # Small programs too: there are many, and each process and each new lambda would compile them.
 jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
@@ -40,7 +51,6 @@ SHAPED = (
     "filaments",
     "fluid",
     "groups",
-    "creatures",
     "world",
     "genomes",
     "neat",

@@ -34,6 +34,7 @@ def tiny(monkeypatch, tmp_path_factory):
         monkeypatch.setenv(name, value)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_to_its_end_without_a_warning(path, tiny, tmp_path):
     command = [sys.executable, "-c", EXECUTE, str(path), "done.ipynb"]

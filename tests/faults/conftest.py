@@ -8,7 +8,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))  # For `drive`, which acceptance uses too.
 
-from drive import Installation
+from drive import COMPILED, Installation
 
 SHORT = {
     "MICROCOSMOS_DEMONSTRATION": "0",
@@ -16,6 +16,7 @@ SHORT = {
     "MICROCOSMOS_LEASE": "3",
     "MICROCOSMOS_RECONCILE_INTERVAL": "0.5",
     "JAX_PLATFORMS": "cpu",
+    "JAX_COMPILATION_CACHE_DIR": str(COMPILED),
 }
 """Settings under which what takes a minute takes a second."""
 
@@ -31,20 +32,12 @@ SPEC = {
 """The smallest run that is still a run."""
 
 
-@pytest.fixture(scope="session")
-def compiled(tmp_path_factory):
-    """The folder where all installations keep their compiled programs."""
-    return tmp_path_factory.mktemp("compiled")
-
-
-def installations(tmp_path_factory, compiled):
+def installations(tmp_path_factory):
     """Makes installations, each in a data folder of its own; they are gone afterwards."""
     made = []
 
     def make(**environment):
-        cache = {"JAX_COMPILATION_CACHE_DIR": str(compiled)}
-        folder = tmp_path_factory.mktemp("data")
-        made.append(Installation(folder, SHORT | cache | environment))
+        made.append(Installation(tmp_path_factory.mktemp("data"), SHORT | environment))
         return made[-1]
 
     yield make

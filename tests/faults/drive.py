@@ -17,6 +17,8 @@ import httpx
 import psutil
 
 ROOT = Path(__file__).parents[2]
+COMPILED = ROOT / ".cache" / "jax"
+"""The compiled programs of all installations, kept from one run of the tests to the next."""
 TERMINAL = ("finished", "failed", "cancelled")
 SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_ARTIFACTS_URL")
 """What an installation of its own has of its own, unless it is told otherwise."""

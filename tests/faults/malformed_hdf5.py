@@ -203,12 +203,7 @@ def others() -> Edits:
             b"0" * 64,
         ):
             yield f"@{name}: {text[:9]!r}", lambda file, n=name, t=text: said(file, n, t), ""
-        if name not in creature_h5.LATER:
-            yield (
-                f"@{name} missing",
-                lambda file, n=name: file.attrs.pop(n),
-                "attributes must be",
-            )
+        yield f"@{name} missing", lambda file, n=name: file.attrs.pop(n), "attributes must be"
 
 
 def grouped(file: h5py.File, name: str) -> None:

@@ -3,6 +3,7 @@
 import random
 import signal
 
+import pytest
 from drive import (
     REDIS,
     interrupt,
@@ -13,22 +14,25 @@ from drive import (
     wait_until,
 )
 
-FAULTS = [kill_job, stop_worker, kill_job, pause_and_resume, kill_supervisor, kill_job]
+FEW = [kill_job, pause_and_resume]
+MANY = [kill_job, stop_worker, kill_job, pause_and_resume, kill_supervisor, kill_job]
 LATEST = 9
 """Faults come before this generation, so that the run is not over."""
 
 
+@pytest.mark.parametrize("faults", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
 def test_a_run_that_is_killed_stopped_and_paused_ends_with_the_same_archive(
-    place, spec, undisturbed
+    place, spec, undisturbed, faults
 ):
-    moments = sorted(random.choices(range(LATEST), k=len(FAULTS)))
+    moments = sorted(random.choices(range(LATEST), k=len(faults)))
     run = place.submit(spec)
-    interrupt(place, run, FAULTS, moments)
-    assert place.wait(run, "finished")["attempt"] == 1 + len(FAULTS)
+    interrupt(place, run, faults, moments)
+    assert place.wait(run, "finished")["attempt"] == 1 + len(faults)
     assert place.archive(run) == undisturbed.archive, f"interrupted at {moments}"
     assert place.told(run) == undisturbed.told
 
 
+@pytest.mark.long
 def test_a_run_goes_on_while_redis_is_killed_and_started_again(place, spec, undisturbed):
     run = place.submit(spec)
     attempt = place.reach(run, 1)
@@ -38,6 +42,7 @@ def test_a_run_goes_on_while_redis_is_killed_and_started_again(place, spec, undi
     place.wait(place.submit(spec), "finished")
 
 
+@pytest.mark.long
 def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(place, spec, undisturbed):
     run = place.submit(spec)
     attempt = place.reach(run, 2)
@@ -51,6 +56,7 @@ def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(place, spe
     assert owner.is_running()
 
 
+@pytest.mark.long
 def test_ctrl_c_leaves_no_process_and_the_next_start_goes_on(place, spec, undisturbed):
     run = place.submit(spec)
     place.reach(run, 3)

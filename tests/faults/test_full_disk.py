@@ -9,6 +9,8 @@ from contextlib import suppress
 import h5py
 import pytest
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture
 def small_disk(tmp_path):

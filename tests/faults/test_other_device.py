@@ -2,7 +2,11 @@
 
 import json
 
+import pytest
+
 from microcosmos.archive import file
+
+pytestmark = pytest.mark.long
 
 
 def test_a_run_goes_on_elsewhere_only_when_somebody_says_so(installation, spec):

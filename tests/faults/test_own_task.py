@@ -12,6 +12,8 @@ from drive import ROOT, SUPERVISOR, wait_until
 
 from microcosmos.archive import file
 
+pytestmark = pytest.mark.long
+
 EXAMPLE = ROOT / "examples" / "own_task.py"
 SMALL = {
     "experiment": "quality-diversity",

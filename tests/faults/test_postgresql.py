@@ -6,6 +6,8 @@ import pytest
 from drive import REDIS, interrupt, kill_job, kill_supervisor, stop_worker
 from grown_up import Missing, services
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture
 def elsewhere():

@@ -3,7 +3,10 @@
 import json
 import signal
 
+import pytest
 from drive import RENDERER, wait_until
+
+pytestmark = pytest.mark.long
 
 
 def test_a_replay_is_made_though_its_renderer_is_killed(place, undisturbed):

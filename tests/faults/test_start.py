@@ -73,6 +73,7 @@ def test_a_server_whose_tokens_are_none_of_an_admin_does_not_listen(tmp_path, re
     assert "none is live: make one with `python -m server.auth create" in said
 
 
+@pytest.mark.long
 def test_nothing_outlives_a_root_that_was_killed_and_the_next_start_goes_on(
     place, spec, undisturbed
 ):

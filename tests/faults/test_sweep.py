@@ -3,6 +3,8 @@
 import pytest
 from drive import interrupt, kill_job, pause_and_resume
 
+pytestmark = pytest.mark.long
+
 SWEEP = {
     "experiment": "gaits",
     "swimmers": ["worm", "tadpole", "ray"],

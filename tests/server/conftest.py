@@ -23,7 +23,6 @@ from sqlalchemy import make_url, select
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
-from microcosmos.spec import identity as identity_of
 from server.app import create_app
 from server.local.redis_embedded import prepare
 from server.runs.submission import submit
@@ -241,14 +240,14 @@ def little_endian(*values: float) -> str:
 @pytest.fixture
 def identity() -> Callable[[int], dict[str, Any]]:
     """The identity of a swimmer whose one weight is a number."""
-    demo: Any = EXPERIMENTS["quality-diversity"].presets[0].spec
+    demo = EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump(mode="json")
 
     def make(number: int = 1) -> dict[str, Any]:
         genome = {
             "encoding": "cppn",
             "inputs": ["position", "sine", "cosine"],
             "outputs": ["rest_angle", "rest_length"],
-            "control": identity_of(demo.control),
+            "control": demo["control"],
             "nodes": {
                 "id": [0, 1, 2, 3, 4],
                 "activation": ["identity"] * 5,
@@ -265,9 +264,9 @@ def identity() -> Callable[[int], dict[str, Any]]:
         return {
             "format": "microcosmos-creature/1",
             "genome": genome,
-            "world": {**identity_of(demo.world), "coupling": identity_of(demo.coupling)},
-            "body": identity_of(demo.body),
-            "task": identity_of(demo.task),
+            "world": {**demo["world"], "coupling": demo["coupling"]},
+            "body": demo["body"],
+            "task": demo["task"],
         }
 
     return make

@@ -13,7 +13,7 @@ from server.core import page
 
 
 def test_a_server_that_can_work_says_so(address):
-    assert httpx.get(f"{address}/healthz").json() == {"status": "ok"}
+    assert httpx.get(f"{address}/healthz").json()["status"] == "ok"
     ready = httpx.get(f"{address}/readyz")
     assert (ready.status_code, ready.json()) == (200, {"database": "ok", "redis": "ok"})
 
@@ -70,6 +70,24 @@ def test_assets_are_compressed_for_who_understands_it(built, address):
         answer = httpx.get(f"{address}/assets/a1b2.js", headers=headers)
         assert (answer.text, answer.headers.get("content-encoding")) == ("script", encoding)
         assert answer.headers["content-type"].startswith("text/javascript")
+
+
+def test_the_documentation_is_served_and_announced_where_it_was_built(
+    address, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(page, "HELP", tmp_path / "site")
+    assert httpx.get(f"{address}/healthz").json()["help"] is False
+    assert "make docs" in httpx.get(f"{address}/help/").json()["detail"]
+    (tmp_path / "site").mkdir()
+    (tmp_path / "secret").write_text("secret")
+    (tmp_path / "site" / "index.html").write_text("<title>the documentation</title>")
+    assert httpx.get(f"{address}/healthz").json()["help"] is True
+    answer = httpx.get(f"{address}/help", follow_redirects=True)
+    assert (answer.url.path, answer.text) == ("/help/", "<title>the documentation</title>")
+    assert "script-src" not in answer.headers["content-security-policy"], "no inline scripts"
+    assert "default-src 'self'" in answer.headers["content-security-policy"]
+    for path in ("gone.html", "%2e%2e/secret"):
+        assert httpx.get(f"{address}/help/{path}").status_code == 404
 
 
 def test_a_page_that_is_not_built_says_how(address, tmp_path, monkeypatch):

@@ -14,6 +14,7 @@ from itertools import pairwise
 from pathlib import Path
 from subprocess import Popen
 from typing import Any
+from unittest.mock import MagicMock
 
 import pytest
 import yaml
@@ -21,15 +22,18 @@ from packaging.specifiers import SpecifierSet
 from redis import Redis
 from redis.backoff import ConstantBackoff
 from redis.retry import Retry
+from sqlalchemy.exc import OperationalError
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from server.local.redis_embedded import find_binary, free_port
 from server.main import GRACE
+from server.maintenance.healthcheck import ASK_AFTER, KILL_AFTER, PARTS
 from server.settings import Settings
-from worker.health import PARTS
+from server.tables.migrations import __main__ as migrate
 from worker.supervisor import PATIENCE
 
 ROOT = Path(__file__).parents[2]
+HEALTH = "server.maintenance.healthcheck"
 OURS = ("microcosmos-server", "microcosmos-worker", "microcosmos-worker-cuda")
 OTHERS = {"JAX_PLATFORMS", "JAX_COMPILATION_CACHE_DIR", "FORWARDED_ALLOW_IPS"}
 OF_PYTHON = {"PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE", "PYTHONPATH"}
@@ -86,7 +90,7 @@ def test_every_module_that_is_started_exists(ours):
         "server.main",
         "server.tables.migrations",
         "worker.supervisor",
-        "worker.health",
+        HEALTH,
     } <= modules
     for name in modules:
         spec = importlib.util.find_spec(name)
@@ -119,13 +123,54 @@ def test_every_secret_has_a_place_in_the_example_and_no_default(compose):
     assert set(example["COMPOSE_PROFILES"].split(",")) <= profiles
 
 
-def test_everything_has_a_health_check_that_asks_for_its_own_part(services):
+def test_everything_has_a_health_check_that_asks_for_its_own_part(services, ours):
     assert {name for name, one in services.items() if "healthcheck" not in one} == {"migrate"}
+    for name in ours.keys() - {"migrate"}:
+        *_, module, part, restart = ours[name]["healthcheck"]["test"]
+        assert (module, restart) == (HEALTH, "--restart"), name
+        assert part in PARTS
+        assert name.startswith(part)
+
+
+def test_a_sick_container_is_ended_after_it_had_time_to_start_and_then_started_again(ours):
+    """Docker marks containers as unhealthy and does no more."""
+    for name in ours.keys() - {"migrate"}:
+        assert ours[name]["restart"] == "unless-stopped", name
+        assert ours[name]["init"] is True, "signals reach the program through it"
+        check = ours[name]["healthcheck"]
+        assert seconds(check["start_period"]) < ASK_AFTER, name
+        assert seconds(check["interval"]) < KILL_AFTER - ASK_AFTER, name
+        grace = seconds(ours[name].get("stop_grace_period", "10s"))
+        assert grace < KILL_AFTER - ASK_AFTER, name
+
+
+def test_a_database_is_ready_once_it_listens_to_others(services):
+    """While its files are made, PostgreSQL answers on its socket alone, and then ends."""
+    assert "pg_isready -h 127.0.0.1" in services["postgres"]["healthcheck"]["test"][1]
+
+
+def test_migrations_are_tried_again(ours, monkeypatch, capsys):
+    assert ours["migrate"]["restart"] == "on-failure:5"
+    asked = iter([OperationalError("", {}, Exception("starting up")), None])
+
+    def upgrade(_):
+        if error := next(asked):
+            raise error
+
+    monkeypatch.setattr(migrate, "upgrade", upgrade)
+    monkeypatch.setattr(migrate, "PAUSE", 0)
+    monkeypatch.setattr(migrate, "connect", MagicMock())
+    migrate.main()
+    assert "does not answer yet: starting up" in capsys.readouterr().out
+    asked = iter([OperationalError("", {}, Exception("gone"))])
+    monkeypatch.setattr(migrate, "PATIENCE", -1)
+    with pytest.raises(OperationalError, match="gone"):
+        migrate.main()
+
+
+def test_logs_are_bounded(services):
     for name, one in services.items():
-        test = one.get("healthcheck", {}).get("test", ())
-        if "worker.health" in test:
-            assert test[-1] in PARTS
-            assert name.startswith(test[-1])
+        assert one["logging"]["options"].keys() == {"max-size", "max-file"}, name
 
 
 def test_ours_may_do_little_and_wait_for_what_they_stand_on(ours):

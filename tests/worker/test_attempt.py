@@ -129,6 +129,20 @@ def test_who_has_lost_a_run_ends_without_a_word(services, run_id, row, report):
     assert (row().worker, row().attempt, row().generation) == ("second", 2, 0)
 
 
+def test_a_run_whose_files_are_not_there_waits_paused_with_the_reason(
+    services, run_id, row, report
+):
+    with claimed(services, run_id, "worker") as held:
+        held.record(report(1), 1.0, lambda: b"state")
+    folder = services.settings.data / "artifacts"
+    folder.rename(folder.with_name("elsewhere"))
+    with claimed(services, run_id, "worker") as held:
+        held.restore()
+        pytest.fail("it was let through")
+    assert (row().status, row().generation, row().checkpoint_generation) == ("paused", 1, 1)
+    assert "Check MICROCOSMOS_ARTIFACTS_URL" in row().warning
+
+
 def test_a_run_that_another_computes_is_not_to_be_had(services, run_id):
     with claimed(services, run_id, "first"), claimed(services, run_id, "second") as held:
         assert held is None

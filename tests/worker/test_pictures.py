@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from microcosmos.archive import creature
-from microcosmos.spec import EXPERIMENTS, Gaits, identity
+from microcosmos.spec import EXPERIMENTS, Gaits
 from server.creatures import storage as creatures
 from server.renderings import storage as renderings
 from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
@@ -43,13 +43,13 @@ def replay() -> bytes:
 def known(services):
     """A creature that swims by a gait."""
     sweep = next(p.spec for p in EXPERIMENTS["gaits"].presets if isinstance(p.spec, Gaits))
-    scene = sweep.scene("ours", "worm", 0.5)
+    written = sweep.scene("ours", "worm", 0.5).model_dump(mode="json")
     whole = {
         "format": creature.FORMAT,
-        "genome": {"encoding": "gait", **identity(scene.control)},
-        "world": {**identity(scene.world), "coupling": identity(scene.coupling)},
-        "body": identity(scene.body),
-        "task": identity(scene.task),
+        "genome": {"encoding": "gait", **written["control"]},
+        "world": {**written["world"], "coupling": written["coupling"]},
+        "body": written["body"],
+        "task": written["task"],
     }
     file = creature.parse(creature.document(whole, None, None))
     with services.sessions.write.begin() as session:

@@ -21,8 +21,6 @@ FORMAT = "microcosmos-creature-hdf5/1"
 BODY = ("positions", "edges", "joints", "rest_length", "rest_angle", "stretch", "shear", "bend")
 PARTS = ("measured", "provenance", "licence", "credit")
 ATTRIBUTES = {"format", "sha256", *PARTS}
-LATER = {"credit"}
-"""What files do not have that are older."""
 
 
 def dump(file: Mapping[str, Any]) -> bytes:
@@ -59,10 +57,10 @@ def load(data: bytes) -> dict[str, Any]:
     """
     try:
         with h5py.File(BytesIO(data), "r") as file:
-            told = hdf5_guard.texts(file, ATTRIBUTES - (LATER - set(file.attrs)))
+            told = hdf5_guard.texts(file, ATTRIBUTES)
             if told["format"] != FORMAT:
                 raise ValueError(f"`format` must be {FORMAT}, got {told['format']:.60}")
-            parts = {part: json.loads(told[part]) for part in PARTS if part in told}
+            parts = {part: json.loads(told[part]) for part in PARTS}
             identity = json.loads(hdf5_guard.text(file, "identity"))
             found = parse({"identity": identity, "sha256": told["sha256"], **parts})
             hdf5_guard.refuse_other(file, _tree(found))

@@ -11,23 +11,26 @@ from .scene import build_limits, build_stroke, build_task
 
 def frame(scene: spec.Scene) -> dict[str, Any]:
     """The identity of a scene's creatures but for their genes."""
-    place, form = spec.identity(scene.world), spec.identity(scene.coupling)
+    whole = scene.model_dump(mode="json")
     # In numbers: a creature must not change with what an empty limit stands for.
-    form["max_displacement"] = scene.coupling.displacement_limit(scene.world.viscosity)
-    form["max_force"] = scene.coupling.force_limit(scene.world.viscosity)
+    limits = {
+        "max_displacement": scene.coupling.displacement_limit(scene.world.viscosity),
+        "max_force": scene.coupling.force_limit(scene.world.viscosity),
+    }
     return {
         "format": naming.FORMAT,
         "genome": _genome(scene.control),
-        "world": place | {"coupling": form},
-        "body": spec.identity(scene.body),
-        "task": spec.identity(scene.task),
+        "world": whole["world"] | {"coupling": whole["coupling"] | limits},
+        "body": whole["body"],
+        "task": whole["task"],
     }
 
 
 def _genome(control: spec.Controller | spec.Gait | spec.Fold) -> dict[str, Any]:
+    written = control.model_dump(mode="json")
     if isinstance(control, spec.Gait):
-        return {"encoding": "gait", **spec.identity(control)}
-    told: dict[str, Any] = {"encoding": control.encoding, "control": spec.identity(control)}
+        return {"encoding": "gait", **written}
+    told: dict[str, Any] = {"encoding": control.encoding, "control": written}
     if isinstance(control, Sight):
         told |= {"inputs": list(control.inputs), "outputs": list(control.outputs)}
     return told

@@ -7,7 +7,7 @@ from typing import Any
 
 import httpx
 
-from ..client import Client, NoAnswer, NotAllowed, NotFound, ServerError
+from ..client import Client, NoAnswer, NotAllowed, ServerError
 from ..version import VERSION
 from .finding import Finding, ok, problem, warning
 
@@ -60,10 +60,7 @@ def _ready(answer: httpx.Response) -> Iterator[Finding]:
 
 def _caller(client: Client) -> Iterator[Finding]:
     """Who one is there, and what one may."""
-    try:
-        told = client.connection.read("tokens/current")
-    except NotFound:  # An earlier version, in which everybody may everything.
-        return
+    told = client.connection.read("tokens/current")
     until = f", until {told['expires_at']}" if told["expires_at"] else ""
     yield ok("server", f"you are “{told['name']}” there, with the scope {told['scope']}{until}")
 

@@ -27,13 +27,8 @@ def devices_of(
     return tuple(devices if devices[-1] == device else [*devices, device])
 
 
-LATER: dict[str, dict[str, Any]] = {"search": {"origin": []}, "creature": {"credit": []}}
-"""What specs of earlier versions do not name yet, by the part that it stands in."""
-
-
 def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
     """A search may have more generations than the file's: each follows from those before."""
-    held, wanted = _of_today(held), _of_today(wanted)
     if _without_length(held) != _without_length(wanted):
         if _unversioned(_without_length(held)) == _unversioned(_without_length(wanted)):
             raise ValueError(_versions(held, wanted))
@@ -74,13 +69,6 @@ def _unversioned(spec: Any) -> Any:
 
 def _length(spec: dict[str, Any]) -> int:
     return spec.get("search", {}).get("generations", 0)
-
-
-def _of_today(spec: dict[str, Any]) -> dict[str, Any]:
-    return {
-        name: LATER[name] | part if name in LATER and isinstance(part, dict) else part
-        for name, part in spec.items()
-    }
 
 
 def _without_length(spec: dict[str, Any]) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """The next generation of a NEAT population (Stanley and Miikkulainen 2002)."""
 
 from dataclasses import replace
+from functools import partial
 
 import equinox as eqx
 import jax
@@ -30,6 +31,7 @@ class Brood(eqx.Module):
     mutated: Bool[Array, "individual"]
 
 
+@partial(jax.jit, static_argnames="settings")
 def first_species(population: CPPN, settings: Settings) -> Species:
     """The species of a first population, which is evaluated in generation 0."""
     rows = min(settings.max_species, population.weight.shape[0])

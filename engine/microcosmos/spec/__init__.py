@@ -1,6 +1,6 @@
 """Everything a run can be, validated: the only place where a default is written."""
 
-from .base import Part, field_path, identity
+from .base import Part, field_path
 from .body import Body, Chain, Known, OwnBody, made_elsewhere, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
@@ -74,7 +74,6 @@ __all__ = [
     "estimate",
     "field_path",
     "genes",
-    "identity",
     "lengthening",
     "made_elsewhere",
     "parse",

@@ -1,13 +1,9 @@
 """What every part of a spec shares: nothing unknown is accepted and nothing changes."""
 
 from collections.abc import Sequence
-from typing import Any, Final
 
 from pydantic import BaseModel, ConfigDict
 from pydantic.config import JsonDict
-
-LATER: Final = "added after creatures had names"
-"""Marks a field that an identity leaves out at its default, so that names stay the same."""
 
 
 class Part(BaseModel):
@@ -71,15 +67,3 @@ def unit(name: str) -> JsonDict:
 
 SELDOM = ConfigDict(json_schema_extra={"seldom": True})
 """Marks a part that people seldom change: a form shows it closed."""
-
-
-def identity(part: Part) -> dict[str, Any]:
-    """The part as it stands in a creature's identity."""
-    document = part.model_dump(mode="json")
-    for name, field in type(part).model_fields.items():
-        value = getattr(part, name)
-        if LATER in field.metadata and value == field.default:
-            del document[name]
-        elif isinstance(value, Part):
-            document[name] = identity(value)
-    return document

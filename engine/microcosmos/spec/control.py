@@ -1,10 +1,10 @@
 """The controller: what a CPPN sees, what its outputs mean and how its genome varies."""
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import LATER, Part, unit
+from .base import Part, unit
 from .sources import CPPN, NEAT, PAPER, after, source
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
@@ -35,7 +35,7 @@ class Sight(Actuation):
         default="signed", json_schema_extra=source(f"unit: {PAPER}")
     )
     """Position along the filament from −1 to 1, or from 0 to 1."""
-    sense_energy: Annotated[bool, LATER] = Field(default=False, json_schema_extra=source(PAPER))
+    sense_energy: bool = Field(default=False, json_schema_extra=source(PAPER))
     """Whether the network also sees the energy at its node, which closes the loop."""
 
     @property
@@ -48,8 +48,8 @@ class Control(Sight):
 
     model_config = after(CPPN)
 
-    encoding: Annotated[Literal["cppn"], LATER] = "cppn"
-    recurrent: Annotated[bool, LATER] = False
+    encoding: Literal["cppn"] = "cppn"
+    recurrent: bool = False
     """Whether the network may have cycles: its nodes are updated together, once a step, and
     keep their values from step to step."""
 

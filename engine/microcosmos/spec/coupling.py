@@ -1,10 +1,10 @@
 """How bodies and the fluid act on each other: the paper's form, ours, and what is between."""
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import LATER, SELDOM, Part, unit
+from .base import SELDOM, Part, unit
 from .sources import DELTAS, FORCING, GUO, LAYERS, OURS, PBD, RODS, source
 
 
@@ -35,13 +35,13 @@ class Coupling(Part):
         default=None, gt=0.0, le=0.5, json_schema_extra=unit("cells/step")
     )
     """Limit of a node's forcing; empty: 0.1, or 0.03 below a viscosity of 0.003."""
-    layers: Annotated[Literal[1, 2], LATER] = Field(default=1, json_schema_extra=source(LAYERS))
+    layers: Literal[1, 2] = Field(default=1, json_schema_extra=source(LAYERS))
     """2: the filament acts through two layers, half a cell to either side, as in the paper."""
-    nu_c: Annotated[float | None, LATER] = Field(
+    nu_c: float | None = Field(
         default=None, gt=0.0, le=1e3, json_schema_extra=unit("cells²/step") | source(OURS)
     )
     """Viscosity at which actuators have half of their strength; empty: they never tire."""
-    kernel: Annotated[Literal["peskin", "roma", "hat"], LATER] = Field(
+    kernel: Literal["peskin", "roma", "hat"] = Field(
         default="peskin", json_schema_extra=source(DELTAS)
     )
     """The delta between nodes and cells: four, three or two points wide."""

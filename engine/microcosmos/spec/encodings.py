@@ -7,7 +7,7 @@ from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
-from .base import LATER, Part, unit
+from .base import Part, unit
 from .body import Body, made_elsewhere, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
 from .plugins import Own, OwnName, completed
@@ -75,7 +75,7 @@ class Shaping(Part):
 class Direct(Actuation, Shaping):
     """Genes are the control of every joint and edge and, where free, measures of the body."""
 
-    encoding: Annotated[Literal["direct"], LATER] = "direct"
+    encoding: Literal["direct"] = "direct"
     waveform: Literal["fourier", "table"] = "fourier"
     """A sum of sines and cosines of the phase, or a table with straight lines in between; its
     time is the period, or the whole simulation where the timer is linear."""
@@ -120,7 +120,7 @@ class Direct(Actuation, Shaping):
 class Weights(Sight):
     """Genes are the weights and biases of a network whose layers are given."""
 
-    encoding: Annotated[Literal["weights"], LATER] = "weights"
+    encoding: Literal["weights"] = "weights"
     hidden: Annotated[
         tuple[Annotated[int, Field(ge=1, le=256, json_schema_extra=unit("nodes"))], ...],
         Field(min_length=1, max_length=8),
@@ -144,7 +144,7 @@ class Weights(Sight):
 class Grown(Sight, Shaping):
     """One CPPN sets rest angles and lengths, and before that grows the chain itself."""
 
-    encoding: Annotated[Literal["cppn-body"], LATER] = "cppn-body"
+    encoding: Literal["cppn-body"] = "cppn-body"
     min_nodes: int = Field(default=4, ge=3, le=4096, json_schema_extra=unit("nodes"))
     """So many nodes there are at least; at most those of the body."""
     rest_angle: Free | None = Field(

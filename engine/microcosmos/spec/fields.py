@@ -1,10 +1,10 @@
 """Scalar fields of a world: steric repulsion and energy."""
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import LATER, Part, unit
+from .base import Part, unit
 from .sources import OURS, PAPER, after, source
 
 
@@ -36,7 +36,7 @@ class Energy(Part):
     """Energy density in the middle of a packet."""
     seed: int = Field(default=0, ge=0, lt=2**32)
     """Decides where the packets are; the same for every creature."""
-    placements: Annotated[int, LATER] = Field(default=1, ge=1, le=64)
+    placements: int = Field(default=1, ge=1, le=64)
     """In so many worlds a creature lives, the packets moved to another place in each; what is
     measured are means. With one, a gait that knows the way does as well as one that senses."""
     consume: bool = Field(default=False, json_schema_extra=source(OURS))

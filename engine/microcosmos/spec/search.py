@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from . import measures
-from .base import LATER, Part, unit
+from .base import Part, unit
 from .emitters import BY_SLOPES, GROWING, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
 from .plugins import OR_OWN, MaybeOwn, Own, completed, left_out
 from .sources import AGAIN, CVT, MAP_ELITES, PAPER, after, source
@@ -24,7 +24,7 @@ class Task(Part):
     )
     """Distance between the mean unwrapped node position at the end and at the start; energy
     that all nodes collect; or both."""
-    energy_weight: Annotated[float, LATER] = Field(
+    energy_weight: float = Field(
         default=1e-3, gt=0.0, le=1e3, json_schema_extra=unit("cells/energy")
     )
     """What a unit of collected energy is worth beside a cell of displacement."""

@@ -1,10 +1,10 @@
 """The box of fluid and its fields, in lattice units (dx = dt = 1)."""
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from .base import LATER, Part, unit
+from .base import Part, unit
 from .fields import Energy, Steric
 from .sources import LATTICE, TRT, after, source
 
@@ -24,11 +24,11 @@ class World(Part):
     """Kinematic viscosity ν; the relaxation time is τ = 3 ν + 1/2."""
     magic: Literal["capped", "fixed"] = Field(default="capped", json_schema_extra=source(TRT))
     """Magic parameter Λ of the two relaxation times: 3/16, or at most (τ − 1/2)/2."""
-    fluid: Annotated[bool, LATER] = True
+    fluid: bool = True
     """Whether there is a fluid; without it bodies are moved by their constraints alone."""
-    steric: Annotated[Steric | None, LATER] = None
+    steric: Steric | None = None
     """Repulsion between nodes; empty: filaments pass through each other."""
-    energy: Annotated[Energy | None, LATER] = None
+    energy: Energy | None = None
     """Packets of energy to sense and collect; empty: none."""
 
     @model_validator(mode="after")

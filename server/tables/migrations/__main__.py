@@ -1,14 +1,30 @@
 """`python -m server.tables.migrations`: bring the tables up to date, and end."""
 
-from ...services.services import connect
+import time
+
+from sqlalchemy.exc import OperationalError
+
+from ...core.database import connect
 from ...settings import Settings
 from . import upgrade
 
+PATIENCE, PAUSE = 60.0, 2.0
+"""Seconds in which a database that does not answer is asked again, and between two attempts."""
+
 
 def main() -> None:
-    services = connect(Settings())
-    upgrade(services.sessions)
-    services.close()
+    sessions = connect(Settings().database)
+    until = time.monotonic() + PATIENCE
+    while True:
+        try:
+            upgrade(sessions)
+            break
+        except OperationalError as error:
+            if time.monotonic() > until:
+                raise
+            print(f"The database does not answer yet: {error.orig}", flush=True)
+            time.sleep(PAUSE)
+    sessions.engine.dispose()
 
 
 if __name__ == "__main__":

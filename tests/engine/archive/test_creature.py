@@ -7,7 +7,6 @@ import pytest
 
 from microcosmos.archive import creature
 from microcosmos.naming import encode
-from microcosmos.spec import identity
 
 pytestmark = pytest.mark.fast
 
@@ -41,7 +40,7 @@ IDENTITY = {
 def file():
     """A sound creature file, all defaults written out."""
     parsed = creature.Identity.model_validate(IDENTITY)
-    return creature.document(identity(parsed), None, None)
+    return creature.document(parsed.model_dump(mode="json"), None, None)
 
 
 def refused(file, change) -> creature.CreatureError:

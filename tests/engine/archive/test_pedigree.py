@@ -4,7 +4,6 @@ import pytest
 
 from microcosmos.archive import creature, pedigree
 from microcosmos.spec import EXPERIMENTS
-from microcosmos.spec import identity as identity_of
 
 pytestmark = pytest.mark.fast
 
@@ -13,13 +12,14 @@ def one(number, *parents):
     """A gait of so many steps, with parents."""
     sweep = next(p.spec for p in EXPERIMENTS["gaits"].presets)
     scene = sweep.scene("ours", "worm", 0.5)
-    control = identity_of(scene.control) | {"period": number}
+    written = scene.model_dump(mode="json")
+    control = written["control"] | {"period": number}
     whole = {
         "format": creature.FORMAT,
         "genome": {"encoding": "gait", **control},
-        "world": {**identity_of(scene.world), "coupling": identity_of(scene.coupling)},
-        "body": identity_of(scene.body),
-        "task": identity_of(scene.task),
+        "world": {**written["world"], "coupling": written["coupling"]},
+        "body": written["body"],
+        "task": written["task"],
     }
     names = [parent["sha256"] for parent in parents]
     origin = {"operator": "hand-made", "generation": 0, "seed": 0, "version": "0"}

@@ -28,6 +28,7 @@ def file():
     return creature.document(identity(frame(scene), encoding, newcomer), None, None)
 
 
+@pytest.mark.long
 def test_the_report_agrees_with_finite_differences_and_tells_of_time_and_starts(file):
     report = gradient_health(file, starts=3)
     assert report.errors["float64"] <= 1e-6

@@ -21,6 +21,7 @@ def audited(form, swimmer, viscosity):
     return found["verdict"], {row["name"]: row for row in found["rows"]}
 
 
+@pytest.mark.long
 def test_a_worm_that_pushes_on_fluid_survives():
     verdict, rows = audited("ours", "worm", 0.5)
     assert verdict == {"survives": True, "reasons": []}
@@ -29,6 +30,7 @@ def test_a_worm_that_pushes_on_fluid_survives():
     assert rows["impulse"]["value"] < 1e-4
 
 
+@pytest.mark.long
 def test_a_ray_that_pushes_itself_does_not():
     verdict, rows = audited("paper", "ray", 2.0)
     assert not verdict["survives"]

@@ -9,6 +9,7 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from microcosmos.cli import app, overrides, remote, tables
+from microcosmos.client import Run
 from microcosmos.version import VERSION
 
 SHA = "ab" * 32
@@ -89,13 +90,11 @@ def test_what_was_deleted_when_the_answer_was_lost_is_deleted(fake, record):
     path, gone = f"runs/{record['id']}", record | {"deleted_at": "2026-01-01T00:00:00Z"}
     problem = {"content-type": "application/problem+json"}
     there = httpx.Response(404, headers=problem, json={"detail": "It is in the bin."})
-    run = client.Run(
-        fake({("DELETE", path): there, ("GET", path): gone}).client.connection, record
-    )
+    run = Run(fake({("DELETE", path): there, ("GET", path): gone}).client.connection, record)
     assert run.delete().record == gone
     never = fake({("DELETE", path): there, ("GET", path): record})
-    with pytest.raises(client.NotFound):
-        client.Run(never.client.connection, record).delete()
+    with pytest.raises(NotFound):
+        Run(never.client.connection, record).delete()
 
 
 def test_the_version_is_told():
@@ -124,7 +123,7 @@ def test_forking_elites_into_another_world(told, record):
 def test_deleting_asks_first(told, record):
     kept, asked = told("delete", "0f3c", input="n\n")
     assert "DELETE" not in {one.method for one in asked}
-    assert "stays" in kept.stderr
+    assert "not deleted" in kept.stderr
     gone, asked = told("delete", "0f3c", input="y\n")
     assert asked[-1][:2] == ("DELETE", f"runs/{record['id']}")
     assert "Run 0f3c1a2b “Big Eel” is in the bin" in gone.stderr
@@ -135,7 +134,7 @@ def test_deleting_asks_first(told, record):
     back, asked = told("restore", "0f3c")
     assert asked[-1][:2] == ("POST", f"runs/{record['id']}/restore")
     assert asked[-2].query["deleted"] == "true"
-    assert "is back" in back.stderr
+    assert "is restored" in back.stderr
 
 
 def test_sharing(told, record):

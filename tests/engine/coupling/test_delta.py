@@ -117,10 +117,11 @@ def test_interpolation_can_be_differentiated_by_position(float64):
     positions = jnp.asarray(np.random.default_rng(0).uniform(0, 12, (5, 2)))
     field = jnp.asarray(np.random.default_rng(1).normal(size=SIZE))
 
+    @jax.jit
     def total(positions):
         return jnp.sum(interpolate(field, coupling.windows(positions, SIZE)) ** 2)
 
     direction = jnp.asarray(np.random.default_rng(2).normal(size=positions.shape))
-    slope, h = jnp.sum(jax.grad(total)(positions) * direction), 1e-5
+    slope, h = jnp.sum(jax.jit(jax.grad(total))(positions) * direction), 1e-5
     difference = (total(positions + h * direction) - total(positions - h * direction)) / (2 * h)
     np.testing.assert_allclose(slope, difference, rtol=1e-7)

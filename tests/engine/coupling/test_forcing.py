@@ -116,6 +116,7 @@ def test_forcing_can_be_differentiated(scene):
         lambda x: jnp.asarray(np.random.default_rng(3).normal(size=x.shape)), scene
     )
 
+    @jax.jit
     def total(scene):
         forced = force(scene, 3)
         return jnp.sum(forced.forcing**2) + jnp.sum(forced.target**2)
@@ -123,6 +124,6 @@ def test_forcing_can_be_differentiated(scene):
     def along(h):
         return total(jax.tree.map(lambda x, d: x + h * d, scene, direction))
 
-    gradient = jax.grad(total)(scene)
+    gradient = jax.jit(jax.grad(total))(scene)
     slope = sum(jnp.sum(gradient[name] * direction[name]) for name in scene)
     np.testing.assert_allclose(slope, (along(1e-6) - along(-1e-6)) / 2e-6, rtol=1e-6)

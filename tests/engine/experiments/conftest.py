@@ -1,7 +1,10 @@
-"""A run small enough to be carried out many times."""
+"""The smallest run of every experiment, each carried out once a process."""
 
+import importlib.util
 import json
 from dataclasses import replace
+from functools import cache
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -17,6 +20,120 @@ SMALL = {
     "task": {"steps": 60},
     "search": {"generations": 4, "batch": 16, "block": 8},
 }
+NEUROEVOLUTION = SMALL | {
+    "experiment": "neuroevolution",
+    "seed": 5,
+    "genome": {"max_nodes": 10, "max_connections": 16},
+    "search": {"generations": 5, "batch": 16, "block": 8, "reevaluation": {"every": 3}},
+}
+TINY = {
+    "experiment": "quality-diversity",
+    "seed": 2,
+    "world": {"width": 32, "height": 32},
+    "body": {"nodes": 8},
+    "task": {"steps": 20},
+}
+NUMBERS = {"encoding": "direct", "period": 20}
+
+
+def learner(control, **emitter):
+    """A search by one emitter that learns."""
+    search = {"generations": 5, "batch": 8, "block": 4, "emitters": [emitter]}
+    return TINY | {"control": control, "search": search}
+
+
+SPECS = {
+    "quality-diversity": SMALL,
+    "neuroevolution": NEUROEVOLUTION,
+    "folding": {
+        "experiment": "folding",
+        "targets": [{"digit": 1}, {"digit": 3}],
+        "world": {"width": 32, "height": 32, "fluid": False},
+        "body": {"builder": "walk", "nodes": 64, "spacing": 0.5, "deviation": 0.6, "seed": 4},
+        "steps": 60,
+        "size": 20,
+        "width": 1.0,
+        "updates": 20,
+    },
+    "refinement": {"experiment": "refinement", "steps": 4, "block": 4},
+    "gaits": {
+        "experiment": "gaits",
+        "swimmers": ["ray"],
+        "forms": ["ours", "paper"],
+        "viscosities": [0.05, 0.5, 2.0],
+        "period": 30,
+        "cycles": 2,
+        "block": 2,
+    },
+    "scaling": {
+        "experiment": "scaling",
+        "nodes": [40, 80],
+        "filament": 20,
+        "width": 32,
+        "height": 32,
+        "steps": 10,
+        "part_steps": 2,
+        "all_pairs": 40,
+    },
+    "cma-mae": learner(NUMBERS, operator="cma-mae"),
+    "cma-mega": learner(NUMBERS, operator="cma-mega"),
+    "lamarckian": learner({"period": 20}, operator="lamarckian", lessons=1),
+    "cma-me": learner(NUMBERS, operator="cma-me", emitters=2),
+    "tensorneat": TINY
+    | {
+        "experiment": "neuroevolution",
+        "control": {"period": 20},
+        "search": {"generations": 5, "batch": 8, "block": 4},
+        "neat": {"backend": "tensorneat", "preset": "tensorneat"},
+    },
+}
+PACKAGES = {"cma-me": "qdax", "tensorneat": "tensorneat"}
+"""What some need beside what is installed."""
+
+
+class Course(NamedTuple):
+    """A whole run: its states, the initial one first, and its reports."""
+
+    states: list[Any]
+    reports: list[Any]
+    experiment: Any
+    spec: Any
+
+
+@pytest.fixture(scope="session")
+def specs():
+    """The document of each run."""
+    return SPECS
+
+
+@pytest.fixture(scope="session")
+def course_of():
+    """A function that gives the whole run of a spec by its name in `SPECS`."""
+
+    @cache
+    def course(name):
+        document = SPECS[name]
+        if name == "refinement":  # Of a creature that a search finds.
+            states, _, search, _ = course("quality-diversity")
+            document = document | {"creature": search.best(states[-1])}
+        if importlib.util.find_spec(PACKAGES.get(name, "jax")) is None:
+            pytest.skip(f"{PACKAGES[name]} is not installed: make peers, make tensorneat")
+        spec = parse(document)
+        experiment = build(spec)
+        return Course(*_carried_out(experiment), experiment, spec)
+
+    return course
+
+
+@pytest.fixture(scope="session")
+def course(course_of):
+    """The search that fills an archive."""
+    return course_of("quality-diversity")
+
+
+@pytest.fixture(scope="session")
+def experiment(course):
+    return course.experiment
 
 
 @pytest.fixture(scope="session")
@@ -30,23 +147,18 @@ def small():
 
 
 @pytest.fixture(scope="session")
-def experiment(small):
-    return build(small())
-
-
-@pytest.fixture(scope="session")
 def carry_out():
     """A function that gives states and reports of a whole run, the initial state first."""
+    return _carried_out
 
-    def run(experiment):
-        states, reports = [experiment.init()], []
-        while not experiment.done(states[-1]):
-            state, report = experiment.advance(states[-1])
-            states.append(state)
-            reports.append(report)
-        return states, reports
 
-    return run
+def _carried_out(experiment):
+    states, reports = [experiment.init()], []
+    while not experiment.done(states[-1]):
+        state, report = experiment.advance(states[-1])
+        states.append(state)
+        reports.append(report)
+    return states, reports
 
 
 @pytest.fixture(scope="session")
@@ -74,9 +186,3 @@ def lasting():
         )
 
     return change
-
-
-@pytest.fixture(scope="session")
-def course(experiment, carry_out):
-    """States and reports of the whole run, the initial state first."""
-    return carry_out(experiment)

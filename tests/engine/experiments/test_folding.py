@@ -17,27 +17,20 @@ from microcosmos.spec import parse
 from microcosmos.viz.figures import experiments
 from microcosmos.viz.replay_file import read_replay
 
-SMALL = {
-    "experiment": "folding",
-    "targets": [{"digit": 1}, {"digit": 3}],
-    "world": {"width": 32, "height": 32, "fluid": False},
-    "body": {"builder": "walk", "nodes": 64, "spacing": 0.5, "deviation": 0.6, "seed": 4},
-    "steps": 60,
-    "size": 20,
-    "width": 1.0,
-    "updates": 20,
-}
+
+@pytest.fixture(scope="module")
+def course(course_of):
+    return course_of("folding")
 
 
 @pytest.fixture(scope="module")
-def folding():
-    return build(parse(SMALL))
+def folding(course):
+    return course.experiment
 
 
 @pytest.fixture(scope="module")
-def course(folding, carry_out):
-    """States and reports of the whole run, the initial state first."""
-    return carry_out(folding)
+def document(specs):
+    return specs["folding"]
 
 
 def test_losses_fall_from_update_to_update(course):
@@ -49,21 +42,9 @@ def test_losses_fall_from_update_to_update(course):
     assert reports[-1].evaluations == 40
 
 
-def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(folding, course, finish):
-    states, _ = course
-    again = folding.restore(folding.save(states[7]))
-    assert finish(folding, again) == folding.save(states[-1])
-
-
-def test_a_file_of_another_spec_is_refused(folding, course):
-    other = build(parse(SMALL | {"rate": 0.05}))
-    with pytest.raises(ValueError, match="run's own"):
-        other.restore(folding.save(course[0][3]))
-
-
 def test_every_filament_is_a_creature_whose_replay_ends_at_its_loss(course):
     state = course[0][-1]
-    task = build_descent(parse(SMALL)).task
+    task = build_descent(course.spec).task
     for number, row in enumerate(state.table.rows):
         file = creature.document(json.loads(row.identity), row.measured, row.provenance)
         assert creature.parse(file)["sha256"] == row.creature
@@ -77,7 +58,6 @@ def test_the_best_is_the_creature_with_the_least_loss(folding, course):
     state = course[0][-1]
     best = folding.best(state)
     assert best["sha256"] == state.table.rows[np.argmin(state.folds.least)].creature
-    assert folding.best(folding.init()) is None
 
 
 def test_the_figure_shows_moments_pictures_and_losses(folding, course):
@@ -103,8 +83,8 @@ def test_a_step_that_is_not_finite_begins_anew_from_the_best(folding):
     assert all(not np.any(leaf) for leaf in jax.tree.leaves(after.optimiser))
 
 
-def test_the_gradient_of_the_loss_agrees_with_central_differences(float64):
-    descent = build_descent(parse(SMALL | {"steps": 20}))
+def test_the_gradient_of_the_loss_agrees_with_central_differences(float64, document):
+    descent = build_descent(parse(document | {"steps": 20}))
     descent = jax.tree.map(
         lambda x: x.astype(float64) if jnp.issubdtype(x.dtype, jnp.floating) else x, descent
     )
@@ -117,9 +97,9 @@ def test_the_gradient_of_the_loss_agrees_with_central_differences(float64):
     np.testing.assert_allclose(slope, difference / h, rtol=1e-6)
 
 
-def test_in_a_fluid_and_in_segments_it_learns_the_same_at_first():
+def test_in_a_fluid_and_in_segments_it_learns_the_same_at_first(document):
     place = {"width": 32, "height": 32, "viscosity": 0.16}
-    fluid = SMALL | {"targets": [{"digit": 1}], "world": place, "steps": 40}
+    fluid = document | {"targets": [{"digit": 1}], "world": place, "steps": 40}
     whole = parse(fluid)
     few = parse(fluid | {"memory": 0.004})
     assert whole.segment is None
@@ -166,9 +146,9 @@ def test_in_a_fluid_and_in_segments_it_learns_the_same_at_first():
         ({"coupling": {"theta_feedback": 0}}, "`projection` must be"),
     ],
 )
-def test_a_spec_that_cannot_be_carried_out_is_refused(change, needed):
+def test_a_spec_that_cannot_be_carried_out_is_refused(document, change, needed):
     with pytest.raises(ValidationError, match=needed):
-        parse(SMALL | change)
+        parse(document | change)
 
 
 def test_the_table_has_a_row_for_each_picture(folding, course):

@@ -1,4 +1,4 @@
-"""A sweep of gaits: the same table however often it is interrupted."""
+"""A sweep of gaits: its rows, what they agree with, and what has no numbers."""
 
 import json
 import math
@@ -12,31 +12,19 @@ import pytest
 from microcosmos import search, units
 from microcosmos.archive import creature
 from microcosmos.audit.reproducibility import check
-from microcosmos.build import build
 from microcosmos.experiments.gaits import Gaits
-from microcosmos.spec import EXPERIMENTS, parse
+from microcosmos.spec import EXPERIMENTS
 from microcosmos.viz.replay import FRAMES, interval
 
-SPEC = {
-    "experiment": "gaits",
-    "swimmers": ["ray"],
-    "forms": ["ours", "paper"],
-    "viscosities": [0.05, 0.5, 2.0],
-    "period": 30,
-    "cycles": 2,
-    "block": 2,
-}
+
+@pytest.fixture(scope="module")
+def course(course_of):
+    return course_of("gaits")
 
 
 @pytest.fixture(scope="module")
-def sweep():
-    return build(parse(SPEC))
-
-
-@pytest.fixture(scope="module")
-def course(sweep, carry_out):
-    """States and reports of the whole run, the initial state first."""
-    return carry_out(sweep)
+def sweep(course):
+    return course.experiment
 
 
 def file_of(row):
@@ -44,35 +32,14 @@ def file_of(row):
 
 
 def test_every_form_and_viscosity_has_a_row(course):
-    states, reports = course
+    states, reports, _, spec = course
     found = [(r.values["form"], r.values["viscosity"]) for r in states[-1].rows]
-    assert found == [(form, v) for form in SPEC["forms"] for v in SPEC["viscosities"]]
-    assert [report.generation for report in reports] == [1, 2]
+    assert found == [(form, v) for form in spec.forms for v in spec.viscosities]
     assert reports[-1].summary["points"] == 6
     assert {r.values["form"]: r.values["force_free"] for r in states[-1].rows} == {
         "ours": True,
         "paper": False,
     }
-
-
-def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(sweep, course):
-    states, reports = course
-    taken_up = sweep.restore(sweep.save(states[1]))
-    state, report = build(parse(SPEC)).advance(taken_up)
-    assert sweep.save(state) == sweep.save(states[2])
-    assert report == reports[1]
-
-
-def test_a_wish_to_stop_is_obeyed_between_blocks(sweep, course):
-    asked = iter([False, True])
-    with pytest.raises(search.Stopped):
-        sweep.advance(course[0][0], lambda: next(asked))
-
-
-def test_a_file_of_another_spec_is_refused(sweep, course):
-    other = build(parse({**SPEC, "period": 31}))
-    with pytest.raises(ValueError, match="spec"):
-        other.restore(sweep.save(course[0][1]))
 
 
 @pytest.mark.optimised

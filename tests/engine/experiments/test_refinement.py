@@ -11,44 +11,24 @@ from pydantic import ValidationError
 import microcosmos
 from microcosmos.archive import creature
 from microcosmos.audit.reproducibility import check
-from microcosmos.build import build, build_niches
+from microcosmos.build import build_niches
 from microcosmos.search import FEATURES
 from microcosmos.spec import parse
 
-SEARCH = {
-    "experiment": "quality-diversity",
-    "seed": 5,
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 12},
-    "control": {"period": 40, "angle_scale": 0.3},
-    "task": {"steps": 60},
-    "search": {"generations": 3, "batch": 8, "block": 4},
-}
-STEPS = 4
+
+@pytest.fixture(scope="module")
+def course(course_of):
+    return course_of("refinement")
 
 
 @pytest.fixture(scope="module")
-def spec(carry_out):
-    """The refinement of a short search's best creature."""
-    search = build(parse(SEARCH))
-    file = search.best(carry_out(search)[0][-1])
-    return parse({"experiment": "refinement", "creature": file, "steps": STEPS, "block": 4})
-
-
-@pytest.fixture(scope="module")
-def refinement(spec):
-    return build(spec)
-
-
-@pytest.fixture(scope="module")
-def course(refinement, carry_out):
-    """States and reports of the whole run, the initial state first."""
-    return carry_out(refinement)
+def spec(course):
+    return course.spec
 
 
 def test_it_becomes_fitter_and_never_less_fit(course):
     fitness = [row.values["fitness"] for row in course[0][-1].table.rows]
-    assert len(fitness) == 1 + STEPS
+    assert len(fitness) == 1 + course.spec.steps
     assert all(b >= a for a, b in itertools.pairwise(fitness))
     assert fitness[-1] > fitness[0]
 
@@ -70,18 +50,12 @@ def test_it_does_not_leave_its_cell(spec, course):
 
 
 @pytest.mark.optimised
-def test_what_it_has_become_repeats_bit_for_bit_and_has_a_parent(spec, refinement, course):
-    best = refinement.best(course[0][-1])
+def test_what_it_has_become_repeats_bit_for_bit_and_has_a_parent(spec, course):
+    best = course.experiment.best(course[0][-1])
     assert creature.parse(best)["sha256"] == best["sha256"]
     assert best["provenance"]["parents"] == [spec.creature["sha256"]]
     assert best["provenance"]["operator"] == "refinement"
     assert check(best).exact
-
-
-def test_a_run_taken_up_from_its_file_ends_with_the_same_bytes(refinement, course, finish):
-    states, _ = course
-    again = refinement.restore(refinement.save(states[2]))
-    assert finish(refinement, again) == refinement.save(states[-1])
 
 
 def test_the_record_says_how_far_the_gradient_can_be_trusted(course):

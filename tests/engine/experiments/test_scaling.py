@@ -1,37 +1,16 @@
-"""A measurement of wall time: its rows, its fit, and that it stops when asked."""
+"""A measurement of wall time: its rows and its fit."""
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import search
-from microcosmos.build import build
 from microcosmos.build.tables import build_crowd
 from microcosmos.experiments.scaling import LINEAR_FROM, Scaling, summary
 from microcosmos.experiments.timing import _all_pairs
 from microcosmos.spec import parse
 from microcosmos.spec.scaling import SPACING
 
-SPEC = parse(
-    {
-        "experiment": "scaling",
-        "nodes": [40, 80],
-        "filament": 20,
-        "width": 32,
-        "height": 32,
-        "steps": 10,
-        "part_steps": 2,
-        "all_pairs": 40,
-    }
-)
 PARTS = ("fluid", "coupling", "constraints", "steric")
-
-
-@pytest.fixture(scope="module")
-def measured():
-    experiment = build(SPEC)
-    first, _ = experiment.advance(experiment.init())
-    return experiment, first, *experiment.advance(first)
 
 
 def row(nodes, seconds, **change):
@@ -39,8 +18,8 @@ def row(nodes, seconds, **change):
     return told | {"memory_bytes": 10 * nodes, "status": "ok"} | change
 
 
-def test_rows_tell_the_whole_and_its_parts(measured):
-    _, _, state, report = measured
+def test_rows_tell_the_whole_and_its_parts(course_of):
+    (*_, state), (*_, report), *_ = course_of("scaling")
     ours, pairs, more = (row.values for row in state.rows)
     assert [r["method"] for r in (ours, pairs, more)] == [
         "microcosmos",
@@ -58,19 +37,6 @@ def test_rows_tell_the_whole_and_its_parts(measured):
     assert more["memory_bytes"] > ours["memory_bytes"]
     assert report.summary["peak_memory_bytes"] == more["memory_bytes"]
     assert report.diverged == 0
-
-
-def test_a_measurement_can_be_taken_up_again(measured):
-    experiment, first, state, _ = measured
-    assert experiment.restore(experiment.save(first)) == first
-    assert not experiment.done(first)
-    assert experiment.done(state)
-
-
-def test_a_wish_to_stop_is_obeyed_between_programs():
-    experiment = build(SPEC)
-    with pytest.raises(search.Stopped):
-        experiment.advance(experiment.init(), lambda: True)
 
 
 @pytest.mark.fast
@@ -112,10 +78,11 @@ def test_what_did_not_stay_finite_counts_for_nothing():
     assert experiment.advance(experiment.init())[1].diverged == 1
 
 
-def test_filaments_of_the_crowd_are_apart():
-    columns, rows = SPEC.places
-    count = columns * rows * SPEC.filament
-    full = parse({**SPEC.model_dump(), "nodes": [20, count]})
+def test_filaments_of_the_crowd_are_apart(specs):
+    spec = parse(specs["scaling"])
+    columns, rows = spec.places
+    count = columns * rows * spec.filament
+    full = parse({**spec.model_dump(), "nodes": [20, count]})
     _, start = build_crowd(full, count)
     x = np.asarray(start.positions)
     away = np.abs(x[:200, None] - x[None])

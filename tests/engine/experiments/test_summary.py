@@ -11,17 +11,6 @@ from microcosmos.build import build
 from microcosmos.search import tensorneat
 from microcosmos.spec import parse
 
-POPULATION = {
-    "experiment": "neuroevolution",
-    "seed": 5,
-    "world": {"width": 24, "height": 24},
-    "body": {"nodes": 8},
-    "control": {"period": 30},
-    "genome": {"max_nodes": 10, "max_connections": 16},
-    "task": {"steps": 20},
-    "search": {"generations": 4, "batch": 24, "block": 8},
-}
-
 
 @pytest.fixture
 def failing(experiment):
@@ -43,15 +32,9 @@ def test_diverged_creatures_are_told_by_their_reasons(failing):
 
 
 def test_where_nothing_diverged_no_reason_is_told(course):
-    _, reports = course
+    reports = course.reports
     assert [report.diverged for report in reports] == [0, 0, 0, 0]
     assert not [name for report in reports for name in report.summary if "diverged" in name]
-
-
-@pytest.fixture(scope="module")
-def population(carry_out):
-    experiment = build(parse(POPULATION))
-    return experiment, *carry_out(experiment)
 
 
 def sizes(report):
@@ -60,11 +43,11 @@ def sizes(report):
     }
 
 
-def test_every_member_of_a_generation_is_in_one_of_the_species_that_are_told(population):
-    _, states, reports = population
+def test_every_member_of_a_generation_is_in_one_of_the_species_that_are_told(course_of):
+    states, reports, *_ = course_of("neuroevolution")
     for state, report in zip(states[1:], reports, strict=True):
         told, species = sizes(report), state.emitters[0].species
-        assert sum(told.values()) == 24
+        assert sum(told.values()) == 16
         of = np.asarray(species.number)[np.asarray(species.of)]
         assert told == {int(number): int((of == number).sum()) for number in np.unique(of)}
 
@@ -73,25 +56,18 @@ def test_every_member_of_a_generation_is_in_one_of_the_species_that_are_told(pop
     not tensorneat.available(), reason="tensorneat is not installed: make tensorneat"
 )
 @pytest.mark.filterwarnings("ignore")
-def test_species_of_tensorneat_are_told_of_the_generation_that_was_measured(carry_out):
+def test_species_of_tensorneat_are_told_of_the_generation_that_was_measured(carry_out, specs):
     """As its own table of species counts them."""
     backend = {"backend": "tensorneat", "preset": "tensorneat", "threshold": 0.3}
     with jax.numpy_rank_promotion("allow"):
-        states, reports = carry_out(build(parse(POPULATION | {"neat": backend})))
-    assert sizes(reports[0]) == {0: 24}, "at first there is one"
+        states, reports = carry_out(build(parse(specs["neuroevolution"] | {"neat": backend})))
+    assert sizes(reports[0]) == {0: 16}, "at first there is one"
     for state, report in zip(states[1:], reports, strict=True):
         arrays = state.emitters[0].arrays
         table = zip(arrays["species.species_keys"], arrays["species.member_count"], strict=True)
         assert sizes(report) == {int(key): int(count) for key, count in table if count > 0}
-        assert sum(sizes(report).values()) == 24
+        assert sum(sizes(report).values()) == 16
     assert max(len(sizes(report)) for report in reports) > 1
-
-
-def test_a_population_taken_up_again_tells_the_same_species(population):
-    experiment, states, reports = population
-    for state, report in zip(states, reports, strict=False):
-        _, again = experiment.advance(experiment.restore(experiment.save(state)))
-        assert sizes(again) == sizes(report)
 
 
 def test_a_search_without_a_population_tells_no_species(course):

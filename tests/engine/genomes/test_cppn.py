@@ -35,10 +35,11 @@ def networks():
     @jax.jit
     @jax.vmap
     def grow(key):
-        network = neat.minimal(key, INPUTS, OUTPUTS, 16, 40)
-        for step in range(10):
-            network, _ = neat.mutate(network, RATES, INPUTS, key=jax.random.fold_in(key, step))
-        return network
+        def mutated(step, network):
+            return neat.mutate(network, RATES, INPUTS, key=jax.random.fold_in(key, step))[0]
+
+        first = neat.minimal(key, INPUTS, OUTPUTS, 16, 40)
+        return jax.lax.fori_loop(0, 10, mutated, first)
 
     grown = jax.device_get(grow(jax.random.split(jax.random.key(1), 40)))
     return [genomes.take(grown, i) for i in range(40)]

@@ -46,7 +46,8 @@ def outcome(children, fitness, entered):
 
 
 def emitted(emitter, state, elites):
-    return emitter.emit(state, elites, COUNTERS, jnp.asarray(1), keys=KEYS)[:2]
+    emit = jax.jit(lambda *given: emitter.emit(*given, keys=KEYS)[:2])
+    return emit(state, elites, COUNTERS, jnp.asarray(1))
 
 
 def slopes(rows, sound=True):
@@ -126,7 +127,7 @@ def test_a_lesson_is_one_step_of_the_given_length_up_the_wished_for_slope(lamarc
     rows = np.random.default_rng(1).normal(size=(SLOTS, 3, before.shape[1]))
     sound = np.arange(SLOTS) != 2
     told = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(sound))
-    learnt, _ = lamarckian.learn(wishes, children, told)
+    learnt, _ = jax.jit(lamarckian.learn)(wishes, children, told)
     moved = np.asarray(jax.vmap(genes_of)(learnt.genotypes)) - before
     np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 0.25 * sound, atol=1e-4)
     unit = rows / np.linalg.norm(rows, axis=2, keepdims=True)

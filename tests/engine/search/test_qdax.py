@@ -13,6 +13,7 @@ from microcosmos import genomes, neat, search
 from microcosmos.search import qdax
 
 pytestmark = [
+    pytest.mark.long,
     pytest.mark.skipif(importlib.util.find_spec("qdax") is None, reason="QDax: make peers"),
     pytest.mark.filterwarnings("ignore"),
 ]

@@ -29,12 +29,6 @@ def test_a_controller_that_names_no_encoding_is_a_cppn():
         assert Scene.model_validate_json(scene.model_dump_json()) == scene
 
 
-def test_older_controllers_are_written_as_before():
-    written = spec.identity(spec.Control())
-    assert not {"encoding", "recurrent"} & set(written)
-    assert spec.identity(spec.Control(recurrent=True))["recurrent"] is True
-
-
 def test_an_unknown_encoding_is_named():
     field, said = refusal(control={"encoding": "l-system"})
     assert field == "control"

@@ -1,6 +1,10 @@
 """Shapes, repulsion, gradients and random controllers, at reduced size."""
 
+import pytest
+
 from validation import gradients, repulsion, shapes, stability
+
+pytestmark = pytest.mark.long
 
 
 def test_chains_close_and_branches_find_their_shape():

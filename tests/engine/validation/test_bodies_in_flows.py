@@ -4,6 +4,8 @@ import pytest
 
 from validation import array, cylinder, sheet
 
+pytestmark = pytest.mark.long
+
 
 def test_the_drag_of_an_array_of_cylinders_is_that_of_the_series():
     assert not array.check().missed

@@ -1,7 +1,11 @@
 """The sweep's shape, at three viscosities and with shorter strokes."""
 
+import pytest
+
 from microcosmos.spec import Gaits
 from validation import sweep
+
+pytestmark = pytest.mark.long
 
 
 def test_swimmers_stand_to_each_other_as_in_the_paper():

@@ -1,7 +1,11 @@
 """Bodies in a fluid against what Stokes flow says of them."""
 
+import pytest
+
 from microcosmos import bodies, coupling, world
 from validation import passive, scenes, swimmers
+
+pytestmark = pytest.mark.long
 
 GHOST = world.Form(projection=coupling.unprojected, theta_feedback=0.0)
 """Edge angles that ignore the geometry exert a torque of their own."""

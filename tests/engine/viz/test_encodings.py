@@ -60,6 +60,7 @@ def test_a_creature_of_any_encoding_is_repeated_bit_for_bit(file):
     assert check(file).exact
 
 
+@pytest.mark.long
 def test_a_creature_of_any_encoding_is_watched_and_audited(file):
     replay = read_replay(record(file))
     nodes = int(file["measured"]["features"]["nodes"])

@@ -13,6 +13,8 @@ from microcosmos.viz.files import export
 from microcosmos.viz.film import gif, mp4
 from microcosmos.viz.raster import frame
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def film(swimming):

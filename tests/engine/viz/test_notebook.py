@@ -8,6 +8,8 @@ import pytest
 from microcosmos.viz.notebook import filmed, show
 from microcosmos.viz.replay_file import read_replay
 
+pytestmark = pytest.mark.long
+
 
 def test_own_frames_become_a_replay_of_the_same_motion(swimming):
     made = filmed(swimming.positions, swimming.edges, swimming.vorticity, every=5)

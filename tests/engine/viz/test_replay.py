@@ -14,7 +14,6 @@ from microcosmos.archive import creature
 from microcosmos.audit.remeasure import measurement
 from microcosmos.audit.reproducibility import check
 from microcosmos.build import build, build_encoding, build_task
-from microcosmos.spec import identity as identity_of
 from microcosmos.spec import parse
 from microcosmos.spec.creature.identity import Identity
 from microcosmos.viz.replay import actuator_of, record
@@ -170,7 +169,9 @@ def test_energy_is_kept_once_unless_it_changes(best, change):
     identity = copy.deepcopy(best["identity"])
     identity["world"]["energy"] = {"packets": 3, "width": 2.0} | change
     identity["task"]["steps"] = 60
-    file = creature.document(identity_of(Identity.model_validate(identity)), None, None)
+    file = creature.document(
+        Identity.model_validate(identity).model_dump(mode="json"), None, None
+    )
     film = read_replay(record(file))
     assert film.drive is not None
     assert len(film.drive.energy) == (film.frames if change else 1)

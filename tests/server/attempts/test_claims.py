@@ -2,7 +2,6 @@
 
 import errno
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import pytest
 from sqlalchemy import func, select, update
@@ -10,11 +9,11 @@ from sqlalchemy.exc import OperationalError
 
 from server.attempts import leases
 from server.attempts.begin import claim
-from server.attempts.claim import Claim, Fenced
+from server.attempts.claim import CheckpointUnavailable, Claim, Fenced
 from server.core.database import ago
 from server.runs import lifecycle
 from server.storage.artifacts import Artifacts
-from server.tables import Creature, Elite, Generation, Run
+from server.tables import Artifact, Creature, Elite, Generation, Run
 
 pytestmark = pytest.mark.postgresql
 
@@ -284,40 +283,62 @@ def test_an_old_file_that_cannot_be_deleted_does_not_undo_a_checkpoint(
     assert row().checkpoint_generation == attempt.generation == 5
 
 
-@pytest.mark.parametrize("harm", [Path.unlink, lambda file: file.write_bytes(b"rot")])
-def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(
-    services, run_id, report, row, harm
-):
+def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(services, run_id, report, row):
     first = claim(services, run_id, "worker")
     for generation in range(1, 4):
         first.record(report(generation, {generation: 1.0}), 1.0)
         first.save(generation, f"state {generation}".encode())
     folder = services.settings.data / "artifacts" / "runs" / str(run_id)
-    harm(next(folder.glob("00000003-*")))
+    next(folder.glob("00000003-*")).write_bytes(b"rot")
     second = claim(services, run_id, "worker")
     assert second.restore() == b"state 2"
     assert (second.generation, second.seconds) == (2, 2.0)
     assert (row().generation, row().checkpoint_generation, row().qd_score) == (2, 2, 20.0)
     assert count(services, Generation) == count(services, Elite) == 2
-    assert "generation 3 is missing or damaged" in row().warning
-    assert "goes on from generation 2" in row().warning
+    assert "generation 3 is damaged" in row().warning
+    assert "resumes from generation 2" in row().warning
     second.record(report(3, {3: 1.0}), 1.0)
     second.save(3, b"state 3")
     assert row().warning is None
     assert claim(services, run_id, "worker").restore() == b"state 3"
 
 
-def test_a_run_none_of_whose_checkpoints_is_sound_begins_anew(services, run_id, report, row):
+def unmount(folder):
+    folder.rename(folder.with_name("elsewhere"))
+
+
+def lose_the_newest(folder):
+    next(folder.glob("00000002-*")).unlink()
+
+
+def damage_all(folder):
+    for file in folder.iterdir():
+        file.write_bytes(b"rot")
+
+
+@pytest.mark.parametrize("harm", [unmount, lose_the_newest, damage_all])
+def test_a_checkpoint_that_cannot_be_read_deletes_nothing(services, run_id, report, row, harm):
     first = claim(services, run_id, "worker")
     for generation in range(1, 3):
         first.record(report(generation, {generation: 1.0}), 1.0)
         first.save(generation, f"state {generation}".encode())
-    for file in (services.settings.data / "artifacts" / "runs" / str(run_id)).iterdir():
-        file.unlink()
+    harm(services.settings.data / "artifacts" / "runs" / str(run_id))
     second = claim(services, run_id, "worker")
-    assert second.restore() is None
-    assert (second.generation, second.checkpoint, second.seconds) == (0, None, 0)
-    assert (row().generation, row().checkpoint_generation, row().qd_score) == (0, 0, None)
-    assert count(services, Generation) == count(services, Elite) == 0
-    assert "goes on from the beginning" in row().warning
-    second.record(report(1, {1: 1.0}), 1.0)
+    with pytest.raises(CheckpointUnavailable, match="checkpoint of generation 2"):
+        second.restore()
+    assert (row().generation, row().checkpoint_generation, row().qd_score) == (2, 2, 20.0)
+    assert (
+        count(services, Generation) == count(services, Elite) == count(services, Artifact) == 2
+    )
+
+
+def test_a_run_resumes_when_its_files_are_there_again(services, run_id, report):
+    first = claim(services, run_id, "worker")
+    first.record(report(1, {1: 1.0}), 1.0)
+    first.save(1, b"state 1")
+    folder = services.settings.data / "artifacts"
+    folder.rename(folder.with_name("elsewhere"))
+    with pytest.raises(CheckpointUnavailable):
+        claim(services, run_id, "worker").restore()
+    folder.with_name("elsewhere").rename(folder)
+    assert claim(services, run_id, "worker").restore() == b"state 1"

@@ -1,6 +1,6 @@
 /** Every request of the page. Answers other than success are thrown as `Problem`. */
 
-import { share } from "./address";
+import { sharedSlug } from "./address";
 import { ROOT, client, success, whenReady } from "./http";
 import type {
   Ancestors,
@@ -8,7 +8,7 @@ import type {
   Children,
   Creature,
   Experiment,
-  ForkSent,
+  ForkRequest,
   Measurement,
   Results,
   Run,
@@ -16,25 +16,25 @@ import type {
   RunPage,
   RunQuery,
   Share,
-  ShareAsked,
+  ShareRequest,
   Spec,
   Sweep,
   SweepChanged,
   SweepPage,
-  SweepSent,
+  SweepRequest,
   SweepSummary,
   TokenCreate,
 } from "./types";
 
 export const EVENTS_URL = `${ROOT}/events`;
 
-export type Wish = "pause" | "resume" | "cancel";
+export type RunCommand = "pause" | "resume" | "cancel";
 
 const run = (id: string) => ({ params: { path: { run_id: id } } });
 
 /** Strangers start none. */
 export async function readExperiments(): Promise<Experiment[]> {
-  if (share) return [];
+  if (sharedSlug) return [];
   return (await success(client.GET(`${ROOT}/experiments`))) as Experiment[];
 }
 
@@ -47,7 +47,8 @@ export async function changeRun(id: string, change: RunChange): Promise<Run> {
   return (await success(asked)) as Run;
 }
 
-export const readCaller = () => success(client.GET(`${ROOT}/tokens/current`));
+export const readPrincipal = () => success(client.GET(`${ROOT}/tokens/current`));
+export const readHealth = () => success(client.GET("/healthz"));
 export const readTokens = () => success(client.GET(`${ROOT}/tokens`));
 export const createToken = (body: TokenCreate) => success(client.POST(`${ROOT}/tokens`, { body }));
 
@@ -140,13 +141,13 @@ export async function createRun(spec: Spec, key: string): Promise<Run> {
   return (await success(client.POST(`${ROOT}/runs`, { params, body: spec as never }))) as Run;
 }
 
-export async function forkRun({ run: id, ...body }: ForkSent, key: string): Promise<Run> {
+export async function forkRun({ run: id, ...body }: ForkRequest, key: string): Promise<Run> {
   const params = { ...run(id).params, header: { "Idempotency-Key": key } };
   const asked = client.POST(`${ROOT}/runs/{run_id}/fork`, { params, body: body as never });
   return (await success(asked)) as Run;
 }
 
-export async function wish(id: string, verb: Wish): Promise<Run> {
+export async function commandRun(id: string, verb: RunCommand): Promise<Run> {
   return (await success(client.POST(`${ROOT}/runs/{run_id}/${verb}`, run(id)))) as Run;
 }
 
@@ -173,21 +174,21 @@ export function readSweepCurves(id: string, points: number) {
   return success(client.GET(`${ROOT}/sweeps/{sweep_id}/curves`, { params }));
 }
 
-export function estimateSweep(sent: SweepSent) {
+export function estimateSweep(sent: SweepRequest) {
   return success(client.POST(`${ROOT}/sweeps/estimate`, { body: sent as never }));
 }
 
-export async function createSweep(sent: SweepSent, key: string): Promise<Sweep> {
+export async function createSweep(sent: SweepRequest, key: string): Promise<Sweep> {
   const params = { header: { "Idempotency-Key": key } };
   return (await success(client.POST(`${ROOT}/sweeps`, { params, body: sent as never }))) as Sweep;
 }
 
-export async function steerSweep(id: string, verb: Wish): Promise<SweepChanged> {
+export async function commandSweep(id: string, verb: RunCommand): Promise<SweepChanged> {
   const asked = client.POST(`${ROOT}/sweeps/{sweep_id}/${verb}`, sweep(id));
   return (await success(asked)) as SweepChanged;
 }
 
-export async function nameSweep(id: string, name: string | null): Promise<Sweep> {
+export async function renameSweep(id: string, name: string | null): Promise<Sweep> {
   const asked = client.PATCH(`${ROOT}/sweeps/{sweep_id}`, { ...sweep(id), body: { name } });
   return (await success(asked)) as Sweep;
 }
@@ -213,7 +214,7 @@ const CHILDLESS: Children = { total: 0, items: [] };
 export function readFamily(sha: string, depth: number): Promise<[Ancestors, Children]> {
   const path = { path: { sha } };
   const up = client.GET(`${ROOT}/creatures/{sha}/ancestors`, { params: { ...path, query: { depth } } });
-  if (share) return Promise.all([success(up), CHILDLESS]);
+  if (sharedSlug) return Promise.all([success(up), CHILDLESS]);
   const down = client.GET(`${ROOT}/creatures/{sha}/children`, { params: path });
   return Promise.all([success(up), success(down)]);
 }
@@ -255,7 +256,7 @@ export function readCommons(cursor?: string) {
   return success(client.GET(`${ROOT}/commons`, { params: { query: { cursor } } }));
 }
 
-export function publish(asked: ShareAsked): Promise<Share> {
+export function publish(asked: ShareRequest): Promise<Share> {
   return success(client.POST(`${ROOT}/shares`, { body: asked }));
 }
 
@@ -271,7 +272,7 @@ export function readCover({ slug, cover }: Share): Promise<ArrayBuffer | null> {
 }
 
 /** Has a creature evaluated again by the program that measured it. */
-export function measure(sha: string) {
+export function startMeasurement(sha: string) {
   return success(client.POST(`${ROOT}/creatures/{sha}/measure`, { params: { path: { sha } } }));
 }
 

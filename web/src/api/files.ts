@@ -4,16 +4,16 @@ import { problemOf } from "./problem";
 import { noteStatus } from "./signedOut";
 
 /** True once a rendering is there, null while it is made; nothing of it is read. */
-export async function proveRendering(url: string): Promise<true | null> {
-  return (await proved(url)).status === 202 ? null : true;
+export async function renderingReady(url: string): Promise<true | null> {
+  return (await readHead(url)).status === 202 ? null : true;
 }
 
 /** Throws the reason where a file cannot be had; nothing of it is read. */
-export async function proveFile(url: string): Promise<void> {
-  await proved(url);
+export async function checkFile(url: string): Promise<void> {
+  await readHead(url);
 }
 
-async function proved(url: string): Promise<Response> {
+async function readHead(url: string): Promise<Response> {
   const stop = new AbortController();
   const response = await fetch(url, { signal: stop.signal });
   noteStatus(response.status);

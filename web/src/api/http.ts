@@ -1,7 +1,7 @@
 /** The HTTP client: requests below the share that is shown, and problems as exceptions. */
 
 import createClient from "openapi-fetch";
-import { placed, share } from "./address";
+import { belowShare, sharedSlug } from "./address";
 import { problemOf } from "./problem";
 import type { paths } from "./schema";
 import { noteStatus } from "./signedOut";
@@ -9,7 +9,7 @@ import { noteStatus } from "./signedOut";
 export const ROOT = "/api/v1";
 
 export const client = createClient<paths>({ baseUrl: "" });
-if (share) client.use({ onRequest: ({ request }) => new Request(placed(request.url), request) });
+if (sharedSlug) client.use({ onRequest: ({ request }) => new Request(belowShare(request.url), request) });
 
 export interface Answer<T> {
   data?: T;

@@ -27,6 +27,6 @@ export function messageOf(error: unknown): string {
 const BUSY = [429, 502, 503, 504];
 
 /** Whether the same request may succeed later: the server was away or busy, not unwilling. */
-export function passes(error: unknown): boolean {
+export function isTransient(error: unknown): boolean {
   return error instanceof TypeError || (error instanceof Problem && BUSY.includes(error.status));
 }

@@ -1917,6 +1917,8 @@ export interface components {
         };
         /** Health */
         Health: {
+            /** Help */
+            help: boolean;
             /**
              * Status
              * @default ok

@@ -1,13 +1,13 @@
 /** Every request may find out that nobody is signed in: the frame of the page is told. */
 
-export const UNKNOWN = "microcosmos:unknown";
+export const SIGNED_OUT = "microcosmos:unknown";
 
-let unknown = false;
+let signedOut = false;
 
-export const isUnknown = () => unknown;
+export const isSignedOut = () => signedOut;
 
 export function noteStatus(status: number): void {
-  if (status !== 401 || unknown) return;
-  unknown = true;
-  globalThis.dispatchEvent?.(new Event(UNKNOWN));
+  if (status !== 401 || signedOut) return;
+  signedOut = true;
+  globalThis.dispatchEvent?.(new Event(SIGNED_OUT));
 }

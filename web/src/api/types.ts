@@ -33,14 +33,14 @@ export type Spread = Omit<Wire["Final"], "values">;
 export type CaseValues = { [path: string]: Json };
 export type Grid = { [path: string]: Json[] };
 /** What is asked for: each case of the grid with each seed. */
-export interface SweepSent {
+export interface SweepRequest {
   spec: Spec;
   seeds: number | number[];
   grid: Grid;
   name: string | null;
 }
 /** A run that begins from another's creatures, its spec changed by a merge patch. */
-export interface ForkSent {
+export interface ForkRequest {
   run: string;
   from: { creatures: string[] } | { cells: number[] } | { archive: true };
   /** Elites as they were after it; left out: as they are. */
@@ -66,9 +66,9 @@ export type ArchiveColumns = Pick<
 export type Generations = Wire["Curves"];
 export type LogEntry = Wire["EntryRead"];
 export type SpeciesHistory = Wire["Species"];
-export type Caller = Wire["CallerRead"];
+export type Principal = Wire["CallerRead"];
 export type Token = Wire["TokenRead"];
-export type TokenMade = Wire["TokenMade"];
+export type CreatedToken = Wire["TokenMade"];
 export type TokenCreate =
   operations["create_token_api_v1_tokens_post"]["requestBody"]["content"]["application/json"];
 export type TokenScope = Token["scope"];
@@ -98,7 +98,7 @@ export interface Genes {
 }
 
 /** A gait made by hand, in the place of genes. */
-export interface Stroke {
+export interface Gait {
   encoding: "gait";
   swimmer: string;
   period: number;
@@ -117,14 +117,14 @@ export interface Vector {
   outputs?: string[];
 }
 
-export type Genome = Genes | Vector | Stroke;
+export type Genome = Genes | Vector | Gait;
 
 export type Relative = Wire["Relative"];
 export type Ancestors = Wire["Ancestors"];
 export type Children = Wire["Children"];
 export type Measurement = Wire["Measurement"];
 export type Share = Wire["ShareRead"];
-export type ShareAsked =
+export type ShareRequest =
   operations["publish_api_v1_shares_post"]["requestBody"]["content"]["application/json"];
 
 export interface AuditRow {

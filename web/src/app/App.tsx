@@ -1,43 +1,46 @@
-/** The frame around every page: where one can go, how the connection is, notes. */
+/** The frame around every page: navigation, connection, notes. */
 
 import { useEffect } from "preact/hooks";
-import { later } from "../ui/lazy";
-import { learnCaller, useRefusal, useUnknown } from "../store/principal";
-import { useLive } from "../store/store";
-import { type Toast, dismiss, undo, useToasts } from "../store/toasts";
+import { readHealth } from "../api/client";
+import { lazy } from "../ui/lazy";
+import { loadPrincipal, useRefusal, useSignedOut } from "../store/principal";
+import { useFetched } from "../store/fetch";
+import { useStore } from "../store/store";
+import { type Toast, dismissToast, undoLatest, useToasts } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
 import { RunsPage } from "../runs/RunsPage";
-import { type Place, usePlace } from "../store/router";
+import { type PageLocation, useLocation } from "../store/router";
+import { text } from "./text";
 import "./app.css";
 
-const ComparePage = later(async () => (await import("../compare/ComparePage")).ComparePage);
-const CreaturePage = later(async () => (await import("../creature/CreaturePage")).CreaturePage);
-const NewRunPage = later(async () => (await import("../new-run/NewRunPage")).NewRunPage);
-const RunPage = later(async () => (await import("../run/RunPage")).RunPage);
-const SharesPage = later(async () => (await import("../shares/SharesPage")).SharesPage);
-const SettingsPage = later(async () => (await import("../settings/SettingsPage")).SettingsPage);
-const SignInPage = later(async () => (await import("../settings/SignInPage")).SignInPage);
-const SweepPage = later(async () => (await import("../sweeps/SweepPage")).SweepPage);
-const WorkersPage = later(async () => (await import("../workers/WorkersPage")).WorkersPage);
+const ComparePage = lazy(async () => (await import("../compare/ComparePage")).ComparePage);
+const CreaturePage = lazy(async () => (await import("../creature/CreaturePage")).CreaturePage);
+const NewRunPage = lazy(async () => (await import("../new-run/NewRunPage")).NewRunPage);
+const RunPage = lazy(async () => (await import("../run/RunPage")).RunPage);
+const SharesPage = lazy(async () => (await import("../shares/SharesPage")).SharesPage);
+const SettingsPage = lazy(async () => (await import("../settings/SettingsPage")).SettingsPage);
+const SignInPage = lazy(async () => (await import("../settings/SignInPage")).SignInPage);
+const SweepPage = lazy(async () => (await import("../sweeps/SweepPage")).SweepPage);
+const WorkersPage = lazy(async () => (await import("../workers/WorkersPage")).WorkersPage);
 
 const TITLES: Record<string, string> = {
-  runs: "Runs",
-  new: "New run",
-  compare: "Compare",
-  workers: "Workers",
-  shares: "Shares",
-  settings: "Settings",
-  unknown: "Not found",
+  runs: text.runs,
+  new: text.newRun,
+  compare: text.compare,
+  workers: text.workers,
+  shares: text.shares,
+  settings: text.settings,
+  unknown: text.notFound,
 };
 
 export function App() {
-  const place = usePlace();
+  const place = useLocation();
   const { page } = place.route;
-  const unknown = useUnknown();
-  useEffect(() => void learnCaller(), []);
+  const unknown = useSignedOut();
+  useEffect(() => void loadPrincipal(), []);
   useEffect(() => {
-    const title = unknown ? "Sign in" : TITLES[page];
-    if (title) document.title = `${title} · Microcosmos`;
+    const title = unknown ? text.signIn : TITLES[page];
+    if (title) document.title = text.title(title);
   }, [page, unknown]);
   return (
     <>
@@ -46,9 +49,9 @@ export function App() {
           <svg viewBox="0 0 32 20" aria-hidden="true">
             <path d="M2 11c4-9 8-9 12 0s8 9 12 0c1.3-3 2.5-4.5 4-5" />
           </svg>
-          Microcosmos
+          {text.brand}
         </a>
-        {!unknown && <Ways page={page} />}
+        {!unknown && <Navigation page={page} />}
       </header>
       {unknown ? <SignInPage /> : <Page {...place} />}
       {!unknown && <DropTarget />}
@@ -57,30 +60,36 @@ export function App() {
   );
 }
 
-/** Where one can go and what one can open, once the server knows who asks. */
-function Ways({ page }: { page: string }) {
+/** The navigation of a signed-in user. */
+function Navigation({ page }: { page: string }) {
   const refusal = useRefusal();
+  const health = useFetched(readHealth, []);
   return (
     <>
-      <nav aria-label="Pages">
+      <nav aria-label={text.pages}>
         <a href="/" aria-current={page === "runs" ? "page" : undefined}>
-          Runs
+          {text.runs}
         </a>
         <a href="/new" aria-current={page === "new" ? "page" : undefined}>
-          New run
+          {text.newRun}
         </a>
         <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
-          Workers
+          {text.workers}
         </a>
         <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
-          Shares
+          {text.shares}
         </a>
         <a href="/commons" target="_self">
-          Commons
+          {text.commons}
         </a>
         <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
-          Settings
+          {text.settings}
         </a>
+        {health.value?.help && (
+          <a href="/help/" target="_self">
+            {text.help}
+          </a>
+        )}
       </nav>
       <span class="spring" />
       {!refusal && <OpenButton />}
@@ -89,7 +98,7 @@ function Ways({ page }: { page: string }) {
   );
 }
 
-function Page({ route, query }: Place) {
+function Page({ route, query }: PageLocation) {
   switch (route.page) {
     case "runs":
       return <RunsPage query={query} />;
@@ -113,9 +122,9 @@ function Page({ route, query }: Place) {
       return (
         <main>
           <section class="empty card">
-            <h1>Nothing lives here</h1>
+            <h1>{text.noSuchPage}</h1>
             <p>
-              This address belongs to no run and no creature. <a href="/">See all runs.</a>
+              {text.noSuchPageAbout} <a href="/">{text.allRuns}</a>
             </p>
           </section>
         </main>
@@ -124,18 +133,18 @@ function Page({ route, query }: Place) {
 }
 
 const CONNECTIONS = {
-  connecting: "Connecting …",
-  live: "Live",
-  lost: "Connection lost, trying again",
+  connecting: text.connecting,
+  live: text.live,
+  lost: text.lost,
 };
 
 function Connection() {
-  const connection = useLive((state) => state.connection);
-  const text = CONNECTIONS[connection];
+  const connection = useStore((state) => state.connection);
+  const status = CONNECTIONS[connection];
   return (
-    <span class={`connection ${connection}`} role="status" title={text}>
+    <span class={`connection ${connection}`} role="status" title={status}>
       <span class="dot" aria-hidden="true" />
-      <span class={connection === "lost" ? "" : "wide-only"}>{text}</span>
+      <span class={connection === "lost" ? "" : "wide-only"}>{status}</span>
     </span>
   );
 }
@@ -143,28 +152,28 @@ function Connection() {
 export function Toasts() {
   const toasts = useToasts();
   useEffect(() => {
-    document.addEventListener("keydown", undo);
-    return () => document.removeEventListener("keydown", undo);
+    document.addEventListener("keydown", undoLatest);
+    return () => document.removeEventListener("keydown", undoLatest);
   }, []);
   return (
     <div class="toasts" role="status" aria-live="polite">
       {toasts.map((toast) => (
-        <Note key={toast.id} {...toast} />
+        <ToastNote key={toast.id} {...toast} />
       ))}
     </div>
   );
 }
 
-function Note({ id, text, kind, action }: Toast) {
+function ToastNote({ id, text: message, kind, action }: Toast) {
   return (
     <div class={`toast ${kind}`}>
-      <span>{text}</span>
+      <span>{message}</span>
       {action ? (
         <button onClick={action.run} aria-keyshortcuts="Control+Z" title="Ctrl + Z">
           {action.label}
         </button>
       ) : (
-        <button class="plain" aria-label="Dismiss" onClick={() => dismiss(id)}>
+        <button class="plain" aria-label={text.dismiss} onClick={() => dismissToast(id)}>
           ✕
         </button>
       )}

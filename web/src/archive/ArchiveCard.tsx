@@ -1,23 +1,23 @@
 /** The archive of a run: as a map or as a wall of creatures, now or in the past. */
 
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
-import { within } from "../api/address";
+import { pageUrl } from "../api/address";
 import type { Archive, Run } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
-import { ArchiveMap, type Looking } from "./ArchiveMap";
-import { AxisChoice } from "./AxisSelect";
-import { ColourChoice } from "./ColourSelect";
+import { ArchiveMap, type HoveredElite } from "./ArchiveMap";
+import { AxisSelect } from "./AxisSelect";
+import { ColourSelect } from "./ColourSelect";
 import { Slices } from "./Slices";
 import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
 import { Guide } from "../ui/Guide";
 import { ForkLink } from "../ui/ForkLink";
-import { ChooseOne, ChosenBar, useChoosing } from "./SelectionBar";
+import { SelectToggle, SelectionBar, useSelection } from "./SelectionBar";
 import { bestOf, stepsOf, useGuide } from "./guide";
-import { LookedAt } from "./ElitePreview";
+import { ElitePreview } from "./ElitePreview";
 import { setSlice, useArchiveView } from "./archiveView";
-import { Wall } from "./ArchiveGallery";
+import { ArchiveGallery } from "./ArchiveGallery";
 import "./map.css";
 import "./archive.css";
 
@@ -31,12 +31,12 @@ interface Props {
 export function ArchiveCard({ run, archive, elites, query }: Props) {
   const [at, setAt] = useMoment(query, run.generation);
   const view = useArchiveView(run, archive, elites, query, at);
-  const [looking, setLooking] = useState<Looking | null>(null);
+  const [looking, setLooking] = useState<HoveredElite | null>(null);
   const guide = useGuide();
   const [about, setAbout] = useState<string | null>(null);
   const gallery = query.get("view") === "gallery";
   const cell = query.get("cell");
-  const choosing = useChoosing(query, view.elites);
+  const choosing = useSelection(query, view.elites);
   const projection = gallery ? view.grid : view.map;
   const common = {
     axes: view.axes,
@@ -48,12 +48,12 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
     actions: ({ creature }: Elite, cell: number) => (
       <>
         <ForkLink run={run.id} creature={creature} title="A new run that begins from this creature" inline />
-        <ChooseOne {...{ cell, projection }} {...choosing} />
+        <SelectToggle {...{ cell, projection }} {...choosing} />
       </>
     ),
     onOpen: (chosen: number) => {
       setQuery({ cell: String(chosen) });
-      navigate(within(`/creatures/${view.elites.get(chosen)!.creature}?run=${run.id}`));
+      navigate(pageUrl(`/creatures/${view.elites.get(chosen)!.creature}?run=${run.id}`));
     },
   };
   const names: [string, string] = [view.axes[0].name, view.axes[1].name];
@@ -69,8 +69,8 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
         <ViewSwitch gallery={gallery} />
       </div>
       <div class="archive-choices">
-        <AxisChoice archive={archive} names={names} onChoose={([x, y]) => setQuery({ x, y })} />
-        <ColourChoice
+        <AxisSelect archive={archive} names={names} onChoose={([x, y]) => setQuery({ x, y })} />
+        <ColourSelect
           archive={archive}
           colour={view.colour}
           palette={view.palette}
@@ -80,19 +80,19 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       </div>
       <Slices slices={view.slices} onChange={setSlice} />
       {gallery ? (
-        <Wall key={names.join(" ")} {...common} query={query} />
+        <ArchiveGallery key={names.join(" ")} {...common} query={query} />
       ) : (
         <ArchiveMap
           key={names.join(" ")}
           {...common}
           elites={view.elites}
           onLook={setLooking}
-          inset={looking && <LookedAt sha={looking.elite.creature} />}
+          inset={looking && <ElitePreview sha={looking.elite.creature} />}
         />
       )}
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
-      <ChosenBar {...{ run, at }} elites={view.elites} {...choosing} />
+      <SelectionBar {...{ run, at }} elites={view.elites} {...choosing} />
       {guide.open && (
         <Guide
           steps={stepsOf(run, archive, view)}

@@ -6,12 +6,12 @@ import type { Elite } from "../store/elites";
 import { useMotions } from "../store/motions";
 import { setQuery } from "../store/router";
 import type { MapAxis } from "./axes";
-import type { Choosing } from "./selection";
+import type { Selection } from "./selection";
 import type { Colouring } from "./colouring";
 import type { Projection } from "./projection";
 import { Gallery } from "./Gallery";
 
-interface Props extends Choosing {
+interface Props extends Selection {
   axes: readonly [MapAxis, MapAxis];
   projection: Projection;
   colouring: Colouring;
@@ -22,7 +22,7 @@ interface Props extends Choosing {
   query: URLSearchParams;
 }
 
-export function Wall({ query, ...props }: Props) {
+export function ArchiveGallery({ query, ...props }: Props) {
   const [seen, setSeen] = useState<string[]>([]);
   const [side, setSide] = useState(() => Number(query.get("tile")) || null);
   const motions = useMotions(seen);

@@ -3,34 +3,34 @@
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Elite, Elites } from "../store/elites";
-import { Horizontal, Vertical } from "./AxisLabels";
+import { HorizontalLabels, VerticalLabels } from "./AxisLabels";
 import type { MapAxis } from "./axes";
 import {
   type Box,
-  type Choosing,
-  adds,
+  type Selection,
+  isAdditive,
   binsOf,
   binsWithin,
-  both,
+  union,
   cellsIn,
-  chosenByKey,
-  keysOf,
-  turned,
+  selectByKey,
+  keyHelp,
+  toggle,
 } from "./selection";
 import type { Colouring } from "./colouring";
-import { useDrag } from "./boxSelect";
-import { useDrawing } from "./mapCanvas";
-import { Legend } from "./ColourLegend";
+import { useBoxSelect } from "./boxSelect";
+import { useMapCanvas } from "./mapCanvas";
+import { ColourLegend } from "./ColourLegend";
 import { type Direction, type Layout, isDirection, nextBin } from "./layout";
 import type { Projection, Tiles } from "./projection";
-import { Reading } from "./EliteReading";
+import { EliteReading } from "./EliteReading";
 
-export interface Looking {
+export interface HoveredElite {
   cell: number;
   elite: Elite;
 }
 
-interface Props extends Choosing {
+interface Props extends Selection {
   axes: readonly [MapAxis, MapAxis];
   projection: Projection;
   elites: Elites;
@@ -41,7 +41,7 @@ interface Props extends Choosing {
   /** What else can be done with an elite. */
   actions: (elite: Elite, cell: number) => ComponentChildren;
   /** The elite that is pointed at, else the marked one. */
-  onLook: (looking: Looking | null) => void;
+  onLook: (looking: HoveredElite | null) => void;
   /** What stands beside the cell that is looked at. */
   inset: ComponentChildren;
 }
@@ -55,22 +55,22 @@ export function ArchiveMap(props: Props) {
   const from = marked === null ? null : (bins.get(marked) ?? null);
   const looked = hovered !== null && tiles.has(hovered) ? hovered : from;
   const tile = looked === null ? undefined : tiles.get(looked);
-  const drag = useDrag(onChoose !== null, (box, event) => {
+  const drag = useBoxSelect(onChoose !== null, (box, event) => {
     const inside = cellsIn(binsWithin(box, layout, tiles), projection);
-    onChoose!(adds(event) ? both(props.chosen, inside) : inside);
+    onChoose!(isAdditive(event) ? union(props.chosen, inside) : inside);
   });
   const chosen = useMemo(
     () => (drag.box ? new Set(binsWithin(drag.box, layout, tiles)) : binsOf(props.chosen, projection)),
     [drag.box, props.chosen, projection],
   );
-  const canvas = useDrawing(plot, { layout, tiles, colouring, chosen }, elites);
+  const canvas = useMapCanvas(plot, { layout, tiles, colouring, chosen }, elites);
   useLayoutEffect(() => onLook(tile ? { cell: tile.cell, elite: tile.elite } : null), [tile?.elite]);
 
   const press = (event: KeyboardEvent) => {
     if (drag.box) return;
     if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
     const next = isDirection(event.key) ? binByKey(event.key, from, tiles, layout) : null;
-    const changed = onChoose && chosenByKey(event, props.chosen, projection, from, next);
+    const changed = onChoose && selectByKey(event, props.chosen, projection, from, next);
     if (changed) onChoose(changed);
     if (!changed && !isDirection(event.key)) return;
     event.preventDefault();
@@ -80,7 +80,7 @@ export function ArchiveMap(props: Props) {
   const click = (event: MouseEvent) => {
     const bin = tileUnder(event, layout, tiles);
     if (bin === null || drag.wasDrag()) return;
-    if (onChoose && adds(event)) return onChoose(turned(props.chosen, cellsIn([bin], projection)));
+    if (onChoose && isAdditive(event)) return onChoose(toggle(props.chosen, cellsIn([bin], projection)));
     const { cell } = tiles.get(bin)!;
     // A finger cannot hover: its first tap looks, the second opens.
     if ((event as PointerEvent).pointerType === "touch" && bin !== from) onMark(cell);
@@ -89,13 +89,13 @@ export function ArchiveMap(props: Props) {
 
   return (
     <div class="map">
-      <Vertical axis={axes[1]} />
+      <VerticalLabels axis={axes[1]} />
       <div
         ref={plot}
         class={`map-plot ${hovered === null ? "" : "over"}`}
         tabIndex={0}
         role="application"
-        aria-label={`Archive map. Arrow keys move between elites, ${keysOf(props)}`}
+        aria-label={`Archive map. Arrow keys move between elites, ${keyHelp(props)}`}
         aria-describedby="map-reading"
         {...drag.handlers}
         onPointerMove={(event) => {
@@ -107,13 +107,15 @@ export function ArchiveMap(props: Props) {
         onKeyDown={press}
       >
         <canvas ref={canvas} />
-        {looked !== null && tile && <Mark layout={layout} bin={looked} />}
-        {drag.box && <Drawn {...drag.box} />}
-        {looked !== null && tile && !drag.box && <Beside layout={layout} bin={looked} children={inset} />}
+        {looked !== null && tile && <BinOutline layout={layout} bin={looked} />}
+        {drag.box && <SelectionBox {...drag.box} />}
+        {looked !== null && tile && !drag.box && (
+          <PlacedBeside layout={layout} bin={looked} children={inset} />
+        )}
       </div>
-      <Horizontal axis={axes[0]} />
-      <Legend colouring={colouring} />
-      <Reading
+      <HorizontalLabels axis={axes[0]} />
+      <ColourLegend colouring={colouring} />
+      <EliteReading
         {...{ tile, axes, onOpen }}
         colour={colouring.measure}
         hint={`Point at a cell to see its creature swim; click it to open it${onChoose ? "; drag over several to choose them" : ""}.`}
@@ -142,7 +144,7 @@ export function binByKey(key: Direction, from: number | null, tiles: Tiles, layo
 }
 
 /** The outline of the bin that is looked at, above the picture. */
-function Mark({ layout, bin }: { layout: Layout; bin: number }) {
+function BinOutline({ layout, bin }: { layout: Layout; bin: number }) {
   const points = layout
     .outline(bin)
     .map((spot) => spot.join())
@@ -156,7 +158,7 @@ function Mark({ layout, bin }: { layout: Layout; bin: number }) {
 }
 
 /** The box that is being drawn. */
-function Drawn({ from, to }: Box) {
+function SelectionBox({ from, to }: Box) {
   const [x, y] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
   const [width, height] = [Math.abs(from[0] - to[0]), Math.abs(from[1] - to[1])];
   return (
@@ -167,7 +169,15 @@ function Drawn({ from, to }: Box) {
 }
 
 /** Stands where it hides neither the bin nor more of the map than it must. */
-function Beside({ layout, bin, children }: { layout: Layout; bin: number; children: ComponentChildren }) {
+function PlacedBeside({
+  layout,
+  bin,
+  children,
+}: {
+  layout: Layout;
+  bin: number;
+  children: ComponentChildren;
+}) {
   const [x, y] = layout.centre(bin);
   const side = x < 0.5 ? "right" : "left";
   return (

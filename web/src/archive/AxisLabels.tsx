@@ -4,7 +4,7 @@ import { number, scientific } from "../ui/format";
 import type { MapAxis } from "./axes";
 import { type Tick, ticks } from "./geometry";
 
-export function Horizontal({ axis }: { axis: MapAxis }) {
+export function HorizontalLabels({ axis }: { axis: MapAxis }) {
   return (
     <div class="axis axis-x" aria-hidden="true">
       {ticks(axis).map((tick) => (
@@ -17,7 +17,7 @@ export function Horizontal({ axis }: { axis: MapAxis }) {
   );
 }
 
-export function Vertical({ axis }: { axis: MapAxis }) {
+export function VerticalLabels({ axis }: { axis: MapAxis }) {
   return (
     <div class="axis axis-y" aria-hidden="true">
       {ticks(axis).map((tick) => (

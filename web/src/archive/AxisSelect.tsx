@@ -1,7 +1,7 @@
 /** Which two of all that was recorded the map is drawn over. */
 
 import type { Archive } from "../api/types";
-import { Choice } from "../ui/Select";
+import { Select } from "../ui/Select";
 import { count } from "../ui/format";
 import { choicesOf } from "./axes";
 
@@ -13,16 +13,16 @@ interface Props {
   onChoose: (names: Names) => void;
 }
 
-export function AxisChoice({ archive, names: [x, y], onChoose }: Props) {
+export function AxisSelect({ archive, names: [x, y], onChoose }: Props) {
   const choices = choicesOf(archive);
   return (
     <p class="axis-choice">
-      <Choice
+      <Select
         title="Across"
         {...{ choices, value: x }}
         onChange={(name) => onChoose(name === y ? [y, x] : [name, y])}
       />
-      <Choice
+      <Select
         title="Up"
         {...{ choices, value: y }}
         onChange={(name) => onChoose(name === x ? [y, x] : [x, name])}

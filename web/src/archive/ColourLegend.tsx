@@ -5,7 +5,7 @@ import { css, sequential } from "../ui/colours";
 import { count, number } from "../ui/format";
 import { type Colouring, AGE, valueAlong } from "./colouring";
 
-export function Legend({ colouring }: { colouring: Colouring }) {
+export function ColourLegend({ colouring }: { colouring: Colouring }) {
   const { measure, palette } = colouring;
   const write = measure.name === AGE ? count : number;
   const numbers = [0, 0.5, 1].map((t) => write(valueAlong(colouring, t)));

@@ -1,7 +1,7 @@
 /** What the map is coloured by, and in which colours. */
 
 import type { Archive } from "../api/types";
-import { Choice } from "../ui/Select";
+import { Select } from "../ui/Select";
 import { PALETTES, type Palette } from "../ui/colours";
 import { words } from "../ui/format";
 import { coloursOf } from "./colouring";
@@ -14,12 +14,12 @@ interface Props {
   onPalette: (palette: string) => void;
 }
 
-export function ColourChoice({ archive, colour, palette, onColour, onPalette }: Props) {
+export function ColourSelect({ archive, colour, palette, onColour, onPalette }: Props) {
   const palettes = PALETTES.map((name): [string, string] => [name, words(name)]);
   return (
     <p class="axis-choice">
-      <Choice title="Colour" choices={coloursOf(archive)} value={colour} onChange={onColour} />
-      <Choice title="Palette" choices={palettes} value={palette} onChange={onPalette} />
+      <Select title="Colour" choices={coloursOf(archive)} value={colour} onChange={onColour} />
+      <Select title="Palette" choices={palettes} value={palette} onChange={onPalette} />
     </p>
   );
 }

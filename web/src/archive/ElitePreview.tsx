@@ -1,20 +1,20 @@
 /** The replay of the elite that is looked at, once the pointer rests on it. */
 
 import { useLayoutEffect, useState } from "preact/hooks";
-import { Inset } from "../replay/Inset";
+import { ReplayInset } from "../replay/Inset";
 import { useReplays } from "../replay/recordings";
 
 /** A pointer on its way across the map asks for nothing. */
-const REST_MS = 12;
+const HOVER_MS = 12;
 
-export function LookedAt({ sha }: { sha: string }) {
+export function ElitePreview({ sha }: { sha: string }) {
   const [wanted, setWanted] = useState<string | null>(null);
   // Before the next frame, each of which would be waited for.
   useLayoutEffect(() => {
-    const timer = setTimeout(() => setWanted(sha), REST_MS);
+    const timer = setTimeout(() => setWanted(sha), HOVER_MS);
     return () => clearTimeout(timer);
   }, [sha]);
   const { replays, error } = useReplays(wanted === sha ? [sha] : []);
   const replay = replays?.[0] ?? null;
-  return <Inset replay={replay} note={error ?? "Simulating …"} />;
+  return <ReplayInset replay={replay} note={error ?? "Simulating …"} />;
 }

@@ -18,7 +18,7 @@ interface Props {
   actions: (elite: Elite, cell: number) => ComponentChildren;
 }
 
-export function Reading({ tile, axes, colour, hint, onOpen, actions }: Props) {
+export function EliteReading({ tile, axes, colour, hint, onOpen, actions }: Props) {
   return (
     <p id="map-reading" class="map-reading" aria-live="polite">
       {tile ? (

@@ -4,23 +4,23 @@ import type { ComponentChildren, RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Motion } from "../decode/motion";
 import type { Elite } from "../store/elites";
-import { Horizontal, Vertical } from "./AxisLabels";
+import { HorizontalLabels, VerticalLabels } from "./AxisLabels";
 import { binByKey } from "./ArchiveMap";
 import type { MapAxis } from "./axes";
-import { type Choosing, adds, binsOf, cellsIn, chosenByKey, keysOf, turned } from "./selection";
+import { type Selection, isAdditive, binsOf, cellsIn, selectByKey, keyHelp, toggle } from "./selection";
 import type { Colouring } from "./colouring";
 import type { Shape } from "./geometry";
-import { Legend } from "./ColourLegend";
+import { ColourLegend } from "./ColourLegend";
 import { isDirection } from "./layout";
 import type { Projection } from "./projection";
-import { Reading } from "./EliteReading";
+import { EliteReading } from "./EliteReading";
 import { type Size, useSize } from "../ui/canvas";
 import { useClock } from "../replay/clock";
 import { prefersStillness, useTheme } from "../ui/theme";
-import { type WallPicture, drawWall } from "./drawGallery";
+import { type GalleryPicture, drawGallery } from "./drawGallery";
 import { cornerOf, visibleBins } from "./galleryTiles";
 
-interface Props extends Choosing {
+interface Props extends Selection {
   axes: readonly [MapAxis, MapAxis];
   projection: Projection;
   colouring: Colouring;
@@ -69,8 +69,8 @@ export function Gallery(props: Props) {
   useEffect(() => onSee(seen.map((bin) => tiles.get(bin)!.elite.creature)), [seen]);
   const chosen = useMemo(() => binsOf(props.chosen, projection), [props.chosen, projection]);
   const common = { shape, side, tiles, colouring, motions, theme, chosen };
-  const picture: WallPicture = { ...common, bins: seen, marked: looked };
-  useMoving(canvas, shown, picture, scroll);
+  const picture: GalleryPicture = { ...common, bins: seen, marked: looked };
+  useAnimation(canvas, shown, picture, scroll);
 
   const binUnder = (event: MouseEvent): number | null => {
     const box = port.current!.getBoundingClientRect();
@@ -82,7 +82,7 @@ export function Gallery(props: Props) {
   const press = (event: KeyboardEvent) => {
     if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
     const next = isDirection(event.key) ? binByKey(event.key, from, tiles, layout) : null;
-    const changed = onChoose && chosenByKey(event, props.chosen, projection, from, next);
+    const changed = onChoose && selectByKey(event, props.chosen, projection, from, next);
     if (changed) onChoose(changed);
     if (!changed && !isDirection(event.key)) return;
     event.preventDefault();
@@ -106,15 +106,15 @@ export function Gallery(props: Props) {
         />
       </label>
       <div class="gallery-frame">
-        <Rail class="gallery-y" by={-scroll[1]} length={wall[1]} shown={shown.height} upright>
-          <Vertical axis={axes[1]} />
-        </Rail>
+        <AxisRail class="gallery-y" by={-scroll[1]} length={wall[1]} shown={shown.height} upright>
+          <VerticalLabels axis={axes[1]} />
+        </AxisRail>
         <div
           ref={port}
           class={`gallery-port ${hovered === null ? "" : "over"}`}
           tabIndex={0}
           role="application"
-          aria-label={`Gallery. Arrow keys move between creatures, ${keysOf(props)}`}
+          aria-label={`Gallery. Arrow keys move between creatures, ${keyHelp(props)}`}
           aria-describedby="map-reading"
           onScroll={({ currentTarget: { scrollLeft, scrollTop } }) => setScroll([scrollLeft, scrollTop])}
           onPointerMove={(event) => setHovered(binUnder(event))}
@@ -122,7 +122,7 @@ export function Gallery(props: Props) {
           onClick={(event) => {
             const bin = binUnder(event);
             if (bin === null) return;
-            if (onChoose && adds(event)) onChoose(turned(props.chosen, cellsIn([bin], projection)));
+            if (onChoose && isAdditive(event)) onChoose(toggle(props.chosen, cellsIn([bin], projection)));
             else onOpen(tiles.get(bin)!.cell);
           }}
           onKeyDown={press}
@@ -130,12 +130,12 @@ export function Gallery(props: Props) {
           <canvas ref={canvas} style={{ width: `${shown.width}px`, height: `${shown.height}px` }} />
           <div style={{ width: `${wall[0]}px`, height: `${wall[1]}px` }} />
         </div>
-        <Rail class="gallery-x" by={-scroll[0]} length={wall[0]} shown={shown.width}>
-          <Horizontal axis={axes[0]} />
-        </Rail>
+        <AxisRail class="gallery-x" by={-scroll[0]} length={wall[0]} shown={shown.width}>
+          <HorizontalLabels axis={axes[0]} />
+        </AxisRail>
       </div>
-      <Legend colouring={colouring} />
-      <Reading
+      <ColourLegend colouring={colouring} />
+      <EliteReading
         tile={looked === null ? undefined : tiles.get(looked)}
         axes={axes}
         colour={colouring.measure}
@@ -159,13 +159,13 @@ interface RailProps {
 }
 
 /** An axis that scrolls with the wall. */
-function Rail({ class: name, by, length, shown, upright = false, children }: RailProps) {
+function AxisRail({ class: name, by, length, shown, upright = false, children }: RailProps) {
   const style = upright
     ? { height: `${length}px`, transform: `translateY(${by}px)` }
     : { width: `${length}px`, transform: `translateX(${by}px)` };
   const middle = `${shown / 2 - by}px`;
   return (
-    <div class={`rail ${name}`}>
+    <div class={`axis-rail ${name}`}>
       <div style={{ ...style, "--middle": middle }}>{children}</div>
     </div>
   );
@@ -181,17 +181,17 @@ function reveal(port: HTMLElement, [left, top]: [number, number], side: number):
 }
 
 /** Draws the wall again and again while it is on the screen; else once for each change. */
-function useMoving(
+function useAnimation(
   canvas: RefObject<HTMLCanvasElement | null>,
   size: Size,
-  picture: WallPicture,
+  picture: GalleryPicture,
   scroll: readonly [number, number],
 ): void {
   const share = useRef(0);
   const onScreen = useOnScreen(canvas);
   const draw = () => {
     const element = canvas.current; // None any more in the frame in which the page is left.
-    if (element && size.width > 0) drawWall(element, size, picture, scroll, share.current);
+    if (element && size.width > 0) drawGallery(element, size, picture, scroll, share.current);
   };
   useClock(onScreen && !prefersStillness(), (seconds) => {
     share.current = (share.current + seconds / SECONDS) % 1;

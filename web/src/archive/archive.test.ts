@@ -21,7 +21,7 @@ function archiveOf(count: number, kind: Archive["kind"] = "grid"): Archive {
 }
 
 function elite(fitness: number, ...descriptors: number[]): Elite {
-  return { fitness, descriptors, generation: 1, creature: `c${fitness}`, told: 1 };
+  return { fitness, descriptors, generation: 1, creature: `c${fitness}`, seenAt: 1 };
 }
 
 const NONE = new Map();

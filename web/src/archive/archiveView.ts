@@ -3,10 +3,10 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Archive, Run } from "../api/types";
 import { type Elites } from "../store/elites";
-import { useCentroids, useFeatures, useHistory } from "../store/fetch";
+import { useCentroids, useMeasures, useHistory } from "../store/fetch";
 import { walkThrough } from "../store/history";
 import { setQuery } from "../store/router";
-import { type Features, type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
+import { type Measures, type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
 import { type Colouring, AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
 import { type Layout, voronoiLayout } from "./layout";
 import { type Projection, type Slice, project } from "./projection";
@@ -42,7 +42,7 @@ export function useArchiveView(
   const colour = colourOf(archive, query.get("colour"));
   const palette = PALETTES.find((name) => name === query.get("palette")) ?? PALETTES[0]!;
   const names = missingOf(archive, [x, y, colour]).filter((name) => name !== AGE);
-  const now = useFeatures(run.id, names, live);
+  const now = useMeasures(run.id, names, live);
   const { value: past, error } = useHistory(run.id, names, at);
   const features = at !== null && past ? past.features : now;
   const walk = useMemo(() => past && walkThrough(past.history), [past]);
@@ -73,7 +73,7 @@ function colourOf(archive: Archive, asked: string | null): string {
   return coloursOf(archive).some(([name]) => name === asked) ? asked! : FITNESS;
 }
 
-function axesOf([x, y]: [string, string], archive: Archive, elites: Elites, features: Features) {
+function axesOf([x, y]: [string, string], archive: Archive, elites: Elites, features: Measures) {
   const axis = (name: string) => axisOf(name, archive, elites, features);
   return [axis(x), axis(y)] as const;
 }

@@ -6,7 +6,7 @@ import { words } from "../ui/format";
 import { roundStep } from "./geometry";
 
 /** Columns of features by name: what was recorded of each creature. */
-export type Features = ReadonlyMap<string, ReadonlyMap<string, number>>;
+export type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
 export const FITNESS = "fitness";
 /** Bins of an axis that is not the grid's. */
@@ -47,7 +47,7 @@ export interface Measure {
   valueOf: (elite: Elite) => number | null;
 }
 
-export function measureOf(name: string, archive: Archive, features: Features): Measure {
+export function measureOf(name: string, archive: Archive, features: Measures): Measure {
   const own = archive.axes.findIndex((axis) => axis.name === name);
   const recorded = archive.recorded.find((feature) => feature.name === name);
   const scale = archive.axes[own]?.scale ?? recorded?.scale ?? "linear";
@@ -58,7 +58,7 @@ export function measureOf(name: string, archive: Archive, features: Features): M
   return { ...told, valueOf: ({ creature }) => column?.get(creature) ?? null };
 }
 
-export function axisOf(name: string, archive: Archive, elites: Elites, features: Features): MapAxis {
+export function axisOf(name: string, archive: Archive, elites: Elites, features: Measures): MapAxis {
   const measure = measureOf(name, archive, features);
   const own = archive.axes.findIndex((axis) => axis.name === name);
   if (own >= 0) {

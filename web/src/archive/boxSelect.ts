@@ -13,7 +13,7 @@ interface Started {
 }
 
 /** `onEnd` is told the box once the button is released. The click that follows is none. */
-export function useDrag(enabled: boolean, onEnd: (box: Box, event: PointerEvent) => void) {
+export function useBoxSelect(enabled: boolean, onEnd: (box: Box, event: PointerEvent) => void) {
   const started = useRef<Started | null>(null);
   const [box, setBox] = useState<Box | null>(null);
   const dragged = useRef(false);

@@ -2,7 +2,7 @@
 
 import type { Archive } from "../api/types";
 import { type Palette, pixel, sequential, table } from "../ui/colours";
-import { FITNESS, type Features, type Measure, choicesOf, measureOf } from "./axes";
+import { FITNESS, type Measures, type Measure, choicesOf, measureOf } from "./axes";
 import type { Tile, Tiles } from "./projection";
 
 export interface Colouring {
@@ -24,7 +24,7 @@ export const coloursOf = (archive: Archive): [name: string, title: string][] => 
 export function colourMeasure(
   name: string,
   archive: Archive,
-  features: Features,
+  features: Measures,
   generation: number,
 ): Measure {
   if (name !== AGE) return measureOf(name, archive, features);

@@ -10,7 +10,7 @@ import type { Tiles } from "./projection";
 import { traceBody } from "../replay/bodyPath";
 import { cornerOf } from "./galleryTiles";
 
-export interface WallPicture {
+export interface GalleryPicture {
   shape: Shape;
   side: number;
   tiles: Tiles;
@@ -30,10 +30,10 @@ const INKS = {
 };
 
 /** `share` of a replay's time has passed; the window begins at `left` and `top` of the wall. */
-export function drawWall(
+export function drawGallery(
   canvas: HTMLCanvasElement,
   size: Size,
-  picture: WallPicture,
+  picture: GalleryPicture,
   [left, top]: readonly [number, number],
   share: number,
 ): void {
@@ -54,7 +54,7 @@ export function drawWall(
 
 function drawTile(
   context: CanvasRenderingContext2D,
-  { tiles, colouring, motions, theme, chosen }: WallPicture,
+  { tiles, colouring, motions, theme, chosen }: GalleryPicture,
   bin: number,
   [left, top, side]: readonly [number, number, number],
   share: number,

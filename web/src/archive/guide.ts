@@ -6,20 +6,20 @@ import { count, number } from "../ui/format";
 import type { Step } from "../ui/Guide";
 import type { ArchiveView } from "./archiveView";
 
-const SEEN = "microcosmos:guided";
+const STORAGE_KEY = "microcosmos:guided";
 
 /** Storage may be forbidden: then the guide is offered again. */
-export function guided(): boolean {
+export function wasGuided(): boolean {
   try {
-    return localStorage.getItem(SEEN) !== null;
+    return localStorage.getItem(STORAGE_KEY) !== null;
   } catch {
     return false;
   }
 }
 
-function remember(): void {
+function rememberGuided(): void {
   try {
-    localStorage.setItem(SEEN, "1");
+    localStorage.setItem(STORAGE_KEY, "1");
   } catch {
     // It will be offered again.
   }
@@ -27,14 +27,14 @@ function remember(): void {
 
 /** Open on a first visit, and whenever it is asked for. */
 export function useGuide() {
-  const [open, setOpen] = useState(() => !guided());
+  const [open, setOpen] = useState(() => !wasGuided());
   const [asked, setAsked] = useState(false);
   const begin = () => {
     setAsked(true);
     setOpen(true);
   };
   const end = () => {
-    remember();
+    rememberGuided();
     setOpen(false);
   };
   return { open, asked, begin, end };

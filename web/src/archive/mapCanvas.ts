@@ -7,10 +7,10 @@ import { useSize } from "../ui/canvas";
 import { prefersStillness, useTheme } from "../ui/theme";
 import { FLASH_MS, MapPainter, type Picture } from "./drawMap";
 
-type Shown = Pick<Picture, "layout" | "tiles" | "colouring" | "chosen">;
+type MapContent = Pick<Picture, "layout" | "tiles" | "colouring" | "chosen">;
 
 /** A canvas that always shows the picture, and flashes where it changed. */
-export function useDrawing(plot: RefObject<HTMLElement | null>, drawn: Shown, elites: Elites) {
+export function useMapCanvas(plot: RefObject<HTMLElement | null>, drawn: MapContent, elites: Elites) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const painter = useMemo(() => new MapPainter(), []);
   const size = useSize(plot);

@@ -1,10 +1,10 @@
 /** Elites chosen on a map: by box and by key, written into an address; and what a token may not. */
 
 import { describe, expect, it } from "vitest";
-import type { Caller } from "../api/types";
+import type { Principal } from "../api/types";
 import { refusalOf } from "../store/principal";
-import { among, written } from "../store/cellRanges";
-import { binsOf, binsWithin, cellsIn, chosenByKey, turned } from "./selection";
+import { parseCells, formatCells } from "../store/cellRanges";
+import { binsOf, binsWithin, cellsIn, selectByKey, toggle } from "./selection";
 import { gridLayout } from "./layout";
 import type { Projection } from "./projection";
 
@@ -17,18 +17,18 @@ describe("cells in an address", () => {
     [[3, 4, 5, 9], "3-5,9"],
     [[9, 4, 3, 10, 5], "3-5,9-10"],
   ])("%o are %s", (cells, text) => {
-    expect(written(cells)).toBe(text);
-    expect([...Array(20).keys()].filter(among(text))).toEqual([...cells].sort((a, b) => a - b));
+    expect(formatCells(cells)).toBe(text);
+    expect([...Array(20).keys()].filter(parseCells(text))).toEqual([...cells].sort((a, b) => a - b));
   });
 
   it.each(["x", "-3", "3-", "1.5", "5-3"])("%s is none", (text) => {
-    expect([...Array(20).keys()].filter(among(text))).toEqual([]);
+    expect([...Array(20).keys()].filter(parseCells(text))).toEqual([]);
   });
 });
 
 /** A map of 4 by 4 bins: bin i * 4 + j is i to the right and j upwards; in bin 5 stand two. */
 const layout = gridLayout([4, 4]);
-const elite = { fitness: 1, descriptors: [], generation: 1, creature: "c", told: 1 };
+const elite = { fitness: 1, descriptors: [], generation: 1, creature: "c", seenAt: 1 };
 const tile = (cell: number, behind = 0) => ({ cell, elite, behind });
 const projection: Projection = {
   layout,
@@ -68,13 +68,13 @@ describe("a box on the map", () => {
 
 describe("a key on the map", () => {
   const press = (key: string, chosen: Set<number>, next: number | null = null, shiftKey = false) =>
-    chosenByKey({ key, shiftKey } as KeyboardEvent, chosen, projection, 5, next);
+    selectByKey({ key, shiftKey } as KeyboardEvent, chosen, projection, 5, next);
 
   it("turns a bin by Space", () => {
     expect(press(" ", set(100))).toEqual(set(100, 101, 102));
     expect(press(" ", set(100, 101))).toEqual(set(100, 101, 102));
     expect(press(" ", set(100, 101, 102))).toEqual(set(100));
-    expect(turned(set(), set(3))).toEqual(set(3));
+    expect(toggle(set(), set(3))).toEqual(set(3));
   });
 
   it("adds along the way by Shift with an arrow, and lets go by Escape", () => {
@@ -86,7 +86,7 @@ describe("a key on the map", () => {
 });
 
 describe("a token", () => {
-  const caller = (scope: Caller["scope"]): Caller => ({
+  const caller = (scope: Principal["scope"]): Principal => ({
     name: "ada",
     scope,
     token: "t",
@@ -94,7 +94,7 @@ describe("a token", () => {
     needed: true,
   });
 
-  it.each<[Caller["scope"], owner: string | null | undefined, RegExp | null]>([
+  it.each<[Principal["scope"], owner: string | null | undefined, RegExp | null]>([
     ["read", undefined, /may only look/],
     ["read", "ada", /may only look/],
     ["write", undefined, null],

@@ -4,53 +4,53 @@ import type { Projection, Tiles } from "./projection";
 import type { Layout, Spot } from "./layout";
 
 /** Cells of the archive. */
-export type Chosen = ReadonlySet<number>;
+export type CellSet = ReadonlySet<number>;
 
-export interface Choosing {
-  chosen: Chosen;
+export interface Selection {
+  chosen: CellSet;
   /** Null where nothing can be done with what is chosen. */
-  onChoose: ((chosen: Chosen) => void) | null;
+  onChoose: ((chosen: CellSet) => void) | null;
 }
 
-const NONE: Chosen = new Set();
+const NONE: CellSet = new Set();
 
 /** The cells of all elites that stand in some bins. */
-export function cellsIn(bins: Iterable<number>, projection: Pick<Projection, "bins">): Chosen {
+export function cellsIn(bins: Iterable<number>, projection: Pick<Projection, "bins">): CellSet {
   const wanted = new Set(bins);
   return new Set([...projection.bins].flatMap(([cell, bin]) => (wanted.has(bin) ? [cell] : [])));
 }
 
 /** The bins in which somebody stands who is chosen; null where nobody is: then none stands out. */
-export function binsOf(chosen: Chosen, projection: Pick<Projection, "bins">): Chosen | null {
+export function binsOf(chosen: CellSet, projection: Pick<Projection, "bins">): CellSet | null {
   if (chosen.size === 0) return null;
   return new Set([...chosen].flatMap((cell) => projection.bins.get(cell) ?? []));
 }
 
-export const both = (some: Chosen, others: Chosen): Chosen => new Set([...some, ...others]);
+export const union = (some: CellSet, others: CellSet): CellSet => new Set([...some, ...others]);
 
 /** With these cells, or without them where all of them were chosen. */
-export function turned(chosen: Chosen, cells: Chosen): Chosen {
+export function toggle(chosen: CellSet, cells: CellSet): CellSet {
   const all = [...cells].every((cell) => chosen.has(cell));
-  return all ? new Set([...chosen].filter((cell) => !cells.has(cell))) : both(chosen, cells);
+  return all ? new Set([...chosen].filter((cell) => !cells.has(cell))) : union(chosen, cells);
 }
 
 /** What keys do on a map or a wall, in the words that a screen reader says. */
-export const keysOf = ({ onChoose }: Pick<Choosing, "onChoose">): string =>
+export const keyHelp = ({ onChoose }: Pick<Selection, "onChoose">): string =>
   "Enter opens one" + (onChoose ? ", Space chooses it, Shift with arrows several, Escape none." : ".");
 
 /** What a key makes of the choice; null where it has nothing to say of it. */
-export function chosenByKey(
+export function selectByKey(
   { key, shiftKey }: KeyboardEvent,
-  chosen: Chosen,
+  chosen: CellSet,
   projection: Projection,
   from: number | null,
   next: number | null,
-): Chosen | null {
+): CellSet | null {
   if (key === "Escape") return chosen.size > 0 ? NONE : null;
   if (from === null) return null;
-  if (key === " ") return turned(chosen, cellsIn([from], projection));
+  if (key === " ") return toggle(chosen, cellsIn([from], projection));
   if (!shiftKey || next === null) return null;
-  return both(chosen, cellsIn([from, next], projection));
+  return union(chosen, cellsIn([from, next], projection));
 }
 
 export interface Box {
@@ -70,4 +70,4 @@ export function binsWithin({ from, to }: Box, layout: Layout, tiles: Tiles): num
 }
 
 /** Whether a click or a drag is to add to what is chosen. */
-export const adds = (event: MouseEvent) => event.shiftKey || event.ctrlKey || event.metaKey;
+export const isAdditive = (event: MouseEvent) => event.shiftKey || event.ctrlKey || event.metaKey;

@@ -5,13 +5,13 @@ import type { Curves as Columns } from "../store/curves";
 import { useCurvesOf, useExperiments } from "../store/fetch";
 import { useRuns } from "../store/store";
 import { Curves } from "../charts/curves/Curves";
-import { type Other, lookOf, overlaid } from "../charts/curves/look";
+import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/look";
 import { type Plot, scoresOf } from "../charts/curves/plots";
 import { short, titleOf } from "../ui/format";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { type Compared, Legend } from "./Legend";
 import { Figures, Specs } from "./Tables";
-import { CurveChoices } from "../charts/curves/CurveOptions";
+import { CurveOptions } from "../charts/curves/CurveOptions";
 import "./compare.css";
 
 export function ComparePage({ query }: { query: URLSearchParams }) {
@@ -37,7 +37,7 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
           At most {MAX_LINES} runs can be compared: the first {MAX_LINES} of {asked.length} are shown.
         </p>
       )}
-      {ids.length === 0 && <Nothing />}
+      {ids.length === 0 && <NothingChosen />}
       {ids.length > 0 && runs.length === 0 && !error && <p class="quiet loading">Loading runs …</p>}
       {runs.length > 0 && (
         <div class="compare">
@@ -54,7 +54,7 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
 const nameOf = (run: Run, experiments: Experiment[]) =>
   run.name ?? `${titleOf(run, experiments)} ${short(run.id)}`;
 
-function Nothing() {
+function NothingChosen() {
   return (
     <section class="empty card">
       <h2>Nothing to compare yet</h2>
@@ -73,23 +73,23 @@ interface PlotsProps {
 }
 
 function Plots({ runs, curves, query }: PlotsProps) {
-  const look = lookOf(query);
-  const drawn = runs.flatMap(({ run, name, place }): Other[] => {
+  const look = curveViewOf(query);
+  const drawn = runs.flatMap(({ run, name, place }): OtherRun[] => {
     const own = curves.get(run.id);
     return own ? [{ name, colour: colourOf(place), dash: dashOf(place), curves: own }] : [];
   });
   return (
     <section class="card" aria-labelledby="compare-curves">
       <h2 id="compare-curves">Curves</h2>
-      <CurveChoices look={look} />
-      <Curves plots={overlaid(asFound, drawn, look)} x={NOWHERE} look={look} />
+      <CurveOptions look={look} />
+      <Curves plots={overlayPlots(oneLinePerRun, drawn, look)} x={NO_X} look={look} />
     </section>
   );
 }
 
 /** Each run has its own places. */
-const NOWHERE: readonly number[] = [];
+const NO_X: readonly number[] = [];
 
 /** One line a run. */
-const asFound = (curves: Columns): Plot[] =>
+const oneLinePerRun = (curves: Columns): Plot[] =>
   scoresOf(curves).map((plot) => ({ ...plot, series: plot.series.slice(0, 1) }));

@@ -3,7 +3,7 @@
 import type { Run } from "../api/types";
 import { LineKey } from "../charts/lineStyle";
 import { setQuery } from "../store/router";
-import { Badge } from "../run/RunStatus";
+import { StatusBadge } from "../run/RunStatus";
 
 export interface Compared {
   run: Run;
@@ -20,7 +20,7 @@ export function Legend({ runs, ids }: { runs: Compared[]; ids: string[] }) {
         <li key={run.id}>
           <LineKey index={place} />
           <a href={`/runs/${run.id}`}>{name}</a>
-          <Badge run={run} />
+          <StatusBadge run={run} />
           <button
             class="plain small-button"
             aria-label={`Leave ${name} out`}

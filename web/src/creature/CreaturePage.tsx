@@ -2,27 +2,27 @@
 
 import { useEffect, useMemo } from "preact/hooks";
 import * as api from "../api/client";
-import { share } from "../api/address";
+import { sharedSlug } from "../api/address";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { number, short, words } from "../ui/format";
-import { isFree } from "../ui/coupling";
-import { NotFree } from "../ui/NotForceFree";
+import { isForceFree } from "../ui/coupling";
+import { NotForceFree } from "../ui/NotForceFree";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
-import { lookOf, queryOf } from "../replay/look";
+import { replayViewOf, queryOf } from "../replay/look";
 import { newMoment } from "../replay/moment";
 import { AuditCard } from "./AuditCard";
-import { Facts } from "./FactsCard";
-import { Family } from "./FamilyCard";
+import { FactsCard } from "./FactsCard";
+import { FamilyCard } from "./FamilyCard";
 import { ForkLink } from "../ui/ForkLink";
-import { Genome } from "./GenomeCard";
-import { Keep } from "./Downloads";
-import { MeasuredCard } from "./RemeasureCard";
-import { Publish } from "../publish/PublishButton";
-import { Refine } from "./RefineButton";
-import { Rendering, useReplays } from "../replay/recordings";
+import { GenomeCard } from "./GenomeCard";
+import { Downloads } from "./Downloads";
+import { RemeasureCard } from "./RemeasureCard";
+import { PublishButton } from "../publish/PublishButton";
+import { RefineButton } from "./RefineButton";
+import { RecordingStatus, useReplays } from "../replay/recordings";
 import { SpaceTimeCard } from "./SpaceTimeCard";
 import "./creature.css";
 import "./details.css";
@@ -51,23 +51,23 @@ export function CreaturePage({ sha, query }: Props) {
             : "Creature"}{" "}
           <code>{short(sha)}</code>
         </h1>
-        {creature && !isFree(creature.identity.world.coupling) && <NotFree />}
+        {creature && !isForceFree(creature.identity.world.coupling) && <NotForceFree />}
         <span class="spring" />
-        {creature && <Publish of={{ creature: sha }} file={creature} title="" />}
-        {creature && searched(creature) && (
+        {creature && <PublishButton of={{ creature: sha }} file={creature} title="" />}
+        {creature && isEvolved(creature) && (
           <ForkLink run={run} creature={sha} title="A new run that begins from this creature" />
         )}
-        {creature && searched(creature) && <Refine creature={creature} run={run} />}
+        {creature && isEvolved(creature) && <RefineButton creature={creature} run={run} />}
       </header>
       {error && <p class="banner wrong">{error}</p>}
       {!creature && !error && <p class="quiet loading">Loading creature …</p>}
-      {creature && <Whole key={sha} {...{ creature, query }} />}
+      {creature && <CreatureView key={sha} {...{ creature, query }} />}
     </main>
   );
 }
 
 /** Everything about one creature, around one moment of its replay. */
-export function Whole({ creature, query }: { creature: Creature; query: URLSearchParams }) {
+export function CreatureView({ creature, query }: { creature: Creature; query: URLSearchParams }) {
   const { sha256: sha, identity } = creature;
   const moment = useMemo(newMoment, []);
   const rendering = useReplays([sha]);
@@ -78,27 +78,27 @@ export function Whole({ creature, query }: { creature: Creature; query: URLSearc
       <div class="creature-columns">
         <div class="motion stack">
           <section class="card" aria-label="Replay">
-            <Rendering {...rendering} what="Simulating this creature again to record its motion …" />
+            <RecordingStatus {...rendering} what="Simulating this creature again to record its motion …" />
             {replay && (
               <ReplayPlayer
                 {...{ films, moment }}
-                look={lookOf(query)}
+                look={replayViewOf(query)}
                 onLook={(change) => setQuery(queryOf(change))}
               />
             )}
-            {replay && swims(creature) && <Difference replay={replay} task={identity.task} />}
-            <Keep sha={sha} />
+            {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
+            <Downloads sha={sha} />
           </section>
         </div>
         <div class="stack">
           {replay?.drive && <SpaceTimeCard {...{ replay, query, moment }} />}
-          <Genome {...{ creature, moment }} every={replay?.header.every ?? null} />
-          <Family {...{ creature, query }} />
-          {creature.measured && <MeasuredCard sha={sha} />}
-          {swims(creature) && !share && <AuditCard sha={sha} query={query} />}
+          <GenomeCard {...{ creature, moment }} every={replay?.header.every ?? null} />
+          <FamilyCard {...{ creature, query }} />
+          {creature.measured && <RemeasureCard sha={sha} />}
+          {swims(creature) && !sharedSlug && <AuditCard sha={sha} query={query} />}
         </div>
       </div>
-      <Facts creature={creature} />
+      <FactsCard creature={creature} />
     </>
   );
 }
@@ -107,9 +107,9 @@ export function Whole({ creature, query }: { creature: Creature; query: URLSearc
 const swims = ({ identity }: Creature) => identity.genome.encoding !== "fold";
 
 /** Whether it has genes that evolve, and so a fitness to climb. */
-const searched = (creature: Creature) => swims(creature) && creature.identity.genome.encoding !== "gait";
+const isEvolved = (creature: Creature) => swims(creature) && creature.identity.genome.encoding !== "gait";
 
-function Difference({ replay, task }: { replay: Replay; task: Spec }) {
+function ReplayFitness({ replay, task }: { replay: Replay; task: Spec }) {
   const { recorded, replayed, difference } = replay.header.fitness;
   const swims = task.fitness === "displacement";
   return (

@@ -1,25 +1,25 @@
 /** Everything a creature can be kept as; films are made when somebody wants them. */
 
 import { useEffect, useState } from "preact/hooks";
-import { proveRendering } from "../api/files";
-import { type Picture, creatureFileUrl, creatureH5Url, pictureUrl } from "../api/urls";
-import { share } from "../api/address";
+import { renderingReady } from "../api/files";
+import { type PictureFormat, creatureFileUrl, creatureH5Url, pictureUrl } from "../api/urls";
+import { sharedSlug } from "../api/address";
 import { poll } from "../store/polling";
-import { tell } from "../store/toasts";
+import { showToast } from "../store/toasts";
 import { copyText } from "../ui/clipboard";
 import { FileLink, save } from "../ui/FileLink";
 
-const KINDS: [Picture, string][] = [
+const KINDS: [PictureFormat, string][] = [
   ["strip.png", "PNG"],
   ["film.gif", "GIF"],
   ["film.mp4", "MP4"],
 ];
 
-export function Keep({ sha }: { sha: string }) {
+export function Downloads({ sha }: { sha: string }) {
   return (
     <p class="links pictures" role="group" aria-label="Keep it as">
       <span class="quiet small">Keep it as</span>
-      {!share && (
+      {!sharedSlug && (
         <button onClick={() => void copyText(`${location.origin}/creatures/${sha}`, "Link copied.")}>
           Copy link
         </button>
@@ -33,7 +33,7 @@ export function Keep({ sha }: { sha: string }) {
         JSON
       </a>
       <FileLink url={creatureH5Url(sha)} name="HDF5" />
-      {(share ? [] : KINDS).map(([kind, title]) => (
+      {(sharedSlug ? [] : KINDS).map(([kind, title]) => (
         <Download key={kind} url={pictureUrl(sha, kind)} title={title} />
       ))}
     </p>
@@ -45,7 +45,7 @@ function Download({ url, title }: { url: string; title: string }) {
   const [busy, setBusy] = useState(false);
   useEffect(() => {
     if (!busy) return;
-    return poll(() => proveRendering(url), {
+    return poll(() => renderingReady(url), {
       value: () => {
         setBusy(false);
         save(url);
@@ -53,7 +53,7 @@ function Download({ url, title }: { url: string; title: string }) {
       note: () => {},
       error: (text) => {
         setBusy(false);
-        tell({ kind: "wrong", text });
+        showToast({ kind: "wrong", text });
       },
     });
   }, [busy, url]);

@@ -3,10 +3,10 @@
 import type { Creature } from "../api/types";
 import { formOf, groupsOf, originOf } from "./facts";
 
-export function Facts({ creature }: { creature: Creature }) {
+export function FactsCard({ creature }: { creature: Creature }) {
   const form = formOf(creature);
   return (
-    <section class="card whole-facts" aria-labelledby="facts-title">
+    <section class="card facts-card" aria-labelledby="facts-title">
       <h2 id="facts-title">Measurements and origin</h2>
       <div class="facts-columns">
         {groupsOf(creature).map(({ title, rows }) => (

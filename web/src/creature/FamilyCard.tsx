@@ -2,12 +2,12 @@
 
 import { useMemo } from "preact/hooks";
 import * as api from "../api/client";
-import { share, within } from "../api/address";
+import { sharedSlug, pageUrl } from "../api/address";
 import type { Creature, Relative } from "../api/types";
 import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { FamilyTree } from "./FamilyTree";
-import { treeOf } from "./relatives";
+import { familyLayoutOf } from "./relatives";
 import { count } from "../ui/format";
 
 /** Generations that are looked back at first, further, and at most. */
@@ -18,21 +18,21 @@ interface Props {
   query: URLSearchParams;
 }
 
-export function Family({ creature, query }: Props) {
+export function FamilyCard({ creature, query }: Props) {
   const sha = creature.sha256;
   const back = Math.min(FARTHEST, Math.max(1, Math.round(Number(query.get("back")) || NEAR)));
   const { value, error } = useFetched(() => api.readFamily(sha, back), [sha, back]);
-  const tree = useMemo(() => value && treeOf(selfOf(creature), ...value), [creature, value]);
+  const tree = useMemo(() => value && familyLayoutOf(selfOf(creature), ...value), [creature, value]);
   const run = query.get("run");
   // Through a share of one creature its ancestors are told of, and not shown.
   const hrefOf = (name: string) =>
-    share && !run ? null : within(`/creatures/${name}${run ? `?run=${run}` : ""}`);
+    sharedSlug && !run ? null : pageUrl(`/creatures/${name}${run ? `?run=${run}` : ""}`);
   const credited = value ? creditOf(value[0].items, creature) : [];
   const lost = value?.[0].items.some(({ kept }) => !kept);
   return (
     <section class="card" aria-labelledby="family-title">
       <div class="card-head">
-        <h2 id="family-title">{share ? "Ancestors" : "Parents and children"}</h2>
+        <h2 id="family-title">{sharedSlug ? "Ancestors" : "Parents and children"}</h2>
         <span class="spring" />
         {value?.[0].more && back < FARTHEST && (
           <button onClick={() => setQuery({ back: String(back + FURTHER) })}>Further back</button>
@@ -43,7 +43,7 @@ export function Family({ creature, query }: Props) {
       {tree && tree.kin.length === 1 && (
         <p class="quiet">
           {creature.provenance
-            ? `It has no parents${share ? "" : ", and no child of it has become an elite"}.`
+            ? `It has no parents${sharedSlug ? "" : ", and no child of it has become an elite"}.`
             : "It was brought here without its origin, and nothing has come of it yet."}
         </p>
       )}

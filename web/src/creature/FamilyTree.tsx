@@ -2,17 +2,17 @@
 
 import type { Relative } from "../api/types";
 import { number, short } from "../ui/format";
-import { HIGH, type Kin, type Tree, WIDE } from "./relatives";
+import { HIGH, type PlacedRelative, type FamilyLayout, WIDE } from "./relatives";
 
 interface Props {
-  tree: Tree;
+  tree: FamilyLayout;
   self: string;
   /** Null where a page of its own cannot be seen. */
   hrefOf: (creature: string) => string | null;
 }
 
-const HEAD = 26;
-const TALL = HIGH - 8;
+const TITLE_HEIGHT = 26;
+const NAME_HEIGHT = HIGH - 8;
 
 export function FamilyTree({ tree, self, hrefOf }: Props) {
   const known = tree.kin.map(({ relative }) => relative.fitness ?? 0);
@@ -25,8 +25,8 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
       aria-label="Family tree"
       ref={(box) => void box?.scrollTo(box.scrollWidth, 0)}
     >
-      <div class="family" style={px({ width: tree.width, height: tree.height + HEAD })}>
-        <svg width={tree.width} height={tree.height + HEAD} aria-hidden="true">
+      <div class="family" style={px({ width: tree.width, height: tree.height + TITLE_HEIGHT })}>
+        <svg width={tree.width} height={tree.height + TITLE_HEIGHT} aria-hidden="true">
           {tree.lines.map(([parent, child]) => (
             <path key={`${parent.relative.creature}${child.relative.creature}`} d={pathOf(parent, child)} />
           ))}
@@ -40,7 +40,12 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
           {tree.kin.map(({ relative, x, y }) => (
             <li
               key={relative.creature}
-              style={px({ left: x, top: HEAD + y - TALL / 2, width: WIDE, height: TALL })}
+              style={px({
+                left: x,
+                top: TITLE_HEIGHT + y - NAME_HEIGHT / 2,
+                width: WIDE,
+                height: NAME_HEIGHT,
+              })}
             >
               <Name
                 {...{ relative, most }}
@@ -58,10 +63,10 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
 const px = (sizes: Record<string, number>) =>
   Object.fromEntries(Object.entries(sizes).map(([name, value]) => [name, `${value}px`]));
 
-function pathOf(parent: Kin, child: Kin): string {
+function pathOf(parent: PlacedRelative, child: PlacedRelative): string {
   const [x, end] = [parent.x + WIDE, child.x];
   const middle = (x + end) / 2;
-  const [from, to] = [HEAD + parent.y, HEAD + child.y];
+  const [from, to] = [TITLE_HEIGHT + parent.y, TITLE_HEIGHT + child.y];
   return `M${x},${from}C${middle},${from} ${middle},${to} ${end},${to}`;
 }
 

@@ -1,18 +1,18 @@
 /** What a creature has inherited: a network, or a row of numbers. */
 
 import { useMemo, useState } from "preact/hooks";
-import { type Form, networkUrl } from "../api/urls";
+import { type NetworkFormat, networkUrl } from "../api/urls";
 import type { Creature, Spec, Vector } from "../api/types";
 import { decodeFloats } from "../decode/base64";
 import { layeredOf } from "../decode/layers";
 import { type Network as Graph, networkOf } from "../decode/network";
 import { GeneStrip } from "./GeneStrip";
 import { NetworkGraph } from "./NetworkGraph";
-import { Outputs } from "./NetworkOutputs";
+import { NetworkOutputs } from "./NetworkOutputs";
 import type { Moment } from "../replay/moment";
 import { FileLink } from "../ui/FileLink";
 
-const FORMS: [Form, string][] = [
+const FORMS: [NetworkFormat, string][] = [
   ["svg", "SVG"],
   ["dot", "DOT"],
   ["py", "Python"],
@@ -26,7 +26,7 @@ interface Props {
   every: number | null;
 }
 
-export function Genome({ creature, ...shown }: Props) {
+export function GenomeCard({ creature, ...shown }: Props) {
   const { genome, task } = creature.identity;
   const network = useMemo(() => {
     if ("nodes" in genome) return networkOf(genome);
@@ -52,7 +52,7 @@ function Network({ network, files, ...rest }: NetworkProps) {
     <section class="card" aria-labelledby="network-title">
       <h2 id="network-title">Network</h2>
       <NetworkGraph network={network} chosen={chosen} onChoose={choose} />
-      <Outputs {...rest} {...{ network, chosen }} />
+      <NetworkOutputs {...rest} {...{ network, chosen }} />
       {files && (
         <p class="links network-files">
           <span class="quiet small">Keep it as</span>

@@ -32,7 +32,7 @@ export interface Spot {
   row: number;
 }
 
-export function Heat({ cells, most, label, about, read, moment, place, timeAt }: Props) {
+export function HeatMap({ cells, most, label, about, read, moment, place, timeAt }: Props) {
   const { columns, rows } = cells;
   const box = useRef<HTMLDivElement>(null);
   const [spot, setSpot] = useState<Spot | null>(null);
@@ -45,7 +45,7 @@ export function Heat({ cells, most, label, about, read, moment, place, timeAt }:
   };
   const now = () => cellOf(place(moment.time), columns);
   const walk = (event: KeyboardEvent) => {
-    const next = walked(event.key, spot, now(), cells);
+    const next = moveSpot(event.key, spot, now(), cells);
     if (!next) return;
     event.preventDefault();
     setSpot(next);
@@ -77,7 +77,7 @@ export function Heat({ cells, most, label, about, read, moment, place, timeAt }:
 }
 
 /** The cell that an arrow key leads to: from the one that is read, or else from this column. */
-export function walked(
+export function moveSpot(
   key: string,
   spot: Spot | null,
   now: number,

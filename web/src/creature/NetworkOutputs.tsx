@@ -3,10 +3,10 @@
 import { useCallback, useMemo, useState } from "preact/hooks";
 import type { Spec } from "../api/types";
 import type { Network, Neuron } from "../decode/network";
-import { COLUMNS, type Pictures, ROWS, picturesOf, shareOf, sightOf } from "../decode/activations";
+import { COLUMNS, type Activations, ROWS, activationsOf, shareOf, sampledTimes } from "../decode/activations";
 import { number } from "../ui/format";
 import type { Moment } from "../replay/moment";
-import { Heat } from "./HeatMap";
+import { HeatMap } from "./HeatMap";
 import { DivergingLegend } from "./SpaceTime";
 
 interface Props {
@@ -18,18 +18,18 @@ interface Props {
   every: number | null;
 }
 
-export function Outputs({ network, chosen, control, steps, moment, every }: Props) {
+export function NetworkOutputs({ network, chosen, control, steps, moment, every }: Props) {
   const [energy, setEnergy] = useState(0);
-  const sight = useMemo(() => sightOf(control), [control]);
+  const sight = useMemo(() => sampledTimes(control), [control]);
   const pictures = useMemo(
-    () => picturesOf(network, control, steps, energy),
+    () => activationsOf(network, control, steps, energy),
     [network, control, steps, energy],
   );
   const outputs = network.neurons.filter(({ role }) => role === "output");
   const other = network.neurons.find(({ id, role }) => id === chosen && role !== "output");
   const shared = { pictures, sight, moment, every };
   return (
-    <div class="computed">
+    <div class="outputs">
       <h3>What it computes</h3>
       <p class="quiet small">
         {sight.recurrent
@@ -53,7 +53,7 @@ export function Outputs({ network, chosen, control, steps, moment, every }: Prop
           <output>{number(energy)}</output>
         </label>
       )}
-      <div class="computed-pictures">
+      <div class="output-pictures">
         {outputs.map((neuron) => (
           <Picture key={neuron.id} {...{ neuron, ...shared }} chosen={neuron.id === chosen} />
         ))}
@@ -66,8 +66,8 @@ export function Outputs({ network, chosen, control, steps, moment, every }: Prop
 
 interface PictureProps extends Pick<Props, "moment" | "every"> {
   neuron: Neuron;
-  pictures: Pictures;
-  sight: ReturnType<typeof sightOf>;
+  pictures: Activations;
+  sight: ReturnType<typeof sampledTimes>;
   chosen: boolean;
 }
 
@@ -93,7 +93,7 @@ function Picture({ neuron, pictures, sight, moment, every, chosen }: PictureProp
   return (
     <figure class={chosen ? "chosen" : ""}>
       <figcaption>{name.charAt(0).toUpperCase() + name.slice(1)}</figcaption>
-      <Heat
+      <HeatMap
         cells={{ columns: COLUMNS, rows: ROWS, values }}
         label={`What ${name} says over time and along the body`}
         about={`${neuron.activation}${range}`}

@@ -5,10 +5,10 @@ import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Json } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { answer } from "../store/store";
-import { tell } from "../store/toasts";
+import { applyResponse } from "../store/store";
+import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
-import { newKey } from "../ui/idempotencyKey";
+import { newIdempotencyKey } from "../ui/idempotencyKey";
 
 interface Props {
   creature: Creature;
@@ -16,7 +16,7 @@ interface Props {
   run: string | null;
 }
 
-export function Refine({ creature, run }: Props) {
+export function RefineButton({ creature, run }: Props) {
   const [busy, setBusy] = useState(false);
   const refusal = useRefusal();
   if (refusal) return null;
@@ -29,10 +29,10 @@ export function Refine({ creature, run }: Props) {
         creature: creature as unknown as Json,
         ...(archive !== undefined && { archive }),
       };
-      const made = await answer("done", api.createRun(spec, newKey()));
+      const made = await applyResponse("change", api.createRun(spec, newIdempotencyKey()));
       navigate(`/runs/${made.id}`);
     } catch (error) {
-      tell({ kind: "wrong", text: messageOf(error) });
+      showToast({ kind: "wrong", text: messageOf(error) });
       setBusy(false);
     }
   };

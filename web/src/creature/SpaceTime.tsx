@@ -8,7 +8,7 @@ import { css, diverging } from "../ui/colours";
 import { number, percent } from "../ui/format";
 import type { Moment } from "../replay/moment";
 import { useTheme } from "../ui/theme";
-import { Heat } from "./HeatMap";
+import { HeatMap } from "./HeatMap";
 
 export type Measure = "angles" | "lengths";
 
@@ -71,7 +71,7 @@ export function SpaceTime({ replay, measure, moment }: Props) {
               <span class="heat-name">{kind.item}</span>
               <span>1</span>
             </span>
-            <Heat
+            <HeatMap
               cells={{ columns: frames, rows: items, values: shape[part].values }}
               label={`${kind[part]} over ${steps} steps and ${items} ${kind.item}s`}
               {...{ most, read, moment, place, timeAt }}

@@ -2,20 +2,20 @@
 
 import { describe, expect, it } from "vitest";
 import type { Ancestors, Creature, Relative } from "../api/types";
-import { treeOf } from "./relatives";
+import { familyLayoutOf } from "./relatives";
 import { formOf, groupsOf } from "./facts";
-import { walked } from "./HeatMap";
+import { moveSpot } from "./HeatMap";
 
 describe("a picture over time and space", () => {
   const cells = { columns: 5, rows: 3 };
 
   it("is read by arrow keys from the moment shown on, and no further than its edges", () => {
-    expect(walked("ArrowUp", null, 2, cells)).toEqual({ column: 2, row: 0 });
-    expect(walked("ArrowDown", null, 2, cells)).toEqual({ column: 2, row: 2 });
-    expect(walked("ArrowRight", null, 2, cells)).toEqual({ column: 3, row: 0 });
-    expect(walked("ArrowLeft", { column: 0, row: 1 }, 4, cells)).toEqual({ column: 0, row: 1 });
-    expect(walked("ArrowUp", { column: 4, row: 2 }, 0, cells)).toEqual({ column: 4, row: 2 });
-    expect(walked("Home", { column: 4, row: 2 }, 0, cells)).toBeNull();
+    expect(moveSpot("ArrowUp", null, 2, cells)).toEqual({ column: 2, row: 0 });
+    expect(moveSpot("ArrowDown", null, 2, cells)).toEqual({ column: 2, row: 2 });
+    expect(moveSpot("ArrowRight", null, 2, cells)).toEqual({ column: 3, row: 0 });
+    expect(moveSpot("ArrowLeft", { column: 0, row: 1 }, 4, cells)).toEqual({ column: 0, row: 1 });
+    expect(moveSpot("ArrowUp", { column: 4, row: 2 }, 0, cells)).toEqual({ column: 4, row: 2 });
+    expect(moveSpot("Home", { column: 4, row: 2 }, 0, cells)).toBeNull();
   });
 });
 
@@ -38,7 +38,7 @@ describe("a family tree", () => {
   };
 
   it("stands in columns, the oldest first, joined as parent and child", () => {
-    const tree = treeOf(me, ancestors, { total: 1, items: [person("child", 1, ["me"])] });
+    const tree = familyLayoutOf(me, ancestors, { total: 1, items: [person("child", 1, ["me"])] });
     expect(tree.columns.map(({ title }) => title)).toEqual([
       "Grandparents",
       "Parents",
@@ -53,7 +53,7 @@ describe("a family tree", () => {
 
   it("draws the first children, which are the fittest, and says how many it leaves out", () => {
     const items = Array.from({ length: 12 }, (_, i) => person(`c${i}`, 1, ["me"], 11 - i));
-    const tree = treeOf(me, ancestors, { total: 30, items });
+    const tree = familyLayoutOf(me, ancestors, { total: 30, items });
     const drawn = tree.kin.filter(({ relative }) => relative.creature.startsWith("c"));
     expect(drawn.map(({ relative }) => relative.fitness)).toEqual([11, 10, 9, 8, 7, 6, 5, 4]);
     expect(tree.hidden).toBe(22);

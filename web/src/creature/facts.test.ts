@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Creature, Spec } from "../api/types";
-import { couplingFacts, freedomOf, isFree } from "../ui/coupling";
+import { couplingFacts, forceFreeShare, isForceFree } from "../ui/coupling";
 import { measurementsOf, originOf } from "./facts";
 
 describe("a creature file", () => {
@@ -57,10 +57,10 @@ describe("a creature file", () => {
 
   it("says in which form its body is coupled, and whether that is force-free", () => {
     const paper = { projection: "none", theta_feedback: 0, layers: 2 };
-    expect(isFree(paper)).toBe(false);
-    expect(isFree({ projection: "force" })).toBe(true);
+    expect(isForceFree(paper)).toBe(false);
+    expect(isForceFree({ projection: "force" })).toBe(true);
     expect(Object.fromEntries(couplingFacts(paper))).toMatchObject({
-      "Forcing freed of": "nothing: not force-free",
+      "Removed from the forcing": "nothing (not force-free)",
       "Edge angles": "free, as in the paper",
       Forcing: "two layers, factor 2",
       "Actuator strength": "unlimited",
@@ -75,6 +75,6 @@ describe("a creature file", () => {
     [{ forms: ["ours", "strong"] }, "all"],
     [{}, "all"],
   ] as [Spec, string][])("of a run with %j is %s force-free", (spec, freedom) => {
-    expect(freedomOf(spec)).toBe(freedom);
+    expect(forceFreeShare(spec)).toBe(freedom);
   });
 });

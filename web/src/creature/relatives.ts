@@ -2,18 +2,18 @@
 
 import type { Ancestors, Children, Relative } from "../api/types";
 
-export interface Kin {
+export interface PlacedRelative {
   relative: Relative;
   x: number;
   y: number;
 }
 
-export interface Tree {
+export interface FamilyLayout {
   width: number;
   height: number;
-  kin: Kin[];
+  kin: PlacedRelative[];
   /** From a parent to its child. */
-  lines: [Kin, Kin][];
+  lines: [PlacedRelative, PlacedRelative][];
   /** Of each column its middle and what stands in it. */
   columns: { x: number; title: string }[];
   hidden: number;
@@ -26,7 +26,7 @@ const GAP = 20;
 const MOST = 8;
 
 /** Children come as the fittest first, and ancestors as the nearest. */
-export function treeOf(self: Relative, ancestors: Ancestors, children: Children): Tree {
+export function familyLayoutOf(self: Relative, ancestors: Ancestors, children: Children): FamilyLayout {
   const deepest = Math.max(0, ...ancestors.items.map(({ distance }) => distance));
   const levels = Array.from({ length: deepest }, (_, i) =>
     ancestors.items.filter(({ distance }) => distance === deepest - i),
@@ -51,10 +51,14 @@ export function treeOf(self: Relative, ancestors: Ancestors, children: Children)
   };
 }
 
-function linesOf(kin: Kin[], self: Relative, { parents }: Ancestors): [Kin, Kin][] {
+function linesOf(
+  kin: PlacedRelative[],
+  self: Relative,
+  { parents }: Ancestors,
+): [PlacedRelative, PlacedRelative][] {
   const byName = new Map(kin.map((one) => [one.relative.creature, one]));
   const me = byName.get(self.creature)!;
-  return kin.flatMap((child): [Kin, Kin][] => {
+  return kin.flatMap((child): [PlacedRelative, PlacedRelative][] => {
     // Of a child's parents only this creature has a place beside it.
     if (child.x > me.x) return [[me, child]];
     const names = child === me ? parents : child.relative.parents;

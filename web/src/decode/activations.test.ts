@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Genes, Spec, Vector } from "../api/types";
 import { layeredOf } from "./layers";
 import { networkOf } from "./network";
-import { ROWS, picturesOf, shareOf, sightOf } from "./activations";
+import { ROWS, activationsOf, shareOf, sampledTimes } from "./activations";
 import cases from "./networks.fixture.json";
 
 describe("what a network computes", () => {
@@ -10,7 +10,7 @@ describe("what a network computes", () => {
     it(`is what the engine computes, network ${number + 1}`, () => {
       const inherited = genome as unknown as Genes & Vector;
       const network = "nodes" in genome ? networkOf(inherited) : layeredOf(inherited)!;
-      const { values } = picturesOf(network, genome.control as unknown as Spec, steps);
+      const { values } = activationsOf(network, genome.control as unknown as Spec, steps);
       const outputs = network.neurons.filter(({ role }) => role === "output");
       outputs.forEach(({ id }, output) => {
         [0, 5, 31, 95].forEach((column, i) => {
@@ -35,18 +35,18 @@ describe("what a network computes", () => {
       nodes: { id: [0, 1, 2, 3, 4], activation: Array(5).fill("identity"), bias: base64([0, 0, 0, 0, 0]) },
       connections: { innovation: [0], source: [3], target: [4], enabled: [true], weight: base64([2]) },
     } as Genes;
-    const { values } = picturesOf(networkOf(genes), sensing, steps, 0.75);
+    const { values } = activationsOf(networkOf(genes), sensing, steps, 0.75);
     expect(new Set(values.get(4))).toEqual(new Set([1.5]));
   });
 
   it("has its cursor in phase, also where a memory is shown from the middle of a period", () => {
-    const recurrent = sightOf({ period: 30, recurrent: true });
+    const recurrent = sampledTimes({ period: 30, recurrent: true });
     const at = (step: number, from: number) => shareOf(step, { from, to: from + 30 }, recurrent);
     expect(at(75, 70)).toBeCloseTo(5 / 30);
     expect(at(69, 70)).toBeCloseTo(29 / 30);
     expect(at(10, 70)).toBe(0);
     expect(at(75, 0)).toBeCloseTo(0.5);
-    const linear = sightOf({ timer: "linear", period: 30 });
+    const linear = sampledTimes({ timer: "linear", period: 30 });
     expect(shareOf(75, { from: 0, to: 100 }, linear)).toBe(0.75);
   });
 });

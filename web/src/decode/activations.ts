@@ -9,7 +9,7 @@ export const [ROWS, COLUMNS] = [48, 96];
 /** A network with memory is followed for at most so many steps. */
 const LONGEST = 5000;
 
-export interface Pictures {
+export interface Activations {
   /** (column, row) for each node. */
   values: Map<number, Float64Array>;
   /** Steps at which the first column and the one after the last would stand. */
@@ -25,7 +25,7 @@ interface Sight {
   recurrent: boolean;
 }
 
-export function sightOf(control: Spec): Sight {
+export function sampledTimes(control: Spec): Sight {
   return {
     timer: String(control.timer ?? "sine-cosine"),
     period: Number(control.period),
@@ -36,20 +36,20 @@ export function sightOf(control: Spec): Sight {
 }
 
 /** One period of the timer, or a whole life where it does not repeat; `energy` is felt everywhere. */
-export function picturesOf(network: Network, control: Spec, steps: number, energy = 0): Pictures {
-  const sight = sightOf(control);
+export function activationsOf(network: Network, control: Spec, steps: number, energy = 0): Activations {
+  const sight = sampledTimes(control);
   return sight.recurrent ? remembered(network, sight, steps, energy) : atOnce(network, sight, steps, energy);
 }
 
 /** Where in the pictures a step of the life stands, from 0 to 1; where a timer repeats, its phase. */
-export function shareOf(step: number, { from, to }: Pick<Pictures, "from" | "to">, sight: Sight): number {
+export function shareOf(step: number, { from, to }: Pick<Activations, "from" | "to">, sight: Sight): number {
   const since = step - from;
   const { period } = sight;
   const along = sight.timer === "linear" ? since : ((since % period) + period) % period;
   return Math.min(1, Math.max(0, along / (to - from)));
 }
 
-function atOnce(network: Network, sight: Sight, steps: number, energy: number): Pictures {
+function atOnce(network: Network, sight: Sight, steps: number, energy: number): Activations {
   const to = sight.timer === "linear" ? steps : sight.period;
   const places = placesOf(sight);
   const points = COLUMNS * ROWS;
@@ -63,7 +63,7 @@ function atOnce(network: Network, sight: Sight, steps: number, energy: number): 
 }
 
 /** The last period of a life: a memory has settled by then as far as it will. */
-function remembered(network: Network, sight: Sight, steps: number, energy: number): Pictures {
+function remembered(network: Network, sight: Sight, steps: number, energy: number): Activations {
   const to = Math.min(steps, LONGEST);
   const from = sight.timer === "linear" ? 0 : Math.max(0, to - Math.round(sight.period));
   const places = placesOf(sight);

@@ -3,14 +3,14 @@
 import { importCreature } from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Experiment } from "../api/types";
-import { written } from "../store/cellRanges";
-import type { Base, Forking, Work } from "../store/draft";
-import { tell } from "../store/toasts";
+import { formatCells } from "../store/cellRanges";
+import type { Base, ForkSource, Draft } from "../store/draft";
+import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
 import { equalPreset } from "./form/changes";
 import { count, short } from "../ui/format";
 import { titleOfBase } from "./sources";
-import type { Desk } from "./draftState";
+import type { DraftState } from "./draftState";
 
 /** A creature that came as a file, which this server need not know. */
 export interface CreatureFile {
@@ -19,18 +19,18 @@ export interface CreatureFile {
 }
 
 interface Props {
-  desk: Desk;
-  work: Work;
+  desk: DraftState;
+  work: Draft;
   experiments: Experiment[];
   file: CreatureFile | null;
 }
 
-export function Beginning({ desk, work, experiments, file }: Props) {
+export function BaseBar({ desk, work, experiments, file }: Props) {
   const { base, spec } = work;
   const { size } = desk.changed;
   const equal = size > 0 || base.kind !== "preset" ? equalPreset(spec, experiments) : null;
   return (
-    <p class="beginning" role="status">
+    <p class="base-bar" role="status">
       <span>
         {desk.restored && "Your draft is back: "}
         {size === 0 ? "As in " : `${size} ${size === 1 ? "change" : "changes"} from `}
@@ -39,9 +39,9 @@ export function Beginning({ desk, work, experiments, file }: Props) {
         {equal && `, the same as preset “${equal.name}”`}.
       </span>
       {base.fork && (
-        <span class="beginning-fork">
-          <Begins fork={base.fork} />
-          <button type="button" class="plain" onClick={desk.release}>
+        <span class="base-fork">
+          <ForkSourceText fork={base.fork} />
+          <button type="button" class="plain" onClick={desk.dropFork}>
             Begin from random ones instead
           </button>
         </span>
@@ -61,9 +61,9 @@ export function Beginning({ desk, work, experiments, file }: Props) {
 }
 
 /** Whom the run begins from, with a way to them. */
-function Begins({ fork: { run, creature, cells, at, creatures } }: { fork: Forking }) {
+function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { fork: ForkSource }) {
   const then = new URLSearchParams({
-    ...(cells && { cells: written(cells) }),
+    ...(cells && { cells: formatCells(cells) }),
     ...(at !== null && { at: String(at) }),
   });
   const place = creature ? `/creatures/${creature}${run ? `?run=${run}` : ""}` : `/runs/${run}?${then}`;
@@ -99,6 +99,6 @@ async function open(file: CreatureFile): Promise<void> {
     const { creature } = await importCreature(new Blob([file.text], { type: "application/json" }));
     navigate(`/creatures/${creature}`);
   } catch (error) {
-    tell({ kind: "wrong", text: messageOf(error) });
+    showToast({ kind: "wrong", text: messageOf(error) });
   }
 }

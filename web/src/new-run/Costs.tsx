@@ -34,7 +34,7 @@ export function Costs({ estimate, runs = 1, problem }: Props) {
         <dt>{runs > 1 ? `Time of ${count(runs)} runs` : "Time"}</dt>
         <dd>
           {about(estimate) ?? "unknown yet"}
-          {runs > 1 && estimate.seconds !== null && <Shared estimate={estimate} />}
+          {runs > 1 && estimate.seconds !== null && <PerWorker estimate={estimate} />}
         </dd>
       </div>
       <div class={memory_bytes > memory_limit_bytes ? "wrong-text" : ""}>
@@ -52,7 +52,7 @@ export function Costs({ estimate, runs = 1, problem }: Props) {
 }
 
 /** Several workers share the runs. */
-function Shared({ estimate: { seconds, queue } }: { estimate: Estimate | SweepEstimate }) {
+function PerWorker({ estimate: { seconds, queue } }: { estimate: Estimate | SweepEstimate }) {
   if (queue.workers < 2) return null;
   return (
     <span class="quiet">

@@ -3,7 +3,7 @@
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Experiment, FieldError, Json, Spec } from "../api/types";
 import { useRefusal } from "../store/principal";
-import type { Work } from "../store/draft";
+import type { Draft } from "../store/draft";
 import { BodyDrawing } from "./BodyDrawing";
 import { CostDetails, Costs } from "./Costs";
 import { Outline } from "./form/Outline";
@@ -12,20 +12,20 @@ import { complaints, messagesByPath, withValue } from "./form/document";
 import type { FormState } from "./form/Entry";
 import { type Section, formOf } from "./form/fields";
 import { JsonView } from "./form/JsonView";
-import { withoutOrigin } from "./initialCreatures";
+import { withoutInitial } from "./initialCreatures";
 import { SpecForm, partsOf } from "./form/SpecForm";
-import { SLIPPED, useEstimate } from "./estimate";
-import { ForkCard, isAboutOrigin } from "./ForkCard";
+import { HAS_ERRORS, useEstimate } from "./estimate";
+import { ForkCard, isForkField } from "./ForkCard";
 import { useFork } from "./fork";
 import { useSubmission } from "./submission";
 import { SweepCard, goToSweep } from "./SweepCard";
-import { type Sweeping, begun, useSweepEstimate, useSweeping } from "./sweep";
-import type { Desk } from "./draftState";
+import { type SweepForm, isSweep, useSweepEstimate, useSweepForm } from "./sweep";
+import type { DraftState } from "./draftState";
 import "./form/form.css";
 
 interface EditorProps {
-  desk: Desk;
-  work: Work;
+  desk: DraftState;
+  work: Draft;
   experiment: Experiment;
   view: "form" | "json";
   show: (view: "form" | "json") => void;
@@ -38,23 +38,23 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
   const forking = base.fork !== undefined;
   const form = useMemo(() => {
     const whole = formOf(experiment.schema);
-    return forking ? withoutOrigin(whole) : whole;
+    return forking ? withoutInitial(whole) : whole;
   }, [experiment, forking]);
   const parts = useMemo(() => partsOf(form), [form]);
   const slips = useMemo(() => complaints(form, spec), [form, spec]);
   const check = useEstimate(spec, slips);
   const [illegible, setIllegible] = useState<string | null>(null);
-  const sweeping = useSweeping(form, spec, experiment);
+  const sweeping = useSweepForm(form, spec, experiment);
   const fork = useFork(work);
   const many = forking ? null : sweeping.sent;
   const all = useSweepEstimate(slips.length === 0 ? many : null);
   const sweep = useMemo(() => many && { sweep: many }, [many]);
   const submission = useSubmission(spec, fork.sent ?? sweep);
-  const refused = (submission.refusal?.errors ?? []).map(inForm);
-  const errors = [...slips, ...(many ? ofSpec(refused) : refused), ...check.errors].filter(
-    ({ field }) => !forking || !isAboutOrigin(field),
+  const refused = (submission.refusal?.errors ?? []).map(fieldError);
+  const errors = [...slips, ...(many ? specErrors(refused) : refused), ...check.errors].filter(
+    ({ field }) => !forking || !isForkField(field),
   );
-  const slipped = !forking && begun(sweeping) && !many && wrong(sweeping);
+  const slipped = !forking && isSweep(sweeping) && !many && hasProblems(sweeping);
   const [closed, close] = useClosed(form);
   const state: FormState = {
     document: spec as Json,
@@ -123,13 +123,15 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
                 ? "What is written as JSON cannot be used."
                 : (submission.refusal?.message ??
                   check.problem ??
-                  (slipped || all.errors.length > 0 ? SLIPPED : all.problem))
+                  (slipped || all.errors.length > 0 ? HAS_ERRORS : all.problem))
             }
           />
           <span class="submit-how">
             {refusal ? <span class="quiet">{refusal}</span> : <kbd class="quiet wide-only">Ctrl + Enter</kbd>}
             <button class="primary" type="submit" disabled={submission.busy || refusal !== null}>
-              {submission.busy ? "Starting …" : startOf(!forking && begun(sweeping) ? sweeping.total : 1)}
+              {submission.busy
+                ? "Starting …"
+                : startLabel(!forking && isSweep(sweeping) ? sweeping.total : 1)}
             </button>
           </span>
         </div>
@@ -138,18 +140,19 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
   );
 }
 
-const startOf = (runs: number) => (runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`);
+const startLabel = (runs: number) =>
+  runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`;
 
 /** What a refused sweep says of the spec itself stands beside its fields. */
-const ofSpec = (errors: readonly FieldError[]): FieldError[] =>
+const specErrors = (errors: readonly FieldError[]): FieldError[] =>
   errors
     .filter(({ field }) => field.startsWith("spec."))
     .map((error) => ({ ...error, field: error.field.slice("spec.".length) }));
 
 /** What a creature does not fit may be told of a part of the spec: `control: inputs`. */
-const inForm = (error: FieldError): FieldError => ({ ...error, field: error.field.replace(/: .*/, "") });
+const fieldError = (error: FieldError): FieldError => ({ ...error, field: error.field.replace(/: .*/, "") });
 
-const wrong = ({ problems: { seeds, axes, total } }: Sweeping) =>
+const hasProblems = ({ problems: { seeds, axes, total } }: SweepForm) =>
   [seeds, total, ...axes].some((problem) => problem !== null);
 
 const VIEWS = [

@@ -14,15 +14,15 @@ interface Props {
   onPreset: (preset: Preset, experiment: Experiment) => void;
 }
 
-export function Chooser({ experiments, chosen, preset, estimates, onExperiment, onPreset }: Props) {
+export function ExperimentPicker({ experiments, chosen, preset, estimates, onExperiment, onPreset }: Props) {
   return (
     <>
-      <fieldset class="kinds">
+      <fieldset class="experiments">
         <legend class="unseen">Experiment</legend>
         {experiments.map((one) => {
           const [name, sentence] = one.title.split(": ") as [string, string?];
           return (
-            <label key={one.experiment} class="kind">
+            <label key={one.experiment} class="experiment">
               <input
                 type="radio"
                 name="experiment"
@@ -51,7 +51,7 @@ export function Chooser({ experiments, chosen, preset, estimates, onExperiment, 
           </button>
         ))}
         {chosen.presets.length === 0 && (
-          <p class="quiet begins">
+          <p class="quiet needs-creature">
             It begins at a creature: drop or open a creature file here, or press Refine on a creature’s page.
           </p>
         )}

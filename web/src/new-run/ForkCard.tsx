@@ -10,7 +10,7 @@ interface Props {
 }
 
 export function ForkCard({ name, errors, onName }: Props) {
-  const wrong = errors.filter(({ field }) => isAboutOrigin(field));
+  const wrong = errors.filter(({ field }) => isForkField(field));
   return (
     <section class="card sweep-card" aria-labelledby="fork-title">
       <h2 id="fork-title">Fork</h2>
@@ -20,7 +20,7 @@ export function ForkCard({ name, errors, onName }: Props) {
       </p>
       {name !== null && (
         <div class="sweep-entries">
-          <label class="sweep-called">
+          <label class="sweep-name-field">
             <span>Name of the run</span>
             <input
               type="text"
@@ -42,5 +42,4 @@ export function ForkCard({ name, errors, onName }: Props) {
 }
 
 /** Such complaints are of no field that the form shows. */
-export const isAboutOrigin = (field: string): boolean =>
-  /^(from|name|generation|search\.origin)\b/.test(field);
+export const isForkField = (field: string): boolean => /^(from|name|generation|search\.origin)\b/.test(field);

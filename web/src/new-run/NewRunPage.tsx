@@ -5,14 +5,14 @@ import { messageOf } from "../api/problem";
 import type { Experiment } from "../api/types";
 import { useExperiments } from "../store/fetch";
 import { setQuery } from "../store/router";
-import { Chooser } from "./ExperimentPicker";
+import { ExperimentPicker } from "./ExperimentPicker";
 import { readText } from "./readDocument";
-import { Beginning, type CreatureFile } from "./BaseBar";
+import { BaseBar, type CreatureFile } from "./BaseBar";
 import { Editor } from "./Editor";
 import { usePresetCosts } from "./estimate";
-import { ofFound, ofPreset, whole } from "./sources";
-import { OpenFile, useTaking } from "./OpenDocument";
-import { useDesk } from "./draftState";
+import { ofFound, ofPreset, completeSpec } from "./sources";
+import { OpenFileButton, useDocumentDrop } from "./OpenDocument";
+import { useDraft } from "./draftState";
 import "./new-run.css";
 
 export function NewRunPage({ query }: { query: URLSearchParams }) {
@@ -21,18 +21,18 @@ export function NewRunPage({ query }: { query: URLSearchParams }) {
     <main>
       {error && <p class="banner wrong">{error}</p>}
       {!experiments && !error && <p class="quiet loading">Loading …</p>}
-      {experiments && <Begun experiments={experiments} query={query} />}
+      {experiments && <NewRunForm experiments={experiments} query={query} />}
     </main>
   );
 }
 
-interface BegunProps {
+interface NewRunProps {
   experiments: Experiment[];
   query: URLSearchParams;
 }
 
-function Begun({ experiments, query }: BegunProps) {
-  const desk = useDesk(query, experiments);
+function NewRunForm({ experiments, query }: NewRunProps) {
+  const desk = useDraft(query, experiments);
   const [picked, setPicked] = useState<Experiment | null>(null);
   const [file, setFile] = useState<CreatureFile | null>(null);
   const [replacing, setReplacing] = useState(false);
@@ -45,10 +45,10 @@ function Begun({ experiments, query }: BegunProps) {
       const found = readText(text, chosen.experiment === "refinement");
       const same = typed && found.kind === "spec" && found.spec.experiment === own?.experiment;
       if (same) {
-        const spec = whole(found.spec, experiments);
+        const spec = completeSpec(found.spec, experiments);
         desk.change(() => spec);
       } else {
-        desk.begin(ofFound(found, name, experiments));
+        desk.startFrom(ofFound(found, name, experiments));
         setFile(found.kind === "creature" ? { sha: found.creature.sha256, text } : null);
       }
       return null;
@@ -56,7 +56,7 @@ function Begun({ experiments, query }: BegunProps) {
       return messageOf(error);
     }
   };
-  useTaking(take);
+  useDocumentDrop(take);
   const costs = usePresetCosts(chosen);
   const view = query.get("view") === "json" ? "json" : "form";
   const show = (next: "form" | "json", replace = false) => {
@@ -76,7 +76,7 @@ function Begun({ experiments, query }: BegunProps) {
           <button type="button" onClick={() => show("json", true)}>
             Paste a spec
           </button>
-          <OpenFile take={take} />
+          <OpenFileButton take={take} />
         </span>
       </header>
       {desk.problem && (
@@ -84,18 +84,20 @@ function Begun({ experiments, query }: BegunProps) {
           {desk.problem}
         </p>
       )}
-      <Chooser
+      <ExperimentPicker
         experiments={experiments}
         chosen={chosen}
         preset={chosen.presets.find(({ name }) => preset === `${chosen.experiment}/${name}`) ?? null}
         estimates={costs}
-        onPreset={(one, of) => desk.begin(ofPreset(one, of))}
-        onExperiment={(one) => (one.presets[0] ? desk.begin(ofPreset(one.presets[0], one)) : setPicked(one))}
+        onPreset={(one, of) => desk.startFrom(ofPreset(one, of))}
+        onExperiment={(one) =>
+          one.presets[0] ? desk.startFrom(ofPreset(one.presets[0], one)) : setPicked(one)
+        }
       />
       {!work && <p class="quiet loading">Loading …</p>}
       {work && own && (
         <>
-          <Beginning {...{ desk, work, experiments, file }} />
+          <BaseBar {...{ desk, work, experiments, file }} />
           <Editor {...{ desk, work, view, show, take, replacing }} experiment={own} />
         </>
       )}

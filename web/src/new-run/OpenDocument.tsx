@@ -1,17 +1,17 @@
 /** Documents that come from outside: pasted anywhere on the page, dropped, or opened. */
 
 import { useEffect, useRef } from "preact/hooks";
-import { tell } from "../store/toasts";
-import { FileButton, useDropTaker } from "../ui/DropTarget";
+import { showToast } from "../store/toasts";
+import { FileButton, useFileDrop } from "../ui/DropTarget";
 
 type Take = (text: string, file: string) => string | null;
 
 /** Passes on what is pasted outside of fields, and what is dropped. */
-export function useTaking(take: Take): void {
+export function useDocumentDrop(take: Take): void {
   const latest = useRef(take);
   latest.current = take;
-  useDropTaker("Drop a spec, a run or a creature file to begin from it", (file) => {
-    void takeFile(latest.current, file);
+  useFileDrop("Drop a spec, a run or a creature file to begin from it", (file) => {
+    void readFile(latest.current, file);
   });
   useEffect(() => {
     const paste = (event: ClipboardEvent) => {
@@ -19,24 +19,24 @@ export function useTaking(take: Take): void {
       const text = event.clipboardData?.getData("text") ?? "";
       if (!text.trim()) return;
       event.preventDefault();
-      complain(latest.current(text, ""), "Pasted");
+      showProblem(latest.current(text, ""), "Pasted");
     };
     document.addEventListener("paste", paste);
     return () => document.removeEventListener("paste", paste);
   }, []);
 }
 
-async function takeFile(take: Take, file: File): Promise<void> {
-  complain(take(await file.text(), file.name), file.name);
+async function readFile(take: Take, file: File): Promise<void> {
+  showProblem(take(await file.text(), file.name), file.name);
 }
 
-function complain(problem: string | null, what: string): void {
-  if (problem) tell({ kind: "wrong", text: `${what}: ${problem}` });
+function showProblem(problem: string | null, what: string): void {
+  if (problem) showToast({ kind: "wrong", text: `${what}: ${problem}` });
 }
 
-export function OpenFile({ take }: { take: Take }) {
+export function OpenFileButton({ take }: { take: Take }) {
   return (
-    <FileButton name="Spec, run or creature file" take={(file) => void takeFile(take, file)}>
+    <FileButton name="Spec, run or creature file" take={(file) => void readFile(take, file)}>
       Open a file
     </FileButton>
   );

@@ -5,11 +5,11 @@ import { number } from "../ui/format";
 import { valueAt } from "./form/document";
 import type { Leaf } from "./form/fields";
 import { nameOf } from "./sweepGrid";
-import { type Sweeping, begun, complaintsOf } from "./sweep";
+import { type SweepForm, isSweep, complaintsOf } from "./sweep";
 import "./sweep.css";
 
 interface Props {
-  sweeping: Sweeping;
+  sweeping: SweepForm;
   errors: readonly FieldError[];
   spec: Json;
 }
@@ -42,8 +42,8 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
             />
           </label>
         )}
-        {begun(sweeping) && (
-          <label class="sweep-called">
+        {isSweep(sweeping) && (
+          <label class="sweep-name-field">
             <span>Name of the sweep</span>
             <input
               type="text"
@@ -73,7 +73,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
           Sweep over {axes.length > 0 ? "another" : "a"} field
         </button>
-        {begun(sweeping) && (
+        {isSweep(sweeping) && (
           <span role="status" class="quiet">
             {total === 1 ? "1 run" : `${total.toLocaleString("en")} runs in all`}
           </span>

@@ -3,15 +3,23 @@
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
 import type { Experiment, Spec } from "../api/types";
-import { type Base, type Work, WHICH, addressOf, discard, draftFor, keep } from "../store/draft";
-import { dismiss, tell } from "../store/toasts";
+import {
+  type Base,
+  type Draft,
+  FORK_PARAMETERS,
+  addressOf,
+  discardDraft,
+  loadDraft,
+  saveDraft,
+} from "../store/draft";
+import { dismissToast, showToast } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { changedPaths } from "./form/changes";
-import { withOrigin } from "./initialCreatures";
+import { withInitial } from "./initialCreatures";
 import { addressed, load, ofPreset } from "./sources";
 
-export interface Desk {
-  work: Work | null;
+export interface DraftState {
+  work: Draft | null;
   /** Where the spec differs from what it was begun from. */
   changed: ReadonlySet<string>;
   /** Counts how often the whole spec was replaced. */
@@ -20,26 +28,26 @@ export interface Desk {
   restored: boolean;
   problem: string | null;
   change: (next: (spec: Spec) => Spec) => void;
-  begin: (base: Base) => void;
+  startFrom: (base: Base) => void;
   reset: () => void;
   /** Begins from random creatures after all; what was changed stays. */
-  release: () => void;
+  dropFork: () => void;
 }
 
-const WORDS = ["preset", "from", "fork", "begin", ...WHICH];
+const WORDS = ["preset", "from", "fork", "begin", ...FORK_PARAMETERS];
 const UNNAMED = Object.fromEntries(WORDS.map((word) => [word, null]));
 
 const NONE: ReadonlySet<string> = new Set();
 
-export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk {
+export function useDraft(query: URLSearchParams, experiments: Experiment[]): DraftState {
   const wanted = addressed(query);
-  const [work, setWork] = useState(() => draftFor(wanted));
+  const [work, setWork] = useState(() => loadDraft(wanted));
   const [restored, setRestored] = useState(work !== null);
   const [revision, setRevision] = useState(0);
   const [problem, setProblem] = useState<string | null>(null);
   const shown = useRef(work ? String(wanted) : null);
   const changed = useMemo(() => (work ? new Set(changedPaths(work.spec, work.base.spec)) : NONE), [work]);
-  const put = (next: Work) => {
+  const put = (next: Draft) => {
     const address = addressOf(next.base);
     shown.current = String(address);
     setQuery({ ...UNNAMED, ...(address && Object.fromEntries(address)) });
@@ -48,17 +56,17 @@ export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk
     setRevision((count) => count + 1);
     setProblem(null);
   };
-  const replace = (next: Work, text: string) => {
-    if (work && (changed.size > 0 || work.base.fork)) offerBack(text, () => put(work));
+  const replace = (next: Draft, text: string) => {
+    if (work && (changed.size > 0 || work.base.fork)) offerUndo(text, () => put(work));
     put(next);
   };
   const release = () => {
     if (!work?.base.fork) return;
-    const { fork: _, ...base } = { ...work.base, spec: withOrigin(work.base.spec, []) };
-    replace({ base, spec: withOrigin(work.spec, []) }, "It begins from random creatures.");
+    const { fork: _, ...base } = { ...work.base, spec: withInitial(work.base.spec, []) };
+    replace({ base, spec: withInitial(work.spec, []) }, "It begins from random creatures.");
   };
   // A way back from here leads nowhere from another page.
-  useEffect(() => () => dismiss(offered), []);
+  useEffect(() => () => dismissToast(undoToast), []);
   const begin = (base: Base) => replace({ base, spec: base.spec }, "Begun anew without your changes.");
   useEffect(() => {
     // Without a name in it the address means whatever is at hand.
@@ -80,8 +88,8 @@ export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk
   }, [String(wanted)]);
   useEffect(() => {
     if (!work) return;
-    if (changed.size > 0 || work.base.foreign) keep(work);
-    else discard();
+    if (changed.size > 0 || work.base.foreign) saveDraft(work);
+    else discardDraft();
   }, [work, changed]);
   return {
     work,
@@ -90,19 +98,19 @@ export function useDesk(query: URLSearchParams, experiments: Experiment[]): Desk
     restored: restored && changed.size > 0,
     problem,
     change: (next) => setWork((now) => now && { ...now, spec: next(now.spec) }),
-    begin,
+    startFrom: begin,
     reset: () => work && replace({ ...work, spec: work.base.spec }, "Changes taken back."),
-    release,
+    dropFork: release,
   };
 }
 
-let offered = 0;
+let undoToast = 0;
 
-function offerBack(text: string, undo: () => void): void {
+function offerUndo(text: string, undo: () => void): void {
   const run = () => {
-    dismiss(offered);
+    dismissToast(undoToast);
     undo();
   };
-  dismiss(offered);
-  offered = tell({ kind: "note", text, action: { label: "Undo", run } });
+  dismissToast(undoToast);
+  undoToast = showToast({ kind: "note", text, action: { label: "Undo", run } });
 }

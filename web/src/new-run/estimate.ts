@@ -7,7 +7,7 @@ import type { Drawing, Estimate, Experiment, FieldError, Preset, Spec } from "..
 
 const SETTLED_MS = 350;
 
-export const SLIPPED = "Some values cannot be used; see beside them.";
+export const HAS_ERRORS = "Some values cannot be used; see beside them.";
 
 export interface Check {
   estimate: Estimate | null;
@@ -25,7 +25,7 @@ export function useEstimate(spec: Spec | null, slips: FieldError[]): Check {
   useEffect(() => {
     if (!spec) return;
     if (slips.length > 0) {
-      return setCheck((old) => ({ ...old, estimate: null, errors: [], problem: SLIPPED }));
+      return setCheck((old) => ({ ...old, estimate: null, errors: [], problem: HAS_ERRORS }));
     }
     let wanted = true;
     const show = (next: Partial<Check>) => {
@@ -37,7 +37,7 @@ export function useEstimate(spec: Spec | null, slips: FieldError[]): Check {
         .then((estimate) => show({ estimate, drawing: estimate.drawing }))
         .catch((error) => {
           const errors = error instanceof Problem ? error.errors : [];
-          show({ errors, problem: errors.length ? SLIPPED : messageOf(error) });
+          show({ errors, problem: errors.length ? HAS_ERRORS : messageOf(error) });
         });
     }, SETTLED_MS);
     return () => {

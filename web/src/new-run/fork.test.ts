@@ -3,12 +3,12 @@
 import { describe, expect, inject, it, vi } from "vitest";
 import type { Json, Spec } from "../api/types";
 import { addressOf } from "../store/draft";
-import { isAboutOrigin } from "./ForkCard";
+import { isForkField } from "./ForkCard";
 import { forkOf } from "./fork";
-import { MOST, addressed, load } from "./sources";
+import { MAX_CREATURES, addressed, load } from "./sources";
 import { type Section, formOf } from "./form/fields";
 import { placesOf } from "./form/document";
-import { mergePatch, withOrigin, withoutOrigin } from "./initialCreatures";
+import { mergePatch, withInitial, withoutInitial } from "./initialCreatures";
 
 const EXPERIMENTS = inject("experiments");
 const SEARCH = EXPERIMENTS.find(({ experiment }) => experiment === "quality-diversity")!;
@@ -17,7 +17,7 @@ const SHA = "ab".repeat(32);
 const RUN = "0190a6a0-0000-7000-8000-000000000001";
 
 const RUNS: Record<string, Spec> = {
-  [RUN]: withOrigin(SPEC, [SHA]),
+  [RUN]: withInitial(SPEC, [SHA]),
   table: { experiment: "gaits" },
 };
 /** All of a run, as they are. */
@@ -98,7 +98,7 @@ describe("a merge patch", () => {
 });
 
 describe("a fork", () => {
-  const base = { kind: "run" as const, name: RUN, spec: withOrigin(SPEC, []) };
+  const base = { kind: "run" as const, name: RUN, spec: withInitial(SPEC, []) };
   const spec = { ...base.spec, world: { ...(SPEC.world as Spec), viscosity: 0.3 } };
 
   it("is sent as what differs, with whom it begins from", () => {
@@ -120,12 +120,12 @@ describe("a fork", () => {
   });
 
   it("takes no other names of creatures, typed as JSON or into a field", () => {
-    const sent = forkOf({ base: { ...base, fork: ALL }, spec: withOrigin(spec, [SHA]) }, "");
+    const sent = forkOf({ base: { ...base, fork: ALL }, spec: withInitial(spec, [SHA]) }, "");
     expect(sent).toMatchObject({ fork: { spec: { world: { viscosity: 0.3 } } } });
     const form = formOf(SEARCH.schema);
     const places = placesOf(form, spec).filter((path) => path !== "search.origin");
     expect(placesOf(form, spec)).toContain("search.origin");
-    expect(placesOf(withoutOrigin(form), spec)).toEqual(places);
+    expect(placesOf(withoutInitial(form), spec)).toEqual(places);
   });
 
   it("is a run as any other where no run is known, or nobody to begin from", () => {
@@ -169,14 +169,14 @@ describe("a fork", () => {
   it.each(["from", "from.region.speed", "search.origin", "name", "generation"])(
     "shows %s beside it",
     (field) => {
-      expect(isAboutOrigin(field)).toBe(true);
+      expect(isForkField(field)).toBe(true);
     },
   );
 
   it.each(["search.batch", "genome.max_nodes", "control", "search.generations"])(
     "leaves %s in the form",
     (field) => {
-      expect(isAboutOrigin(field)).toBe(false);
+      expect(isForkField(field)).toBe(false);
     },
   );
 });
@@ -200,7 +200,7 @@ describe("what an address of a fork names", () => {
 
   it("is of no more creatures than the schema has room for", () => {
     const { fields } = formOf(SEARCH.schema).fields.find(({ path }) => path === "search") as Section;
-    expect(JSON.stringify(fields.find(({ path }) => path === "search.origin"))).toContain(`${MOST}`);
+    expect(JSON.stringify(fields.find(({ path }) => path === "search.origin"))).toContain(`${MAX_CREATURES}`);
   });
 
   it("is the creature's own world where its run was no search", async () => {

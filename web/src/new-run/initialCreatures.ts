@@ -8,17 +8,17 @@ import { isObject } from "./readDocument";
 export const isSearch = (spec: Spec): boolean => isObject(spec.search);
 
 /** The spec of a search that begins from the creatures of these names. */
-export const withOrigin = (spec: Spec, names: string[]): Spec => ({
+export const withInitial = (spec: Spec, names: string[]): Spec => ({
   ...spec,
   search: { ...(spec.search as Spec), origin: names },
 });
 
 /** The form without the names of creatures, which are chosen elsewhere. */
-export const withoutOrigin = (form: Section): Section => ({
+export const withoutInitial = (form: Section): Section => ({
   ...form,
   fields: form.fields
     .filter(({ path }) => path !== "search.origin")
-    .map((field) => (field.kind === "section" ? withoutOrigin(field) : field)),
+    .map((field) => (field.kind === "section" ? withoutInitial(field) : field)),
 });
 
 /** The merge patch (RFC 7396) that makes one document of another: null takes a member away. */

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, inject, it, vi } from "vitest";
 import type { DrawnBody, Estimate } from "../api/types";
-import { type Work, addressOf, discard, draftFor, keep } from "../store/draft";
+import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../store/draft";
 import { load, ofPreset, titleOfBase } from "./sources";
 import { branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
 import { about, basis, rough, wait } from "./costText";
@@ -11,7 +11,7 @@ const experiment = (name: string) => EXPERIMENTS.find((one) => one.experiment ==
 
 describe("a draft", () => {
   const base = ofPreset(experiment("gaits").presets[0]!, experiment("gaits"));
-  const work: Work = { base, spec: { ...base.spec, period: 77 } };
+  const work: Draft = { base, spec: { ...base.spec, period: 77 } };
   const stored = new Map<string, string>();
   beforeEach(() => {
     stored.clear();
@@ -23,24 +23,24 @@ describe("a draft", () => {
   });
 
   it("is there again until it is discarded", () => {
-    keep(work);
-    expect(draftFor(null)).toEqual(work);
-    discard();
-    expect(draftFor(null)).toBeNull();
+    saveDraft(work);
+    expect(loadDraft(null)).toEqual(work);
+    discardDraft();
+    expect(loadDraft(null)).toBeNull();
   });
 
   it("gives way where the address names something else", () => {
-    keep(work);
-    expect(draftFor([["preset", "gaits/demo"]])).toEqual(work);
-    expect(draftFor([["preset", "gaits/paper"]])).toBeNull();
-    expect(draftFor([["from", "a run"]])).toBeNull();
+    saveDraft(work);
+    expect(loadDraft([["preset", "gaits/demo"]])).toEqual(work);
+    expect(loadDraft([["preset", "gaits/paper"]])).toBeNull();
+    expect(loadDraft([["from", "a run"]])).toBeNull();
   });
 
   it("that cannot be read is none", () => {
     stored.set("microcosmos:draft", "{");
-    expect(draftFor(null)).toBeNull();
+    expect(loadDraft(null)).toBeNull();
     stored.set("microcosmos:draft", "{}");
-    expect(draftFor(null)).toBeNull();
+    expect(loadDraft(null)).toBeNull();
   });
 
   it("has an address where it was begun from something with a name", async () => {

@@ -1,6 +1,6 @@
 import { describe, expect, inject, it } from "vitest";
 import type { Creature, Json, Spec } from "../api/types";
-import { ofFound, whole } from "./sources";
+import { ofFound, completeSpec } from "./sources";
 import { completed } from "./form/defaults";
 import { complaints } from "./form/document";
 import { formOf } from "./form/fields";
@@ -54,7 +54,7 @@ describe("a creature", () => {
   it("gives its world, body, coupling, controller, room and task to a search", () => {
     const file = creature({ encoding: "cppn", control: { period: 50 } }, { measured: { room: [30, 80] } });
     const found = readDocument(file as unknown as Json);
-    const spec = whole(found.spec, EXPERIMENTS) as { [part: string]: Spec };
+    const spec = completeSpec(found.spec, EXPERIMENTS) as { [part: string]: Spec };
     expect(spec.experiment).toBe("quality-diversity");
     expect(spec.world).toMatchObject({ width: 96, height: 64, viscosity: 0.2, fluid: true });
     expect(spec.world).not.toHaveProperty("coupling");
@@ -67,7 +67,7 @@ describe("a creature", () => {
 
   it("whose genes are numbers is searched by what varies numbers", () => {
     const { spec } = readDocument(creature({ encoding: "direct", control: {} }) as unknown as Json);
-    const full = whole(spec, EXPERIMENTS) as { search: { emitters: Spec[] }; control: Spec };
+    const full = completeSpec(spec, EXPERIMENTS) as { search: { emitters: Spec[] }; control: Spec };
     expect(full.control.encoding).toBe("direct");
     expect(full.search.emitters).toEqual([{ operator: "iso+line", share: 1, iso: 0.02, line: 0.2 }]);
   });
@@ -78,7 +78,7 @@ describe("a creature", () => {
     expect(sweep).toMatchObject({ experiment: "gaits", swimmers: ["ray"], period: 300, viscosities: [0.2] });
     const fold = readDocument(creature({ encoding: "fold", control: { lengths: "raw" } }) as unknown as Json);
     expect(fold.spec).toMatchObject({ experiment: "folding", steps: 70, size: 42 });
-    expect(whole(fold.spec, EXPERIMENTS).control).toEqual({ encoding: "fold", lengths: "raw" });
+    expect(completeSpec(fold.spec, EXPERIMENTS).control).toEqual({ encoding: "fold", lengths: "raw" });
   });
 
   it("is refined where that was chosen", () => {
@@ -111,6 +111,8 @@ describe("a spec", () => {
   });
 
   it("of an unknown experiment is refused with those that there are", () => {
-    expect(() => whole({ experiment: "astrology" }, EXPERIMENTS)).toThrow(/quality-diversity.*got astrology/);
+    expect(() => completeSpec({ experiment: "astrology" }, EXPERIMENTS)).toThrow(
+      /quality-diversity.*got astrology/,
+    );
   });
 });

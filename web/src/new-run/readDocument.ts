@@ -1,6 +1,6 @@
 /** What a person pastes or drops: a spec, a run that has one, a creature that lived by one. */
 
-import type { Creature, Json, Spec, Stroke } from "../api/types";
+import type { Creature, Json, Spec, Gait } from "../api/types";
 
 export type Found =
   | { kind: "spec"; spec: Spec }
@@ -88,7 +88,7 @@ function roomOf({ measured }: Creature): Spec | null {
   return room ? { max_nodes: room[0], max_connections: room[1] } : null;
 }
 
-function gaitSpec(stroke: Stroke, world: Spec): Spec {
+function gaitSpec(stroke: Gait, world: Spec): Spec {
   return {
     experiment: "gaits",
     swimmers: [stroke.swimmer],

@@ -3,22 +3,22 @@
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Experiment, Preset, Spec } from "../api/types";
-import { among } from "../store/cellRanges";
-import { type Address, type Base, type Forking, WHICH, forked } from "../store/draft";
+import { parseCells } from "../store/cellRanges";
+import { type Address, type Base, type ForkSource, FORK_PARAMETERS, forkAddress } from "../store/draft";
 import { completed } from "./form/defaults";
-import { isSearch, withOrigin } from "./initialCreatures";
+import { isSearch, withInitial } from "./initialCreatures";
 import { type Found, specOf } from "./readDocument";
 import { count, short } from "../ui/format";
 
 /** Creatures that a run can begin from; `search.origin` in the schemas has the same. */
-export const MOST = 4096;
+export const MAX_CREATURES = 4096;
 
 export function addressed(query: URLSearchParams): Address | null {
   const word = ["fork", "begin", "from", "creature", "preset"].find((name) => query.get(name));
   if (!word) return null;
   const name = query.get(word)!;
   if (word !== "fork") return [[word, name]];
-  return forked(name, Object.fromEntries(WHICH.map((each) => [each, query.get(each)])));
+  return forkAddress(name, Object.fromEntries(FORK_PARAMETERS.map((each) => [each, query.get(each)])));
 }
 
 export function ofPreset(preset: Preset, { experiment }: Experiment): Base {
@@ -30,25 +30,25 @@ export async function load(address: Address, experiments: Experiment[]): Promise
   const [word, name] = address[0]!;
   if (word === "preset") return named(name, experiments);
   try {
-    if (word === "begin") return await begunFrom(name, experiments);
+    if (word === "begin") return await runSource(name, experiments);
     if (word === "fork") return await forkOf(name, Object.fromEntries(address), experiments);
     if (word === "creature") {
       const spec = specOf(await api.readCreature(name));
-      return { kind: "creature", name, spec: whole(spec, experiments) };
+      return { kind: "creature", name, spec: completeSpec(spec, experiments) };
     }
     const run = await api.readRun(name);
-    return { kind: "run", name, spec: whole(run.spec, experiments) };
+    return { kind: "run", name, spec: completeSpec(run.spec, experiments) };
   } catch (error) {
     throw new Error(`“${word}” in the address names ${name}: ${messageOf(error)}`);
   }
 }
 
 /** A search that begins from one creature, in its world. */
-async function begunFrom(sha: string, experiments: Experiment[]): Promise<Base> {
-  const spec = whole(specOf(await api.readCreature(sha)), experiments);
+async function runSource(sha: string, experiments: Experiment[]): Promise<Base> {
+  const spec = completeSpec(specOf(await api.readCreature(sha)), experiments);
   if (!isSearch(spec)) throw new Error("no search can begin from it.");
   const fork = { run: null, creature: sha, cells: null, at: null, creatures: 1 };
-  return { kind: "creature", name: sha, spec: withOrigin(spec, [sha]), fork };
+  return { kind: "creature", name: sha, spec: withInitial(spec, [sha]), fork };
 }
 
 /** A run's spec, to begin from one creature or from its elites: all, or those of some cells. */
@@ -59,24 +59,24 @@ async function forkOf(
 ): Promise<Base> {
   const run = await api.readRun(id);
   if (!isSearch(run.spec)) {
-    if (creature) return begunFrom(creature, experiments);
+    if (creature) return runSource(creature, experiments);
     throw new Error("it fills no archive to begin from.");
   }
-  const spec = withOrigin(whole(run.spec, experiments), []);
+  const spec = withInitial(completeSpec(run.spec, experiments), []);
   const one = { run: id, creature: creature ?? null, cells: null, at: null, creatures: 1 };
   const fork = creature ? one : await elitesOf(id, cells ?? null, generationOf(at));
   return { kind: "run", name: id, spec, fork };
 }
 
 /** The elites that live in some cells, or in all, or lived there after a generation. */
-async function elitesOf(run: string, cells: string | null, at: number | null): Promise<Forking> {
+async function elitesOf(run: string, cells: string | null, at: number | null): Promise<ForkSource> {
   const { cell, creature, generation } = await api.readArchive(run, [], { generation: at ?? undefined });
-  const chosen = cells === null ? () => true : among(cells);
+  const chosen = cells === null ? () => true : parseCells(cells);
   const places = [...cell.keys()].filter((i) => chosen(cell[i]!));
   if (places.length === 0) throw new Error("nobody lives there to begin from.");
   const creatures = new Set(places.map((i) => creature[i]!)).size;
-  if (creatures > MOST) {
-    const least = `at most ${count(MOST)} creatures can begin a run; there live ${count(creatures)}.`;
+  if (creatures > MAX_CREATURES) {
+    const least = `at most ${count(MAX_CREATURES)} creatures can begin a run; there live ${count(creatures)}.`;
     throw new Error(`${least} Choose some of them on the map of the archive.`);
   }
   const named = cells === null ? null : places.map((i) => cell[i]!);
@@ -98,7 +98,7 @@ function named(name: string, experiments: Experiment[]): Base {
 }
 
 /** The spec with the defaults of what it leaves out. */
-export function whole(spec: Spec, experiments: Experiment[]): Spec {
+export function completeSpec(spec: Spec, experiments: Experiment[]): Spec {
   const own = experiments.find(({ experiment }) => experiment === spec.experiment);
   if (own) return completed(own.schema, spec);
   const known = experiments.map(({ experiment }) => experiment).join(", ");
@@ -107,7 +107,7 @@ export function whole(spec: Spec, experiments: Experiment[]): Spec {
 
 /** What was pasted or dropped, as something to begin from. */
 export function ofFound(found: Found, file: string, experiments: Experiment[]): Base {
-  const given = { spec: whole(found.spec, experiments), foreign: true };
+  const given = { spec: completeSpec(found.spec, experiments), foreign: true };
   if (found.kind === "creature") return { ...given, kind: "creature", name: found.creature.sha256 };
   if (found.kind === "run" && found.id) return { ...given, kind: "run", name: found.id };
   return { ...given, kind: "pasted", name: file };

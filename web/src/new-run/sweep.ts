@@ -3,13 +3,13 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { Problem, messageOf } from "../api/problem";
-import type { Experiment, FieldError, Spec, SweepEstimate, SweepSent } from "../api/types";
+import type { Experiment, FieldError, Spec, SweepEstimate, SweepRequest } from "../api/types";
 import type { Leaf, Section } from "./form/fields";
 import { type Axis, MOST, hasSeed, readSeeds, readValues, sweepable } from "./sweepGrid";
 
 const SETTLED_MS = 350;
 
-export interface Sweeping {
+export interface SweepForm {
   seeded: boolean;
   seeds: string;
   axes: readonly Axis[];
@@ -20,7 +20,7 @@ export interface Sweeping {
   /** How many runs; one is no sweep. */
   total: number;
   /** What is to be sent; null for a single run, or where something is wrong. */
-  sent: SweepSent | null;
+  sent: SweepRequest | null;
   change: (change: Partial<Typed>) => void;
 }
 
@@ -33,7 +33,7 @@ interface Typed {
 const SINGLE: Typed = { seeds: "1", axes: [], name: "" };
 
 /** What was typed is kept while the spec changes; fields that it has no more are complained of. */
-export function useSweeping(form: Section, spec: Spec, experiment: Experiment): Sweeping {
+export function useSweepForm(form: Section, spec: Spec, experiment: Experiment): SweepForm {
   const [typed, setTyped] = useState(SINGLE);
   useEffect(() => setTyped(SINGLE), [experiment]);
   const read = useMemo(() => readAll(form, spec, hasSeed(experiment), typed), [form, spec, typed]);
@@ -59,7 +59,7 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
 }
 
 /** Whether a sweep was begun, right or wrong. */
-export const begun = ({ seeds, axes }: Sweeping) => axes.length > 0 || seeds.trim() !== "1";
+export const isSweep = ({ seeds, axes }: SweepForm) => axes.length > 0 || seeds.trim() !== "1";
 
 export interface SweepCheck {
   estimate: SweepEstimate | null;
@@ -70,7 +70,7 @@ export interface SweepCheck {
 const UNCHECKED: SweepCheck = { estimate: null, errors: [], problem: null };
 
 /** What all runs together will cost, asked once typing has settled. */
-export function useSweepEstimate(sent: SweepSent | null): SweepCheck {
+export function useSweepEstimate(sent: SweepRequest | null): SweepCheck {
   const [check, setCheck] = useState(UNCHECKED);
   useEffect(() => {
     setCheck(UNCHECKED);

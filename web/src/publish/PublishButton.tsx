@@ -1,13 +1,13 @@
 /** The way to publish something; few go it, and the dialog comes with who does. */
 
 import { useState } from "preact/hooks";
-import { later } from "../ui/lazy";
+import { lazy } from "../ui/lazy";
 import { useRefusal } from "../store/principal";
 import type { Props } from "./PublishDialog";
 
-const PublishDialog = later(async () => (await import("./PublishDialog")).PublishDialog, "section");
+const PublishDialog = lazy(async () => (await import("./PublishDialog")).PublishDialog, "section");
 
-export function Publish(props: Props) {
+export function PublishButton(props: Props) {
   const [opened, setOpened] = useState(0);
   if (useRefusal()) return null;
   return (

@@ -3,7 +3,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Creature, Share, ShareAsked } from "../api/types";
+import type { Creature, Share, ShareRequest } from "../api/types";
 import { Options } from "../ui/Select";
 import { copyText } from "../ui/clipboard";
 import "./publish.css";
@@ -41,7 +41,11 @@ export function PublishDialog({ opened, ...props }: Props & { opened: number }) 
   const end = () => dialog.current!.close();
   return (
     <dialog ref={dialog} class="publish card" aria-labelledby="publish-title">
-      {share ? <Published share={share} onEnd={end} /> : <Asking {...props} onDone={setShare} onEnd={end} />}
+      {share ? (
+        <Published share={share} onEnd={end} />
+      ) : (
+        <PublishForm {...props} onDone={setShare} onEnd={end} />
+      )}
     </dialog>
   );
 }
@@ -51,7 +55,7 @@ interface AskingProps extends Props {
   onEnd: () => void;
 }
 
-function Asking({ of, title, file, onDone, onEnd }: AskingProps) {
+function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
   const [busy, setBusy] = useState(false);
   const [error, setError] = useState<string | null>(null);
   const [term, setTerm] = useState<string>("never");
@@ -60,7 +64,9 @@ function Asking({ of, title, file, onDone, onEnd }: AskingProps) {
     setBusy(true);
     setError(null);
     try {
-      onDone(await api.publish({ ...of, ...askedIn(new FormData(event.currentTarget as HTMLFormElement)) }));
+      onDone(
+        await api.publish({ ...of, ...requestOf(new FormData(event.currentTarget as HTMLFormElement)) }),
+      );
     } catch (reason) {
       setError(messageOf(reason));
     }
@@ -126,7 +132,7 @@ function Asking({ of, title, file, onDone, onEnd }: AskingProps) {
 }
 
 /** What the form asks for; an empty field is left to the server. */
-export function askedIn(form: FormData, now = Date.now()): ShareAsked {
+export function requestOf(form: FormData, now = Date.now()): ShareRequest {
   const text = (name: string) => String(form.get(name) ?? "").trim();
   const credit = text("credit")
     .split(",")

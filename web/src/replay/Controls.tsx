@@ -4,7 +4,7 @@ import { ColourBar } from "../ui/ColourBar";
 import { css } from "../ui/colours";
 import { number } from "../ui/format";
 import type { Field, FieldName } from "./fields";
-import { type Look, SPEEDS } from "./look";
+import { type ReplayView, SPEEDS } from "./look";
 
 export function Speed({ value, onChange }: { value: number; onChange: (speed: number) => void }) {
   return (
@@ -31,15 +31,15 @@ const TITLES: Record<FieldName, string> = {
 interface Props {
   names: FieldName[];
   name: FieldName;
-  look: Look;
-  change: (part: Partial<Look>) => void;
+  look: ReplayView;
+  change: (part: Partial<ReplayView>) => void;
   /** Whether the flow is known that tracers follow. */
   flows: boolean;
 }
 
 export function LookChoice({ names, name, look, change, flows }: Props) {
   return (
-    <div class="look">
+    <div class="view-options">
       {names.length > 1 && (
         <div class="tabs" role="group" aria-label="Field shown">
           {names.map((each) => (

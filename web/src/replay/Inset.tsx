@@ -1,7 +1,7 @@
 /** A creature that swims beside the cell that holds it. */
 
 import type { Replay } from "../decode/replay";
-import { Loop } from "./Loop";
+import { ReplayLoop } from "./Loop";
 import "./replay.css";
 
 interface Props {
@@ -10,11 +10,11 @@ interface Props {
   note: string;
 }
 
-export function Inset({ replay, note }: Props) {
+export function ReplayInset({ replay, note }: Props) {
   return (
     <div class="inset" data-inset>
       {replay ? (
-        <Loop
+        <ReplayLoop
           key={replay.header.creature}
           replay={replay}
           name="The elite of this cell, swimming"

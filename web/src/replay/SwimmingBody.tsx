@@ -12,7 +12,7 @@ import "./replay.css";
 const SECONDS = 5;
 const INKS = { light: "#12222c", dark: "#fdf8ec" };
 
-export function Swimming({ motion }: { motion: Motion | null }) {
+export function SwimmingBody({ motion }: { motion: Motion | null }) {
   const box = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLCanvasElement>(null);
   const share = useRef(0);

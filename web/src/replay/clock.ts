@@ -27,7 +27,7 @@ const PRESSED = "button, a, summary, input:not([type=range])";
 
 /** Whether a key pressed on a target is a player's: its space bar plays from anywhere on the
  * page, and its other keys work within it alone, so that they cannot be pressed by mistake. */
-export function meant(key: string, target: Element, player: Element | null): boolean {
+export function keyAction(key: string, target: Element, player: Element | null): boolean {
   if (target.closest(OWN)) return false;
   return key === " " ? !target.closest(PRESSED) : player?.contains(target) === true;
 }
@@ -40,7 +40,7 @@ export function useKeys(player: RefObject<Element | null>, keys: Record<string, 
     const press = (event: KeyboardEvent) => {
       if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
       const action = latest.current[event.key];
-      if (!action || !meant(event.key, event.target as Element, player.current)) return;
+      if (!action || !keyAction(event.key, event.target as Element, player.current)) return;
       event.preventDefault();
       action();
     };

@@ -2,7 +2,7 @@
 
 import type { FieldName } from "./fields";
 
-export interface Look {
+export interface ReplayView {
   field: FieldName | null;
   tracers: boolean;
   follow: boolean;
@@ -10,11 +10,11 @@ export interface Look {
 }
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
-export const USUAL: Look = { field: null, tracers: false, follow: true, speed: 1 };
+export const DEFAULT_VIEW: ReplayView = { field: null, tracers: false, follow: true, speed: 1 };
 
 const FIELDS = ["vorticity", "speed", "energy", "none"];
 
-export function lookOf(query: URLSearchParams): Look {
+export function replayViewOf(query: URLSearchParams): ReplayView {
   const field = query.get("field");
   const speed = Number(query.get("pace"));
   return {
@@ -26,7 +26,7 @@ export function lookOf(query: URLSearchParams): Look {
 }
 
 /** What of the address changes with a look; usual choices leave no word there. */
-export function queryOf(change: Partial<Look>): Record<string, string | null> {
+export function queryOf(change: Partial<ReplayView>): Record<string, string | null> {
   const words: Record<string, string | null> = {};
   if (change.field !== undefined) words.field = change.field;
   if (change.tracers !== undefined) words.tracers = change.tracers ? "" : null;

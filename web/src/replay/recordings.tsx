@@ -14,19 +14,19 @@ interface Rendered {
 }
 
 /** Bytes of replays that a tab keeps for who comes back to them. */
-const KEPT = 64e6;
-const kept = new Map<string, Replay>();
+const MAX_CACHED_BYTES = 64e6;
+const cache = new Map<string, Replay>();
 
 const sizeOf = ({ positions, vorticity }: Replay) => positions.byteLength + vorticity.buffer.byteLength;
 
 /** As the newest; the oldest ones beyond what is kept go, but never this one. */
-function keep(sha: string, replay: Replay): void {
-  kept.delete(sha);
-  kept.set(sha, replay);
-  let total = [...kept.values()].reduce((sum, each) => sum + sizeOf(each), 0);
-  for (const [oldest, each] of kept) {
-    if (total <= KEPT || oldest === sha) break;
-    kept.delete(oldest);
+function addToCache(sha: string, replay: Replay): void {
+  cache.delete(sha);
+  cache.set(sha, replay);
+  let total = [...cache.values()].reduce((sum, each) => sum + sizeOf(each), 0);
+  for (const [oldest, each] of cache) {
+    if (total <= MAX_CACHED_BYTES || oldest === sha) break;
+    cache.delete(oldest);
     total -= sizeOf(each);
   }
 }
@@ -48,12 +48,12 @@ export function useReplays(shas: string[]): Rendered {
   useEffect(() => {
     const change = (part: Partial<State>) => setState((old) => ({ ...old, ...part }));
     const there = (sha: string, replay: Replay) => {
-      keep(sha, replay);
+      addToCache(sha, replay);
       setState((old) => ({ ...old, found: new Map(old.found).set(sha, replay) }));
     };
     setState({ ...NOTHING, asked });
     const ends = shas.map((sha) => {
-      const known = kept.get(sha);
+      const known = cache.get(sha);
       if (known) return there(sha, known);
       return poll(async () => decoded(await api.readReplay(sha)), {
         value: (replay) => there(sha, replay),
@@ -71,7 +71,7 @@ export function useReplays(shas: string[]): Rendered {
 const decoded = (bytes: ArrayBuffer | null) => bytes && decodeReplay(bytes);
 
 /** What to see until then. */
-export function Rendering({ replays, note, error, what }: Rendered & { what: string }) {
+export function RecordingStatus({ replays, note, error, what }: Rendered & { what: string }) {
   if (error) return <p class="banner wrong">{error}</p>;
   if (replays) return null;
   return (

@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
 import { type Header, type Replay, decodeReplay } from "../decode/replay";
 import { anglesOf, lengthsOf } from "../decode/shape";
-import { meant } from "./clock";
+import { keyAction } from "./clock";
 import { coloursOf, fieldOf, fieldsOf } from "./fields";
-import { lookOf, queryOf } from "./look";
+import { replayViewOf, queryOf } from "./look";
 import { Moment } from "./moment";
 import { Tracers, velocityAt } from "./tracers";
 
@@ -143,9 +143,9 @@ describe("the moment of a replay", () => {
   it("is looked at as the address says", () => {
     const change = { field: "speed", tracers: true, follow: false, speed: 4 } as const;
     const words = Object.entries(queryOf(change)).filter(([, word]) => word !== null);
-    expect(lookOf(new URLSearchParams(words as [string, string][]))).toEqual(change);
-    expect(lookOf(new URLSearchParams("field=heat&pace=3")).speed).toBe(1);
-    expect(lookOf(new URLSearchParams("field=heat")).field).toBeNull();
+    expect(replayViewOf(new URLSearchParams(words as [string, string][]))).toEqual(change);
+    expect(replayViewOf(new URLSearchParams("field=heat&pace=3")).speed).toBe(1);
+    expect(replayViewOf(new URLSearchParams("field=heat")).field).toBeNull();
   });
 });
 
@@ -162,16 +162,16 @@ describe("the keys of a replay", () => {
   it("work within the player, and the space bar alone elsewhere", () => {
     const [inside, outside] = [element([], [player]), element([])];
     for (const key of [",", ".", "Home", "End", "ArrowLeft", "ArrowRight"]) {
-      expect([meant(key, inside, player), meant(key, outside, player)]).toEqual([true, false]);
+      expect([keyAction(key, inside, player), keyAction(key, outside, player)]).toEqual([true, false]);
     }
-    expect(meant(" ", outside, player)).toBe(true);
-    expect(meant("Home", inside, null)).toBe(false);
+    expect(keyAction(" ", outside, player)).toBe(true);
+    expect(keyAction("Home", inside, null)).toBe(false);
   });
 
   it("are left to what needs them itself", () => {
     const button = element(["button"], [player]);
-    expect([meant(" ", button, player), meant("Home", button, player)]).toEqual([false, true]);
+    expect([keyAction(" ", button, player), keyAction("Home", button, player)]).toEqual([false, true]);
     const choice = element(["select"], [player]);
-    expect([meant(" ", choice, player), meant("End", choice, player)]).toEqual([false, false]);
+    expect([keyAction(" ", choice, player), keyAction("End", choice, player)]).toEqual([false, false]);
   });
 });

@@ -3,7 +3,7 @@
 import type { Run } from "../api/types";
 import type { Detail } from "../store/detail";
 import { ArchiveCard } from "../archive/ArchiveCard";
-import { CurvesCard, SearchCard, useOthers } from "./RunCurves";
+import { CurvesCard, SearchCard, useComparedRuns } from "./RunCurves";
 import "./run.css";
 
 interface Props {
@@ -14,7 +14,7 @@ interface Props {
 
 export function ArchiveRun({ run, detail, query }: Props) {
   const curves = detail?.curves && detail.curves.generation.length > 0 ? detail.curves : null;
-  const beside = useOthers(query, run.id);
+  const beside = useComparedRuns(query, run.id);
   return (
     <>
       <div class={`run-columns ${query.get("view") === "gallery" ? "wide" : ""}`}>

@@ -6,7 +6,7 @@ import { hasArchive } from "../store/fetch";
 import { moment } from "../ui/format";
 import { FileLink } from "../ui/FileLink";
 
-export function Files({ run }: { run: Run }) {
+export function FilesCard({ run }: { run: Run }) {
   return (
     <section class="card files" id="files" aria-labelledby="files-title" tabIndex={-1}>
       <h2 id="files-title">Files</h2>

@@ -4,12 +4,12 @@ import type { Run } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { extend, remove, restore } from "../store/lifecycle";
 import { count, moment, short } from "../ui/format";
-import { useOpening } from "../ui/disclosure";
+import { useDisclosure } from "../ui/disclosure";
 
-const OVER = ["finished", "failed", "cancelled", "paused"];
+const ENDED = ["finished", "failed", "cancelled", "paused"];
 
-export function Life({ run, title }: { run: Run; title: string }) {
-  if (run.deleted_at || !OVER.includes(run.status)) return null;
+export function LifecycleButtons({ run, title }: { run: Run; title: string }) {
+  if (run.deleted_at || !ENDED.includes(run.status)) return null;
   return (
     <span class="actions">
       {extendable(run) && <Extend run={run} />}
@@ -24,7 +24,7 @@ export function Life({ run, title }: { run: Run; title: string }) {
 const extendable = (run: Run) => run.status === "finished" && "search" in run.spec && !run.summary?.["ended"];
 
 function Extend({ run }: { run: Run }) {
-  const { open, setOpen, button, first: field } = useOpening<HTMLInputElement>();
+  const { open, setOpen, button, first: field } = useDisclosure<HTMLInputElement>();
   if (!open) {
     return (
       <button ref={button} onClick={() => setOpen(true)}>
@@ -76,7 +76,7 @@ export function ForkedFrom({ run }: { run: Run }) {
 }
 
 /** In place of a run's page while it lies in the bin. */
-export function InBin({ run }: { run: Run }) {
+export function BinNotice({ run }: { run: Run }) {
   const refusal = useRefusal(run);
   return (
     <p class="banner warning" role="status">

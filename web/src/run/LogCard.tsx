@@ -3,7 +3,7 @@
 import type { Run } from "../api/types";
 import { useLog } from "../store/log";
 import { setQuery } from "../store/router";
-import { Choice } from "../ui/Select";
+import { Select } from "../ui/Select";
 import { count } from "../ui/format";
 import { LEVELS, type Level, LogList, atLeast, textOf } from "./LogList";
 import { copyText } from "../ui/clipboard";
@@ -35,7 +35,7 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
           </button>
         )}
         <span class="spring" />
-        <Choice
+        <Select
           title="Show"
           choices={LEVELS.map((name) => [name, NAMES[name]])}
           value={level}

@@ -5,7 +5,7 @@ import { duration } from "../ui/format";
 import "../replay/replay.css";
 
 /** A sentence, or null where generations tell enough. */
-export function doingOf(run: Run): string | null {
+export function activityOf(run: Run): string | null {
   if (run.status === "queued") return run.waiting ?? "It waits for a worker that is free.";
   if (run.status !== "running" || run.generation > 0) return null;
   const device = run.device?.toLowerCase() ?? "";
@@ -21,12 +21,12 @@ export function elapsedOf({ status, started_at, queued_at }: Run, now: number): 
   return since && duration(Math.max(0, Math.floor((now - Date.parse(since)) / 1000)));
 }
 
-export function Doing({ run, now }: { run: Run; now: number }) {
-  const text = doingOf(run);
+export function RunActivity({ run, now }: { run: Run; now: number }) {
+  const text = activityOf(run);
   const elapsed = elapsedOf(run, now);
   if (!text) return null;
   return (
-    <p class="doing">
+    <p class="activity">
       <span class="ripple small-ripple" aria-hidden="true" />
       <span role="status">{text}</span>
       {elapsed && (

@@ -1,45 +1,45 @@
 /** The curves of a search, as they are asked for, and beside them those of other runs. */
 
 import type { ComponentChildren } from "preact";
-import { share } from "../api/address";
+import { sharedSlug } from "../api/address";
 import type { Run } from "../api/types";
 import type { Curves as Columns } from "../store/curves";
 import { hasArchive, useCurvesOf, useExperiments } from "../store/fetch";
 import { useRuns } from "../store/store";
 import { setQuery } from "../store/router";
 import { Curves } from "../charts/curves/Curves";
-import { type Look, type Other, dressed, lookOf } from "../charts/curves/look";
+import { type CurveView, type OtherRun, arrangePlots, curveViewOf } from "../charts/curves/look";
 import { REASONS, divergedBy, scoresOf, workOf } from "../charts/curves/plots";
 import { count, percent, short, titleOf, words } from "../ui/format";
-import { CurveChoices } from "../charts/curves/CurveOptions";
-import { RunChoice } from "./RunPicker";
+import { CurveOptions } from "../charts/curves/CurveOptions";
+import { RunPicker } from "./RunPicker";
 
 /** More lines than this are not told apart. */
-const MOST = 4;
+const MAX_COMPARED = 4;
 
 interface Props {
   run: Run;
   curves: Columns | null;
   query: URLSearchParams;
-  beside: Others;
+  beside: ComparedRuns;
 }
 
-interface Others {
+interface ComparedRuns {
   ids: string[];
-  others: Other[];
+  others: OtherRun[];
   error: string | null;
 }
 
 export function CurvesCard({ run, curves, query, beside: { ids, others, error } }: Props) {
-  const look = lookOf(query);
+  const look = curveViewOf(query);
   return (
     <section class="card curves-card" id="curves" aria-labelledby="curves-title" tabIndex={-1}>
       <h2 id="curves-title">Curves</h2>
-      {curves && <CurveChoices look={look} />}
-      {curves && !share && <Beside {...{ run, ids, others }} />}
+      {curves && <CurveOptions look={look} />}
+      {curves && !sharedSlug && <ComparedList {...{ run, ids, others }} />}
       {error && <p class="wrong-text small">{error}</p>}
       {curves ? (
-        <Curves plots={dressed(scoresOf, curves, others, look)} x={placesOf(curves, look)} look={look} />
+        <Curves plots={arrangePlots(scoresOf, curves, others, look)} x={placesOf(curves, look)} look={look} />
       ) : (
         <p class="quiet waiting">They begin with the first generation.</p>
       )}
@@ -49,21 +49,21 @@ export function CurvesCard({ run, curves, query, beside: { ids, others, error } 
 
 /** What the search is doing, over the same axis and beside the same runs. */
 export function SearchCard({ run, curves, query, beside }: Props & { curves: Columns }) {
-  const look = lookOf(query);
-  const plots = dressed(workOf, curves, beside.others, look);
+  const look = curveViewOf(query);
+  const plots = arrangePlots(workOf, curves, beside.others, look);
   const diverged = divergedBy(curves);
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
-    <section class="card work-card" id="search" aria-labelledby="work-title" tabIndex={-1}>
+    <section class="card search-card" id="search" aria-labelledby="work-title" tabIndex={-1}>
       <h2 id="work-title">Search, generation by generation</h2>
       <Curves plots={plots} x={placesOf(curves, look)} look={look} />
-      <Diverged run={run} reasons={diverged} />
+      <DivergedTable run={run} reasons={diverged} />
     </section>
   );
 }
 
 /** Why evaluations do not count; runs of before know only how many. */
-function Diverged({ run, reasons }: { run: Run; reasons: [reason: string, count: number][] }) {
+function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, count: number][] }) {
   const known = reasons.reduce((sum, [, number]) => sum + number, 0);
   const unknown = run.diverged - known;
   if (run.diverged === 0) {
@@ -95,16 +95,16 @@ function Diverged({ run, reasons }: { run: Run; reasons: [reason: string, count:
   );
 }
 
-const placesOf = (curves: Columns, { over }: Look) => curves[over] as readonly number[];
+const placesOf = (curves: Columns, { over }: CurveView) => curves[over] as readonly number[];
 
 /** The runs that the address asks to stand beside, without doubles and the run itself. */
-export function useOthers(query: URLSearchParams, id: string): Others {
+export function useComparedRuns(query: URLSearchParams, id: string): ComparedRuns {
   const asked = (query.get("with") ?? "").split(",").filter((other) => other && other !== id);
-  const ids = [...new Set(asked)].slice(0, MOST);
+  const ids = [...new Set(asked)].slice(0, MAX_COMPARED);
   const { value, error } = useCurvesOf(ids);
   const runs = useRuns(ids);
   const experiments = useExperiments().value ?? [];
-  const others = ids.flatMap((id, i): Other[] => {
+  const others = ids.flatMap((id, i): OtherRun[] => {
     const [curves, run] = [value?.get(id), runs[i]];
     if (!curves || !run || curves.generation.length === 0) return [];
     const name = `${titleOf(run, experiments)} ${short(id)}`;
@@ -113,7 +113,7 @@ export function useOthers(query: URLSearchParams, id: string): Others {
   return { ids, others, error };
 }
 
-function Beside({ run, ids, others }: { run: Run; ids: string[]; others: Other[] }) {
+function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: OtherRun[] }) {
   const set = (next: string[]) => setQuery({ with: next.length > 0 ? next.join() : null });
   const without = (id: string) => set(ids.filter((other) => other !== id));
   const nameOf = (id: string) => others.find(({ name }) => name.endsWith(short(id)))?.name ?? short(id);
@@ -128,8 +128,8 @@ function Beside({ run, ids, others }: { run: Run; ids: string[]; others: Other[]
           </button>
         </Chip>
       ))}
-      {ids.length < MOST && (
-        <RunChoice
+      {ids.length < MAX_COMPARED && (
+        <RunPicker
           run={run}
           label="Compare with a run"
           fits={(other) => hasArchive(other) && other.generation > 0 && !ids.includes(other.id)}

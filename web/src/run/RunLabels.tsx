@@ -3,7 +3,7 @@
 import type { ComponentChildren } from "preact";
 import { useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
-import { InPlace } from "../ui/InlineText";
+import { InlineText } from "../ui/InlineText";
 import "./labels.css";
 
 interface NameProps {
@@ -16,14 +16,14 @@ interface NameProps {
 }
 
 /** A name, and a button that makes it a field. */
-export function Name({ of, title, fixed, onName, children }: NameProps) {
-  const [open, setOpen, button] = useOpen();
+export function NameField({ of, title, fixed, onName, children }: NameProps) {
+  const [open, setOpen, button] = useEditing();
   const done = (text: string | null) => {
     setOpen(false);
     if (text !== null && text !== (of.name ?? "") && text !== title) onName(text || null);
   };
   if (fixed) return <>{children}</>;
-  if (open) return <InPlace label={`Name of ${title}`} value={title} limit={200} onDone={done} />;
+  if (open) return <InlineText label={`Name of ${title}`} value={title} limit={200} onDone={done} />;
   return (
     <>
       {children}
@@ -51,10 +51,10 @@ interface TagsProps {
   onRemove: (tag: string) => void;
 }
 
-const TAGS = 20;
+const MAX_TAGS = 20;
 
-export function Tags({ run, name, fixed, known, onPick, onAdd, onRemove }: TagsProps) {
-  const [open, setOpen, button] = useOpen();
+export function TagList({ run, name, fixed, known, onPick, onAdd, onRemove }: TagsProps) {
+  const [open, setOpen, button] = useEditing();
   const done = (text: string | null) => {
     setOpen(false);
     if (text) onAdd(text);
@@ -73,8 +73,8 @@ export function Tags({ run, name, fixed, known, onPick, onAdd, onRemove }: TagsP
           )}
         </span>
       ))}
-      {open && <InPlace label={`New tag of ${name}`} value="" limit={50} list={known} onDone={done} />}
-      {!open && !fixed && run.tags.length < TAGS && (
+      {open && <InlineText label={`New tag of ${name}`} value="" limit={50} list={known} onDone={done} />}
+      {!open && !fixed && run.tags.length < MAX_TAGS && (
         <button
           ref={button}
           class="plain small-button"
@@ -96,8 +96,8 @@ interface NoteProps {
   onRemove: () => void;
 }
 
-export function Note({ run, name, fixed, onNote, onRemove }: NoteProps) {
-  const [open, setOpen, button] = useOpen();
+export function NoteField({ run, name, fixed, onNote, onRemove }: NoteProps) {
+  const [open, setOpen, button] = useEditing();
   const done = (text: string | null) => {
     setOpen(false);
     if (text === null || text === (run.note ?? "")) return;
@@ -106,7 +106,7 @@ export function Note({ run, name, fixed, onNote, onRemove }: NoteProps) {
   };
   if (fixed) return run.note ? <span class="note quiet small">{run.note}</span> : null;
   if (open) {
-    return <InPlace label={`Note on ${name}`} value={run.note ?? ""} limit={10_000} long onDone={done} />;
+    return <InlineText label={`Note on ${name}`} value={run.note ?? ""} limit={10_000} long onDone={done} />;
   }
   return (
     <button
@@ -122,7 +122,7 @@ export function Note({ run, name, fixed, onNote, onRemove }: NoteProps) {
 }
 
 /** Whether a field is open; the button that opened it has the focus again afterwards. */
-function useOpen() {
+function useEditing() {
   const button = useRef<HTMLButtonElement>(null);
   const [open, setOpen] = useState(false);
   const change = (next: boolean) => {

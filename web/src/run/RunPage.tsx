@@ -5,38 +5,38 @@ import type { Run } from "../api/types";
 import type { Detail } from "../store/detail";
 import type { Elites } from "../store/elites";
 import { hasArchive, useExperiments, useRunDetail } from "../store/fetch";
-import { useFresh } from "../store/refresh";
-import { later } from "../ui/lazy";
+import { useRunRefresh } from "../store/refresh";
+import { lazy } from "../ui/lazy";
 import { useRefusal } from "../store/principal";
-import { useLive } from "../store/store";
+import { useStore } from "../store/store";
 import { useNow } from "../store/runPage";
-import { say } from "../store/edit";
-import { freedomOf } from "../ui/coupling";
-import { Doing, doingOf } from "./RunActivity";
-import { endingOf } from "./endReason";
+import { editRun } from "../store/edit";
+import { forceFreeShare } from "../ui/coupling";
+import { RunActivity, activityOf } from "./RunActivity";
+import { endReasonOf } from "./endReason";
 import { count, number, short, titleOf } from "../ui/format";
-import { NotFree } from "../ui/NotForceFree";
-import { NotThere } from "../ui/NotFound";
+import { NotForceFree } from "../ui/NotForceFree";
+import { NotFound } from "../ui/NotFound";
 import { type Figure, figuresOf, generationsOf } from "./figures";
-import { Actions, Badge, Progress, timeOf } from "./RunStatus";
-import { Name } from "./RunLabels";
+import { CommandButtons, StatusBadge, RunProgress, timeOf } from "./RunStatus";
+import { NameField } from "./RunLabels";
 import { ArchiveRun } from "./ArchiveRun";
-import { Files } from "./FilesCard";
+import { FilesCard } from "./FilesCard";
 import { ForkLink } from "../ui/ForkLink";
-import { ForkedFrom, InBin, Life } from "./Lifecycle";
+import { ForkedFrom, BinNotice, LifecycleButtons } from "./Lifecycle";
 import { LogCard } from "./LogCard";
-import { Publish } from "../publish/PublishButton";
+import { PublishButton } from "../publish/PublishButton";
 import { SpecCard } from "./spec/SpecCard";
-import { ON } from "./runCommands";
+import { commandsFor } from "./runCommands";
 import "./run.css";
 
-const GaitsRun = later(async () => (await import("./gaits/GaitsRun")).GaitsRun, "section");
-const LearningRun = later(async () => (await import("./learning/LearningRun")).LearningRun, "section");
-const PopulationCards = later(
+const GaitsRun = lazy(async () => (await import("./gaits/GaitsRun")).GaitsRun, "section");
+const LearningRun = lazy(async () => (await import("./learning/LearningRun")).LearningRun, "section");
+const PopulationCards = lazy(
   async () => (await import("./population/PopulationCards")).PopulationCards,
   "section",
 );
-const ScalingRun = later(async () => (await import("./scaling/ScalingRun")).ScalingRun, "section");
+const ScalingRun = lazy(async () => (await import("./scaling/ScalingRun")).ScalingRun, "section");
 
 interface Props {
   id: string;
@@ -45,8 +45,8 @@ interface Props {
 
 export function RunPage({ id, query }: Props) {
   const { error } = useRunDetail(id);
-  const run = useLive((state) => state.runs.get(id));
-  const detail = useLive((state) => state.details.get(id));
+  const run = useStore((state) => state.runs.get(id));
+  const detail = useStore((state) => state.details.get(id));
   const title = useTitle(run);
   const refusal = useRefusal(run);
   useEffect(() => {
@@ -55,11 +55,11 @@ export function RunPage({ id, query }: Props) {
   if (!run) {
     return (
       <main>
-        {error ? <NotThere what="No such run" reason={error} /> : <p class="quiet loading">Loading run …</p>}
+        {error ? <NotFound what="No such run" reason={error} /> : <p class="quiet loading">Loading run …</p>}
       </main>
     );
   }
-  const freedom = freedomOf(run.spec);
+  const freedom = forceFreeShare(run.spec);
   return (
     <main>
       <nav class="crumbs" aria-label="Where you are">
@@ -67,30 +67,30 @@ export function RunPage({ id, query }: Props) {
         {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
       </nav>
       <header class="page-head">
-        <Name
+        <NameField
           of={run}
           title={title}
           fixed={!!refusal || !!run.deleted_at}
-          onName={(name) => void say(id, { name })}
+          onName={(name) => void editRun(id, { name })}
         >
           <h1>
             {title} <code>{short(run.id)}</code>
           </h1>
-        </Name>
-        <Badge run={run} />
-        {freedom !== "all" && <NotFree some={freedom === "some"} />}
+        </NameField>
+        <StatusBadge run={run} />
+        {freedom !== "all" && <NotForceFree some={freedom === "some"} />}
         <span class="spring" />
         {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
-          <Publish of={{ run: run.id }} title={run.name ?? ""} />
+          <PublishButton of={{ run: run.id }} title={run.name ?? ""} />
         )}
         {hasArchive(run) && !!run.coverage && !run.deleted_at && (
           <ForkLink run={run.id} title="A new run that begins from the creatures of this one" />
         )}
         {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
-        {!refusal && !run.deleted_at && <Actions run={run} on={ON(title)} name={title} />}
-        {!refusal && <Life run={run} title={title} />}
+        {!refusal && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={title} />}
+        {!refusal && <LifecycleButtons run={run} title={title} />}
       </header>
-      {run.deleted_at ? <InBin run={run} /> : <Whole {...{ run, query, error, detail }} />}
+      {run.deleted_at ? <BinNotice run={run} /> : <RunSections {...{ run, query, error, detail }} />}
     </main>
   );
 }
@@ -102,25 +102,27 @@ interface WholeProps {
   detail: Detail | undefined;
 }
 
-function Whole({ run, query, error, detail }: WholeProps) {
+function RunSections({ run, query, error, detail }: WholeProps) {
   return (
     <>
       {error && <p class="banner wrong">{error}</p>}
       <Banners run={run} />
       <ForkedFrom run={run} />
-      <Standing run={run} />
-      <Now run={run} />
-      <Sections run={run} />
-      {run.status === "finished" && hasArchive(run) && <p class="quiet ending">{endingOf(run)}</p>}
+      <RunFacts run={run} />
+      <CurrentActivity run={run} />
+      <SectionLinks run={run} />
+      {run.status === "finished" && hasArchive(run) && <p class="quiet ending">{endReasonOf(run)}</p>}
       {run.experiment === "gaits" && <GaitsRun run={run} query={query} />}
       {learns(run) && <LearningRun run={run} query={query} />}
       {run.experiment === "scaling" && <ScalingRun run={run} query={query} />}
       {hasArchive(run) && <ArchiveRun run={run} detail={detail} query={query} />}
-      {run.experiment === "neuroevolution" && <PopulationCards run={run} elites={detail?.elites ?? NOBODY} />}
-      <div class="run-columns record">
+      {run.experiment === "neuroevolution" && (
+        <PopulationCards run={run} elites={detail?.elites ?? NO_ELITES} />
+      )}
+      <div class="run-columns run-record">
         <div class="stack">
           <LogCard run={run} query={query} />
-          <Files run={run} />
+          <FilesCard run={run} />
         </div>
         <SpecCard run={run} query={query} />
       </div>
@@ -128,18 +130,18 @@ function Whole({ run, query, error, detail }: WholeProps) {
   );
 }
 
-const NOBODY: Elites = new Map();
+const NO_ELITES: Elites = new Map();
 
 /** What it is doing while its figures do not tell yet; how long it has been at it. */
-function Now({ run }: { run: Run }) {
-  const asked = doingOf(run) !== null;
+function CurrentActivity({ run }: { run: Run }) {
+  const asked = activityOf(run) !== null;
   const now = useNow(asked);
-  useFresh(run.id, run.status === "queued");
-  return asked ? <Doing run={run} now={now} /> : null;
+  useRunRefresh(run.id, run.status === "queued");
+  return asked ? <RunActivity run={run} now={now} /> : null;
 }
 
 /** Ways within a long page. */
-function Sections({ run }: { run: Run }) {
+function SectionLinks({ run }: { run: Run }) {
   const kinds: Record<string, [id: string, name: string][]> = {
     folding: [["folds", "Pictures"]],
     neuroevolution: [
@@ -196,22 +198,22 @@ function Banners({ run }: { run: Run }) {
   );
 }
 
-const searching = (run: Run): Figure[] => [
+const searchFacts = (run: Run): Figure[] => [
   ["Evaluations", count(run.evaluations)],
   ["Evaluations/s", number(run.evaluations_per_second)],
 ];
 
-function Standing({ run }: { run: Run }) {
+function RunFacts({ run }: { run: Run }) {
   const time = timeOf(run);
   const facts: Figure[] = [
     [generationsOf(run), `${count(run.generation)} / ${count(run.generations)}`],
     [time.label, time.text],
-    ...(hasArchive(run) ? searching(run) : []),
+    ...(hasArchive(run) ? searchFacts(run) : []),
     ...figuresOf(run),
   ];
   return (
-    <section class="standing" aria-label="How the run is doing">
-      <Progress run={run} />
+    <section class="run-facts" aria-label="How the run is doing">
+      <RunProgress run={run} />
       <dl class="facts">
         {facts.map(([name, value]) => (
           <div key={name}>

@@ -5,7 +5,7 @@ import type { Run } from "../api/types";
 import { useExperiments } from "../store/fetch";
 import { useRunChoices } from "../store/runPage";
 import { moment, short, titleOf } from "../ui/format";
-import { useOpening } from "../ui/disclosure";
+import { useDisclosure } from "../ui/disclosure";
 
 interface Props {
   run: Run;
@@ -15,9 +15,9 @@ interface Props {
   onChoose: (id: string) => void;
 }
 
-export function RunChoice(props: Props) {
-  const { open, setOpen, button } = useOpening();
-  if (open) return <Choosing {...props} onClose={() => setOpen(false)} />;
+export function RunPicker(props: Props) {
+  const { open, setOpen, button } = useDisclosure();
+  if (open) return <RunSelect {...props} onClose={() => setOpen(false)} />;
   return (
     <button ref={button} class="slim" onClick={() => setOpen(true)}>
       {props.label}
@@ -25,7 +25,7 @@ export function RunChoice(props: Props) {
   );
 }
 
-function Choosing({ run, label, fits, onChoose, onClose }: Props & { onClose: () => void }) {
+function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: () => void }) {
   const { value, error } = useRunChoices(run.id);
   const experiments = useExperiments().value ?? [];
   const select = useRef<HTMLSelectElement>(null);

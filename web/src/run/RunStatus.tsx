@@ -6,14 +6,14 @@ import "./run.css";
 
 export const STATES = ["queued", "running", "paused", "finished", "failed", "cancelled"] as const;
 
-const WISHES = { pause: "pausing", cancel: "cancelling" };
+const REQUESTED = { pause: "pausing", cancel: "cancelling" };
 
-export function Badge({ run }: { run: Run }) {
-  const text = run.wish ? WISHES[run.wish] : run.status;
+export function StatusBadge({ run }: { run: Run }) {
+  const text = run.wish ? REQUESTED[run.wish] : run.status;
   return <span class={`badge ${run.status}`}>{text}</span>;
 }
 
-export function Progress({ run }: { run: Run }) {
+export function RunProgress({ run }: { run: Run }) {
   const share = Math.round(1000 * run.progress) / 10;
   return (
     <div
@@ -30,12 +30,12 @@ export function Progress({ run }: { run: Run }) {
 }
 
 /** Generations after which a rate is worth telling: the first ones compile. */
-const SETTLED = 3;
+const MIN_GENERATIONS = 3;
 
 /** How long a run will take, or what it took, and which of both. */
 export function timeOf(run: Run): { label: string; text: string } {
   if (run.status === "running") {
-    const left = run.generation < SETTLED ? null : run.eta_seconds;
+    const left = run.generation < MIN_GENERATIONS ? null : run.eta_seconds;
     return { label: "Time left", text: duration(left) };
   }
   if (!run.started_at || !run.finished_at) return { label: "Time", text: DASH };
@@ -43,14 +43,14 @@ export function timeOf(run: Run): { label: string; text: string } {
   return { label: "Took", text: duration(seconds) };
 }
 
-interface Wishes {
+interface CommandHandlers {
   pause: (run: Run) => void;
   resume: (run: Run) => void;
   cancel: (run: Run) => void;
 }
 
 /** Only what the run's state allows. */
-export function Actions({ run, on, name }: { run: Run; on: Wishes; name: string }) {
+export function CommandButtons({ run, on, name }: { run: Run; on: CommandHandlers; name: string }) {
   const alive = ["queued", "running", "paused"].includes(run.status);
   if (!alive || run.wish === "cancel") return null;
   return (

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Run } from "../api/types";
-import { endingOf } from "./endReason";
+import { endReasonOf } from "./endReason";
 
 describe("why a run ended", () => {
   const run = { generations: 50, spec: { search: { stop: { evaluations: 5000 } } } } as unknown as Run;
@@ -12,6 +12,6 @@ describe("why a run ended", () => {
     ],
     ["device_hours after generation 3", "It ended early: device hours after generation 3."],
   ])("%j is told as %j", (ended, sentence) => {
-    expect(endingOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
+    expect(endReasonOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
   });
 });

@@ -2,11 +2,11 @@
 
 import { useState } from "preact/hooks";
 import type { Experiment, RunQuery } from "../api/types";
-import { useSettled } from "../store/throttle";
-import { Choice } from "../ui/Select";
+import { useDebounced } from "../store/throttle";
+import { Select } from "../ui/Select";
 import { words } from "../ui/format";
 import { STATES } from "../run/RunStatus";
-import { ALL, NEWEST, ORDERS, isFiltered } from "./runQuery";
+import { NO_FILTERS, NEWEST, ORDERS, isFiltered } from "./runQuery";
 
 type Pair = [value: string, title: string];
 const ANY: Pair = ["", "any"];
@@ -26,7 +26,7 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
     setTyped(null);
     onChange({ q: text || null });
   };
-  useSettled(typed, SETTLE_MS, find);
+  useDebounced(typed, SETTLE_MS, find);
   const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
   return (
     <form
@@ -46,27 +46,27 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
         value={typed ?? query.q ?? ""}
         onInput={(event) => setTyped(event.currentTarget.value)}
       />
-      <Choice
+      <Select
         title="State"
         value={query.status?.[0] ?? ""}
         choices={[ANY, ...STATES.map((state): Pair => [state, words(state)])]}
         onChange={(status) => onChange({ status: status || null })}
       />
-      <Choice
+      <Select
         title="Experiment"
         value={query.experiment?.[0] ?? ""}
         choices={[ANY, ...experiments.map(({ experiment, title }): Pair => [experiment, title])]}
         onChange={(experiment) => onChange({ experiment: experiment || null })}
       />
       {known.length > 0 && (
-        <Choice
+        <Select
           title="Tag"
           value={query.tag ?? ""}
           choices={[ANY, ...known.map((tag): Pair => [tag, tag])]}
           onChange={(tag) => onChange({ tag: tag || null })}
         />
       )}
-      <Choice
+      <Select
         title="Order"
         value={query.sort ?? NEWEST}
         choices={ORDERS}
@@ -78,7 +78,7 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
           class="plain"
           onClick={() => {
             setTyped(null);
-            onChange(ALL);
+            onChange(NO_FILTERS);
           }}
         >
           Show all

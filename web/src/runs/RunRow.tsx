@@ -3,17 +3,17 @@
 import type { Experiment } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { restore } from "../store/lifecycle";
-import { useLive } from "../store/store";
-import { addTag, removeNote, removeTag, say } from "../store/edit";
+import { useStore } from "../store/store";
+import { addTag, removeNote, removeTag, editRun } from "../store/edit";
 import { setQuery } from "../store/router";
-import { freedomOf } from "../ui/coupling";
+import { forceFreeShare } from "../ui/coupling";
 import { DASH, moment, number, short, titleOf } from "../ui/format";
-import { NotFree } from "../ui/NotForceFree";
+import { NotForceFree } from "../ui/NotForceFree";
 import { keyFigureOf } from "../run/figures";
-import { Actions, Badge, Progress, timeOf } from "../run/RunStatus";
-import { Name, Note, Tags } from "../run/RunLabels";
+import { CommandButtons, StatusBadge, RunProgress, timeOf } from "../run/RunStatus";
+import { NameField, NoteField, TagList } from "../run/RunLabels";
 import { Sparkline } from "../charts/Sparkline";
-import { ON } from "../run/runCommands";
+import { commandsFor } from "../run/runCommands";
 
 interface Props {
   id: string;
@@ -24,7 +24,7 @@ interface Props {
 }
 
 export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) {
-  const run = useLive((state) => state.runs.get(id)!);
+  const run = useStore((state) => state.runs.get(id)!);
   const title = titleOf(run, experiments);
   const name = `${title} ${short(run.id)}`;
   const time = timeOf(run);
@@ -40,46 +40,46 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         )}
       </td>
       <th scope="row">
-        <Name of={run} {...{ title, fixed }} onName={(name) => void say(run.id, { name })}>
+        <NameField of={run} {...{ title, fixed }} onName={(name) => void editRun(run.id, { name })}>
           <a class="run-name" href={`/runs/${run.id}`}>
             {title} <code>{short(run.id)}</code>
           </a>
-        </Name>
+        </NameField>
         {run.sweep && (
-          <a class="badge of-sweep" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
+          <a class="badge sweep-link" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
             sweep
           </a>
         )}
-        {freedomOf(run.spec) === "none" && <NotFree />}
+        {forceFreeShare(run.spec) === "none" && <NotForceFree />}
         {run.status === "running" && run.generation === 0 && (
           <span class="row-note quiet">compiling and computing its first generation</span>
         )}
         {run.purge_at && (
           <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>
         )}
-        {run.waiting && <span class="row-note why">{run.waiting}</span>}
+        {run.waiting && <span class="row-note reason">{run.waiting}</span>}
         {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
         {run.warning && <span class="row-note warning-text">{run.warning}</span>}
-        <span class="said">
-          <Tags
+        <span class="labels">
+          <TagList
             {...{ run, name, fixed }}
             known={knownTags}
             onPick={(tag) => setQuery({ tag })}
             onAdd={(tag) => addTag(run, tag)}
             onRemove={(tag) => removeTag(run, tag)}
           />
-          <Note
+          <NoteField
             {...{ run, name, fixed }}
-            onNote={(note) => void say(run.id, { note })}
+            onNote={(note) => void editRun(run.id, { note })}
             onRemove={() => removeNote(run)}
           />
         </span>
       </th>
       <td data-label="State">
-        <Badge run={run} />
+        <StatusBadge run={run} />
       </td>
       <td data-label="Progress" class="with-bar">
-        <Progress run={run} />
+        <RunProgress run={run} />
         <span class="quiet">
           {run.generation} / {run.generations}
         </span>
@@ -104,7 +104,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
               Restore
             </button>
           )}
-          {!fixed && !run.deleted_at && <Actions run={run} on={ON(title)} name={name} />}
+          {!fixed && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={name} />}
           {mayMake && (
             <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
               Clone

@@ -7,20 +7,20 @@ import type { Experiment, RunQuery } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
 import { moreRuns, useRunList, useTags } from "../store/runList";
-import { useLive } from "../store/store";
+import { useStore } from "../store/store";
 import { useSweeps } from "../store/sweeps";
-import { tell } from "../store/toasts";
+import { showToast } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { Filters } from "./Filters";
-import { ALL, ALONE, ariaSort, grouped, isFiltered, nextSort, queryOf } from "./runQuery";
+import { NO_FILTERS, WITHOUT_SWEEP, ariaSort, groupsSweeps, isFiltered, nextSort, queryOf } from "./runQuery";
 import { RunRow } from "./RunRow";
 import { SweepRows } from "./SweepRows";
 import { Welcome } from "./Welcome";
 import "./runs.css";
 
 /** Sweeps that stand above the list, at first and when more are asked for. */
-const FEW = 5;
-const MANY = 100;
+const FIRST_SWEEPS = 5;
+const MAX_SWEEPS = 100;
 const TAGS_ID = "known-tags";
 
 const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
@@ -34,13 +34,13 @@ const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
 
 export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const query = queryOf(address);
-  const together = grouped(query);
-  const listedQuery: RunQuery = together ? { sweep: ALONE } : query;
+  const together = groupsSweeps(query);
+  const listedQuery: RunQuery = together ? { sweep: WITHOUT_SWEEP } : query;
   const { value: fetched, error } = useRunList(listedQuery);
-  const [most, setMost] = useState(FEW);
+  const [most, setMost] = useState(FIRST_SWEEPS);
   const sweeps = useSweeps(most, together).value;
-  const listed = useLive((state) => state.listed);
-  const next = useLive((state) => state.next);
+  const listed = useStore((state) => state.listed);
+  const next = useStore((state) => state.next);
   const experiments = useExperiments().value ?? [];
   const tags = useTags();
   const refusal = useRefusal();
@@ -69,18 +69,18 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       {(listed.length > 0 || swept || isFiltered(query)) && (
         <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
       )}
-      {chosen.length > 0 && <Chosen ids={chosen} onClear={() => setChosen([])} />}
+      {chosen.length > 0 && <CompareBar ids={chosen} onClear={() => setChosen([])} />}
       {empty && query.deleted && !isFiltered(query) && <p class="quiet">The bin is empty.</p>}
-      {empty && (isFiltered(query) ? <NoneFound /> : !query.deleted && <Empty />)}
-      {query.sweep && <OfSweep sweep={query.sweep} />}
-      {swept && <SweepRows page={sweeps!} onMore={most < MANY ? () => setMost(MANY) : null} />}
+      {empty && (isFiltered(query) ? <NoMatches /> : !query.deleted && <NoRuns />)}
+      {query.sweep && <SweepBanner sweep={query.sweep} />}
+      {swept && <SweepRows page={sweeps!} onMore={most < MAX_SWEEPS ? () => setMost(MAX_SWEEPS) : null} />}
       {listed.length > 0 && <Table {...{ query, listed, experiments, chosen }} onChoose={choose} />}
       <datalist id={TAGS_ID}>
         {tags.map((tag) => (
           <option key={tag} value={tag} />
         ))}
       </datalist>
-      {next && <More query={listedQuery} />}
+      {next && <LoadMore query={listedQuery} />}
     </main>
   );
 }
@@ -133,7 +133,7 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
   );
 }
 
-function Chosen({ ids, onClear }: { ids: string[]; onClear: () => void }) {
+function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   return (
     <p class="chosen" role="status">
       <span>
@@ -153,26 +153,26 @@ function Chosen({ ids, onClear }: { ids: string[]; onClear: () => void }) {
 }
 
 /** Which sweep the list is of, and the way to it. */
-function OfSweep({ sweep }: { sweep: string }) {
-  if (sweep === ALONE) return null;
+function SweepBanner({ sweep }: { sweep: string }) {
+  if (sweep === WITHOUT_SWEEP) return null;
   return (
-    <p class="banner why">
+    <p class="banner reason">
       Runs of <a href={`/sweeps/${sweep}`}>one sweep</a>: its page has their curves and figures together.
     </p>
   );
 }
 
-function NoneFound() {
+function NoMatches() {
   return (
     <section class="empty card">
       <h2>No run is like that</h2>
       <p>Change what is asked for above, or look at all of them.</p>
-      <button onClick={() => setQuery(ALL)}>Show all runs</button>
+      <button onClick={() => setQuery(NO_FILTERS)}>Show all runs</button>
     </section>
   );
 }
 
-function Empty() {
+function NoRuns() {
   return (
     <section class="empty card">
       <h2>No runs yet</h2>
@@ -187,11 +187,11 @@ function Empty() {
   );
 }
 
-function More({ query }: { query: RunQuery }) {
+function LoadMore({ query }: { query: RunQuery }) {
   const [busy, setBusy] = useState(false);
   const load = async () => {
     setBusy(true);
-    await moreRuns(query).catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
+    await moreRuns(query).catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
     setBusy(false);
   };
   return (

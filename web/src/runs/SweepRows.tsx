@@ -25,7 +25,7 @@ export function SweepRows({ page, onMore }: Props) {
                 {sizeOf(sweep)} · {moment(sweep.created_at)}
               </span>
             </span>
-            <span class="sweep-standing">
+            <span class="sweep-status">
               <SweepProgress sweep={sweep} />
               <SweepStates sweep={sweep} />
             </span>

@@ -1,15 +1,15 @@
 /** A first visit: the way to an archive that explains itself. */
 
 import { hasArchive } from "../store/fetch";
-import { useLive } from "../store/store";
-import { guided } from "../archive/guide";
+import { useStore } from "../store/store";
+import { wasGuided } from "../archive/guide";
 
 export function Welcome() {
-  const first = useLive((state) => {
+  const first = useStore((state) => {
     const searches = [...state.runs.values()].filter(hasArchive);
     return searches.find((run) => run.demonstration) ?? searches[0];
   });
-  if (guided() || !first) return null;
+  if (wasGuided() || !first) return null;
   return (
     <p class="banner welcome">
       New here? {first.demonstration ? "The demonstration" : "A run"} fills an archive with the best swimmer

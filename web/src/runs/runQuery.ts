@@ -34,17 +34,17 @@ export function queryOf(address: URLSearchParams): RunQuery {
     ...(experiment.length > 0 && { experiment }),
     ...(q && { q }),
     ...(tag && { tag }),
-    ...(sweep && (sweep === ALONE || UUID.test(sweep)) && { sweep }),
+    ...(sweep && (sweep === WITHOUT_SWEEP || UUID.test(sweep)) && { sweep }),
     ...(address.get("deleted") === "true" && { deleted: true }),
     ...(sort && sort !== NEWEST && { sort }),
   };
 }
 
 /** What shows everything again. */
-export const ALL = { q: null, status: null, experiment: null, tag: null, sweep: null };
+export const NO_FILTERS = { q: null, status: null, experiment: null, tag: null, sweep: null };
 
 /** Instead of a sweep: runs that belong to none. */
-export const ALONE = "none";
+export const WITHOUT_SWEEP = "none";
 const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
 
 const listOf = (address: URLSearchParams, key: string) => (address.get(key) ?? "").split(",").filter(Boolean);
@@ -53,7 +53,7 @@ const listOf = (address: URLSearchParams, key: string) => (address.get(key) ?? "
 export const isFiltered = ({ sort: _, deleted: __, ...filters }: RunQuery) => Object.keys(filters).length > 0;
 
 /** What to ask the server for: as long as nothing is asked of them, runs of sweeps stand as one. */
-export const grouped = (query: RunQuery) => Object.keys(query).length === 0;
+export const groupsSweeps = (query: RunQuery) => Object.keys(query).length === 0;
 
 /** The order after one more click on a column: its own first, then reversed, then the usual. */
 export function nextSort(sort: string | undefined, key: string, falling: boolean): string | null {

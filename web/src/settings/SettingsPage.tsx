@@ -2,15 +2,15 @@
 
 import { signOut } from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Caller } from "../api/types";
-import { useCaller } from "../store/principal";
-import { tell } from "../store/toasts";
+import type { Principal } from "../api/types";
+import { usePrincipal } from "../store/principal";
+import { showToast } from "../store/toasts";
 import { Tokens } from "./Tokens";
 import { day } from "./tokenText";
 import "./settings.css";
 
 export function SettingsPage() {
-  const { value, error } = useCaller();
+  const { value, error } = usePrincipal();
   return (
     <main>
       <header class="page-head">
@@ -20,7 +20,7 @@ export function SettingsPage() {
       {!value && !error && <p class="quiet loading">Loading …</p>}
       {value && (
         <div class="settings">
-          <You caller={value} />
+          <PrincipalCard principal={value} />
           {value.scope === "admin" && <Tokens own={value.token} />}
         </div>
       )}
@@ -31,19 +31,19 @@ export function SettingsPage() {
 /** Where this page came from. */
 const PORT = globalThis.location?.port || "80";
 
-const MAY = {
+const SCOPE_TEXT = {
   read: "You may look at everything and change nothing.",
   write: "You may look at everything, and change what you made.",
   admin: "You may do everything, also make tokens for others.",
 };
 
-function You({ caller: { name, scope, expires_at, needed } }: { caller: Caller }) {
+function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { principal: Principal }) {
   const leave = async () => {
     try {
       await signOut();
       location.reload();
     } catch (error) {
-      tell({ kind: "wrong", text: messageOf(error) });
+      showToast({ kind: "wrong", text: messageOf(error) });
     }
   };
   return (
@@ -55,7 +55,7 @@ function You({ caller: { name, scope, expires_at, needed } }: { caller: Caller }
         {needed && <button onClick={leave}>Sign out</button>}
       </header>
       <p>
-        {MAY[scope]}
+        {SCOPE_TEXT[scope]}
         {expires_at && ` Your token is good until ${day(expires_at)}.`}
       </p>
       {!needed && (

@@ -3,16 +3,17 @@
 import { useState } from "preact/hooks";
 import { createToken, readTokens, revokeToken } from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Token, TokenMade, TokenScope } from "../api/types";
+import type { Token, CreatedToken, TokenScope } from "../api/types";
 import { useFetched } from "../store/fetch";
-import { tell } from "../store/toasts";
-import { Twice } from "../ui/ConfirmButton";
+import { showToast } from "../store/toasts";
+import { ConfirmButton } from "../ui/ConfirmButton";
+import { Select } from "../ui/Select";
 import { copyText } from "../ui/clipboard";
-import { TERMS, day, endOf, isOver, standingOf } from "./tokenText";
+import { TERMS, day, endOf, isExpired, tokenStatus } from "./tokenText";
 
 export function Tokens({ own }: { own: string | null }) {
   const [turn, setTurn] = useState(0);
-  const [made, setMade] = useState<TokenMade | null>(null);
+  const [made, setMade] = useState<CreatedToken | null>(null);
   const { value, error } = useFetched(readTokens, [turn]);
   const again = () => setTurn((count) => count + 1);
   return (
@@ -32,15 +33,15 @@ export function Tokens({ own }: { own: string | null }) {
   );
 }
 
-function NewToken({ onMade }: { onMade: (made: TokenMade) => void }) {
+function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
   const [name, setName] = useState("");
   const [scope, setScope] = useState<TokenScope>("write");
-  const [days, setDays] = useState(90);
+  const [days, setDays] = useState("90");
   const [error, setError] = useState<string | null>(null);
   const submit = async (event: Event) => {
     event.preventDefault();
     try {
-      onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(days) }));
+      onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(Number(days)) }));
       setName("");
       setError(null);
     } catch (problem) {
@@ -60,24 +61,8 @@ function NewToken({ onMade }: { onMade: (made: TokenMade) => void }) {
           onInput={({ currentTarget }) => setName(currentTarget.value)}
         />
       </label>
-      <label>
-        May
-        <select value={scope} onChange={({ currentTarget }) => setScope(currentTarget.value as TokenScope)}>
-          <option value="read">look (read)</option>
-          <option value="write">look and make (write)</option>
-          <option value="admin">everything (admin)</option>
-        </select>
-      </label>
-      <label>
-        Good for
-        <select value={days} onChange={({ currentTarget }) => setDays(Number(currentTarget.value))}>
-          {TERMS.map(([title, value]) => (
-            <option key={value} value={value}>
-              {title.toLowerCase()}
-            </option>
-          ))}
-        </select>
-      </label>
+      <Select title="May" choices={SCOPES} value={scope} onChange={(name) => setScope(name as TokenScope)} />
+      <Select title="Good for" choices={LIFETIMES} value={days} onChange={setDays} />
       <button class="primary" disabled={!name.trim()}>
         Make a token
       </button>
@@ -90,8 +75,15 @@ function NewToken({ onMade }: { onMade: (made: TokenMade) => void }) {
   );
 }
 
+const SCOPES = [
+  ["read", "look (read)"],
+  ["write", "look and make (write)"],
+  ["admin", "everything (admin)"],
+] as const;
+const LIFETIMES = TERMS.map(([title, days]) => [String(days), title.toLowerCase()] as const);
+
 /** The only time that it can be read. */
-function Secret({ made, onDone }: { made: TokenMade; onDone: () => void }) {
+function Secret({ made, onDone }: { made: CreatedToken; onDone: () => void }) {
   return (
     <div class="banner secret" role="status">
       <p>
@@ -132,7 +124,7 @@ function Table({ tokens, own, onRevoked }: TableProps) {
         </thead>
         <tbody>
           {tokens.map((token) => (
-            <tr key={token.id} class={isOver(token) ? "quiet" : undefined}>
+            <tr key={token.id} class={isExpired(token) ? "quiet" : undefined}>
               <th scope="row">
                 {token.name}
                 {token.id === own && " (you)"}
@@ -143,10 +135,10 @@ function Table({ tokens, own, onRevoked }: TableProps) {
               <td>{token.scope}</td>
               <td>{day(token.created_at)}</td>
               <td>{token.last_used_at ? day(token.last_used_at) : "Never"}</td>
-              <td>{standingOf(token)}</td>
+              <td>{tokenStatus(token)}</td>
               <td>
-                {!isOver(token) && (
-                  <Twice verb="Revoke" what={token.name} onDo={() => revoke(token, onRevoked)} />
+                {!isExpired(token) && (
+                  <ConfirmButton verb="Revoke" what={token.name} onConfirm={() => revoke(token, onRevoked)} />
                 )}
               </td>
             </tr>
@@ -160,9 +152,9 @@ function Table({ tokens, own, onRevoked }: TableProps) {
 async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void> {
   try {
     await revokeToken(id);
-    tell({ kind: "note", text: `The token of ${name} is revoked.` });
+    showToast({ kind: "note", text: `The token of ${name} is revoked.` });
     onRevoked();
   } catch (error) {
-    tell({ kind: "wrong", text: messageOf(error) });
+    showToast({ kind: "wrong", text: messageOf(error) });
   }
 }

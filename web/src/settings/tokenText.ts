@@ -6,14 +6,14 @@ export const day = (iso: string) =>
   new Date(iso).toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" });
 
 /** How a token stands. */
-export function standingOf(token: Token, now = Date.now()): string {
+export function tokenStatus(token: Token, now = Date.now()): string {
   const { revoked_at, expires_at } = token;
   if (expires_at && Date.parse(expires_at) <= now) return `Expired ${day(expires_at)}`;
   if (revoked_at) return `Revoked ${day(revoked_at)}`;
   return expires_at ? `Until ${day(expires_at)}` : "No end";
 }
 
-export const isOver = (token: Token, now = Date.now()) =>
+export const isExpired = (token: Token, now = Date.now()) =>
   token.revoked_at !== null || (token.expires_at !== null && Date.parse(token.expires_at) <= now);
 
 export const TERMS = [

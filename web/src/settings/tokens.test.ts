@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
 import type { Token } from "../api/types";
-import { endOf, isOver, standingOf } from "./tokenText";
+import { endOf, isExpired, tokenStatus } from "./tokenText";
 
 const NOW = Date.parse("2026-06-15T12:00:00Z");
 
@@ -23,8 +23,8 @@ describe("a token", () => {
     [{ expires_at: "2026-06-15T11:59:00Z" }, "Expired 15 Jun 2026", true],
     [{ revoked_at: "2026-05-02T12:00:00Z" }, "Revoked 2 May 2026", true],
   ])("stands as %o says", (changes, standing, over) => {
-    expect(standingOf(token(changes), NOW)).toBe(standing);
-    expect(isOver(token(changes), NOW)).toBe(over);
+    expect(tokenStatus(token(changes), NOW)).toBe(standing);
+    expect(isExpired(token(changes), NOW)).toBe(over);
   });
 
   it("is good for as many days as were chosen, or for ever", () => {
@@ -40,7 +40,7 @@ describe("an answer that nobody is signed in", () => {
     vi.resetModules();
     const told = vi.fn();
     vi.stubGlobal("dispatchEvent", told);
-    const { isUnknown, noteStatus } = await import("../api/signedOut");
+    const { isSignedOut: isUnknown, noteStatus } = await import("../api/signedOut");
     noteStatus(403);
     expect([isUnknown(), told.mock.calls.length]).toEqual([false, 0]);
     noteStatus(401);

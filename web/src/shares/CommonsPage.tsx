@@ -6,7 +6,7 @@ import type { Share } from "../api/types";
 import { type Motion, decodeMotion } from "../decode/motion";
 import { usePages } from "../store/paging";
 import { poll } from "../store/polling";
-import { Swimming } from "../replay/SwimmingBody";
+import { SwimmingBody } from "../replay/SwimmingBody";
 import "./shares.css";
 
 export function CommonsPage() {
@@ -51,7 +51,7 @@ function Tile({ share }: { share: Share }) {
   }, [share.slug]);
   return (
     <a class="commons-tile card" href={`/s/${share.slug}`} target="_self">
-      <Swimming motion={motion} />
+      <SwimmingBody motion={motion} />
       <strong>{share.title}</strong>
       <span class="quiet small">
         {share.run ? `Archive, generation ${share.generation}` : "Creature"}

@@ -4,11 +4,11 @@ import { creatureFileUrl } from "../api/urls";
 import type { Share } from "../api/types";
 import { copyText } from "../ui/clipboard";
 
-export function Taking({ share, sha }: { share: Share; sha: string }) {
+export function ImportHint({ share, sha }: { share: Share; sha: string }) {
   const file = new URL(creatureFileUrl(sha), share.url).href;
   const command = `curl -sf '${file}' | curl -sf -H 'Content-Type: application/json' --data-binary @- http://127.0.0.1:8000/api/v1/creatures`;
   return (
-    <section class="card taking" aria-labelledby="taking-title">
+    <section class="card import-hint" aria-labelledby="taking-title">
       <div class="card-head">
         <h2 id="taking-title">Import it into your own Microcosmos</h2>
         <span class="spring" />

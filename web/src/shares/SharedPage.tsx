@@ -5,13 +5,13 @@ import * as api from "../api/client";
 import { archiveUrl } from "../api/urls";
 import type { Share } from "../api/types";
 import { useFetched, useRunDetail } from "../store/fetch";
-import { useLive } from "../store/store";
+import { useStore } from "../store/store";
 import { count, moment, short } from "../ui/format";
-import { NotThere } from "../ui/NotFound";
+import { NotFound } from "../ui/NotFound";
 import { ArchiveRun } from "../run/ArchiveRun";
-import { Whole } from "../creature/CreaturePage";
+import { CreatureView } from "../creature/CreaturePage";
 import { FileLink } from "../ui/FileLink";
-import { Taking } from "./ImportHint";
+import { ImportHint } from "./ImportHint";
 import "./shares.css";
 
 interface Props {
@@ -30,7 +30,7 @@ export function SharedPage({ slug, sha, query }: Props) {
     return (
       <main>
         {error ? (
-          <NotThere what="Nothing to see here" reason={error} />
+          <NotFound what="Nothing to see here" reason={error} />
         ) : (
           <p class="quiet loading">Loading …</p>
         )}
@@ -51,13 +51,13 @@ export function SharedPage({ slug, sha, query }: Props) {
         </h1>
       </header>
       <Terms share={share} />
-      {creature && <OneCreature key={creature} {...{ share, query }} sha={creature} />}
-      {share.run && !sha && <OneArchive {...{ share, query }} id={share.run} />}
+      {creature && <SharedCreature key={creature} {...{ share, query }} sha={creature} />}
+      {share.run && !sha && <SharedArchive {...{ share, query }} id={share.run} />}
     </main>
   );
 }
 
-const TEXTS: Record<string, string> = {
+const LICENCE_URLS: Record<string, string> = {
   "CC-BY-4.0": "https://creativecommons.org/licenses/by/4.0/",
   "CC-BY-SA-4.0": "https://creativecommons.org/licenses/by-sa/4.0/",
   "CC-BY-NC-4.0": "https://creativecommons.org/licenses/by-nc/4.0/",
@@ -66,7 +66,7 @@ const TEXTS: Record<string, string> = {
 
 /** Whose it is, what may be done with it, and how long it stays. */
 function Terms({ share: { credit, licence, expires_at, created_at } }: { share: Share }) {
-  const text = TEXTS[licence];
+  const text = LICENCE_URLS[licence];
   return (
     <dl class="facts terms">
       {credit.length > 0 && <Term name="Credit">{credit.join(", ")}</Term>}
@@ -100,14 +100,14 @@ interface CreatureProps {
   query: URLSearchParams;
 }
 
-function OneCreature({ share, sha, query }: CreatureProps) {
+function SharedCreature({ share, sha, query }: CreatureProps) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   if (error) return <p class="banner wrong">{error}</p>;
   if (!creature) return <p class="quiet loading">Loading creature …</p>;
   return (
     <>
-      <Whole {...{ creature, query }} />
-      <Taking share={share} sha={sha} />
+      <CreatureView {...{ creature, query }} />
+      <ImportHint share={share} sha={sha} />
     </>
   );
 }
@@ -118,10 +118,10 @@ interface ArchiveProps {
   query: URLSearchParams;
 }
 
-function OneArchive({ share, id, query }: ArchiveProps) {
+function SharedArchive({ share, id, query }: ArchiveProps) {
   const { error } = useRunDetail(id);
-  const run = useLive((state) => state.runs.get(id));
-  const detail = useLive((state) => state.details.get(id));
+  const run = useStore((state) => state.runs.get(id));
+  const detail = useStore((state) => state.details.get(id));
   if (!run) {
     return error ? <p class="banner wrong">{error}</p> : <p class="quiet loading">Loading …</p>;
   }

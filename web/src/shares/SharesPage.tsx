@@ -5,15 +5,15 @@ import { messageOf } from "../api/problem";
 import type { Share } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { usePages } from "../store/paging";
-import { tell } from "../store/toasts";
+import { showToast } from "../store/toasts";
 import { moment } from "../ui/format";
-import { Twice } from "../ui/ConfirmButton";
+import { ConfirmButton } from "../ui/ConfirmButton";
 import { copyText } from "../ui/clipboard";
 import "./shares.css";
 
 export function SharesPage() {
   const refusal = useRefusal();
-  const { items: shares, error, more, put } = usePages(api.readShares, ({ slug }) => slug);
+  const { items: shares, error, more, replace: put } = usePages(api.readShares, ({ slug }) => slug);
   return (
     <main>
       <header class="page-head">
@@ -93,7 +93,7 @@ function Row({ share, onChange }: { share: Share; onChange: (share: Share) => vo
             >
               Copy link
             </button>
-            <Twice verb="Revoke" what={title} onDo={() => revoke(share, onChange)} />
+            <ConfirmButton verb="Revoke" what={title} onConfirm={() => revoke(share, onChange)} />
           </span>
         )}
       </td>
@@ -104,8 +104,8 @@ function Row({ share, onChange }: { share: Share; onChange: (share: Share) => vo
 async function revoke(share: Share, onChange: (share: Share) => void): Promise<void> {
   try {
     onChange(await api.revoke(share.slug));
-    tell({ kind: "note", text: `${share.title} is not shared any more.` });
+    showToast({ kind: "note", text: `${share.title} is not shared any more.` });
   } catch (error) {
-    tell({ kind: "wrong", text: messageOf(error) });
+    showToast({ kind: "wrong", text: messageOf(error) });
   }
 }

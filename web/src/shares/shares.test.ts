@@ -1,8 +1,8 @@
 /** Publishing, and pages that are open to strangers. */
 
 import { describe, expect, it } from "vitest";
-import { isOpen } from "../api/address";
-import { askedIn } from "../publish/PublishDialog";
+import { isPublicPage } from "../api/address";
+import { requestOf } from "../publish/PublishDialog";
 import { routeOf } from "../store/router";
 
 const form = (fields: Record<string, string>) => {
@@ -15,7 +15,7 @@ describe("what a form asks to publish", () => {
   const plain = { title: " ", credit: "", licence: "CC0-1.0", term: "never" };
 
   it("leaves what is empty to the server", () => {
-    expect(askedIn(form(plain))).toEqual({
+    expect(requestOf(form(plain))).toEqual({
       credit: [],
       licence: "CC0-1.0",
       expires_at: null,
@@ -25,7 +25,7 @@ describe("what a form asks to publish", () => {
 
   it("takes names apart and counts days from now", () => {
     const now = Date.parse("2026-03-01T00:00:00Z");
-    const asked = askedIn(
+    const asked = requestOf(
       form({ ...plain, title: "Eel", credit: "Ada, , Bob ", term: "7", listed: "on" }),
       now,
     );
@@ -34,15 +34,15 @@ describe("what a form asks to publish", () => {
   });
 
   it("takes a date as the clock on the wall has it", () => {
-    const asked = askedIn(form({ ...plain, term: "date", until: "2026-03-01T12:00" }));
+    const asked = requestOf(form({ ...plain, term: "date", until: "2026-03-01T12:00" }));
     expect(asked.expires_at).toBe(new Date("2026-03-01T12:00").toISOString());
   });
 });
 
 describe("pages for strangers", () => {
   it("are shares and the commons", () => {
-    expect(["/s/abc", "/s/abc/creatures/12", "/commons"].every(isOpen)).toBe(true);
-    expect(["/", "/s", "/s/", "/shares", "/creatures/12", "/runs/s/abc"].some(isOpen)).toBe(false);
+    expect(["/s/abc", "/s/abc/creatures/12", "/commons"].every(isPublicPage)).toBe(true);
+    expect(["/", "/s", "/s/", "/shares", "/creatures/12", "/runs/s/abc"].some(isPublicPage)).toBe(false);
   });
 
   it("hold one thing, or a creature of an archive", () => {

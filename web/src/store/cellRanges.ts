@@ -1,6 +1,6 @@
 /** Cells as an address holds them: `3-5,9`. */
 
-export function written(cells: Iterable<number>): string {
+export function formatCells(cells: Iterable<number>): string {
   const runs: [first: number, last: number][] = [];
   for (const cell of [...cells].sort((a, b) => a - b)) {
     const run = runs.at(-1);
@@ -11,7 +11,7 @@ export function written(cells: Iterable<number>): string {
 }
 
 /** Whether a cell is among those that are written; of nothing else is anything made. */
-export function among(text: string): (cell: number) => boolean {
+export function parseCells(text: string): (cell: number) => boolean {
   const runs = text.split(",").flatMap((run): [number, number][] => {
     const [, first, last] = /^(\d+)(?:-(\d+))?$/.exec(run) ?? [];
     return first === undefined ? [] : [[Number(first), Number(last ?? first)]];

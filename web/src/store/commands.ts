@@ -2,25 +2,25 @@
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import { answer } from "./store";
-import { dismiss, tell } from "./toasts";
+import { applyResponse } from "./store";
+import { dismissToast, showToast } from "./toasts";
 
 const UNDO_MS = 4000;
 
-export async function ask(id: string, verb: api.Wish): Promise<void> {
+export async function sendCommand(id: string, verb: api.RunCommand): Promise<void> {
   try {
-    await answer("done", api.wish(id, verb));
+    await applyResponse("change", api.commandRun(id, verb));
   } catch (error) {
-    tell({ kind: "wrong", text: messageOf(error) });
+    showToast({ kind: "wrong", text: messageOf(error) });
   }
 }
 
-export function cancelSoon(id: string, title: string): void {
-  const timer = setTimeout(() => void ask(id, "cancel"), UNDO_MS);
+export function cancelWithUndo(id: string, title: string): void {
+  const timer = setTimeout(() => void sendCommand(id, "cancel"), UNDO_MS);
   const undo = () => {
     clearTimeout(timer);
-    dismiss(toast);
+    dismissToast(toast);
   };
   const action = { label: "Undo", run: undo };
-  const toast = tell({ kind: "note", text: `Cancelling ${title} …`, action });
+  const toast = showToast({ kind: "note", text: `Cancelling ${title} …`, action });
 }

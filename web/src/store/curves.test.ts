@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Archive, GenerationEvent, Generations, Run, Values } from "../api/types";
-import { type Action, EMPTY, type State, epochOf, reduce } from "./reducer";
-import { LONGEST, appendCurves } from "./curves";
+import { type Action, INITIAL_STATE, type State, epochOf, reduce } from "./reducer";
+import { MAX_POINTS, appendCurves } from "./curves";
 import { withPoint } from "./rate";
 
 const RUN = {
@@ -63,26 +63,26 @@ const snapshot = (state: State): Action => ({
 function after(...actions: (Action | ((state: State) => Action))[]): State {
   return actions.reduce<State>((state, action) => {
     return reduce(state, typeof action === "function" ? action(state) : action);
-  }, EMPTY);
+  }, INITIAL_STATE);
 }
 
 const open: Action = { type: "open", run: "a", more: 1 };
 
 describe("long runs", () => {
   it("are thinned out instead of growing for ever", () => {
-    const full = Array.from({ length: LONGEST }, (_, i) => i);
-    const rare = full.map((i) => (i === 7 || i === LONGEST - 1 ? i : null));
+    const full = Array.from({ length: MAX_POINTS }, (_, i) => i);
+    const rare = full.map((i) => (i === 7 || i === MAX_POINTS - 1 ? i : null));
     const costs = { evaluations: full, seconds: full };
     const columns = { generation: full, ...costs, qd_score: full, coverage: full, best: full };
-    const next = appendCurves({ ...columns, summary: { rare } }, generation(LONGEST));
-    expect(next.generation.length).toBe(LONGEST / 2 + 1);
-    expect(next.generation.at(-1)).toBe(LONGEST);
+    const next = appendCurves({ ...columns, summary: { rare } }, generation(MAX_POINTS));
+    expect(next.generation.length).toBe(MAX_POINTS / 2 + 1);
+    expect(next.generation.at(-1)).toBe(MAX_POINTS);
     const told = next.summary.rare!.flatMap((value, i) => (value === null ? [] : [[i, value]]));
     expect(told).toEqual([
       [4, 7],
-      [LONGEST / 2, LONGEST - 1],
+      [MAX_POINTS / 2, MAX_POINTS - 1],
     ]);
-    expect(next.summary.inserted!.length).toBe(LONGEST / 2 + 1);
+    expect(next.summary.inserted!.length).toBe(MAX_POINTS / 2 + 1);
   });
 
   it("keep a straight sparkline straight", () => {
@@ -105,7 +105,7 @@ describe("a run without an archive", () => {
   it("is told of each growth of its table, and others are not", () => {
     const event = { run: "a", generation: 3, rows: [], summary: null };
     const state = after({ type: "results", event }, { type: "results", event });
-    expect([state.tables.get("a"), state.tables.get("b")]).toEqual([2, undefined]);
+    expect([state.tableVersions.get("a"), state.tableVersions.get("b")]).toEqual([2, undefined]);
   });
 
   it("has the newest summary that was told, and keeps it where none comes", () => {
@@ -142,7 +142,7 @@ describe("curves of runs that are looked at beside others", () => {
     const back: Action = { type: "rewind", event: { run: "a", generation: 1 } };
     const state = after(watch(1), curves, third, back);
     expect(told(state)!.generation).toEqual([1]);
-    expect(told(reduce(state, curves(EMPTY)))!.generation).toEqual([1]);
+    expect(told(reduce(state, curves(INITIAL_STATE)))!.generation).toEqual([1]);
     expect(told(reduce(state, curves(state)))!.generation).toEqual([1, 2]);
   });
 

@@ -2,8 +2,8 @@
 
 import type { GenerationEvent, Generations, Values } from "../api/types";
 
-export const LONGEST = 4000;
-const DRAWN = ["generation", "evaluations", "seconds", "qd_score", "coverage", "best"] as const;
+export const MAX_POINTS = 4000;
+const PLOTTED = ["generation", "evaluations", "seconds", "qd_score", "coverage", "best"] as const;
 
 /** What names of counts begin with: of these nothing may be thinned out, they are added up. */
 export const DIVERGED = "diverged: ";
@@ -18,62 +18,67 @@ export interface Curves {
   readonly coverage: Column;
   readonly best: Column;
   /** Other numbers that generations told, some of them now and then. */
-  readonly summary: Told;
+  readonly summary: NumberColumns;
 }
 
-type Told = { readonly [name: string]: Column };
-type Drawn = Pick<Curves, (typeof DRAWN)[number]>;
+type NumberColumns = { readonly [name: string]: Column };
+type PlottedColumns = Pick<Curves, (typeof PLOTTED)[number]>;
 
 export const NO_CURVES: Curves = { ...columns(() => []), summary: {} };
 
 export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
   const last = curves.generation.at(-1);
   if (last !== undefined && event.generation <= last) return curves;
-  const full = curves.generation.length >= LONGEST;
+  const full = curves.generation.length >= MAX_POINTS;
   const kept = full ? columns((name) => curves[name].filter((_, i) => i % 2 === 0)) : curves;
   const next = columns((name) => [...kept[name], event[name]]);
-  const told = mapped(numbersOf(event.summary), (value): Column => [value]);
-  const summary = joined(curves.summary, curves.generation.length, told, 1);
-  return { ...next, summary: full ? thinned(summary) : summary };
+  const told = mapValues(numbersOf(event.summary), (value): Column => [value]);
+  const summary = concatenate(curves.summary, curves.generation.length, told, 1);
+  return { ...next, summary: full ? thinOut(summary) : summary };
 }
 
 /** A snapshot, and what events told of later generations while it was on its way. */
 export function mergeCurves(generations: Generations, known: Curves): Curves {
   const last = generations.generation.at(-1) ?? -1;
   const later = known.generation.map((generation) => generation > last);
-  const news = filtered(known, (i) => later[i]!);
+  const news = filterRows(known, (i) => later[i]!);
   return {
     ...columns((name) => [...generations[name], ...news[name]]),
-    summary: joined(generations.summary, generations.generation.length, news.summary, news.generation.length),
+    summary: concatenate(
+      generations.summary,
+      generations.generation.length,
+      news.summary,
+      news.generation.length,
+    ),
   };
 }
 
 export function cutCurves(curves: Curves, generation: number): Curves {
-  return filtered(curves, (i) => curves.generation[i]! <= generation);
+  return filterRows(curves, (i) => curves.generation[i]! <= generation);
 }
 
-function filtered(curves: Curves, keep: (i: number) => boolean): Curves {
+function filterRows(curves: Curves, keep: (i: number) => boolean): Curves {
   const kept = (column: Column) => column.filter((_, i) => keep(i));
-  return { ...columns((name) => kept(curves[name])), summary: mapped(curves.summary, kept) };
+  return { ...columns((name) => kept(curves[name])), summary: mapValues(curves.summary, kept) };
 }
 
 /** Every second value and the last one; what was told between two of them is not lost. */
-function thinned(told: Told): Told {
+function thinOut(told: NumberColumns): NumberColumns {
   const columns = Object.entries(told).map(([name, column]) => {
     const last = column.length - 1;
     const kept = [...Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k), last];
-    const join = name.startsWith(DIVERGED) ? added : newer;
+    const join = name.startsWith(DIVERGED) ? sumOf : newestOf;
     return [name, kept.map((i, k) => join(column.slice((kept[k - 1] ?? -1) + 1, i + 1)))];
   });
   return Object.fromEntries(columns);
 }
 
-const newer = (values: Column) => values.findLast((value) => value !== null) ?? null;
+const newestOf = (values: Column) => values.findLast((value) => value !== null) ?? null;
 
-const added = (values: Column) =>
+const sumOf = (values: Column) =>
   values.reduce((sum, value) => (value === null ? sum : (sum ?? 0) + value), null);
 
-function joined(one: Told, length: number, other: Told, more: number): Told {
+function concatenate(one: NumberColumns, length: number, other: NumberColumns, more: number): NumberColumns {
   const names = [...new Set([...Object.keys(one), ...Object.keys(other)])];
   const none = (count: number): Column => Array.from({ length: count }, () => null);
   const columns = names.map((name) => [
@@ -88,10 +93,10 @@ function numbersOf(values: Values | null): { [name: string]: number } {
   return Object.fromEntries(numbers) as { [name: string]: number };
 }
 
-function mapped<A, B>(record: { readonly [name: string]: A }, change: (value: A) => B) {
+function mapValues<A, B>(record: { readonly [name: string]: A }, change: (value: A) => B) {
   return Object.fromEntries(Object.entries(record).map(([name, value]) => [name, change(value)]));
 }
 
-function columns(column: (name: (typeof DRAWN)[number]) => Column): Drawn {
-  return Object.fromEntries(DRAWN.map((name) => [name, column(name)])) as unknown as Drawn;
+function columns(column: (name: (typeof PLOTTED)[number]) => Column): PlottedColumns {
+  return Object.fromEntries(PLOTTED.map((name) => [name, column(name)])) as unknown as PlottedColumns;
 }

@@ -2,7 +2,7 @@
 
 import type { Archive, ElitesEvent, GenerationEvent, Generations } from "../api/types";
 import { type Curves, NO_CURVES, appendCurves, cutCurves, mergeCurves } from "./curves";
-import { type Elites, cutElites, mergeElites, withElites } from "./elites";
+import { type Elites, truncateElites, mergeElites, withElites } from "./elites";
 
 export interface Detail {
   /** Null until the first snapshot is there, and where a run has no archive. */
@@ -10,54 +10,54 @@ export interface Detail {
   elites: Elites;
   curves: Curves | null;
   /** What events told since the run was opened or the page reset: it outlives a snapshot. */
-  news: News;
+  recent: Recent;
   watchers: number;
 }
 
-interface News {
+interface Recent {
   readonly elites: Elites;
   readonly curves: Curves;
 }
 
-const NO_NEWS: News = { elites: new Map(), curves: NO_CURVES };
+const NO_RECENT: Recent = { elites: new Map(), curves: NO_CURVES };
 
-export const NOTHING: Detail = {
+export const EMPTY_DETAIL: Detail = {
   archive: null,
   elites: new Map(),
   curves: null,
-  news: NO_NEWS,
+  recent: NO_RECENT,
   watchers: 0,
 };
 
-export function withChanges(detail: Detail, event: ElitesEvent): Detail {
-  const news = { ...detail.news, elites: withElites(detail.news.elites, event) };
-  return { ...detail, elites: withElites(detail.elites, event), news };
+export function withElitesEvent(detail: Detail, event: ElitesEvent): Detail {
+  const recent = { ...detail.recent, elites: withElites(detail.recent.elites, event) };
+  return { ...detail, elites: withElites(detail.elites, event), recent };
 }
 
-export function withCurvePoint(detail: Detail, event: GenerationEvent): Detail {
-  const news = { ...detail.news, curves: appendCurves(detail.news.curves, event) };
-  return { ...detail, curves: detail.curves && appendCurves(detail.curves, event), news };
+export function withGenerationEvent(detail: Detail, event: GenerationEvent): Detail {
+  const recent = { ...detail.recent, curves: appendCurves(detail.recent.curves, event) };
+  return { ...detail, curves: detail.curves && appendCurves(detail.curves, event), recent };
 }
 
-export function replaced(detail: Detail, archive: Archive | null, generations: Generations): Detail {
-  const elites = archive ? mergeElites(archive, detail.news.elites) : detail.elites;
-  return { ...detail, archive, elites, curves: mergeCurves(generations, detail.news.curves) };
+export function withSnapshot(detail: Detail, archive: Archive | null, generations: Generations): Detail {
+  const elites = archive ? mergeElites(archive, detail.recent.elites) : detail.elites;
+  return { ...detail, archive, elites, curves: mergeCurves(generations, detail.recent.curves) };
 }
 
-export function cut(detail: Detail, generation: number): Detail {
-  const { elites, curves, news } = detail;
+export function truncate(detail: Detail, generation: number): Detail {
+  const { elites, curves, recent } = detail;
   return {
     ...detail,
-    elites: cutElites(elites, generation),
+    elites: truncateElites(elites, generation),
     curves: curves && cutCurves(curves, generation),
-    news: {
-      elites: cutElites(news.elites, generation),
-      curves: cutCurves(news.curves, generation),
+    recent: {
+      elites: truncateElites(recent.elites, generation),
+      curves: cutCurves(recent.curves, generation),
     },
   };
 }
 
 /** The old picture until the next snapshot, of which nothing outlives that. */
-export function doubted(detail: Detail): Detail {
-  return { ...detail, news: NO_NEWS };
+export function withoutRecent(detail: Detail): Detail {
+  return { ...detail, recent: NO_RECENT };
 }

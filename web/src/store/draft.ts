@@ -1,7 +1,7 @@
 /** The spec that is being written, kept while the tab lives. */
 
 import type { Spec } from "../api/types";
-import { written } from "./cellRanges";
+import { formatCells } from "./cellRanges";
 
 /** What a spec was begun from. */
 export interface Base {
@@ -12,10 +12,10 @@ export interface Base {
   /** Whether it came as a file, so that this server need not know the name. */
   foreign?: boolean;
   /** Which creatures the run begins from, in place of random ones. */
-  fork?: Forking;
+  fork?: ForkSource;
 }
 
-export interface Forking {
+export interface ForkSource {
   /** Whose creatures they are; null where no run is known. */
   run: string | null;
   /** The only one; null for elites of the run. */
@@ -30,7 +30,7 @@ export interface Forking {
 /** What the address says of it: a word with a name, and of a fork which creatures. */
 export type Address = (readonly [word: string, value: string])[];
 
-export interface Work {
+export interface Draft {
   base: Base;
   spec: Spec;
 }
@@ -45,19 +45,29 @@ export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Ad
   return word && !foreign ? [[word, name]] : null;
 }
 
-function addressOfFork({ run, creature, cells, at }: Forking): Address {
+function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
   if (run === null) return [["begin", creature!]];
-  return forked(run, { creature, cells: cells && written(cells), at: at === null ? null : String(at) });
+  return forkAddress(run, {
+    creature,
+    cells: cells && formatCells(cells),
+    at: at === null ? null : String(at),
+  });
 }
 
 /** The address of a fork: which of a run's creatures it begins from. */
-export function forked(run: string, which: { [name in (typeof WHICH)[number]]?: string | null }): Address {
-  return [["fork", run], ...WHICH.flatMap((name) => (which[name] ? [[name, which[name]] as const] : []))];
+export function forkAddress(
+  run: string,
+  which: { [name in (typeof FORK_PARAMETERS)[number]]?: string | null },
+): Address {
+  return [
+    ["fork", run],
+    ...FORK_PARAMETERS.flatMap((name) => (which[name] ? [[name, which[name]] as const] : [])),
+  ];
 }
 
-export const WHICH = ["creature", "cells", "at"] as const;
+export const FORK_PARAMETERS = ["creature", "cells", "at"] as const;
 
-export function keep(work: Work): void {
+export function saveDraft(work: Draft): void {
   try {
     sessionStorage.setItem(KEY, JSON.stringify(work));
   } catch {
@@ -65,20 +75,20 @@ export function keep(work: Work): void {
   }
 }
 
-export function discard(): void {
+export function discardDraft(): void {
   sessionStorage.removeItem(KEY);
 }
 
 /** The draft, where it was begun from what the address names, or the address names nothing. */
-export function draftFor(wanted: Address | null): Work | null {
-  const work = kept();
+export function loadDraft(wanted: Address | null): Draft | null {
+  const work = storedDraft();
   if (!work || !wanted) return work;
   return String(addressOf(work.base)) === String(wanted) ? work : null;
 }
 
-function kept(): Work | null {
+function storedDraft(): Draft | null {
   try {
-    const work = JSON.parse(sessionStorage.getItem(KEY) ?? "null") as Work | null;
+    const work = JSON.parse(sessionStorage.getItem(KEY) ?? "null") as Draft | null;
     return work?.base?.spec && work.spec ? work : null;
   } catch {
     return null;

@@ -3,45 +3,45 @@
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Run, RunChange } from "../api/types";
-import { answer, current, dispatch } from "./store";
-import { dismiss, tell } from "./toasts";
+import { applyResponse, currentState, dispatch } from "./store";
+import { dismissToast, showToast } from "./toasts";
 
 /** Shown at once; taken back where the server refuses it. */
-export async function say(id: string, change: RunChange): Promise<void> {
-  const before = current().runs.get(id);
-  dispatch({ type: "said", run: id, change });
+export async function editRun(id: string, change: RunChange): Promise<void> {
+  const before = currentState().runs.get(id);
+  dispatch({ type: "edit", run: id, change });
   try {
-    await answer("done", api.changeRun(id, change));
+    await applyResponse("change", api.changeRun(id, change));
   } catch (error) {
     if (before) {
       const { name, tags, note } = before;
-      dispatch({ type: "said", run: id, change: { name, tags, note } });
+      dispatch({ type: "edit", run: id, change: { name, tags, note } });
     }
-    tell({ kind: "wrong", text: messageOf(error) });
+    showToast({ kind: "wrong", text: messageOf(error) });
   }
 }
 
 export function addTag({ id, tags }: Run, tag: string): void {
-  if (!tags.includes(tag)) void say(id, { tags: [...tags, tag] });
+  if (!tags.includes(tag)) void editRun(id, { tags: [...tags, tag] });
 }
 
 export function removeTag({ id, tags }: Run, tag: string): void {
-  void say(id, { tags: tags.filter((each) => each !== tag) });
-  undoable(`Removed the tag ${tag}.`, () => {
-    const run = current().runs.get(id);
+  void editRun(id, { tags: tags.filter((each) => each !== tag) });
+  offerUndo(`Removed the tag ${tag}.`, () => {
+    const run = currentState().runs.get(id);
     if (run) addTag(run, tag);
   });
 }
 
 export function removeNote({ id, note }: Run): void {
-  void say(id, { note: null });
-  undoable("Removed the note.", () => void say(id, { note }));
+  void editRun(id, { note: null });
+  offerUndo("Removed the note.", () => void editRun(id, { note }));
 }
 
-function undoable(text: string, back: () => void): void {
+function offerUndo(text: string, back: () => void): void {
   const undo = () => {
-    dismiss(toast);
+    dismissToast(toast);
     back();
   };
-  const toast = tell({ kind: "note", text, action: { label: "Undo", run: undo } });
+  const toast = showToast({ kind: "note", text, action: { label: "Undo", run: undo } });
 }

@@ -8,19 +8,19 @@ export interface Elite {
   generation: number;
   creature: string;
   /** The generation that told of it. */
-  told: number;
+  seenAt: number;
 }
 
 export type Elites = ReadonlyMap<number, Elite>;
 
 /** The elites after an event: columns of changed cells, and the generation it tells of. */
-export function withElites(elites: Elites, { generation, ...columns }: Changes): Elites {
+export function withElites(elites: Elites, { generation, ...columns }: CellColumns): Elites {
   const next = new Map(elites);
   columns.cell.forEach((cell, i) => next.set(cell, eliteAt(columns, i, generation)));
   return next;
 }
 
-type Changes = ArchiveColumns & { generation: number };
+type CellColumns = ArchiveColumns & { generation: number };
 
 /** A snapshot, and what events told of later generations while it was on its way. */
 export function mergeElites(archive: Archive, known: Elites): Elites {
@@ -29,13 +29,13 @@ export function mergeElites(archive: Archive, known: Elites): Elites {
     next.set(cell, eliteAt(archive, i, archive.elite_generation[i]!));
   });
   for (const [cell, elite] of known) {
-    if (elite.told > archive.generation) next.set(cell, elite);
+    if (elite.seenAt > archive.generation) next.set(cell, elite);
   }
   return next;
 }
 
-export function cutElites(elites: Elites, generation: number): Elites {
-  return new Map([...elites].filter(([, elite]) => elite.told <= generation));
+export function truncateElites(elites: Elites, generation: number): Elites {
+  return new Map([...elites].filter(([, elite]) => elite.seenAt <= generation));
 }
 
 export function eliteAt(columns: ArchiveColumns, i: number, told: number): Elite {
@@ -44,6 +44,6 @@ export function eliteAt(columns: ArchiveColumns, i: number, told: number): Elite
     descriptors: columns.descriptors[i]!,
     generation: columns.elite_generation[i]!,
     creature: columns.creature[i]!,
-    told,
+    seenAt: told,
   };
 }

@@ -6,9 +6,9 @@ import { messageOf } from "../api/problem";
 import type { Archive, Experiment, History, Results, Run } from "../api/types";
 import type { Curves } from "./curves";
 import type { Elites } from "./elites";
-import { answer, current, dispatch, useLive } from "./store";
-import { look } from "./retain";
-import { usePaced } from "./throttle";
+import { applyResponse, currentState, dispatch, useStore } from "./store";
+import { retain } from "./retain";
+import { useThrottled } from "./throttle";
 import { poll } from "./polling";
 import { epochOf } from "./reducer";
 
@@ -51,11 +51,11 @@ export function useExperiments(): Loaded<Experiment[]> {
 
 /** Keeps one run, its archive and its curves fetched, after every rewind and reset anew. */
 export function useRunDetail(id: string): Loaded<true> {
-  const epoch = useLive((state) => epochOf(state, id));
-  const binned = useLive((state) => Boolean(state.runs.get(id)?.deleted_at));
-  useEffect(() => look("open", [id]), [id]);
+  const epoch = useStore((state) => epochOf(state, id));
+  const binned = useStore((state) => Boolean(state.runs.get(id)?.deleted_at));
+  useEffect(() => retain("open", [id]), [id]);
   return useFetched(async () => {
-    const run = await answer("answer", api.readRun(id));
+    const run = await applyResponse("response", api.readRun(id));
     if (run.deleted_at) return true as const;
     const [archive, generations] = await Promise.all([
       hasArchive(run) ? api.readArchive(id) : null,
@@ -69,10 +69,10 @@ export function useRunDetail(id: string): Loaded<true> {
 /** Curves of several runs by their ids, fetched and alive while somebody looks at them. */
 export function useCurvesOf(ids: string[]): Loaded<ReadonlyMap<string, Curves>> {
   const asked = ids.join();
-  const epochs = useLive((state) => ids.map((id) => epochOf(state, id)).join());
-  useEffect(() => look("watch", ids), [asked]);
+  const epochs = useStore((state) => ids.map((id) => epochOf(state, id)).join());
+  useEffect(() => retain("watch", ids), [asked]);
   const { value, error } = useFetched(() => Promise.all(ids.map(readCurves)), [asked, epochs]);
-  const watching = useLive((state) => state.watching);
+  const watching = useStore((state) => state.watching);
   const known = ids.flatMap((id): [string, Curves][] => {
     const curves = watching.get(id)?.curves;
     return curves ? [[id, curves]] : [];
@@ -82,8 +82,8 @@ export function useCurvesOf(ids: string[]): Loaded<ReadonlyMap<string, Curves>> 
 
 /** The run itself comes along: whoever shows its curves names it. */
 async function readCurves(id: string): Promise<true> {
-  const epoch = epochOf(current(), id);
-  const run = answer("answer", api.readRun(id));
+  const epoch = epochOf(currentState(), id);
+  const run = applyResponse("response", api.readRun(id));
   const [generations] = await Promise.all([api.readGenerations(id, POINTS), run]);
   dispatch({ type: "curves", run: id, epoch, generations });
   return true;
@@ -93,33 +93,33 @@ async function readCurves(id: string): Promise<true> {
  * What was recorded of the elites under some names: by name, then by creature. Of an archive that
  * changes, only what is new is asked for; who has left stays known.
  */
-export function useFeatures(id: string, names: string[], elites: Elites): Features {
-  const epoch = useLive((state) => epochOf(state, id));
+export function useMeasures(id: string, names: string[], elites: Elites): Measures {
+  const epoch = useStore((state) => epochOf(state, id));
   const asked = names.join(",");
-  const present = usePaced(asked ? elites : null);
+  const present = useThrottled(asked ? elites : null);
   const of = `${id} ${epoch} ${asked}`;
-  const known = useRef<{ of: string; after?: number; features: Features }>({ of, features: NONE });
+  const known = useRef<{ of: string; after?: number; features: Measures }>({ of, features: NO_MEASURES });
   const { value } = useFetched(async () => {
-    if (!asked) return NONE;
-    const { after, features } = known.current.of === of ? known.current : { features: NONE };
+    if (!asked) return NO_MEASURES;
+    const { after, features } = known.current.of === of ? known.current : { features: NO_MEASURES };
     const archive = await api.readArchive(id, asked.split(","), { after });
-    known.current = { of, after: archive.generation, features: joined(features, columnsOf(archive)) };
+    known.current = { of, after: archive.generation, features: mergeMeasures(features, measuresOf(archive)) };
     return known.current.features;
   }, [of, present]);
-  return value ?? NONE;
+  return value ?? NO_MEASURES;
 }
 
-type Features = ReadonlyMap<string, ReadonlyMap<string, number>>;
+type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
-const NONE: Features = new Map();
+const NO_MEASURES: Measures = new Map();
 
-function joined(known: Features, added: Features): Features {
+function mergeMeasures(known: Measures, added: Measures): Measures {
   const column = ([name, values]: [string, ReadonlyMap<string, number>]) =>
     [name, new Map([...(known.get(name) ?? []), ...values])] as const;
   return new Map([...added].map(column));
 }
 
-function columnsOf({ creature, features }: Pick<Archive, "creature" | "features">): Features {
+function measuresOf({ creature, features }: Pick<Archive, "creature" | "features">): Measures {
   const columns = Object.entries(features).map(([name, values]) => {
     const known = values.flatMap((value, i): [string, number][] =>
       value === null ? [] : [[creature[i]!, value]],
@@ -131,7 +131,7 @@ function columnsOf({ creature, features }: Pick<Archive, "creature" | "features"
 
 interface Past {
   history: History;
-  features: Features;
+  features: Measures;
 }
 
 /**
@@ -139,14 +139,14 @@ interface Past {
  * wanted that the run had not come to.
  */
 export function useHistory(id: string, names: string[], at: number | null): Loaded<Past | null> {
-  const epoch = useLive((state) => epochOf(state, id));
+  const epoch = useStore((state) => epochOf(state, id));
   const [turn, setTurn] = useState(0);
   const asked = names.join(",");
   const wanted = at !== null;
   const loaded = useFetched(async () => {
     if (!wanted) return null;
     const history = await api.readHistory(id, asked ? asked.split(",") : []);
-    return { history, features: columnsOf(history) };
+    return { history, features: measuresOf(history) };
   }, [id, epoch, asked, wanted, turn]);
   const outgrown = wanted && loaded.value !== null && at > loaded.value.history.generation;
   useEffect(() => {
@@ -169,7 +169,7 @@ export function useCentroids(id: string, wanted: boolean): number[][] | null {
 
 /** Keeps the table of a run fetched: anew after every row, rewind and reset. */
 export function useResults(id: string): Loaded<Results> {
-  const epoch = useLive((state) => epochOf(state, id));
-  const told = useLive((state) => state.tables.get(id));
+  const epoch = useStore((state) => epochOf(state, id));
+  const told = useStore((state) => state.tableVersions.get(id));
   return useFetched(() => api.readResults(id), [id, epoch, told]);
 }

@@ -3,32 +3,32 @@
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Run } from "../api/types";
-import { answer } from "./store";
-import { dismiss, tell } from "./toasts";
+import { applyResponse } from "./store";
+import { dismissToast, showToast } from "./toasts";
 
 /** What the server answers is shown; where it refuses, its words are. */
-async function asked(answered: Promise<Run>): Promise<boolean> {
+async function attempt(answered: Promise<Run>): Promise<boolean> {
   try {
-    await answer("done", answered);
+    await applyResponse("change", answered);
     return true;
   } catch (error) {
-    tell({ kind: "wrong", text: messageOf(error) });
+    showToast({ kind: "wrong", text: messageOf(error) });
     return false;
   }
 }
 
-export const extend = (id: string, generations: number) => asked(api.extendRun(id, generations));
+export const extend = (id: string, generations: number) => attempt(api.extendRun(id, generations));
 
-export const restore = (id: string) => asked(api.restoreRun(id));
+export const restore = (id: string) => attempt(api.restoreRun(id));
 
 /** Into the bin at once; the note leads back, and so does the bin. */
 export async function remove(id: string, title: string): Promise<boolean> {
-  if (!(await asked(api.deleteRun(id)))) return false;
+  if (!(await attempt(api.deleteRun(id)))) return false;
   const back = () => {
-    dismiss(toast);
+    dismissToast(toast);
     void restore(id);
   };
   const action = { label: "Undo", run: back };
-  const toast = tell({ kind: "note", text: `${title} is in the bin.`, action });
+  const toast = showToast({ kind: "note", text: `${title} is in the bin.`, action });
   return true;
 }

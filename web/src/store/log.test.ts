@@ -12,7 +12,7 @@ vi.mock("../api/client", () => ({
   },
 }));
 
-const { continued } = await import("./log");
+const { extendLog: continued } = await import("./log");
 
 const entries = (from: number, to: number, attempt: number) =>
   Array.from({ length: to - from }, (_, i) => ({ id: from + i, attempt }) as LogEntry);

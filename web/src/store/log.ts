@@ -4,28 +4,28 @@ import { useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import type { LogEntry, Run } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
-import { useLive } from "./store";
-import { usePaced } from "./throttle";
-import { CALM_MS } from "./runPage";
+import { useStore } from "./store";
+import { useThrottled } from "./throttle";
+import { SLOW_MS } from "./runPage";
 import { epochOf } from "./reducer";
 
 /** As many entries as the server tells at once. */
 const PAGE = 500;
 
-interface Journal extends Loaded<LogEntry[]> {
+interface LoadedLog extends Loaded<LogEntry[]> {
   /** Where there may be older entries: reads them all. */
   earlier: (() => void) | null;
 }
 
 /** Anew whenever the run's standing changes, and now and then while it goes on. */
-export function useLog({ id, ...run }: Run): Journal {
-  const epoch = useLive((state) => epochOf(state, id));
+export function useLog({ id, ...run }: Run): LoadedLog {
+  const epoch = useStore((state) => epochOf(state, id));
   const { status, wish, attempt, warning, error, device } = run;
-  const calm = usePaced(run.generation, CALM_MS);
+  const calm = useThrottled(run.generation, SLOW_MS);
   const known = useRef<LogEntry[]>([]);
   const [whole, setWhole] = useState(false);
   const loaded = useFetched(async () => {
-    known.current = await continued(id, known.current, whole);
+    known.current = await extendLog(id, known.current, whole);
     return known.current;
   }, [id, epoch, status, wish, attempt, warning, error, device, calm, whole]);
   const earlier = () => {
@@ -37,15 +37,15 @@ export function useLog({ id, ...run }: Run): Journal {
 }
 
 /** What is known, with the newest entries; with nothing known, all of them or the last ones. */
-export async function continued(id: string, known: readonly LogEntry[], whole: boolean): Promise<LogEntry[]> {
+export async function extendLog(id: string, known: readonly LogEntry[], whole: boolean): Promise<LogEntry[]> {
   // Entries of the attempt at hand are dropped again where newer ones say the same.
   const kept = known.filter(({ attempt }) => attempt < known.at(-1)!.attempt);
   const after = kept.at(-1)?.id ?? (whole ? 0 : undefined);
-  return [...kept, ...(await following(id, after))];
+  return [...kept, ...(await readFollowing(id, after))];
 }
 
-async function following(id: string, after: number | undefined): Promise<LogEntry[]> {
+async function readFollowing(id: string, after: number | undefined): Promise<LogEntry[]> {
   const { entries } = await api.readLog(id, PAGE, after);
   if (after === undefined || entries.length < PAGE) return entries;
-  return [...entries, ...(await following(id, entries.at(-1)!.id))];
+  return [...entries, ...(await readFollowing(id, entries.at(-1)!.id))];
 }

@@ -6,17 +6,17 @@ import { type Motion, decodeMotion } from "../decode/motion";
 import { poll } from "./polling";
 
 /** The renderer makes one replay after another: a hovered cell waits behind these, not a wall. */
-const AT_ONCE = 8;
+const MAX_REQUESTS = 8;
 /** So many that are not seen any more are kept: who scrolls back finds them. */
-const SPARE = 100;
+const MAX_HIDDEN = 100;
 /** A wall that is scrolled asks for nothing until it rests. */
-const REST_MS = 150;
+const DEBOUNCE_MS = 150;
 
-const kept = new Map<string, Motion>();
-let seen: ReadonlySet<string> = new Set();
+const cache = new Map<string, Motion>();
+let visible: ReadonlySet<string> = new Set();
 /** What is being asked for, and how to stop asking. */
-const underway = new Map<string, () => void>();
-let waiting: string[] = [];
+const requests = new Map<string, () => void>();
+let pending: string[] = [];
 const listeners = new Set<() => void>();
 
 /** The motions there are; of these creatures those that lack are asked for in their order. */
@@ -31,64 +31,64 @@ export function useMotions(shas: readonly string[]): ReadonlyMap<string, Motion>
     };
   }, []);
   useEffect(() => {
-    const timer = setTimeout(() => want(shas), REST_MS);
+    const timer = setTimeout(() => request(shas), DEBOUNCE_MS);
     return () => clearTimeout(timer);
   }, [shas.join()]);
-  return kept;
+  return cache;
 }
 
-function want(shas: readonly string[]): void {
-  seen = new Set(shas);
+function request(shas: readonly string[]): void {
+  visible = new Set(shas);
   for (const sha of shas) {
-    const motion = kept.get(sha);
-    if (motion) keep(sha, motion);
+    const motion = cache.get(sha);
+    if (motion) store(sha, motion);
   }
-  waiting = shas.filter((sha) => !kept.has(sha) && !underway.has(sha));
-  fill();
+  pending = shas.filter((sha) => !cache.has(sha) && !requests.has(sha));
+  startRequests();
 }
 
-function fill(): void {
-  while (underway.size < AT_ONCE && waiting.length > 0) begin(waiting.shift()!);
+function startRequests(): void {
+  while (requests.size < MAX_REQUESTS && pending.length > 0) startRequest(pending.shift()!);
 }
 
-function begin(sha: string): void {
+function startRequest(sha: string): void {
   const done = () => {
-    underway.delete(sha);
-    fill();
+    requests.delete(sha);
+    startRequests();
   };
   const end = poll(async () => decoded(await api.readMotion(sha)), {
     value: (motion) => {
-      keep(sha, motion);
+      store(sha, motion);
       done();
       for (const listener of listeners) listener();
     },
     note: () => {},
     error: done, // It stays still; its own page says what is wrong.
   });
-  underway.set(sha, end);
+  requests.set(sha, end);
 }
 
 const decoded = (bytes: ArrayBuffer | null) => bytes && decodeMotion(bytes);
 
 function stop(): void {
-  waiting = [];
-  for (const end of underway.values()) end();
-  underway.clear();
-  seen = new Set();
+  pending = [];
+  for (const end of requests.values()) end();
+  requests.clear();
+  visible = new Set();
   trim();
 }
 
 /** As the newest. */
-function keep(sha: string, motion: Motion): void {
-  kept.delete(sha);
-  kept.set(sha, motion);
+function store(sha: string, motion: Motion): void {
+  cache.delete(sha);
+  cache.set(sha, motion);
   trim();
 }
 
 /** Of those that are not seen the oldest go where there are too many. */
 function trim(): void {
-  for (const oldest of kept.keys()) {
-    if (kept.size <= seen.size + SPARE) break;
-    if (!seen.has(oldest)) kept.delete(oldest);
+  for (const oldest of cache.keys()) {
+    if (cache.size <= visible.size + MAX_HIDDEN) break;
+    if (!visible.has(oldest)) cache.delete(oldest);
   }
 }

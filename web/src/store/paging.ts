@@ -2,7 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
-import { useLive } from "./store";
+import { useStore } from "./store";
 
 interface Page<T> {
   items: T[];
@@ -16,14 +16,14 @@ export interface Pages<T> {
   /** Null where there is no more. */
   more: (() => void) | null;
   /** Puts something that has changed in the place of what it was. */
-  put: (changed: T) => void;
+  replace: (changed: T) => void;
 }
 
 /** From its beginning again whenever what was fetched is not to be trusted any more. */
 export function usePages<T>(read: (cursor?: string) => Promise<Page<T>>, key: (item: T) => string): Pages<T> {
   const [page, setPage] = useState<Page<T> | null>(null);
   const [error, setError] = useState<string | null>(null);
-  const epoch = useLive((state) => state.epoch);
+  const epoch = useStore((state) => state.epoch);
   const load = async (cursor?: string) => {
     try {
       const { items, next } = await read(cursor);
@@ -39,7 +39,7 @@ export function usePages<T>(read: (cursor?: string) => Promise<Page<T>>, key: (i
     items: page?.items ?? null,
     error,
     more: next ? () => void load(next) : null,
-    put: (changed) =>
+    replace: (changed) =>
       setPage(
         (old) =>
           old && { ...old, items: old.items.map((item) => (key(item) === key(changed) ? changed : item)) },

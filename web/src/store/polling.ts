@@ -1,10 +1,10 @@
 /** Asking the server again and again until it has what is being made. */
 
-import { messageOf, passes } from "../api/problem";
+import { messageOf, isTransient } from "../api/problem";
 
 export const POLL_MS = 1000;
 
-interface Hearing<T> {
+interface PollHandlers<T> {
   value: (value: T) => void;
   /** Why the last try had no answer, though the next may; null once one came. */
   note: (text: string | null) => void;
@@ -12,7 +12,7 @@ interface Hearing<T> {
 }
 
 /** Asks until the answer is not null, or a failure that stays; returns what stops it. */
-export function poll<T>(ask: () => Promise<T | null>, hearing: Hearing<T>): () => void {
+export function poll<T>(ask: () => Promise<T | null>, handlers: PollHandlers<T>): () => void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   let wanted = true;
   const turn = async () => {
@@ -26,13 +26,13 @@ export function poll<T>(ask: () => Promise<T | null>, hearing: Hearing<T>): () =
     timer = setTimeout(turn, POLL_MS);
   };
   const hear = (value: T | null) => {
-    hearing.note(null);
+    handlers.note(null);
     if (value === null) again();
-    else hearing.value(value);
+    else handlers.value(value);
   };
   const fail = (reason: unknown) => {
-    if (!passes(reason)) return hearing.error(messageOf(reason));
-    hearing.note(messageOf(reason));
+    if (!isTransient(reason)) return handlers.error(messageOf(reason));
+    handlers.note(messageOf(reason));
     again();
   };
   void turn();

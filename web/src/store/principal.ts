@@ -1,30 +1,30 @@
 /** Who the server takes us for; that it takes us for nobody; and what it would refuse us. */
 
 import { useEffect, useState } from "preact/hooks";
-import { readCaller } from "../api/client";
-import type { Caller, Owned } from "../api/types";
-import { UNKNOWN, isUnknown } from "../api/signedOut";
+import { readPrincipal } from "../api/client";
+import type { Principal, Owned } from "../api/types";
+import { SIGNED_OUT, isSignedOut } from "../api/signedOut";
 import { type Loaded, useFetched } from "./fetch";
-import { dispatch, useLive } from "./store";
+import { dispatch, useStore } from "./store";
 
-export function useCaller(): Loaded<Caller> {
-  return useFetched(readCaller, []);
+export function usePrincipal(): Loaded<Principal> {
+  return useFetched(readPrincipal, []);
 }
 
 /** Keeps in the store who we are; the server may be away, and is asked again with the stream. */
-export async function learnCaller(): Promise<void> {
-  const caller = await readCaller().catch(() => null);
-  if (caller) dispatch({ type: "caller", caller });
+export async function loadPrincipal(): Promise<void> {
+  const principal = await readPrincipal().catch(() => null);
+  if (principal) dispatch({ type: "principal", principal });
 }
 
 /** Whether a request was refused for want of a token; nothing works then until there is one. */
-export function useUnknown(): boolean {
-  const [unknown, setUnknown] = useState(isUnknown);
+export function useSignedOut(): boolean {
+  const [unknown, setUnknown] = useState(isSignedOut);
   useEffect(() => {
-    const hear = () => setUnknown(isUnknown());
+    const hear = () => setUnknown(isSignedOut());
     hear();
-    window.addEventListener(UNKNOWN, hear);
-    return () => window.removeEventListener(UNKNOWN, hear);
+    window.addEventListener(SIGNED_OUT, hear);
+    return () => window.removeEventListener(SIGNED_OUT, hear);
   }, []);
   return unknown;
 }
@@ -32,15 +32,15 @@ export function useUnknown(): boolean {
 /** Why we may not make anything here, or not change what somebody made; null where we may. */
 export const useRefusal = (thing?: Owned): string | null =>
   refusalOf(
-    useLive((state) => state.caller),
+    useStore((state) => state.principal),
     thing,
   );
 
 /** Names of tokens need not differ: where they are the same, the server has the last word. */
-export function refusalOf(caller: Caller | null, thing?: Owned): string | null {
-  if (!caller || caller.scope === "admin") return null;
-  if (caller.scope === "read") return "Your token may only look.";
-  if (thing?.owner === undefined || thing.owner === caller.name) return null;
+export function refusalOf(principal: Principal | null, thing?: Owned): string | null {
+  if (!principal || principal.scope === "admin") return null;
+  if (principal.scope === "read") return "Your token may only look.";
+  if (thing?.owner === undefined || thing.owner === principal.name) return null;
   const owner = thing.owner ? `${thing.owner} or an admin` : "an admin";
   return `Only ${owner} may change it.`;
 }

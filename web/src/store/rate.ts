@@ -6,16 +6,16 @@ import type { GenerationEvent, Run } from "../api/types";
 const RECENT = 12;
 const POINTS = 32;
 
-export type Pace = readonly Pick<GenerationEvent, "generation" | "evaluations" | "seconds">[];
+export type RateWindow = readonly Pick<GenerationEvent, "generation" | "evaluations" | "seconds">[];
 
-export function withEvent(pace: Pace, event: GenerationEvent): Pace {
+export function withEvent(pace: RateWindow, event: GenerationEvent): RateWindow {
   const last = pace.at(-1);
   const kept = last && last.generation < event.generation ? pace : [];
   return [...kept.slice(1 - RECENT), event];
 }
 
 /** Evaluations a second and the seconds left, where two generations are known. */
-export function rateOf(pace: Pace, run: Run): Partial<Run> {
+export function rateOf(pace: RateWindow, run: Run): Partial<Run> {
   const [first, last] = [pace[0], pace.at(-1)];
   if (!first || !last || last.seconds <= first.seconds) return {};
   const rate = (last.evaluations - first.evaluations) / (last.seconds - first.seconds);

@@ -4,54 +4,56 @@ import type { Run, RunChange, RunEvent } from "../api/types";
 import type { State } from "./reducer";
 
 /** Something was heard of a run, beside which answers on their way are old. */
-export function heardOf(state: State, id: string): State {
-  const heard = state.heard + 1;
-  return { ...state, heard, last: new Map(state.last).set(id, heard) };
+export function noteEvent(state: State, id: string): State {
+  const eventCount = state.eventCount + 1;
+  return { ...state, eventCount, lastEvent: new Map(state.lastEvent).set(id, eventCount) };
 }
 
-export function told(state: State, event: RunEvent): State {
-  const next = heardOf(state, event.id);
+export function applyEvent(state: State, event: RunEvent): State {
+  const next = noteEvent(state, event.id);
   const known = state.runs.get(event.id);
   const spec = known?.spec ?? event.spec;
-  if (!spec) return { ...next, early: new Map(state.early).set(event.id, event) };
+  if (!spec) return { ...next, eventsWithoutSpec: new Map(state.eventsWithoutSpec).set(event.id, event) };
   const run = { ...event, spec };
-  const news = state.news + Number(!known || DECISIVE.some((name) => differ(run[name], known[name])));
-  return { ...next, news, runs: new Map(state.runs).set(run.id, run) };
+  const listVersion =
+    state.listVersion + Number(!known || LIST_FIELDS.some((name) => isDifferent(run[name], known[name])));
+  return { ...next, listVersion, runs: new Map(state.runs).set(run.id, run) };
 }
 
 /** What decides whether a run belongs to a list, or why it waits; its figures come by the second. */
-const DECISIVE = ["status", "name", "tags", "note", "deleted_at"] as const;
+const LIST_FIELDS = ["status", "name", "tags", "note", "deleted_at"] as const;
 
-const differ = (one: unknown, other: unknown) => JSON.stringify(one) !== JSON.stringify(other);
+const isDifferent = (one: unknown, other: unknown) => JSON.stringify(one) !== JSON.stringify(other);
 
 /** Answers to what was asked when so many events had been heard. */
-export function answered(state: State, answers: readonly Run[], sent: number): State {
-  const [runs, last, early] = [new Map(state.runs), new Map(state.last), new Map(state.early)];
+export function applyResponses(state: State, answers: readonly Run[], sent: number): State {
+  const [runs, lastEvent] = [new Map(state.runs), new Map(state.lastEvent)];
+  const eventsWithoutSpec = new Map(state.eventsWithoutSpec);
   for (const answer of answers) {
-    runs.set(answer.id, believed(state, answer, sent));
-    last.set(answer.id, Math.max(sent, last.get(answer.id) ?? 0));
-    early.delete(answer.id);
+    runs.set(answer.id, newerOf(state, answer, sent));
+    lastEvent.set(answer.id, Math.max(sent, lastEvent.get(answer.id) ?? 0));
+    eventsWithoutSpec.delete(answer.id);
   }
-  return { ...state, runs, last, early };
+  return { ...state, runs, lastEvent, eventsWithoutSpec };
 }
 
 /** What a run is never changes: its spec stays the same object. */
-function believed(state: State, answer: Run, sent: number): Run {
+function newerOf(state: State, answer: Run, sent: number): Run {
   const known = state.runs.get(answer.id);
-  const late = sent < Math.max(state.last.get(answer.id) ?? 0, state.trusted);
+  const late = sent < Math.max(state.lastEvent.get(answer.id) ?? 0, state.trustedSince);
   if (!late) return { ...answer, spec: known?.spec ?? answer.spec };
-  return known ?? { ...answer, ...state.early.get(answer.id), spec: answer.spec };
+  return known ?? { ...answer, ...state.eventsWithoutSpec.get(answer.id), spec: answer.spec };
 }
 
 /** The answer to a change that was asked for here: which runs a list has may be another now. */
-export function done(state: State, answer: Run, sent: number): State {
-  const next = heardOf(answered(state, [answer], sent), answer.id);
-  return { ...next, news: state.news + 1 };
+export function applyChange(state: State, answer: Run, sent: number): State {
+  const next = noteEvent(applyResponses(state, [answer], sent), answer.id);
+  return { ...next, listVersion: state.listVersion + 1 };
 }
 
 /** What the server has yet to hear: lists are asked for when it has. */
-export function said(state: State, id: string, change: RunChange): State {
+export function applyEdit(state: State, id: string, change: RunChange): State {
   const run = state.runs.get(id);
   if (!run) return state;
-  return { ...heardOf(state, id), runs: new Map(state.runs).set(id, { ...run, ...change }) };
+  return { ...noteEvent(state, id), runs: new Map(state.runs).set(id, { ...run, ...change }) };
 }

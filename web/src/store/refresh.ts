@@ -3,7 +3,7 @@
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { useFetched } from "./fetch";
-import { answer, useLive } from "./store";
+import { applyResponse, useStore } from "./store";
 
 const WORKERS_MS = 3000;
 
@@ -26,7 +26,7 @@ export function useTick(interval: number, wanted = true): number {
 /** Workers and the queue, every few seconds and whenever a run changes its state. */
 export function useWorkers() {
   const tick = useTick(WORKERS_MS);
-  const news = useLive((state) => state.news);
+  const news = useStore((state) => state.listVersion);
   const ask = async () => {
     const [workers, queue] = await Promise.all([api.readWorkers(), api.readQueue()]);
     return { workers, queue };
@@ -35,10 +35,10 @@ export function useWorkers() {
 }
 
 /** Why a run waits changes without an event of its own. */
-export function useFresh(id: string, wanted: boolean): void {
+export function useRunRefresh(id: string, wanted: boolean): void {
   const tick = useTick(WORKERS_MS, wanted);
   useEffect(() => {
     if (tick === 0) return;
-    answer("answer", api.readRun(id)).catch(() => {}); // The next one may come.
+    applyResponse("response", api.readRun(id)).catch(() => {}); // The next one may come.
   }, [id, tick]);
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Archive, GenerationEvent, Generations, Run } from "../api/types";
-import { type Action, EMPTY, type State, epochOf, reduce } from "./reducer";
+import { type Action, INITIAL_STATE, type State, epochOf, reduce } from "./reducer";
 
 const RUN = {
   id: "a",
@@ -67,7 +67,7 @@ const snapshot = (state: State): Action => ({
 function after(...actions: (Action | ((state: State) => Action))[]): State {
   return actions.reduce<State>((state, action) => {
     return reduce(state, typeof action === "function" ? action(state) : action);
-  }, EMPTY);
+  }, INITIAL_STATE);
 }
 
 const open: Action = { type: "open", run: "a", more: 1 };
@@ -112,7 +112,7 @@ describe("a snapshot", () => {
   });
 
   it("asked for before a reset is not taken", () => {
-    const late = snapshot(EMPTY);
+    const late = snapshot(INITIAL_STATE);
     expect(after(open, { type: "reset" }, late).details.get("a")!.archive).toBeNull();
   });
 });

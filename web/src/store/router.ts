@@ -16,7 +16,7 @@ export type Route =
   | { page: "creature"; sha: string }
   | { page: "unknown" };
 
-export interface Place {
+export interface PageLocation {
   route: Route;
   query: URLSearchParams;
 }
@@ -28,23 +28,23 @@ export function routeOf(path: string): Route {
   const [first, second, ...rest] = path.split("/").filter(Boolean);
   if (first === undefined) return { page: "runs" };
   if (second === undefined && isPage(first)) return { page: first };
-  const name = rest.length === 0 ? decoded(second) : null;
+  const name = rest.length === 0 ? decodePart(second) : null;
   if (name !== null && first === "runs") return { page: "run", id: name };
   if (name !== null && first === "sweeps") return { page: "sweep", id: name };
   if (name !== null && first === "creatures") return { page: "creature", sha: name };
-  if (first === "s" && second !== undefined) return shared(second, rest);
+  if (first === "s" && second !== undefined) return sharedRoute(second, rest);
   return { page: "unknown" };
 }
 
 /** A share itself, or a creature in it. */
-function shared(slug: string, [kind, sha, ...more]: string[]): Route {
+function sharedRoute(slug: string, [kind, sha, ...more]: string[]): Route {
   if (kind === undefined) return { page: "share", slug, sha: null };
   const one = kind === "creatures" && sha !== undefined && more.length === 0;
   return one ? { page: "share", slug, sha } : { page: "unknown" };
 }
 
 /** Null where there is no text, or its escapes are of none. */
-function decoded(part: string | undefined): string | null {
+function decodePart(part: string | undefined): string | null {
   try {
     return part === undefined ? null : decodeURIComponent(part);
   } catch {
@@ -52,12 +52,12 @@ function decoded(part: string | undefined): string | null {
   }
 }
 
-const MOVED = "microcosmos:moved";
+const NAVIGATED = "microcosmos:moved";
 
 export function navigate(to: string, replace = false): void {
   history[replace ? "replaceState" : "pushState"](null, "", to);
   if (!replace) window.scrollTo(0, 0);
-  window.dispatchEvent(new Event(MOVED));
+  window.dispatchEvent(new Event(NAVIGATED));
 }
 
 /** Changes the view that the address holds; null takes a word out. */
@@ -71,17 +71,17 @@ export function setQuery(changes: Record<string, string | null>): void {
   navigate(location.pathname + (text ? `?${text}` : ""), true);
 }
 
-export function usePlace(): Place {
+export function useLocation(): PageLocation {
   const [address, setAddress] = useState(location.pathname + location.search);
   useEffect(() => {
     const update = () => setAddress(location.pathname + location.search);
     window.addEventListener("popstate", update);
-    window.addEventListener(MOVED, update);
-    document.addEventListener("click", follow);
+    window.addEventListener(NAVIGATED, update);
+    document.addEventListener("click", followLink);
     return () => {
       window.removeEventListener("popstate", update);
-      window.removeEventListener(MOVED, update);
-      document.removeEventListener("click", follow);
+      window.removeEventListener(NAVIGATED, update);
+      document.removeEventListener("click", followLink);
     };
   }, []);
   const { pathname, searchParams } = new URL(address, location.origin);
@@ -89,7 +89,7 @@ export function usePlace(): Place {
 }
 
 /** Plain clicks on links within the page do not load it anew. */
-function follow(event: MouseEvent): void {
+function followLink(event: MouseEvent): void {
   if (event.defaultPrevented || event.button !== 0) return;
   if (event.metaKey || event.ctrlKey || event.shiftKey || event.altKey) return;
   const link = (event.target as Element).closest?.("a");

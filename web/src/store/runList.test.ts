@@ -11,9 +11,9 @@ vi.mock("../api/client", () => ({
   },
 }));
 
-const { readAsFar } = await import("./runList");
-const { current, dispatch } = await import("./store");
-const { KEPT_MS, look } = await import("./retain");
+const { readUpTo: readAsFar } = await import("./runList");
+const { currentState: current, dispatch } = await import("./store");
+const { RETAIN_MS: KEPT_MS, retain: look } = await import("./retain");
 
 describe("a list that is asked for again", () => {
   it.each([

@@ -4,55 +4,55 @@ import { useEffect } from "preact/hooks";
 import * as api from "../api/client";
 import type { RunPage, RunQuery } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
-import { current, dispatch, useLive } from "./store";
-import { usePaced } from "./throttle";
+import { currentState, dispatch, useStore } from "./store";
+import { useThrottled } from "./throttle";
 import { useTick } from "./refresh";
 
 const PAGE = 30;
-const LARGEST = 200;
+const MAX_PAGE = 200;
 /** How often a list is read whose order or whose reasons to wait change without an event. */
-const AGAIN_MS = 5000;
-const RESTING = ["created", "name", "experiment", "status"];
+const REFRESH_MS = 5000;
+const STABLE_ORDERS = ["created", "name", "experiment", "status"];
 
 /** Keeps the runs of a query listed, through every change that may concern them. */
 export function useRunList(query: RunQuery): Loaded<true> {
   const asked = JSON.stringify(query);
-  const news = usePaced(useLive((state) => `${state.epoch} ${state.news}`));
-  const waits = useLive((state) => state.listed.some((id) => state.runs.get(id)?.waiting));
-  const moves = !RESTING.includes((query.sort ?? "created").replace("-", ""));
-  const tick = useTick(AGAIN_MS, waits || moves);
+  const news = useThrottled(useStore((state) => `${state.epoch} ${state.listVersion}`));
+  const waits = useStore((state) => state.listed.some((id) => state.runs.get(id)?.waiting));
+  const moves = !STABLE_ORDERS.includes((query.sort ?? "created").replace("-", ""));
+  const tick = useTick(REFRESH_MS, waits || moves);
   const { value, error } = useFetched(async () => {
-    const { asked: before, listed, heard: sent } = current();
+    const { asked: before, listed: listed, eventCount: sent } = currentState();
     const known = before === asked ? listed.length : 0;
-    return { asked, known, sent, page: await readAsFar(query, known) };
+    return { asked, known, sent, page: await readUpTo(query, known) };
   }, [asked, news, tick]);
   useEffect(() => {
     if (value) dispatch({ type: "list", ...value });
   }, [value]);
   // Read, and told to the store too: until then nobody knows that there are none.
-  const told = useLive((state) => state.asked) === asked;
+  const told = useStore((state) => state.asked) === asked;
   return { value: told || null, error };
 }
 
 /** The first page of a list, or as many runs as are known of it, in pages. */
-export async function readAsFar(query: RunQuery, known: number): Promise<RunPage> {
-  const limit = Math.min(LARGEST, Math.max(PAGE, known));
+export async function readUpTo(query: RunQuery, known: number): Promise<RunPage> {
+  const limit = Math.min(MAX_PAGE, Math.max(PAGE, known));
   const page = await api.readRuns({ ...query, limit });
   const left = known - page.items.length;
   if (left <= 0 || !page.next) return page;
-  const rest = await readAsFar({ ...query, cursor: page.next }, left);
+  const rest = await readUpTo({ ...query, cursor: page.next }, left);
   return { ...rest, items: [...page.items, ...rest.items] };
 }
 
 export async function moreRuns(query: RunQuery): Promise<void> {
-  const { next: cursor, heard: sent } = current();
+  const { next: cursor, eventCount: sent } = currentState();
   const page = await api.readRuns({ ...query, limit: PAGE, ...(cursor && { cursor }) });
   dispatch({ type: "more", asked: JSON.stringify(query), page, cursor, sent });
 }
 
 /** All tags there are, as often as any changes. */
 export function useTags(): string[] {
-  const news = usePaced(useLive((state) => `${state.epoch} ${state.news}`));
+  const news = useThrottled(useStore((state) => `${state.epoch} ${state.listVersion}`));
   const { value } = useFetched(api.readTags, [news]);
   return (value ?? []).map(({ tag }) => tag);
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Archive, GenerationEvent, Generations, Run } from "../api/types";
-import { type Action, EMPTY, type State, epochOf, reduce } from "./reducer";
+import { type Action, INITIAL_STATE, type State, epochOf, reduce } from "./reducer";
 
 const RUN = {
   id: "a",
@@ -67,7 +67,7 @@ const snapshot = (state: State): Action => ({
 function after(...actions: (Action | ((state: State) => Action))[]): State {
   return actions.reduce<State>((state, action) => {
     return reduce(state, typeof action === "function" ? action(state) : action);
-  }, EMPTY);
+  }, INITIAL_STATE);
 }
 
 const open: Action = { type: "open", run: "a", more: 1 };
@@ -135,14 +135,14 @@ describe("events", () => {
     const page = { items: [RUN], next: null };
     const listed = after({ type: "list", asked: "{}", page, known: 0, sent: 0 });
     const newer = reduce(listed, { type: "run", run: { ...RUN, id: "b" } });
-    expect([newer.listed, newer.news]).toEqual([["a"], listed.news + 1]);
+    expect([newer.listed, newer.listVersion]).toEqual([["a"], listed.listVersion + 1]);
   });
 
   it("make news of a run's state, name, tags and note, not of its figures", () => {
     const run = { ...RUN, status: "running", name: null, tags: ["one"], note: null } as Run;
     const before = after({ type: "run", run });
     const raised = (change: Partial<Run>) =>
-      reduce(before, { type: "run", run: { ...run, ...change } }).news - before.news;
+      reduce(before, { type: "run", run: { ...run, ...change } }).listVersion - before.listVersion;
     expect(raised({ tags: ["one"], generation: 5, evaluations: 99 })).toBe(0);
     for (const change of [{ status: "finished" as const }, { name: "x" }, { tags: [] }, { note: "y" }]) {
       expect(raised(change)).toBe(1);
@@ -159,14 +159,14 @@ describe("events", () => {
   it("of a list keep what was loaded while the list was asked for again", () => {
     const more = reduce(first, { type: "more", asked: "{}", page: page("b"), cursor: null, sent: 0 });
     const again = reduce(more, { type: "list", asked: "{}", page: page("a"), known: 1, sent: 0 });
-    expect([again.listed, again.news]).toEqual([["a", "b"], more.news + 1]);
+    expect([again.listed, again.listVersion]).toEqual([["a", "b"], more.listVersion + 1]);
   });
 
   it("ask for a list again that was replaced while more of it was loaded", () => {
     const next = { ...page("b"), next: "other place" };
     const moved = reduce(first, { type: "list", asked: "{}", page: next, known: 1, sent: 0 });
     const more = reduce(moved, { type: "more", asked: "{}", page: page("c"), cursor: null, sent: 0 });
-    expect([more.listed, more.news]).toEqual([["b", "c"], moved.news + 1]);
+    expect([more.listed, more.listVersion]).toEqual([["b", "c"], moved.listVersion + 1]);
   });
 });
 
@@ -178,9 +178,9 @@ describe("an answer", () => {
   const { spec: _, ...standing } = { ...RUN, status: "finished", generation: 10 } as Run;
   const event: Action = { type: "run", run: standing };
   const late = { ...RUN, status: "running", generation: 5, name: "old" } as Run;
-  const known = after({ type: "answer", run: late, sent: 0 });
+  const known = after({ type: "response", run: late, sent: 0 });
   const answers: [string, (sent: number) => Action][] = [
-    ["to a question for a run", (sent) => ({ type: "answer", run: late, sent })],
+    ["to a question for a run", (sent) => ({ type: "response", run: late, sent })],
     [
       "to a question for a list",
       (sent) => ({ type: "list", asked: "", page: { items: [late], next: null }, known: 0, sent }),
@@ -192,19 +192,19 @@ describe("an answer", () => {
   ];
 
   it.each(answers)("%s does not undo what an event told meanwhile", (_, answer) => {
-    const state = reduce(reduce(known, event), answer(known.heard));
+    const state = reduce(reduce(known, event), answer(known.eventCount));
     expect(state.runs.get("a")).toMatchObject({ status: "finished", generation: 10 });
   });
 
   it.each(answers)("%s takes what an event told before anything else was known", (_, answer) => {
-    const state = reduce(reduce(EMPTY, event), answer(0));
+    const state = reduce(reduce(INITIAL_STATE, event), answer(0));
     expect(state.runs.get("a")).toMatchObject({ status: "finished", spec: RUN.spec });
-    expect(state.early.size).toBe(0);
+    expect(state.eventsWithoutSpec.size).toBe(0);
   });
 
   it.each(answers)("%s counts where it was asked after the last event", (_, answer) => {
     const told = reduce(known, event);
-    expect(reduce(told, answer(told.heard)).runs.get("a")!.status).toBe("running");
+    expect(reduce(told, answer(told.eventCount)).runs.get("a")!.status).toBe("running");
   });
 
   it("is overtaken by generations, rewinds, resets and newer answers too", () => {
@@ -216,27 +216,27 @@ describe("an answer", () => {
       { type: "reset" },
     ] as Action[]) {
       const state = reduce(known, action);
-      expect(reduce(state, { type: "answer", run, sent: known.heard }).runs).toEqual(state.runs);
+      expect(reduce(state, { type: "response", run, sent: known.eventCount }).runs).toEqual(state.runs);
     }
     const other = reduce(known, { type: "run", run: { ...RUN, id: "b" } });
-    const newer = reduce(other, { type: "answer", run: { ...run, name: "new" }, sent: other.heard });
-    expect(reduce(newer, { type: "answer", run, sent: 0 }).runs.get("a")!.name).toBe("new");
+    const newer = reduce(other, { type: "response", run: { ...run, name: "new" }, sent: other.eventCount });
+    expect(reduce(newer, { type: "response", run, sent: 0 }).runs.get("a")!.name).toBe("new");
   });
 
   it("leaves the spec the object it was", () => {
-    const again = reduce(known, { type: "answer", run: structuredClone(late), sent: known.heard });
+    const again = reduce(known, { type: "response", run: structuredClone(late), sent: known.eventCount });
     expect(again.runs.get("a")!.spec).toBe(RUN.spec);
   });
 });
 
 describe("what is said here of a run", () => {
   const known = after({ type: "run", run: { ...RUN, name: "old" } });
-  const said = reduce(known, { type: "said", run: "a", change: { name: "new" } });
+  const said = reduce(known, { type: "edit", run: "a", change: { name: "new" } });
 
   it("is shown at once, and makes news only when the server has heard it", () => {
-    expect([said.runs.get("a")!.name, said.news]).toEqual(["new", known.news]);
-    const done = reduce(said, { type: "done", run: { ...RUN, name: "new" }, sent: said.heard });
-    expect([done.runs.get("a")!.name, done.news]).toEqual(["new", known.news + 1]);
+    expect([said.runs.get("a")!.name, said.listVersion]).toEqual(["new", known.listVersion]);
+    const done = reduce(said, { type: "change", run: { ...RUN, name: "new" }, sent: said.eventCount });
+    expect([done.runs.get("a")!.name, done.listVersion]).toEqual(["new", known.listVersion + 1]);
   });
 
   it("outlives lists that were asked for before it, and before the server had heard it", () => {
@@ -249,30 +249,30 @@ describe("what is said here of a run", () => {
         sent,
       };
     };
-    expect(reduce(said, list(known.heard)).runs.get("a")!.name).toBe("new");
-    const done = reduce(said, { type: "done", run: { ...RUN, name: "new" }, sent: said.heard });
-    expect(reduce(done, list(said.heard)).runs.get("a")!.name).toBe("new");
+    expect(reduce(said, list(known.eventCount)).runs.get("a")!.name).toBe("new");
+    const done = reduce(said, { type: "change", run: { ...RUN, name: "new" }, sent: said.eventCount });
+    expect(reduce(done, list(said.eventCount)).runs.get("a")!.name).toBe("new");
   });
 });
 
 describe("a run that is put into the bin elsewhere", () => {
   it("may not belong to a list any more, or to another", () => {
-    const known = reduce(EMPTY, { type: "run", run: RUN });
+    const known = reduce(INITIAL_STATE, { type: "run", run: RUN });
     const binned = reduce(known, { type: "run", run: { ...RUN, deleted_at: "2026-01-03T00:00:00Z" } });
-    expect(binned.news).toBe(known.news + 1);
-    expect(reduce(binned, { type: "run", run: RUN }).news).toBe(known.news + 2);
+    expect(binned.listVersion).toBe(known.listVersion + 1);
+    expect(reduce(binned, { type: "run", run: RUN }).listVersion).toBe(known.listVersion + 2);
   });
 });
 
 describe("a run that is gone for good", () => {
   const page = { items: [RUN, { ...RUN, id: "b" }], next: null };
-  const listed = reduce(EMPTY, { type: "list", asked: "", page, known: 0, sent: 0 });
+  const listed = reduce(INITIAL_STATE, { type: "list", asked: "", page, known: 0, sent: 0 });
   const gone = reduce(listed, { type: "purge", run: "a" });
 
   it("leaves the lists at once, which are read anew", () => {
     expect(gone.listed).toEqual(["b"]);
     expect(gone.runs.has("a")).toBe(false);
-    expect(gone.news).toBeGreaterThan(listed.news);
+    expect(gone.listVersion).toBeGreaterThan(listed.listVersion);
   });
 
   it("is asked for anew by whoever looks at it, and so told to be gone", () => {
@@ -280,8 +280,8 @@ describe("a run that is gone for good", () => {
   });
 
   it("is no news of a sweep but its own", () => {
-    expect(gone.swept.size).toBe(0);
+    expect(gone.sweepVersions.size).toBe(0);
     const swept = reduce(listed, { type: "run", run: { ...RUN, sweep: "s" } });
-    expect(reduce(swept, { type: "purge", run: "a" }).swept.get("s")).toBe(2);
+    expect(reduce(swept, { type: "purge", run: "a" }).sweepVersions.get("s")).toBe(2);
   });
 });

@@ -2,12 +2,12 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
-import { type Action, EMPTY, type State, reduce } from "./reducer";
+import { type Action, INITIAL_STATE, type State, reduce } from "./reducer";
 
-let state = EMPTY;
+let state = INITIAL_STATE;
 const listeners = new Set<() => void>();
 
-export function current(): State {
+export function currentState(): State {
   return state;
 }
 
@@ -17,15 +17,15 @@ export function dispatch(action: Action): void {
 }
 
 /** Puts in the run that was asked for, or what came of a change to it. */
-export async function answer(type: "answer" | "done", asked: Promise<Run>): Promise<Run> {
-  const sent = state.heard;
+export async function applyResponse(type: "response" | "change", asked: Promise<Run>): Promise<Run> {
+  const sent = state.eventCount;
   const run = await asked;
   dispatch({ type, run, sent });
   return run;
 }
 
 /** A part of the store; the component is drawn again when that part changes. */
-export function useLive<T>(select: (state: State) => T): T {
+export function useStore<T>(select: (state: State) => T): T {
   const [, redraw] = useState(0);
   const selected = select(state);
   useEffect(() => {
@@ -46,7 +46,7 @@ export function useLive<T>(select: (state: State) => T): T {
 /** Some runs, as far as they are known; the component is drawn again when one of them changes. */
 export function useRuns(ids: readonly string[]): readonly (Run | undefined)[] {
   const last = useRef<readonly (Run | undefined)[]>([]);
-  return useLive(({ runs }) => {
+  return useStore(({ runs }) => {
     const next = ids.map((id) => runs.get(id));
     const same = next.length === last.current.length && next.every((run, i) => run === last.current[i]);
     if (!same) last.current = next;

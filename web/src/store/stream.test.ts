@@ -52,18 +52,18 @@ describe("the stream", () => {
   it("tells of a run that is gone for good", () => {
     const data = JSON.stringify({ run: "a" });
     Source.made[0]!.dispatchEvent(Object.assign(new Event("purge"), { data }));
-    expect(live.current().epochs.get("a")).toBe(1);
+    expect(live.currentState().epochs.get("a")).toBe(1);
   });
 
   it("is closed in a tab that stays hidden, and what was missed is fetched anew", () => {
-    const { epoch } = live.current();
+    const { epoch } = live.currentState();
     page.turn("hidden");
     vi.advanceTimersByTime(60_000);
     expect(open()).toBe(0);
     page.turn("visible");
     expect([Source.made.length, open()]).toEqual([2, 1]);
     Source.made[1]!.onopen();
-    expect(live.current()).toMatchObject({ connection: "live", epoch: epoch + 1 });
+    expect(live.currentState()).toMatchObject({ connection: "live", epoch: epoch + 1 });
   });
 
   it("outlives a short look elsewhere", () => {
@@ -75,10 +75,10 @@ describe("the stream", () => {
   });
 
   it("resumes by itself without a reset, and is opened anew once it gave up", () => {
-    const { epoch } = live.current();
+    const { epoch } = live.currentState();
     Source.made[0]!.onerror();
     Source.made[0]!.onopen();
-    expect(live.current().epoch).toBe(epoch);
+    expect(live.currentState().epoch).toBe(epoch);
     Source.made[0]!.close();
     Source.made[0]!.onerror();
     vi.advanceTimersByTime(60_000);

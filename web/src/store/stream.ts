@@ -1,20 +1,20 @@
 /** The one stream of events that feeds a tab's store, while somebody looks at the tab. */
 
 import { EVENTS_URL } from "../api/client";
-import { learnCaller } from "./principal";
+import { loadPrincipal } from "./principal";
 import { dispatch } from "./store";
 import type { Action } from "./reducer";
 
 const RECONNECT_MS = 2000;
-const PATIENCE_MS = 500;
+const CONNECT_TIMEOUT_MS = 500;
 /** A browser has six connections to a host for all its tabs: hidden ones give theirs back. */
-const HIDDEN_MS = 10_000;
+const CLOSE_HIDDEN_MS = 10_000;
 
 type Timer = ReturnType<typeof setTimeout>;
 
 let source: EventSource | null = null;
 let reconnecting: Timer | undefined;
-let resting: Timer | undefined;
+let closing: Timer | undefined;
 
 /**
  * Settled when the stream is open, has failed or takes long: what is fetched before it is open
@@ -26,13 +26,13 @@ export function connect(): Promise<unknown> {
   followVisibility();
   return new Promise((resolve) => {
     for (const event of ["open", "error"]) opened.addEventListener(event, resolve);
-    setTimeout(resolve, PATIENCE_MS);
+    setTimeout(resolve, CONNECT_TIMEOUT_MS);
   });
 }
 
 function followVisibility(): void {
-  clearTimeout(resting);
-  if (document.visibilityState === "hidden") resting = setTimeout(close, HIDDEN_MS);
+  clearTimeout(closing);
+  if (document.visibilityState === "hidden") closing = setTimeout(close, CLOSE_HIDDEN_MS);
   else if (!source) open();
 }
 
@@ -53,7 +53,7 @@ function open(): EventSource {
     dispatch({ type: "connection", connection: "lost" });
     if (opened.readyState !== EventSource.CLOSED) return;
     reconnecting = setTimeout(open, RECONNECT_MS);
-    void learnCaller(); // A stream does not tell that a token was revoked.
+    void loadPrincipal(); // A stream does not tell that a token was revoked.
   };
   listen(opened, "run", (run) => ({ type: "run", run }) as Action);
   listen(opened, "generation", (event) => ({ type: "generation", event }) as Action);

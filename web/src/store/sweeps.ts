@@ -4,9 +4,9 @@ import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
-import { useLive } from "./store";
-import { usePaced } from "./throttle";
-import { dismiss, tell } from "./toasts";
+import { useStore } from "./store";
+import { useThrottled } from "./throttle";
+import { dismissToast, showToast } from "./toasts";
 
 /** More points than a screen can show apart would only be slower. */
 const POINTS = 300;
@@ -14,15 +14,15 @@ const UNDO_MS = 4000;
 
 /** The newest sweeps. */
 export function useSweeps(limit: number, wanted: boolean): Loaded<SweepPage | null> {
-  const heard = useLive((state) => (wanted ? `${state.epoch} ${totalOf(state.swept)}` : ""));
-  const news = usePaced(heard);
+  const heard = useStore((state) => (wanted ? `${state.epoch} ${totalOf(state.sweepVersions)}` : ""));
+  const news = useThrottled(heard);
   return useFetched(async () => (wanted ? await api.readSweeps(limit) : null), [news, limit, wanted]);
 }
 
 const totalOf = (counts: ReadonlyMap<string, number>) =>
   [...counts.values()].reduce((sum, count) => sum + count, 0);
 
-export interface Whole {
+export interface SweepDetail {
   sweep: Sweep;
   summary: SweepSummary;
   /** Each run by itself, where that is wanted. */
@@ -30,8 +30,8 @@ export interface Whole {
 }
 
 /** A sweep with what its runs say together, as far as they are. */
-export function useSweep(id: string, each: boolean): Loaded<Whole> {
-  const news = usePaced(useLive((state) => `${state.epoch} ${state.swept.get(id) ?? 0}`));
+export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
+  const news = useThrottled(useStore((state) => `${state.epoch} ${state.sweepVersions.get(id) ?? 0}`));
   return useFetched(async () => {
     const [sweep, summary, curves] = await Promise.all([
       api.readSweep(id),
@@ -42,57 +42,57 @@ export function useSweep(id: string, each: boolean): Loaded<Whole> {
   }, [id, news, each]);
 }
 
-const DONE: Record<api.Wish, string> = {
+const DONE: Record<api.RunCommand, string> = {
   pause: "asked to pause",
   resume: "queued again",
   cancel: "asked to cancel",
 };
 
 /** What was asked, once it is done; what the server says where it refuses. */
-async function asked<T>(answered: Promise<T>): Promise<T | null> {
+async function attempt<T>(answered: Promise<T>): Promise<T | null> {
   try {
     return await answered;
   } catch (error) {
-    tell({ kind: "wrong", text: messageOf(error) });
+    showToast({ kind: "wrong", text: messageOf(error) });
     return null;
   }
 }
 
 /** How many runs did it, and how many could not. */
 const outcome = ({ changed, left }: SweepChanged, done: string) =>
-  `${runs(changed.length)} ${done}${left.length > 0 ? `; ${runs(left.length)} left as they were` : ""}.`;
+  `${countRuns(changed.length)} ${done}${left.length > 0 ? `; ${countRuns(left.length)} left as they were` : ""}.`;
 
 /** Asks it of every run. */
-export async function steer(id: string, verb: api.Wish): Promise<void> {
-  const answer = await asked(api.steerSweep(id, verb));
-  if (answer) tell({ kind: "note", text: outcome(answer, DONE[verb]) });
+export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {
+  const answer = await attempt(api.commandSweep(id, verb));
+  if (answer) showToast({ kind: "note", text: outcome(answer, DONE[verb]) });
 }
 
-export const rename = (id: string, name: string | null) => asked(api.nameSweep(id, name));
+export const renameSweep = (id: string, name: string | null) => attempt(api.renameSweep(id, name));
 
-export const restore = (id: string) => asked(api.restoreSweep(id));
+export const restoreSweep = (id: string) => attempt(api.restoreSweep(id));
 
 /** Its runs into the bin at once; the note leads back, and so does the page. */
-export async function remove(id: string): Promise<void> {
-  const answer = await asked(api.deleteSweep(id));
+export async function removeSweep(id: string): Promise<void> {
+  const answer = await attempt(api.deleteSweep(id));
   if (!answer) return;
   const back = () => {
-    dismiss(toast);
-    void restore(id);
+    dismissToast(toast);
+    void restoreSweep(id);
   };
   const text = outcome(answer, "put into the bin");
-  const toast = tell({ kind: "note", text, action: { label: "Undo", run: back } });
+  const toast = showToast({ kind: "note", text, action: { label: "Undo", run: back } });
 }
 
-const runs = (count: number) => `${count} ${count === 1 ? "run" : "runs"}`;
+const countRuns = (count: number) => `${count} ${count === 1 ? "run" : "runs"}`;
 
 /** A cancel waits a moment, so that it can be taken back. */
-export function cancelSweepSoon(id: string, title: string): void {
-  const timer = setTimeout(() => void steer(id, "cancel"), UNDO_MS);
+export function cancelSweepWithUndo(id: string, title: string): void {
+  const timer = setTimeout(() => void sendSweepCommand(id, "cancel"), UNDO_MS);
   const undo = () => {
     clearTimeout(timer);
-    dismiss(toast);
+    dismissToast(toast);
   };
   const action = { label: "Undo", run: undo };
-  const toast = tell({ kind: "note", text: `Cancelling all runs of ${title} …`, action });
+  const toast = showToast({ kind: "note", text: `Cancelling all runs of ${title} …`, action });
 }

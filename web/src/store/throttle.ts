@@ -3,10 +3,10 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 
 /** How often what changes all the time is asked for, at most. */
-const FRESH_MS = 2000;
+const THROTTLE_MS = 2000;
 
 /** A value that is let through now and then, the last one always. */
-export function usePaced<T>(value: T, every = FRESH_MS): T {
+export function useThrottled<T>(value: T, every = THROTTLE_MS): T {
   const [paced, setPaced] = useState(value);
   const last = useRef(-Infinity);
   useEffect(() => {
@@ -22,7 +22,7 @@ export function usePaced<T>(value: T, every = FRESH_MS): T {
 }
 
 /** Hears of a value that has stayed the same for a moment; of none it does not hear. */
-export function useSettled<T>(value: T | null, after: number, hear: (value: T) => void): void {
+export function useDebounced<T>(value: T | null, after: number, hear: (value: T) => void): void {
   useEffect(() => {
     if (value === null) return;
     const timer = setTimeout(() => hear(value), after);

@@ -20,20 +20,20 @@ function change(next: readonly Toast[]): void {
   for (const listener of listeners) listener(toasts);
 }
 
-export function dismiss(id: number): void {
+export function dismissToast(id: number): void {
   change(toasts.filter((toast) => toast.id !== id));
 }
 
 /** Shows a note for a while; answers the id under which it can be dismissed. */
-export function tell(toast: Omit<Toast, "id">): number {
+export function showToast(toast: Omit<Toast, "id">): number {
   const id = ++count;
   change([...toasts, { ...toast, id }]);
-  setTimeout(() => dismiss(id), SHOWN_MS[toast.kind]);
+  setTimeout(() => dismissToast(id), SHOWN_MS[toast.kind]);
   return id;
 }
 
 /** The newest way back by Ctrl+Z, which a note at the end of the page would be too short for. */
-export function undo(event: KeyboardEvent): void {
+export function undoLatest(event: KeyboardEvent): void {
   const field = (event.target as Element).closest("input:not([type=checkbox]), textarea, select");
   if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || field) return;
   const last = toasts.findLast(({ action }) => action);

@@ -3,10 +3,10 @@
 import type { Spread } from "../api/types";
 import { count, number, percent, words } from "../ui/format";
 import { LineKey } from "../charts/lineStyle";
-import { type Shown, memberName } from "./bands";
+import { type ShownCase, memberName } from "./bands";
 
 interface LegendProps {
-  cases: Shown[];
+  cases: ShownCase[];
   chosen: number[];
   onChoose: (places: number[]) => void;
 }
@@ -40,12 +40,12 @@ const TITLES: Record<string, [title: string, write: (value: number | null) => st
 const titleOf = (name: string) => TITLES[name]?.[0] ?? words(name);
 const writerOf = (name: string) => TITLES[name]?.[1] ?? number;
 
-const figuresOf = (cases: Shown[]) => [
+const figuresOf = (cases: ShownCase[]) => [
   ...new Set(cases.flatMap(({ summary }) => Object.keys(summary.finals))),
 ];
 
 /** The newest figures: of each case the median, and between what the middle half lies. */
-export function Finals({ cases }: { cases: Shown[] }) {
+export function Finals({ cases }: { cases: ShownCase[] }) {
   const figures = figuresOf(cases);
   return (
     <section class="card" aria-labelledby="finals">
@@ -88,7 +88,7 @@ export function Finals({ cases }: { cases: Shown[] }) {
 }
 
 /** How many of a case's runs are finished. */
-function doneOf(members: Shown["summary"]["members"]): string {
+function doneOf(members: ShownCase["summary"]["members"]): string {
   const done = members.filter(({ status }) => status === "finished").length;
   return done === members.length ? count(done) : `${done} of ${members.length} finished`;
 }
@@ -115,7 +115,7 @@ function Figure({ spread, write }: SpreadProps) {
 }
 
 /** Every run with its own figures. */
-export function Members({ cases }: { cases: Shown[] }) {
+export function Members({ cases }: { cases: ShownCase[] }) {
   const figures = figuresOf(cases);
   const several = cases.length > 1;
   return (

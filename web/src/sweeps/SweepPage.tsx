@@ -4,14 +4,22 @@ import { useEffect } from "preact/hooks";
 import type { CaseSummary, Sweep } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
-import { type Whole, cancelSweepSoon, remove, rename, restore, steer, useSweep } from "../store/sweeps";
+import {
+  type SweepDetail,
+  cancelSweepWithUndo,
+  removeSweep,
+  renameSweep,
+  restoreSweep,
+  sendSweepCommand,
+  useSweep,
+} from "../store/sweeps";
 import { setQuery } from "../store/router";
 import { Curves } from "../charts/curves/Curves";
-import { type Shown, bandsOf, caseName } from "./bands";
+import { type ShownCase, bandsOf, caseName } from "./bands";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "./SweepStatus";
 import { moment } from "../ui/format";
-import { NotThere } from "../ui/NotFound";
-import { Name } from "../run/RunLabels";
+import { NotFound } from "../ui/NotFound";
+import { NameField } from "../run/RunLabels";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, Check } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
@@ -35,14 +43,14 @@ export function SweepPage({ id, query }: Props) {
         <a href="/">Runs</a>
       </nav>
       {error && value && <p class="banner wrong">{error}</p>}
-      {error && !value && <NotThere what="No such sweep" reason={error} />}
+      {error && !value && <NotFound what="No such sweep" reason={error} />}
       {!value && !error && <p class="quiet loading">Loading sweep …</p>}
-      {value && <Loaded {...{ value, query, each }} />}
+      {value && <LoadedSweep {...{ value, query, each }} />}
     </main>
   );
 }
 
-function Loaded({ value, query, each }: { value: Whole; query: URLSearchParams; each: boolean }) {
+function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSearchParams; each: boolean }) {
   const { sweep, summary, curves } = value;
   const chosen = chosenOf(query, summary.cases.length);
   const shown = chosen.map((place) => shownOf(summary.cases[place]!, place));
@@ -50,7 +58,7 @@ function Loaded({ value, query, each }: { value: Whole; query: URLSearchParams; 
   return (
     <>
       <Head sweep={sweep} />
-      <section class="standing" aria-label="How the sweep is doing">
+      <section class="run-facts" aria-label="How the sweep is doing">
         <SweepProgress sweep={sweep} />
         <SweepStates sweep={sweep} />
       </section>
@@ -65,7 +73,7 @@ function Loaded({ value, query, each }: { value: Whole; query: URLSearchParams; 
         {summary.cases.length > 1 && (
           <Cases cases={summary.cases.map(shownOf)} chosen={chosen} onChoose={choose} />
         )}
-        <Bands {...{ shown, query }} curves={each ? curves : null} />
+        <CaseCurves {...{ shown, query }} curves={each ? curves : null} />
       </section>
       <Finals cases={summary.cases.map(shownOf)} />
       <Members cases={summary.cases.map(shownOf)} />
@@ -73,7 +81,7 @@ function Loaded({ value, query, each }: { value: Whole; query: URLSearchParams; 
   );
 }
 
-const shownOf = (summary: CaseSummary, place: number): Shown => ({
+const shownOf = (summary: CaseSummary, place: number): ShownCase => ({
   summary,
   place,
   name: caseName(summary.values),
@@ -90,24 +98,24 @@ function chosenOf(query: URLSearchParams, count: number): number[] {
   return all.filter((place) => named.includes(place));
 }
 
-function Bands({
+function CaseCurves({
   shown,
   query,
   curves,
 }: {
-  shown: Shown[];
+  shown: ShownCase[];
   query: URLSearchParams;
-  curves: Whole["curves"];
+  curves: SweepDetail["curves"];
 }) {
   const log = query.get("log") === "1";
   const plots = bandsOf(shown, curves);
   if (shown.length === 0) return <p class="quiet">Choose a case to see its curves.</p>;
   if (plots.length === 0) return <p class="quiet waiting">They begin with the first generation.</p>;
-  return <Curves plots={plots} x={NOWHERE} look={{ over: "generation", log, smooth: 1 }} />;
+  return <Curves plots={plots} x={NO_X} look={{ over: "generation", log, smooth: 1 }} />;
 }
 
 /** Each case has its own places. */
-const NOWHERE: readonly number[] = [];
+const NO_X: readonly number[] = [];
 
 function Head({ sweep }: { sweep: Sweep }) {
   const experiments = useExperiments().value ?? [];
@@ -117,9 +125,9 @@ function Head({ sweep }: { sweep: Sweep }) {
   return (
     <>
       <header class="page-head">
-        <Name of={sweep} title={title} fixed={fixed} onName={(name) => void rename(sweep.id, name)}>
+        <NameField of={sweep} title={title} fixed={fixed} onName={(name) => void renameSweep(sweep.id, name)}>
           <h1>{title}</h1>
-        </Name>
+        </NameField>
         <span class="spring" />
         <Actions sweep={sweep} title={title} />
       </header>
@@ -127,7 +135,7 @@ function Head({ sweep }: { sweep: Sweep }) {
         {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)}
         {sweep.owner && <> · by {sweep.owner}</>} · <a href={`/?sweep=${sweep.id}`}>As a list of runs</a>
       </p>
-      {sweep.deleted > 0 && <InBin sweep={sweep} />}
+      {sweep.deleted > 0 && <BinNotice sweep={sweep} />}
     </>
   );
 }
@@ -142,15 +150,15 @@ function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
   if (total === 0) return null;
   return (
     <span class="actions" role="group" aria-label="All runs">
-      {paused > 0 && <button onClick={() => void steer(id, "resume")}>Resume all</button>}
-      {going > 0 && <button onClick={() => void steer(id, "pause")}>Pause all</button>}
+      {paused > 0 && <button onClick={() => void sendSweepCommand(id, "resume")}>Resume all</button>}
+      {going > 0 && <button onClick={() => void sendSweepCommand(id, "pause")}>Pause all</button>}
       {going + paused > 0 && (
-        <button class="danger" onClick={() => cancelSweepSoon(id, title)}>
+        <button class="danger" onClick={() => cancelSweepWithUndo(id, title)}>
           Cancel all
         </button>
       )}
       {going === 0 && (
-        <button class="danger" onClick={() => void remove(id)}>
+        <button class="danger" onClick={() => void removeSweep(id)}>
           Delete all
         </button>
       )}
@@ -158,14 +166,14 @@ function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
   );
 }
 
-function InBin({ sweep }: { sweep: Sweep }) {
+function BinNotice({ sweep }: { sweep: Sweep }) {
   const { id, deleted, total } = sweep;
   const refusal = useRefusal(sweep);
   const which =
     total === 0 ? "Its runs are" : deleted === 1 ? "One of its runs is" : `${deleted} of its runs are`;
   return (
     <p class="banner warning" role="status">
-      {which} in the bin. {!refusal && <button onClick={() => void restore(id)}>Restore</button>}
+      {which} in the bin. {!refusal && <button onClick={() => void restoreSweep(id)}>Restore</button>}
     </p>
   );
 }

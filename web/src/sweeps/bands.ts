@@ -11,7 +11,7 @@ const FIGURES: [figure: Figure, title: string, write: Plot["write"]][] = [
   ["best", "Best fitness", number],
 ];
 
-export interface Shown {
+export interface ShownCase {
   summary: CaseSummary;
   /** Its place among all cases. */
   place: number;
@@ -21,7 +21,7 @@ export interface Shown {
 }
 
 /** Figures that none of the runs has are not plotted. */
-export function bandsOf(cases: readonly Shown[], curves: SweepCurves | null): Plot[] {
+export function bandsOf(cases: readonly ShownCase[], curves: SweepCurves | null): Plot[] {
   return FIGURES.flatMap(([figure, title, write]) => {
     const series: Series[] = [];
     const bands: Band[] = [];
@@ -36,7 +36,7 @@ export function bandsOf(cases: readonly Shown[], curves: SweepCurves | null): Pl
 }
 
 /** Upper edge, lower edge, median. */
-function bandOf({ summary, name, colour, dash }: Shown, figure: Figure): Series[] {
+function bandOf({ summary, name, colour, dash }: ShownCase, figure: Figure): Series[] {
   const { high, low, median } = summary[figure];
   const common = { colour, x: summary.generation, other: true };
   return [
@@ -46,7 +46,7 @@ function bandOf({ summary, name, colour, dash }: Shown, figure: Figure): Series[
   ];
 }
 
-function linesOf({ summary, colour }: Shown, figure: Figure, curves: SweepCurves | null): Series[] {
+function linesOf({ summary, colour }: ShownCase, figure: Figure, curves: SweepCurves | null): Series[] {
   const mine = new Set(summary.members.map(({ run }) => run));
   const lines = curves?.lines.filter(({ run }) => mine.has(run)) ?? [];
   return lines.map((line) => ({

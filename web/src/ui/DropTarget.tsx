@@ -1,47 +1,49 @@
-/** Opening creature files: dropped anywhere, or chosen; a page may take what is dropped itself. */
+/** Open creature files that are dropped or chosen; a page may handle dropped files itself. */
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { importCreature } from "../api/client";
 import { messageOf } from "../api/problem";
-import { tell } from "../store/toasts";
+import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
+import { text } from "./text";
 
 async function open(file: File): Promise<void> {
   try {
     const { creature } = await importCreature(file);
     navigate(`/creatures/${creature}`);
   } catch (error) {
-    tell({ kind: "wrong", text: `${file.name}: ${messageOf(error)}` });
+    showToast({ kind: "wrong", text: `${file.name}: ${messageOf(error)}` });
   }
 }
 
-interface Taker {
+interface DropHandler {
   prompt: string;
   take: (file: File) => void;
 }
 
-const OPENING: Taker = {
-  prompt: "Drop a creature file to open it",
+const OPEN_CREATURE: DropHandler = {
+  prompt: text.dropCreature,
   take: (file) => void open(file),
 };
 
-let taker = OPENING;
+let handler = OPEN_CREATURE;
 
-/** While a component is shown, it takes what is dropped. */
-export function useDropTaker(prompt: string, take: Taker["take"]): void {
+/** Handle dropped files while a component is shown. */
+export function useFileDrop(prompt: string, take: DropHandler["take"]): void {
   useEffect(() => {
-    taker = { prompt, take };
+    handler = { prompt, take };
     return () => {
-      taker = OPENING;
+      handler = OPEN_CREATURE;
     };
   }, []);
 }
 
 export function OpenButton() {
   return (
-    <FileButton kind="plain" name="Creature file" take={OPENING.take}>
-      Open creature<span class="wide-only"> file</span>
+    <FileButton kind="plain" name={text.creatureFile} take={OPEN_CREATURE.take}>
+      {text.openCreature}
+      <span class="wide-only"> {text.file}</span>
     </FileButton>
   );
 }
@@ -49,11 +51,11 @@ export function OpenButton() {
 interface ButtonProps {
   kind?: string;
   name: string;
-  take: Taker["take"];
+  take: DropHandler["take"];
   children: ComponentChildren;
 }
 
-/** A button that asks for a creature file, or another in JSON. */
+/** A button that asks for a creature file or another JSON file. */
 export function FileButton({ kind = "", name, take, children }: ButtonProps) {
   const input = useRef<HTMLInputElement>(null);
   return (
@@ -91,7 +93,7 @@ export function DropTarget() {
       event.preventDefault();
       setOver(false);
       const file = event.dataTransfer?.files[0];
-      if (file) taker.take(file);
+      if (file) handler.take(file);
     };
     window.addEventListener("dragover", drag);
     window.addEventListener("dragleave", leave);
@@ -104,7 +106,7 @@ export function DropTarget() {
   }, []);
   return over ? (
     <div class="drop-target" aria-hidden="true">
-      <p>{taker.prompt}</p>
+      <p>{handler.prompt}</p>
     </div>
   ) : null;
 }

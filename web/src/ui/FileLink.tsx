@@ -1,15 +1,15 @@
-/** A download that says why where there is no such file. */
+/** A download link that shows an error if the file does not exist. */
 
-import { proveFile } from "../api/files";
+import { checkFile } from "../api/files";
 import { messageOf } from "../api/problem";
-import { tell } from "../store/toasts";
+import { showToast } from "../store/toasts";
 
 export function FileLink({ url, name }: { url: string; name: string }) {
   const download = (event: MouseEvent) => {
     event.preventDefault();
-    proveFile(url)
+    checkFile(url)
       .then(() => save(url))
-      .catch((error) => tell({ kind: "wrong", text: messageOf(error) }));
+      .catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
   };
   return (
     <a class="button" href={url} onClick={download}>
@@ -18,7 +18,7 @@ export function FileLink({ url, name }: { url: string; name: string }) {
   );
 }
 
-/** As a click on a link would; the server says what the file is called. */
+/** Download a file under the name that the server gives it. */
 export function save(url: string): void {
   const link = document.createElement("a");
   link.href = url;

@@ -1,4 +1,4 @@
-/** Text that is changed where it stands. */
+/** A text field for editing in place. */
 
 import { useLayoutEffect, useRef } from "preact/hooks";
 
@@ -12,8 +12,8 @@ interface Props {
   onDone: (value: string | null) => void;
 }
 
-/** Enter or leaving takes what was typed, Escape takes nothing. */
-export function InPlace({ label, value, limit, long = false, list, onDone }: Props) {
+/** Enter or leaving the field accepts the text, Escape discards it. */
+export function InlineText({ label, value, limit, long = false, list, onDone }: Props) {
   const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null);
   const over = useRef(false);
   useLayoutEffect(() => {
@@ -27,7 +27,7 @@ export function InPlace({ label, value, limit, long = false, list, onDone }: Pro
   };
   const common = {
     ref: field,
-    class: "in-place",
+    class: "inline-text",
     "aria-label": label,
     maxLength: limit,
     defaultValue: value,

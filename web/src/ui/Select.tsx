@@ -1,15 +1,15 @@
-/** One of several words, which have a title each: from a list, or from a row of buttons. */
+/** A choice between named options: a list, or a row of buttons. */
 
-type Choices<T extends string = string> = readonly (readonly [name: T, title: string])[];
+type Option<T extends string = string> = readonly (readonly [name: T, title: string])[];
 
 interface Props {
   title: string;
-  choices: Choices;
+  choices: Option;
   value: string;
   onChange: (name: string) => void;
 }
 
-export function Choice({ title, choices, value, onChange }: Props) {
+export function Select({ title, choices, value, onChange }: Props) {
   return (
     <label class="compact">
       {title}
@@ -20,8 +20,8 @@ export function Choice({ title, choices, value, onChange }: Props) {
   );
 }
 
-/** What a list has to choose from. */
-export const Options = ({ of }: { of: Choices }) => (
+/** The options of a list. */
+export const Options = ({ of }: { of: Option }) => (
   <>
     {of.map(([name, words]) => (
       <option key={name} value={name}>
@@ -33,7 +33,7 @@ export const Options = ({ of }: { of: Choices }) => (
 
 interface SegmentsProps<T extends string> {
   label: string;
-  choices: Choices<T>;
+  choices: Option<T>;
   value: T;
   onChoose: (name: T) => void;
 }

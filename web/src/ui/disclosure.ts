@@ -1,8 +1,8 @@
-/** A button that turns into something else: the focus goes along, there and back. */
+/** A button that opens other controls in its place; the focus follows. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 
-export function useOpening<First extends HTMLElement>() {
+export function useDisclosure<First extends HTMLElement>() {
   const [open, setOpen] = useState(false);
   const button = useRef<HTMLButtonElement>(null);
   const first = useRef<First>(null);

@@ -1,5 +1,5 @@
 /** Random enough for a key, on plain HTTP too, where `randomUUID` does not exist. */
-export function newKey(): string {
+export function newIdempotencyKey(): string {
   const parts = crypto.getRandomValues(new Uint32Array(4));
   return [...parts].map((part) => part.toString(16).padStart(8, "0")).join("");
 }

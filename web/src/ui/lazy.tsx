@@ -1,10 +1,11 @@
-/** Pages, and parts of them, whose script comes when they are first opened. */
+/** Components that are loaded when they are first shown. */
 
 import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
+import { text } from "./text";
 
-/** A part of a page is a `section` until it is there. */
-export function later<P extends object>(
+/** Show a `section` (or `main`) until the component is loaded. */
+export function lazy<P extends object>(
   load: () => Promise<ComponentType<P>>,
   Around: "main" | "section" = "main",
 ): ComponentType<P> {
@@ -23,15 +24,15 @@ export function later<P extends object>(
       );
     }, []);
     if (Found) return <Found {...props} />;
-    return <Around>{failed ? <Gone /> : <p class="quiet loading">Loading …</p>}</Around>;
+    return <Around>{failed ? <LoadFailed /> : <p class="quiet loading">{text.loading}</p>}</Around>;
   };
 }
 
 /** The server was updated since this tab was opened, or cannot be reached. */
-function Gone() {
+function LoadFailed() {
   return (
     <p class="banner wrong" role="alert">
-      This part of the page could not be loaded. <button onClick={() => location.reload()}>Reload</button>
+      {text.notLoaded} <button onClick={() => location.reload()}>{text.reload}</button>
     </p>
   );
 }

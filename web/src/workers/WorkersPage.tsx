@@ -1,7 +1,7 @@
 /** Who computes, how busy they are, and what waits for them. */
 
 import type { Queue, Worker } from "../api/types";
-import { useLive } from "../store/store";
+import { useStore } from "../store/store";
 import { useWorkers } from "../store/refresh";
 import { bytes, count, duration, labelOf, number, percent, short } from "../ui/format";
 import "./workers.css";
@@ -15,7 +15,7 @@ export function WorkersPage() {
       </header>
       {error && <p class="banner wrong">{error}</p>}
       {!value && !error && <p class="quiet loading">Loading workers …</p>}
-      {value?.workers.length === 0 && <Nobody />}
+      {value?.workers.length === 0 && <NoWorkers />}
       {value && value.workers.length > 0 && (
         <ul class="workers" aria-label="Workers">
           {value.workers.map((worker) => (
@@ -25,12 +25,12 @@ export function WorkersPage() {
           ))}
         </ul>
       )}
-      {value && <Line queue={value.queue} />}
+      {value && <QueueCard queue={value.queue} />}
     </main>
   );
 }
 
-function Nobody() {
+function NoWorkers() {
   return (
     <section class="empty card">
       <h2>No worker is alive</h2>
@@ -61,8 +61,8 @@ function WorkerCard({ worker }: { worker: Worker }) {
         share={used === null ? null : used / memory}
         text={room}
       />
-      <Doing worker={worker} />
-      <OwnThings worker={worker} />
+      <CurrentRun worker={worker} />
+      <PluginList worker={worker} />
       <p class="quiet small">
         {status === "busy" ? "Busy" : "Idle"} for {duration(secondsSince(since))}
       </p>
@@ -96,11 +96,11 @@ function Meter({ title, share, text }: { title: string; share: number | null; te
 }
 
 /** What it has of users' own, and what it could not load. */
-function OwnThings({ worker: { plugins, unloaded } }: { worker: Worker }) {
+function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
   return (
     <>
       {plugins.length > 0 && (
-        <details class="own-things">
+        <details class="plugins">
           <summary>{count(plugins.length)} of users’ own</summary>
           <ul>
             {plugins.map(({ kind, name, title, source }) => (
@@ -122,8 +122,8 @@ function OwnThings({ worker: { plugins, unloaded } }: { worker: Worker }) {
 }
 
 /** Events tell of a run's progress sooner than the next look at its worker. */
-function Doing({ worker: { carries, status } }: { worker: Worker }) {
-  const live = useLive((state) => (carries ? state.runs.get(carries.id) : undefined));
+function CurrentRun({ worker: { carries, status } }: { worker: Worker }) {
+  const live = useStore((state) => (carries ? state.runs.get(carries.id) : undefined));
   if (!carries) {
     return <p class="quiet">{status === "busy" ? "Getting ready for a run." : "Waits for a run."}</p>;
   }
@@ -153,7 +153,7 @@ function Doing({ worker: { carries, status } }: { worker: Worker }) {
   );
 }
 
-function Line({ queue: { total, items } }: { queue: Queue }) {
+function QueueCard({ queue: { total, items } }: { queue: Queue }) {
   return (
     <section class="card queue" aria-labelledby="queue-title">
       <h2 id="queue-title">Queue</h2>
@@ -169,7 +169,7 @@ function Line({ queue: { total, items } }: { queue: Queue }) {
                 {run.memory_bytes !== null && `${bytes(run.memory_bytes)}, `}
                 waits for {duration(secondsSince(run.queued_at))}
               </span>
-              <span class="why">{run.waiting}</span>
+              <span class="reason">{run.waiting}</span>
             </li>
           ))}
         </ol>

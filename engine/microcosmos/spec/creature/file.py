@@ -9,7 +9,6 @@ from pydantic import Field, StringConstraints, ValidationError, model_validator
 
 from ...naming import LICENCE, name
 from ..base import Part, field_path
-from ..base import identity as identity_of
 from ..plugins import Own
 from ..scene import Scene
 from ..search import Task
@@ -113,7 +112,7 @@ def check(data: Any) -> dict[str, Any]:
         named = re.match(r"`([\w.]+)`", needed)
         field = field_path(first["loc"]) or (named[1] if named else "file")
         raise CreatureError(field, needed, first["input"]) from error
-    whole = {**file.model_dump(mode="json"), "identity": identity_of(file.identity)}
+    whole = file.model_dump(mode="json")
     expected = name(whole["identity"])
     if expected != file.sha256:
         raise CreatureError("sha256", f"the identity's own hash {expected}", file.sha256)

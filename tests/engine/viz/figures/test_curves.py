@@ -8,6 +8,8 @@ import pytest
 from microcosmos.viz.figures import caption, curves, style
 from microcosmos.viz.figures.groups import grouped
 
+pytestmark = pytest.mark.long
+
 ELITES = [{"cell": 0, "fitness": 1.0}]
 
 

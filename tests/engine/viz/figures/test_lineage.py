@@ -7,6 +7,8 @@ from microcosmos.viz.figures import caption, style
 from microcosmos.viz.figures.family import family, heights
 from microcosmos.viz.figures.lineage import lineage
 
+pytestmark = pytest.mark.long
+
 PARENTS = [(), (), (0,), (0, 1), (2,), (3, 2), (1,)]
 """Of seven entries; the first two are newcomers, the fourth and the sixth have two parents."""
 

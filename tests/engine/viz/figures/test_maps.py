@@ -8,6 +8,8 @@ from microcosmos.viz.figures import caption, maps, style
 from microcosmos.viz.figures.axes import chosen, fitness_label
 from microcosmos.viz.figures.tessellation import borders, cells
 
+pytestmark = pytest.mark.long
+
 THREE = (
     {"name": "bending_effort", "bins": 4},
     {"name": "straightness", "bins": 5},

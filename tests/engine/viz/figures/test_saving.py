@@ -9,6 +9,8 @@ import pytest
 from microcosmos.viz.figures import caption, maps, saving, style
 from microcosmos.viz.figures.tex import latex
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture
 def found(made):

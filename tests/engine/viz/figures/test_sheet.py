@@ -7,6 +7,8 @@ from microcosmos.viz.figures import style
 from microcosmos.viz.figures.regions import Motion, layout, numerals, reading_order
 from microcosmos.viz.figures.sheet import sheet
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture
 def found(made):

@@ -9,7 +9,6 @@ from typer.testing import CliRunner
 
 from microcosmos.archive import creature
 from microcosmos.cli import app
-from microcosmos.spec import identity
 from microcosmos.viz import networks
 
 pytestmark = pytest.mark.fast
@@ -28,7 +27,7 @@ def file(tmp_path, grown):
         "body": {},
         "task": {},
     }
-    found = identity(creature.Identity.model_validate(whole))
+    found = creature.Identity.model_validate(whole).model_dump(mode="json")
     path = tmp_path / "creature.json"
     path.write_text(json.dumps(creature.document(found, None, None)))
     return path
@@ -63,7 +62,7 @@ def test_what_cannot_be_is_said(file, tmp_path):
     spoiled = tmp_path / "spoiled.npz"
     spoiled.write_bytes(b"PK nothing")
     for arguments, words in (
-        ((file, "--svg", "--dot"), "network needs one form, got --svg --dot"),
+        ((file, "--svg", "--dot"), "network takes one form, got --svg --dot"),
         ((spoiled, "--svg"), "must be a NumPy archive"),
     ):
         came = carried_out(*arguments)

@@ -2,22 +2,22 @@
 
 import type { ComponentChildren } from "preact";
 import { setQuery } from "../../store/router";
-import { Choice } from "../../ui/Select";
-import { AXES, type Look, OVER, WINDOWS } from "./look";
+import { Select } from "../../ui/Select";
+import { AXES, type CurveView, OVER, WINDOWS } from "./look";
 import "./curves.css";
 
 const MEANS = WINDOWS.map((size): [string, string] => [String(size), size === 1 ? "none" : `over ${size}`]);
 
-export function CurveChoices({ look: { over, smooth, log } }: { look: Look }) {
+export function CurveOptions({ look: { over, smooth, log } }: { look: CurveView }) {
   return (
     <CurveBar log={log}>
-      <Choice
+      <Select
         title="Over"
         choices={AXES.map((name) => [name, OVER[name]])}
         value={over}
         onChange={(name) => setQuery({ over: name === "generation" ? null : name })}
       />
-      <Choice
+      <Select
         title="Smooth"
         choices={MEANS}
         value={String(smooth)}

@@ -4,16 +4,17 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import { useSize } from "../../ui/canvas";
 import { useTheme } from "../../ui/theme";
-import { type Look, OVER, tableOf } from "./look";
+import { type CurveView, OVER, tableOf } from "./look";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";
 import "uplot/dist/uPlot.min.css";
+import "../lineStyle.css";
 import "./curves.css";
 
 interface Props {
   plots: Plot[];
   x: readonly number[];
-  look: Look;
+  look: CurveView;
 }
 
 export function Curves({ plots, x, look }: Props) {

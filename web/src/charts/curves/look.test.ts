@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { type Curves, LONGEST, NO_CURVES, appendCurves } from "../../store/curves";
-import { dressed, lookOf, runningMean, tableOf } from "./look";
+import { type Curves, MAX_POINTS, NO_CURVES, appendCurves } from "../../store/curves";
+import { arrangePlots, curveViewOf, runningMean, tableOf } from "./look";
 import { divergedBy, scoresOf, workOf } from "./plots";
 
 const curvesOf = (qd_score: (number | null)[], batch = 16, summary = {}): Curves => {
@@ -11,13 +11,13 @@ const curvesOf = (qd_score: (number | null)[], batch = 16, summary = {}): Curves
 };
 
 describe("how curves are looked at", () => {
-  const plain = lookOf(new URLSearchParams());
+  const plain = curveViewOf(new URLSearchParams());
 
   it("is in the address, and what is no choice there is none", () => {
     expect(plain).toEqual({ over: "generation", log: false, smooth: 1 });
     const asked = new URLSearchParams("over=seconds&log=1&smooth=20");
-    expect(lookOf(asked)).toEqual({ over: "seconds", log: true, smooth: 20 });
-    expect(lookOf(new URLSearchParams("over=moons&log=yes&smooth=7"))).toEqual(plain);
+    expect(curveViewOf(asked)).toEqual({ over: "seconds", log: true, smooth: 20 });
+    expect(curveViewOf(new URLSearchParams("over=moons&log=yes&smooth=7"))).toEqual(plain);
   });
 
   it("smooths by the mean of so many generations, of what was told in them", () => {
@@ -29,7 +29,7 @@ describe("how curves are looked at", () => {
   });
 
   it("keeps what was measured faintly behind the smooth line", () => {
-    const [score] = dressed(scoresOf, curvesOf([1, 3]), [], { ...plain, smooth: 5 });
+    const [score] = arrangePlots(scoresOf, curvesOf([1, 3]), [], { ...plain, smooth: 5 });
     expect(score!.series.map(({ faint }) => faint ?? false)).toEqual([true, false]);
     expect(score!.series.map(({ y }) => y)).toEqual([
       [1, 3],
@@ -40,7 +40,7 @@ describe("how curves are looked at", () => {
   it("puts other runs beside, each in its colour and at its own places", () => {
     const others = [{ name: "Demo 12", colour: "--series-2", curves: curvesOf([5, 6], 32) }];
     const look = { ...plain, over: "evaluations" } as const;
-    const [score] = dressed(scoresOf, curvesOf([1, 2]), others, look);
+    const [score] = arrangePlots(scoresOf, curvesOf([1, 2]), others, look);
     expect(score!.series.map(({ colour }) => colour)).toEqual(["--series-1", "--series-2"]);
     expect(score!.series.map(({ other }) => other ?? false)).toEqual([false, true]);
     expect(tableOf(score!.series, [16, 32], false)).toEqual([
@@ -78,13 +78,13 @@ describe("diverged evaluations", () => {
 
   it("are not lost where a long history is thinned out", () => {
     let curves = NO_CURVES;
-    const length = 2 * LONGEST + 3;
+    const length = 2 * MAX_POINTS + 3;
     for (let generation = 1; generation <= length; generation++) {
       const figures = { qd_score: 1, coverage: 1, best: 1, mean: 1, diverged: 0, evaluations: 1 };
       const told = { "diverged: non-finite": 1, ...(generation === 2 && { rare: 5 }) };
       curves = appendCurves(curves, { run: "", generation, seconds: 1, ...figures, summary: told });
     }
-    expect(curves.generation.length).toBeLessThanOrEqual(LONGEST + 1);
+    expect(curves.generation.length).toBeLessThanOrEqual(MAX_POINTS + 1);
     expect(divergedBy(curves)).toEqual([["non-finite", length]]);
     expect(curves.summary["rare"]!.filter((value) => value !== null)).toEqual([5]);
   });

@@ -16,20 +16,20 @@ export const OVER: Record<Axis, string> = {
   seconds: "seconds",
 };
 
-export interface Look {
+export interface CurveView {
   over: Axis;
   log: boolean;
   smooth: number;
 }
 
-export function lookOf(query: URLSearchParams): Look {
+export function curveViewOf(query: URLSearchParams): CurveView {
   const over = AXES.find((name) => name === query.get("over")) ?? "generation";
   const smooth = WINDOWS.find((size) => String(size) === query.get("smooth")) ?? 1;
   return { over, log: query.get("log") === "1", smooth };
 }
 
 /** Another run whose curves stand beside. */
-export interface Other {
+export interface OtherRun {
   name: string;
   colour: string;
   /** Where there are more runs than colours. */
@@ -38,11 +38,11 @@ export interface Other {
 }
 
 /** Plots of a run as they are looked at; `plotsOf` makes those of the others. */
-export function dressed(
+export function arrangePlots(
   plotsOf: (curves: Curves) => Plot[],
   curves: Curves,
-  others: readonly Other[],
-  look: Look,
+  others: readonly OtherRun[],
+  look: CurveView,
 ): Plot[] {
   const beside = others.map((other) => besideOf(plotsOf, other, look));
   return plotsOf(curves).map((plot) => {
@@ -53,7 +53,11 @@ export function dressed(
 }
 
 /** Plots of several runs of which none is the first. */
-export function overlaid(plotsOf: (curves: Curves) => Plot[], runs: readonly Other[], look: Look): Plot[] {
+export function overlayPlots(
+  plotsOf: (curves: Curves) => Plot[],
+  runs: readonly OtherRun[],
+  look: CurveView,
+): Plot[] {
   const plots = runs.map((run) => besideOf(plotsOf, run, look));
   return plotsOf(NO_CURVES).map((plot) => ({ ...plot, series: alike(plot, plots) }));
 }
@@ -62,7 +66,7 @@ const alike = ({ title }: Plot, plots: Plot[][]) =>
   plots.flatMap((each) => each.find((other) => other.title === title)?.series ?? []);
 
 /** Another run's plots in its own colour, at its own places. */
-function besideOf(plotsOf: (curves: Curves) => Plot[], other: Other, look: Look): Plot[] {
+function besideOf(plotsOf: (curves: Curves) => Plot[], other: OtherRun, look: CurveView): Plot[] {
   const { name, colour, dash, curves } = other;
   return plotsOf(curves).map((plot) => ({
     ...plot,
@@ -84,7 +88,7 @@ function inOneColour(series: Series, k: number): Series {
 }
 
 /** The smooth line, and what was measured faintly behind it. */
-function faded(series: Series, curves: Curves, { smooth }: Look): Series[] {
+function faded(series: Series, curves: Curves, { smooth }: CurveView): Series[] {
   if (smooth === 1 || series.dots) return [series];
   const mean = smoothed(series, curves.generation, smooth);
   return [

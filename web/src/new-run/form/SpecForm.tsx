@@ -38,7 +38,7 @@ function Card({ part, state }: { part: Section | Union; state: FormState }) {
   const open = wrong || !state.closed.has(part.path);
   const name = part.path || "general";
   return (
-    <div class={`card form-section ${open ? "" : "shut"}`} id={`section-${name}`}>
+    <div class={`card form-section ${open ? "" : "collapsed"}`} id={`section-${name}`}>
       <button
         type="button"
         class="fold"

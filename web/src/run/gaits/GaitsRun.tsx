@@ -4,22 +4,22 @@ import { useMemo, useState } from "preact/hooks";
 import type { ResultRow } from "../../api/types";
 import { setQuery } from "../../store/router";
 import { formOf } from "../../ui/coupling";
-import { NotFree } from "../../ui/NotForceFree";
+import { NotForceFree } from "../../ui/NotForceFree";
 import { Plot, type Point } from "../../charts/plot/Plot";
 import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Segments } from "../../ui/Select";
 import { MarkReplay, useLastMark } from "./MarkReplay";
-import { type Props, TableCard, hrefOf, useTable } from "../results/resultsPage";
+import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import "./gaits.css";
 
-const BESIDE = "beside";
+const REPLAYS = "beside";
 
-export function GaitsRun({ run, query }: Props) {
+export function GaitsRun({ run, query }: ResultsProps) {
   const { results, missing } = useTable(run);
   const forms = formsOf(run.spec);
   const wanted = query.get("form") ?? "";
-  const asked = [...forms, BESIDE].includes(wanted) ? wanted : forms[0]!;
-  const shown = asked === BESIDE ? forms : [asked];
+  const asked = [...forms, REPLAYS].includes(wanted) ? wanted : forms[0]!;
+  const shown = asked === REPLAYS ? forms : [asked];
   const rows = (results?.rows ?? []).filter((row) => shown.includes(String(row.form)));
   const [near, setNear] = useState<Point | null>(null);
   const settled = useLastMark(near);
@@ -55,14 +55,14 @@ function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
   return (
     <Segments
       label="Form of the coupling"
-      choices={[...choices, [BESIDE, "Side by side"]]}
+      choices={[...choices, [REPLAYS, "Side by side"]]}
       value={chosen}
       onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
     />
   );
 }
 
-interface SweepProps extends Props {
+interface SweepProps extends ResultsProps {
   form: string;
   all: ResultRow[];
   onNear: (point: Point | null) => void;
@@ -78,7 +78,7 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
   return (
     <div class="sweep">
       <p class="sweep-title">
-        <b>{title}</b> <span class="quiet">{about}</span> {!free && <NotFree />}
+        <b>{title}</b> <span class="quiet">{about}</span> {!free && <NotForceFree />}
       </p>
       <Plot
         title={`Displacement against viscosity, ${title}`}

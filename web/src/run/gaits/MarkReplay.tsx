@@ -1,10 +1,10 @@
 /** The replay of the mark that is pointed at, beside its plot. */
 
 import { useState } from "preact/hooks";
-import { useSettled } from "../../store/throttle";
+import { useDebounced } from "../../store/throttle";
 import type { Point } from "../../charts/plot/Plot";
-import { Loop } from "../../replay/Loop";
-import { Rendering, useReplays } from "../../replay/recordings";
+import { ReplayLoop } from "../../replay/Loop";
+import { RecordingStatus, useReplays } from "../../replay/recordings";
 import "./gaits.css";
 
 /** A pointer on its way passes marks that nobody wants to see. */
@@ -13,7 +13,7 @@ const SETTLE_MS = 120;
 /** The last mark that was pointed at for a moment: leaving it keeps its replay. */
 export function useLastMark(near: Point | null): Point | null {
   const [last, setLast] = useState<Point | null>(null);
-  useSettled(near?.href ? near : null, SETTLE_MS, setLast);
+  useDebounced(near?.href ? near : null, SETTLE_MS, setLast);
   return last;
 }
 
@@ -35,8 +35,8 @@ function Playing({ point }: { point: Point }) {
   const [name, ...figures] = point.says;
   return (
     <>
-      <Rendering {...rendering} what="Simulating it again …" />
-      {replay && <Loop replay={replay} name={`${name}, swimming`} />}
+      <RecordingStatus {...rendering} what="Simulating it again …" />
+      {replay && <ReplayLoop replay={replay} name={`${name}, swimming`} />}
       <p class="small">
         <b>{name}</b>
         <br />

@@ -4,12 +4,12 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import * as api from "../../api/client";
 import type { ResultRow, Run, Target } from "../../api/types";
 import { useFetched } from "../../store/fetch";
-import { useLive } from "../../store/store";
+import { useStore } from "../../store/store";
 import { setQuery } from "../../store/router";
 import { number, short } from "../../ui/format";
 import { FoldPlayer } from "./FoldPlayer";
 import { pictureOf } from "./fold";
-import { Rendering, useReplays } from "../../replay/recordings";
+import { RecordingStatus, useReplays } from "../../replay/recordings";
 import { hrefOf } from "../results/resultsPage";
 import "./folds.css";
 
@@ -44,7 +44,7 @@ interface PicturesProps {
 }
 
 function Pictures({ run, targets, rows, chosen }: PicturesProps) {
-  const summary = useLive((state) => state.runs.get(run.id))?.summary;
+  const summary = useStore((state) => state.runs.get(run.id))?.summary;
   const lossOf = (name: string) => {
     const loss = rows.find(({ picture }) => picture === name)?.least ?? summary?.[`loss of ${name}`];
     return typeof loss === "number" ? `loss ${number(loss)}` : "no loss yet";
@@ -84,7 +84,7 @@ function Fold({ run, row, target }: { run: Run; row: ResultRow; target: Target }
   const replay = rendering.replays?.[0];
   return (
     <>
-      <Rendering {...rendering} what="Simulating this filament again to record how it folds …" />
+      <RecordingStatus {...rendering} what="Simulating this filament again to record how it folds …" />
       {replay && <FoldPlayer replay={replay} target={target} />}
       <p class="quiet small">
         Loss {number(Number(row.first))} before it learnt, {number(Number(row.least))} at best; without a

@@ -2,17 +2,17 @@
 
 import { useMemo } from "preact/hooks";
 import type { ResultRow, Run } from "../../api/types";
-import { useLive } from "../../store/store";
+import { useStore } from "../../store/store";
 import { number, short } from "../../ui/format";
 import { Plot } from "../../charts/plot/Plot";
 import { ReplayPlayer } from "../../replay/ReplayPlayer";
 import { courseOf } from "./learning";
 import { FoldsCard } from "./FoldsCard";
-import { Rendering, useReplays } from "../../replay/recordings";
-import { type Props, TableCard, hrefOf, useTable } from "../results/resultsPage";
+import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 
-export function LearningRun({ run, query }: Props) {
-  const curves = useLive((state) => state.details.get(run.id))?.curves;
+export function LearningRun({ run, query }: ResultsProps) {
+  const curves = useStore((state) => state.details.get(run.id))?.curves;
   const { results } = useTable(run);
   const course = curves && courseOf(run, curves);
   const rows = results?.rows ?? [];
@@ -69,7 +69,7 @@ function SideBySide({ run, before, after }: Ends) {
   );
   return (
     <>
-      <Rendering {...rendering} what="Simulating both creatures to record their motion …" />
+      <RecordingStatus {...rendering} what="Simulating both creatures to record their motion …" />
       {films.length > 0 && <ReplayPlayer films={films} />}
     </>
   );

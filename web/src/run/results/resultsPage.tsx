@@ -9,7 +9,7 @@ import { ResultTable } from "./ResultTable";
 import type { Order } from "./columns";
 import "./results.css";
 
-export interface Props {
+export interface ResultsProps {
   run: Run;
   query: URLSearchParams;
 }
@@ -38,7 +38,7 @@ export function useTable(run: Run): Shown {
 
 export const hrefOf = (run: Run) => (creature: string) => `/creatures/${creature}?run=${run.id}`;
 
-export function TableCard({ run, query, rows }: Props & { rows: ResultRow[] }) {
+export function TableCard({ run, query, rows }: ResultsProps & { rows: ResultRow[] }) {
   const order: Order = { by: query.get("sort"), down: query.get("order") === "down" };
   const turn = ({ by, down }: Order) => setQuery({ sort: by, order: down ? "down" : null });
   return (

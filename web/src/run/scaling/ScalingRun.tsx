@@ -3,9 +3,9 @@
 import { bytes, number } from "../../ui/format";
 import { Plot } from "../../charts/plot/Plot";
 import { logAxis, memoryLines, nodesAxis, timeLines } from "./scaling";
-import { type Props, TableCard, useTable } from "../results/resultsPage";
+import { type ResultsProps, TableCard, useTable } from "../results/resultsPage";
 
-export function ScalingRun({ run, query }: Props) {
+export function ScalingRun({ run, query }: ResultsProps) {
   const { results, missing } = useTable(run);
   if (missing || !results) {
     return (

@@ -4,13 +4,13 @@ import { useMemo } from "preact/hooks";
 import * as api from "../../api/client";
 import type { Run } from "../../api/types";
 import { useExperiments, useFetched } from "../../store/fetch";
-import { useLive } from "../../store/store";
+import { useStore } from "../../store/store";
 import { setQuery } from "../../store/router";
 import { short, titleOf, words } from "../../ui/format";
 import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
 import { differences } from "./difference";
 import { copyText } from "../../ui/clipboard";
-import { RunChoice } from "../RunPicker";
+import { RunPicker } from "../RunPicker";
 import "./spec.css";
 
 export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
@@ -22,7 +22,7 @@ export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
       <div class="card-head wraps">
         <h2 id="spec-title">Spec</h2>
         <span class="spring" />
-        <RunChoice
+        <RunPicker
           run={run}
           label="Difference to a run"
           fits={() => true}
@@ -87,7 +87,7 @@ function sentenceOf(preset: string, changed: number): string {
 }
 
 function DifferenceTo({ run, id }: { run: Run; id: string }) {
-  const known = useLive((state) => state.runs.get(id));
+  const known = useStore((state) => state.runs.get(id));
   const { value, error } = useFetched(() => api.readRun(id), [id]);
   const experiments = useExperiments().value ?? [];
   const other = known ?? value;

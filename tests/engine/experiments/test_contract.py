@@ -1,0 +1,170 @@
+"""Every experiment keeps the same contract: it repeats, resumes, stops and refuses."""
+
+import json
+from dataclasses import replace
+from itertools import pairwise
+
+import jax
+import numpy as np
+import pytest
+
+from microcosmos.archive import creature, file
+from microcosmos.build import build
+from microcosmos.experiments import OtherDevice, Stopped
+from microcosmos.spec import parse
+
+LONG = ("lamarckian", "cma-me", "tensorneat")
+LEARNERS = ("cma-mae", "cma-mega", "lamarckian", "cma-me", "tensorneat")
+COMPUTED = ("quality-diversity", "neuroevolution", "folding", "refinement", "gaits")
+OTHER = {
+    "quality-diversity": {"task": {"steps": 61}},
+    "neuroevolution": {"seed": 6},
+    "folding": {"rate": 0.05},
+    "refinement": {"block": 5},
+    "gaits": {"period": 31},
+    "scaling": {"steps": 11},
+}
+"""What makes another run of each."""
+
+
+def marked(*names):
+    return [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in names]
+
+
+@pytest.fixture(scope="module", params=marked(*COMPUTED, *LEARNERS))
+def computed(request, course_of):
+    """A run whose numbers repeat, those of searches that learn among them."""
+    with jax.numpy_rank_promotion("allow" if request.param in LEARNERS else "raise"):
+        yield course_of(request.param)
+
+
+@pytest.fixture(scope="module", params=OTHER)
+def course(request, course_of):
+    """The run of any experiment."""
+    return course_of(request.param)
+
+
+def without_times(report):
+    summary = {name: told for name, told in report.summary.items() if "seconds" not in name}
+    return replace(report, summary=summary)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_interrupted_after_any_generation_it_goes_on_with_the_same_bytes(computed, finish):
+    states, reports, experiment, _ = computed
+    files = [experiment.save(state) for state in states]
+    for (before, after), expected in zip(pairwise(files), reports, strict=True):
+        taken_up = experiment.restore(before)
+        assert experiment.save(taken_up) == before
+        state, report = experiment.advance(taken_up)
+        assert experiment.save(state) == after
+        assert without_times(report) == without_times(expected)
+    assert finish(experiment, experiment.restore(files[1])) == files[-1]
+
+
+@pytest.mark.parametrize("name", marked(*COMPUTED))
+def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, finish):
+    states, _, experiment, spec = course_of(name)
+    again = build(spec)
+    assert finish(again, again.init()) == experiment.save(states[-1])
+
+
+def test_it_stops_when_it_is_asked_to_and_leaves_the_state_as_it_was(course):
+    states, _, experiment, spec = course
+    number = (len(states) - 1) // 2
+    before, asked = experiment.save(states[number]), []
+    experiment.advance(states[number], stop=lambda: bool(asked.append(None)))
+    for last in (1, len(asked)):
+        left = iter(range(last)[::-1])
+        with pytest.raises(Stopped):
+            experiment.advance(states[number], stop=lambda left=left: next(left) == 0)
+        assert experiment.save(states[number]) == before
+    if spec.experiment != "scaling":  # Times do not repeat.
+        after, _ = experiment.advance(states[number])
+        assert experiment.save(after) == experiment.save(states[number + 1])
+
+
+def test_its_file_holds_the_spec_and_reads_back(course):
+    states, _, experiment, spec = course
+    for state in (states[0], states[1], states[-1]):
+        data = experiment.save(state)
+        assert json.loads(file.load(data)[1]["spec"]) == spec.model_dump(mode="json")
+        restored = experiment.restore(data)
+        assert experiment.save(restored) == data
+        assert experiment.generation(restored) == experiment.generation(state)
+        assert experiment.done(restored) == experiment.done(state)
+
+
+def test_generations_are_counted_from_one(course):
+    states, reports, experiment, _ = course
+    assert [experiment.generation(state) for state in states] == list(range(len(states)))
+    assert [report.generation for report in reports] == list(range(1, len(states)))
+
+
+def test_the_file_of_another_spec_is_refused(course):
+    states, _, experiment, spec = course
+    document = spec.model_dump(mode="json")
+    other = build(parse(document | _merged(document, OTHER[spec.experiment])))
+    with pytest.raises(ValueError, match="`spec` in the file must be the run's own"):
+        other.restore(experiment.save(states[1]))
+
+
+def _merged(document, change):
+    return {
+        name: {**document[name], **part} if isinstance(part, dict) else part
+        for name, part in change.items()
+    }
+
+
+def test_a_file_without_a_part_is_refused(course):
+    states, _, experiment, _ = course
+    tree, attributes = file.load(experiment.save(states[1]))
+    del tree["loop"]
+    with pytest.raises(ValueError, match="must hold 'loop'"):
+        experiment.restore(file.dump(tree, attributes))
+
+
+def test_another_device_needs_leave_and_is_recorded(course):
+    states, _, experiment, _ = course
+    data, here = experiment.save(states[1]), states_devices(experiment, states[1])
+    elsewhere = on(experiment, "abacus")
+    with pytest.raises(OtherDevice, match=r"`device` must be .*got 'abacus'"):
+        elsewhere.restore(data)
+    restored = elsewhere.restore(data, other_device=True)
+    assert states_devices(elsewhere, restored) == [*here, "abacus"]
+
+
+def states_devices(experiment, state):
+    return json.loads(file.load(experiment.save(state))[1]["device"])
+
+
+def on(experiment, device):
+    """The experiment on another kind of device."""
+    if hasattr(experiment, "plan"):
+        return replace(experiment, plan=replace(experiment.plan, device=device))
+    return replace(experiment, device=device)
+
+
+def test_its_best_creature_is_a_sound_file_and_there_is_none_at_first(course):
+    states, reports, experiment, spec = course
+    assert experiment.best(states[0]) is None
+    best = experiment.best(states[-1])
+    if spec.experiment in ("gaits", "scaling"):  # Rows do not compete.
+        assert best is None
+        return
+    assert creature.parse(best)["sha256"] == best["sha256"]
+    if spec.experiment != "folding":
+        assert best["measured"]["fitness"] == reports[-1].best
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", marked(*LEARNERS))
+def test_simulations_that_teach_are_counted(name, course_of):
+    with jax.numpy_rank_promotion("allow"):
+        states, reports, experiment, _ = course_of(name)
+    assert np.asarray(states[-1].elites.occupied).sum() > 1
+    taught = {"cma-mega": 5, "lamarckian": 40}.get(experiment.plan.names[0], 0)
+    assert states[-1].evaluations == 40 + taught
+    if taught:
+        assert reports[-1].summary["slopes: sound"] == 1
+        assert reports[-1].summary["slopes: length"] > 0

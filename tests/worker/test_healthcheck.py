@@ -1,0 +1,117 @@
+"""Health checks tell the living from the dead."""
+
+import os
+import socket
+import subprocess
+import sys
+import time
+
+import psutil
+import pytest
+from rq.serializers import JSONSerializer
+from rq.worker import SimpleWorker
+
+from server.maintenance import healthcheck
+from server.maintenance.healthcheck import alive, main
+from server.workers import registry
+
+HOST = "somewhere"
+
+
+def test_a_worker_is_alive_while_it_tells_of_itself(services):
+    assert not alive(services, "worker", HOST)
+    registry.report(services.sessions, f"{HOST}-17", "a device", 1, "idle")
+    assert alive(services, "worker", HOST)
+    assert not alive(services, "worker", "some")
+    assert not alive(services, "renderer", HOST)
+    patient = services.settings.lease
+    object.__setattr__(services.settings, "lease", 0.0)
+    assert not alive(services, "worker", HOST), "a lease without a word is over"
+    object.__setattr__(services.settings, "lease", patient)
+    registry.retire(services.sessions, f"{HOST}-17")
+    assert not alive(services, "worker", HOST)
+
+
+@pytest.mark.parametrize("part", ["renderer", "auditor"])
+def test_who_renders_is_alive_from_its_birth_to_its_end(services, part):
+    queue = services.jobs.renderings
+    worker = SimpleWorker([queue], f"{part}-{HOST}-1", serializer=JSONSerializer)
+    worker.register_birth()
+    assert alive(services, part, HOST)
+    assert not alive(services, part, "elsewhere")
+    worker.register_death()
+    services.redis.delete(worker.key)  # As Redis does when its time is over.
+    assert not alive(services, part, HOST)
+
+
+def test_a_missing_part_is_said_with_an_exit_status(services, settings, monkeypatch):
+    monkeypatch.setenv("MICROCOSMOS_DATA", str(settings.data))
+    monkeypatch.setenv("MICROCOSMOS_DATABASE_URL", settings.database_url)
+    monkeypatch.setenv("MICROCOSMOS_REDIS_URL", settings.redis_url)
+    with pytest.raises(SystemExit, match=f"No worker on {socket.gethostname()} has reported"):
+        main(["worker"])
+    for wrong in ([], ["nobody"], ["worker", "--twice"]):
+        with pytest.raises(SystemExit, match="One part is needed, of server"):
+            main(wrong)
+    code = "import server.maintenance.healthcheck, sys; print('jax' in sys.modules)"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert said.stdout.strip() == "False", said.stderr
+
+
+@pytest.fixture
+def container(monkeypatch):
+    """A first process with one program in it, which ignores that it is asked to end."""
+    script = "(trap '' TERM; while :; do sleep 0.1; done) & wait"
+    init = subprocess.Popen(["sh", "-c", script], stdout=subprocess.DEVNULL)
+    monkeypatch.setattr(healthcheck, "INITS", ("sh",))
+    while not (children := psutil.Process(init.pid).children()):
+        time.sleep(0.02)
+    yield init
+    for process in filter(psutil.Process.is_running, children):
+        process.kill()
+    init.kill()
+    init.wait()
+
+
+def test_a_part_that_fails_for_minutes_is_asked_to_end_and_then_killed(container, tmp_path):
+    mark = tmp_path / "fails"
+    (program,) = psutil.Process(container.pid).children()
+    time.sleep(0.2)  # It has set its trap.
+    healthcheck.remedy(mark, container.pid)
+    assert mark.exists(), "the first failure is remembered"
+
+    def failing_for(seconds):
+        os.utime(mark, (time.time() - seconds,) * 2)
+        healthcheck.remedy(mark, container.pid)
+
+    failing_for(healthcheck.ASK_AFTER - 5)
+    failing_for(healthcheck.ASK_AFTER + 5)
+    time.sleep(0.2)
+    assert program.is_running(), "asked, which it ignores"
+    failing_for(healthcheck.KILL_AFTER + 5)
+    assert container.wait(10) is not None, "the container ends with its program"
+
+
+def test_nothing_is_ended_outside_a_container(container, monkeypatch, tmp_path):
+    monkeypatch.setattr(healthcheck, "INITS", ("docker-init",))
+    healthcheck.remedy(tmp_path / "fails", container.pid)
+    assert not (tmp_path / "fails").exists()
+
+
+@pytest.mark.parametrize(
+    ("answering", "found"),
+    [((), "The server does not answer."), (("/healthz",), ConnectionError)],
+)
+def test_a_server_is_not_blamed_for_its_database(settings, monkeypatch, answering, found):
+    monkeypatch.setattr(healthcheck, "answers", lambda port, path: path in answering)
+    if found is ConnectionError:
+        with pytest.raises(ConnectionError, match="cannot reach the database or Redis"):
+            healthcheck.fault(settings, "server")
+    else:
+        assert healthcheck.fault(settings, "server") == found
+
+
+def test_a_worker_is_not_blamed_for_its_database(settings):
+    lost = settings.model_copy(update={"redis_url": "redis://127.0.0.1:1/0"})
+    with pytest.raises(ConnectionError, match="cannot be reached"):
+        healthcheck.fault(lost, "renderer")
