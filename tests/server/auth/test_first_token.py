@@ -8,7 +8,7 @@ from pydantic import SecretStr
 
 from server.auth import __main__ as commands
 from server.auth import bootstrap, tokens
-from server.core.errors import Refused
+from server.core.errors import ProblemError
 
 
 @pytest.fixture
@@ -61,7 +61,7 @@ def test_tokens_are_made_and_revoked_on_the_command_line(
     commands.main(["list"])
     assert "frank\tadmin\t" + secret[:9] in capsys.readouterr().out
     commands.main(["revoke", "frank"])
-    with pytest.raises(Refused, match="`frank` was revoked"):
+    with pytest.raises(ProblemError, match="`frank` was revoked"):
         tokens.holder(services, secret)
     with pytest.raises(SystemExit, match="No live token is named 'frank'"):
         commands.main(["revoke", "frank"])

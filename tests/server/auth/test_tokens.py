@@ -6,7 +6,7 @@ import httpx
 import pytest
 
 from server.auth import tokens
-from server.core.errors import Refused
+from server.core.errors import ProblemError
 from server.tables import Run, Token
 
 KEY = {"Idempotency-Key": "first"}
@@ -62,7 +62,7 @@ def test_a_revoked_token_is_refused_at_once_by_name(required, client, admin, ser
 def test_an_expired_token_is_refused_and_gives_up_its_name(required, client, services):
     soon = datetime.now(UTC) + timedelta(hours=1)
     made = tokens.create(services, "carol", "read", soon)
-    with pytest.raises(Refused, match="named 'carol' is there already"):
+    with pytest.raises(ProblemError, match="named 'carol' is there already"):
         tokens.create(services, "carol", "read")
     expire(services, made.token.id)
     answer = client(required, made.secret).get("/runs")
