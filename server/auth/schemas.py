@@ -30,7 +30,7 @@ class TokenRead(Wire):
 
     id: UUID
     name: str
-    beginning: str
+    prefix: str
     """The first characters of the secret, to tell which one it is."""
     scope: Scope
     created_at: datetime

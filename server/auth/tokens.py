@@ -66,7 +66,7 @@ def create(
             token = Token(
                 name=name,
                 secret_sha256=hashed(secret),
-                beginning=secret[:SHOWN],
+                prefix=secret[:SHOWN],
                 scope=scope,
                 expires_at=expires_at,
             )

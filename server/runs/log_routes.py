@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query
 from ..services.deps import SessionDep
 from . import log
 from .deps import RunDep
-from .schemas import EntryRead, Log
+from .schemas import Log, LogEntryRead
 
 router = APIRouter(prefix="/runs/{run_id}/log", tags=["runs"])
 
@@ -24,4 +24,4 @@ def read_log(
     Of the checkpoints of an attempt only the first and the last are told.
     """
     found = log.read(session, run.id, after, limit)
-    return Log(entries=[EntryRead.model_validate(entry) for entry in found])
+    return Log(entries=[LogEntryRead.model_validate(entry) for entry in found])

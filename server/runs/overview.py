@@ -11,8 +11,8 @@ from ..auth import owners
 from ..estimates import position
 from ..services.services import Services
 from ..tables import FAILED, FINISHED, RUNNING, Generation, Run
-from ..workers.schemas import Carried
-from .schemas import Forked, RunRead
+from ..workers.schemas import RunBrief
+from .schemas import ForkedFrom, RunRead
 
 POINTS = 32
 
@@ -63,7 +63,7 @@ def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | No
     columns["forked_from"] = forked(run)
     return RunRead(
         **{name: columns[name] for name in RunRead.model_fields if name in columns},
-        waiting=reason,
+        waiting_reason=reason,
         progress=progress(run),
         eta_seconds=left / generations if generations and run.status == RUNNING else None,
         evaluations_per_second=evaluations,
@@ -71,15 +71,19 @@ def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | No
     )
 
 
-def forked(run: Run) -> Forked | None:
+def forked(run: Run) -> ForkedFrom | None:
     """Where it began, if it is a fork."""
-    return None if run.forked is None else Forked(run=run.forked_from, creatures=run.forked)
+    return (
+        None
+        if run.n_initial is None
+        else ForkedFrom(run=run.forked_from, creatures=run.n_initial)
+    )
 
 
-def carried(run: Run) -> Carried:
+def brief(run: Run) -> RunBrief:
     """A run as it is named beside others."""
-    names = (name for name in Carried.model_fields if name != "progress")
-    return Carried(**{name: getattr(run, name) for name in names}, progress=progress(run))
+    names = (name for name in RunBrief.model_fields if name != "progress")
+    return RunBrief(**{name: getattr(run, name) for name in names}, progress=progress(run))
 
 
 def progress(run: Run) -> float:

@@ -8,7 +8,7 @@ from sqlalchemy import select
 from ..estimates import position
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
-from ..workers.schemas import QueueRead, Waiting
+from ..workers.schemas import QueuedRun, QueueRead
 from . import overview
 
 router = APIRouter(prefix="/queue", tags=["workers"])
@@ -28,9 +28,9 @@ def read_queue(
     runs = [found[run_id] for run_id in first if run_id in found]
     reasons = position.reasons_in(line, runs)
     items = [
-        Waiting(
-            **overview.carried(run).model_dump(),
-            waiting=reasons[run.id],
+        QueuedRun(
+            **overview.brief(run).model_dump(),
+            waiting_reason=reasons[run.id],
             queued_at=run.queued_at,
             memory_bytes=position.needed_bytes(run),
         )

@@ -86,7 +86,7 @@ class Fork(Wire):
     name: Name | None = None
 
 
-class Forked(Wire):
+class ForkedFrom(Wire):
     """Where a fork began."""
 
     run: UUID | None
@@ -102,8 +102,9 @@ class RunRead(Wire):
     tags: list[str]
     note: str | None
     status: Status
-    wish: Literal["pause", "cancel"] | None
-    waiting: str | None
+    requested_state: Literal["paused", "cancelled"] | None
+    """What a person asked of a running run that its worker has not done yet."""
+    waiting_reason: str | None
     """Why nobody carries it out yet, in words; None unless it is queued."""
     spec: dict[str, Any]
     created_at: datetime
@@ -139,7 +140,7 @@ class RunRead(Wire):
     """Since when it lies in the bin."""
     purge_at: datetime | None
     """When it goes for good."""
-    forked_from: Forked | None
+    forked_from: ForkedFrom | None
 
 
 class RunPage(Wire):
@@ -184,7 +185,7 @@ class Target(Wire):
     """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
 
 
-class EntryRead(Wire):
+class LogEntryRead(Wire):
     """What happened to a run."""
 
     id: int
@@ -196,7 +197,7 @@ class EntryRead(Wire):
 
 
 class Log(Wire):
-    entries: list[EntryRead]
+    entries: list[LogEntryRead]
 
 
 class TagRead(Wire):

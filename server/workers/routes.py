@@ -2,7 +2,7 @@
 
 from fastapi import APIRouter
 
-from ..runs.overview import carried
+from ..runs.overview import brief
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Run, Worker
 from . import registry
@@ -25,5 +25,5 @@ def _read(worker: Worker, run: Run | None) -> WorkerRead:
     names = list(PluginRead.model_fields)
     columns["plugins"] = [{name: one[name] for name in names} for one in worker.plugins]
     return WorkerRead(
-        **columns, run=run.id if run else told, carries=carried(run) if run else None
+        **columns, run=run.id if run else told, current_run=brief(run) if run else None
     )

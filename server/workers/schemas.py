@@ -8,7 +8,7 @@ from ..core.schemas import Wire
 from ..runs.schemas import Status
 
 
-class Carried(Wire):
+class RunBrief(Wire):
     """A run as it is named beside a worker or in the queue."""
 
     id: UUID
@@ -53,15 +53,15 @@ class WorkerRead(Wire):
     since: datetime
     """When its status or its run last changed."""
     run: UUID | None
-    carries: Carried | None
+    current_run: RunBrief | None
     """The run that it is at."""
     heartbeat_at: datetime
     plugins: list[PluginRead]
     unloaded: list[UnloadedRead]
 
 
-class Waiting(Carried):
-    waiting: str
+class QueuedRun(RunBrief):
+    waiting_reason: str
     """Why it waits, in words."""
     queued_at: datetime
     memory_bytes: int | None
@@ -71,7 +71,7 @@ class Waiting(Carried):
 class QueueRead(Wire):
     total: int
     """Among them those that a worker is about to begin."""
-    items: list[Waiting]
+    items: list[QueuedRun]
     """The first ones, in the order in which they will be taken."""
 
 

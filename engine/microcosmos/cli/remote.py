@@ -94,11 +94,15 @@ def about(thing: "Run | Sweep") -> str:
     """Which it is and how it stands, for people."""
     record = thing.record
     if "cases" in record:
-        standing = ", ".join(f"{n} {status}" for status, n in record["standing"].items() if n)
+        standing = ", ".join(
+            f"{n} {status}" for status, n in record["status_counts"].items() if n
+        )
     else:
-        wish = f", asked to {record['wish']}" if record.get("wish") else ""
-        standing = f"{record['status']}{wish}"
-    return f"{title(thing)}: {standing}"
+        requested = (
+            f", to be {record['requested_state']}" if record.get("requested_state") else ""
+        )
+        standing = f"{record['status']}{requested}"
+    return f"{title(thing)}: {status}"
 
 
 def title(thing: "Run | Sweep") -> str:

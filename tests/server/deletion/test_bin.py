@@ -19,9 +19,9 @@ from server.tables import (
     Artifact,
     Base,
     Creature,
-    Discarded,
     Elite,
-    Leftover,
+    GarbageCreature,
+    GarbageFile,
     Parent,
     Run,
 )
@@ -250,7 +250,7 @@ def test_a_rendering_that_was_made_again_stays(services, run_id, report, identit
     name = creature.name(identity(1000))
     save(services, name, AUDIT, b"audit")
     with services.sessions.write.begin() as session:
-        session.add(Discarded(path=rendering_path(name, AUDIT)))
+        session.add(GarbageFile(path=rendering_path(name, AUDIT)))
     reconcile(services)
     assert files(services) == [rendering_path(name, AUDIT)]
     assert rows(services)["discarded"] == 0
@@ -287,7 +287,7 @@ def test_a_creature_that_comes_into_use_while_it_is_judged_stays(
     with services.sessions.read() as session:
         used = session.scalars(select(Elite.creature)).all()
         kept = session.scalars(select(Creature.sha256)).all()
-        assert session.scalars(select(Leftover.creature)).all() == []
+        assert session.scalars(select(GarbageCreature.creature)).all() == []
         assert (
             session.scalars(select(Artifact.path).where(Artifact.creature.in_(kept))).all()
             == []

@@ -50,7 +50,7 @@ def runs_of(api, sweep):
 
 
 def test_a_sweep_is_each_case_with_each_seed_the_first_seed_first(api, services, six):
-    assert (six["total"], six["standing"], six["progress"]) == (6, {"queued": 6}, 0)
+    assert (six["total"], six["status_counts"], six["progress"]) == (6, {"queued": 6}, 0)
     assert [case["values"] for case in six["cases"]] == [
         {"world.viscosity": 0.05},
         {"world.viscosity": 0.1},
@@ -243,8 +243,8 @@ def test_single_runs_are_taken_before_those_of_a_sweep(api, services, six, spec)
     with services.sessions.read() as session:
         assert [str(one.run) for one in in_line(session)] == [single, *ids]
     assert [queue.get_job_ids() for queue in services.jobs.evolving] == [[single], ids]
-    assert api.post("runs/estimate", json=spec).json()["queue"]["waiting"] == 1
-    both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["waiting"]
+    assert api.post("runs/estimate", json=spec).json()["queue"]["runs_ahead"] == 1
+    both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["runs_ahead"]
     assert both == 7
 
 
@@ -273,7 +273,7 @@ def test_an_estimate_is_of_all_runs_together(api, spec):
     larger = {**spec, "search": {**spec["search"], "batch": 32}}
     needed = api.post("runs/estimate", json=larger).json()
     assert found["memory_bytes"] == needed["memory_bytes"] > one["memory_bytes"]
-    assert (found["seconds"], found["pace"]) == (None, None)
+    assert (found["seconds"], found["speed"]) == (None, None)
     assert api.get("runs").json()["items"] == []
 
 
@@ -320,21 +320,21 @@ def test_who_steers_a_sweep_is_told_which_runs_were_left_alone(api, services, si
     answer = api.post(f"sweeps/{six['id']}/pause")
     paused = answer.json()
     assert answer.status_code == 202
-    assert paused["standing"] == {"running": 1, "paused": 4, "finished": 1}
+    assert paused["status_counts"] == {"running": 1, "paused": 4, "finished": 1}
     assert paused["changed"] == [str(run) for run in (second, *waiting)]
-    (left,) = paused["left"]
+    (left,) = paused["skipped"]
     assert (left["run"], left["status"]) == (str(first), "finished")
     assert "it is finished" in left["reason"]
-    assert api.get(f"runs/{second}").json()["wish"] == "pause"
+    assert api.get(f"runs/{second}").json()["requested_state"] == "paused"
     busy.pause()
     resumed = api.post(f"sweeps/{six['id']}/resume").json()
-    assert resumed["standing"] == {"queued": 5, "finished": 1}
+    assert resumed["status_counts"] == {"queued": 5, "finished": 1}
     assert set(map(str, (second, *waiting))) <= set(services.jobs.sweeps.get_job_ids())
     cancelled = api.post(f"sweeps/{six['id']}/cancel").json()
-    assert cancelled["standing"] == {"finished": 1, "cancelled": 5}
+    assert cancelled["status_counts"] == {"finished": 1, "cancelled": 5}
     assert cancelled["progress"] == pytest.approx(1 / 6)
     again = api.post(f"sweeps/{six['id']}/cancel").json()
-    assert (again["changed"], len(again["left"])) == ([], 6)
+    assert (again["changed"], len(again["skipped"])) == ([], 6)
 
 
 def test_a_sweep_has_a_name_that_can_be_changed(api, six):
@@ -354,13 +354,13 @@ def test_a_deleted_sweep_is_out_of_sight_and_comes_back_as_it_was(api, services,
     first, *others = runs_of(api, six)
     attempt = claimed(services, first)
     refused = api.delete(path).json()
-    assert (refused["changed"], len(refused["left"])) == ([], 6)
-    assert "cancel it first" in refused["left"][0]["reason"]
+    assert (refused["changed"], len(refused["skipped"])) == ([], 6)
+    assert "cancel it first" in refused["skipped"][0]["reason"]
     api.post(f"{path}/cancel")
     before = api.get(path).json()
     deleted = api.delete(path)
     assert deleted.status_code == 200
-    assert (deleted.json()["changed"], deleted.json()["left"][0]["run"]) == (others, first)
+    assert (deleted.json()["changed"], deleted.json()["skipped"][0]["run"]) == (others, first)
     assert (deleted.json()["total"], deleted.json()["deleted"]) == (1, 5)
     assert len(api.get("sweeps").json()["items"]) == 1
     attempt.cancel()
@@ -376,7 +376,7 @@ def test_a_deleted_sweep_is_out_of_sight_and_comes_back_as_it_was(api, services,
     reconcile(services)
     restored = api.post(f"{path}/restore").json()
     assert set(restored["changed"]) == {first, *others}
-    assert api.get(path).json() == {**before, "standing": {"cancelled": 6}}
+    assert api.get(path).json() == {**before, "status_counts": {"cancelled": 6}}
     assert api.get("sweeps", params={"deleted": True}).json()["items"] == []
     assert api.post(f"{path}/restore").json()["changed"] == []
 
@@ -436,7 +436,7 @@ def test_bands_are_the_quartiles_of_the_runs_that_have_got_so_far(api, services,
     assert thin["best"]["max"] == [case["best"]["max"][i] for i in (0, 2, 4)]
     lines = api.get(f"sweeps/{sweep['id']}/curves").json()
     assert lines["generation"] == [1, 2, 3, 4, 5]
-    (line,) = [one for one in lines["lines"] if one["run"] == sweep["cases"][1]["runs"][1]]
+    (line,) = [one for one in lines["runs"] if one["run"] == sweep["cases"][1]["runs"][1]]
     assert line["coverage"] == [*told[line["run"]][:, 1], None, None]
 
 
