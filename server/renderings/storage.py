@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.archive.naming import REPLAY_VERSION
 
-from ..attempts.recording import insert_missing
+from ..core.database import insert_missing
 from ..creatures import storage as creatures
 from ..services.services import Services
 from ..storage.artifacts import Stored, rendering_path

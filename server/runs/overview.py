@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 from ..auth import owners
 from ..estimates import position
 from ..services.services import Services
-from ..tables import FAILED, FINISHED, RUNNING, Generation, Run
-from ..workers.schemas import RunBrief
+from ..tables import FAILED, RUNNING, Generation, Run
+from ..workers.brief import progress
 from .schemas import ForkedFrom, RunRead
 
 POINTS = 32
@@ -78,17 +78,6 @@ def forked(run: Run) -> ForkedFrom | None:
         if run.n_initial is None
         else ForkedFrom(run=run.forked_from, creatures=run.n_initial)
     )
-
-
-def brief(run: Run) -> RunBrief:
-    """A run as it is named beside others."""
-    names = (name for name in RunBrief.model_fields if name != "progress")
-    return RunBrief(**{name: getattr(run, name) for name in names}, progress=progress(run))
-
-
-def progress(run: Run) -> float:
-    """A run may end before its generations are through: a finished one is done."""
-    return 1.0 if run.status == FINISHED else min(1.0, run.generation / run.generations)
 
 
 def _rates(run: Run, curve: list[Generation]) -> tuple[float | None, float | None]:

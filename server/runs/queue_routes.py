@@ -8,8 +8,8 @@ from sqlalchemy import select
 from ..estimates import position
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
-from ..workers.schemas import QueuedRun, QueueRead
-from . import overview
+from ..workers.brief import brief
+from .schemas import QueuedRun, QueueRead
 
 router = APIRouter(prefix="/queue", tags=["workers"])
 
@@ -29,7 +29,7 @@ def read_queue(
     reasons = position.reasons_in(line, runs)
     items = [
         QueuedRun(
-            **overview.brief(run).model_dump(),
+            **brief(run).model_dump(),
             waiting_reason=reasons[run.id],
             queued_at=run.queued_at,
             memory_bytes=position.needed_bytes(run),

@@ -30,6 +30,7 @@ from .runs import (
     STATUSES,
     TERMINAL,
     Run,
+    Status,
 )
 from .shares import Share
 from .sweeps import Sweep
@@ -74,6 +75,7 @@ __all__ = [
     "Run",
     "Sha256",
     "Share",
+    "Status",
     "Sweep",
     "Token",
     "Worker",

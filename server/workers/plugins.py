@@ -93,9 +93,7 @@ def versions_of(worker: Worker) -> set[str]:
 
 def fit(worker: Worker | None, needed: Sequence[str] | None) -> bool:
     """Whether a worker has all versions that a run needs."""
-    return not plugin_versions or (
-        worker is not None and set(plugin_versions) <= versions_of(worker)
-    )
+    return not needed or (worker is not None and set(needed) <= versions_of(worker))
 
 
 def missing(alive: Sequence[Worker], document: Any) -> str:

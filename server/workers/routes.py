@@ -2,10 +2,10 @@
 
 from fastapi import APIRouter
 
-from ..runs.overview import brief
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Run, Worker
 from . import registry
+from .brief import brief
 from .schemas import PluginRead, WorkerRead
 
 router = APIRouter(prefix="/workers", tags=["workers"])

@@ -1,4 +1,4 @@
-"""The application that the commands belong to, and how they talk."""
+"""The command-line application, and how commands report errors."""
 
 import sys
 from pathlib import Path
@@ -17,7 +17,7 @@ app = typer.Typer(
 console = Console(stderr=True)
 
 CACHE = Path.home() / ".cache" / "microcosmos"
-"""Where compiled programs are kept, unless JAX_COMPILATION_CACHE_DIR says otherwise."""
+"""The default of JAX_COMPILATION_CACHE_DIR, the folder of compiled programs."""
 
 
 def _tell_version(asked: bool) -> None:
@@ -30,13 +30,15 @@ def _tell_version(asked: bool) -> None:
 def main(
     version: Annotated[
         bool,
-        typer.Option("--version", callback=_tell_version, is_eager=True, help="Tell it."),
+        typer.Option(
+            "--version", callback=_tell_version, is_eager=True, help="Print the version."
+        ),
     ] = False,
 ) -> None:
-    """What belongs to no command."""
+    """Options of the program itself."""
 
 
 def fail(message: str) -> NoReturn:
-    """Say what is wrong and end."""
+    """Print an error and exit with status 2."""
     console.print(message, style="red", markup=False, highlight=False, soft_wrap=True)
     sys.exit(2)

@@ -1,4 +1,4 @@
-"""Creature files: replayed, checked, audited."""
+"""Commands for creature files: replay, audit, gradient."""
 
 import json
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ def replay(
     check: Annotated[
         bool, typer.Option("--check", help="Evaluate again and compare bit for bit.")
     ] = False,
-    out: Annotated[Path | None, typer.Option(help="Where the replay is written.")] = None,
+    out: Annotated[Path | None, typer.Option(help="File to write the replay to.")] = None,
     module: Modules = None,
 ) -> None:
     """Simulate a creature file again."""
@@ -39,10 +39,12 @@ def replay(
 @app.command()
 def audit(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
-    out: Annotated[Path | None, typer.Option(help="Where it is written as JSON too.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="File to write the report to, as JSON.")
+    ] = None,
     module: Modules = None,
 ) -> None:
-    """Does a creature swim by the fluid, or by the way it is computed?"""
+    """Audit the physics of a creature: does it still swim on a finer lattice?"""
     load_modules(module)
     from ..archive.atomic import write_whole
     from ..archive.creature import CreatureError, parse
@@ -65,16 +67,20 @@ def audit(
 @app.command()
 def gradient(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
-    of: Annotated[str, typer.Option(help="Fitness or a feature.")] = "fitness",
+    of: Annotated[str, typer.Option(help="fitness, or a measure.")] = "fitness",
     by: Annotated[
         list[str] | None,
-        typer.Option(help="genes (default), rest_angle, rest_length, stretch, viscosity ..."),
+        typer.Option(help="genes (default), rest_angle, rest_length, stretch, viscosity …"),
     ] = None,
-    starts: Annotated[int, typer.Option(min=1, help="Other starts to compare with.")] = 8,
-    out: Annotated[Path | None, typer.Option(help="Where it is written as JSON too.")] = None,
+    starts: Annotated[
+        int, typer.Option(min=1, help="Number of other starts to compare with.")
+    ] = 8,
+    out: Annotated[
+        Path | None, typer.Option(help="File to write the report to, as JSON.")
+    ] = None,
     module: Modules = None,
 ) -> None:
-    """How far can the gradient of a creature's fitness, or of a feature, be trusted?"""
+    """Measure how far the gradient of a creature's fitness or of a measure can be trusted."""
     load_modules(module)
     from ..archive.atomic import write_whole
     from ..archive.creature import CreatureError, parse

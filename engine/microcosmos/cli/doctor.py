@@ -1,4 +1,4 @@
-"""Whether this machine, and a server, have what they need."""
+"""The command `doctor`."""
 
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ COLOURS = {"ok": "green", "warning": "yellow", "problem": "red"}
 
 @app.command()
 def doctor(json: Json = False, url: Url = None, token: Token = None) -> None:
-    """Look at devices, memory, disk, Redis, database and server, and say what to do."""
+    """Check devices, memory, disk, Redis, database and server, and say what to do."""
     from ..doctor import examine
 
     found: list[Finding] = []

@@ -1,4 +1,4 @@
-"""Pictures and films, and figures for print."""
+"""The command `figure`: pictures, films, and figures for print."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,11 +12,11 @@ from .app import CACHE, app, console, fail
 from .modules import Modules, load_modules
 
 DEFAULT = "file"
-"""The command that is meant where none is named."""
+"""The command that runs if none is named."""
 
 
 class Figures(TyperGroup):
-    """Commands by name; what is no command's name is a file to draw."""
+    """Take an argument that names no command as a file to draw."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         named = bool(args) and self.get_command(ctx, args[0]) is not None
@@ -26,7 +26,7 @@ class Figures(TyperGroup):
 figures = typer.Typer(
     cls=Figures,
     no_args_is_help=True,
-    help="Pictures and films (`figure FILE OUT`), and figures for print with their captions.",
+    help="Draw pictures and films (`figure FILE OUT`), or figures for print with captions.",
 )
 app.add_typer(figures, name="figure")
 
@@ -34,16 +34,23 @@ File = Annotated[
     Path, typer.Argument(exists=True, dir_okay=False, help="The archive file of a run.")
 ]
 Out = Annotated[
-    Path | None, typer.Argument(help=".pdf, .svg or .png; default: a PDF beside the file.")
+    Path | None, typer.Argument(help="A .pdf, .svg or .png file; default: a PDF beside FILE.")
 ]
 Axes = Annotated[
     str | None,
-    typer.Option(help="One or two measures, as a,b; default: the archive's first two."),
+    typer.Option(
+        help="One or two measures as a,b; default: the first two axes of the archive."
+    ),
 ]
-Width = Annotated[str, typer.Option(help="single (85 mm), double (178 mm), 120mm, 3.5in ...")]
-Dpi = Annotated[int, typer.Option(min=50, max=1200, help="Of a PNG.")]
-Under = Annotated[bool, typer.Option("--caption", help="Put it under the figure too.")]
-Tex = Annotated[bool, typer.Option("--latex", help="Write it for LaTeX too: OUT.caption.tex.")]
+Width = Annotated[
+    str,
+    typer.Option(help="single (85 mm), double (178 mm), or a width such as 120mm or 3.5in."),
+]
+Dpi = Annotated[int, typer.Option(min=50, max=1200, help="Resolution of a PNG.")]
+Under = Annotated[bool, typer.Option("--caption", help="Draw the caption under the figure.")]
+Tex = Annotated[
+    bool, typer.Option("--latex", help="Write the caption for LaTeX to OUT.caption.tex.")
+]
 Palette = Annotated[str, typer.Option(help="viridis, cividis or magma.")]
 
 
@@ -52,11 +59,11 @@ def of_file(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
     out: Annotated[
         Path,
-        typer.Argument(help=".png, .gif or .mp4 of a creature; .png, .svg or .pdf of a run."),
+        typer.Argument(help=".png, .gif or .mp4 for a creature; .png, .svg or .pdf for a run."),
     ],
     module: Modules = None,
 ) -> None:
-    """A picture or a film of a creature or its replay; the figure of a run.
+    """Draw a picture or a film of a creature or its replay, or the figure of a run.
 
     This is meant where no command is named: `figure FILE OUT`.
     """
@@ -73,14 +80,14 @@ def archive(
     file: File,
     out: Out = None,
     axes: Axes = None,
-    colour: Annotated[str, typer.Option(help="Fitness, or any measure.")] = "fitness",
+    colour: Annotated[str, typer.Option(help="fitness, or a measure.")] = "fitness",
     width: Width = "single",
     dpi: Dpi = 300,
     caption: Under = False,
     latex: Tex = False,
     palette: Palette = "viridis",
 ) -> None:
-    """The map of an archive: bins, or the cells of a tessellation."""
+    """Draw the map of an archive: bins, or the cells of a tessellation."""
     from ..viz.figures import drawing
 
     how = drawing.Print(width, dpi, caption, latex, palette)
@@ -91,10 +98,13 @@ def archive(
 def curves(
     files: Annotated[
         list[Path],
-        typer.Argument(metavar="FILE... OUT", help="Archive files, then the figure."),
+        typer.Argument(metavar="FILE... OUT", help="Archive files, then the figure to write."),
     ],
     shown: Annotated[
-        str, typer.Option(help="Of qd_score, coverage, best, mean, evaluations ...")
+        str,
+        typer.Option(
+            help="Some of qd_score, coverage, best, mean, evaluations …, with commas."
+        ),
     ] = "best,coverage,qd_score",
     against: Annotated[str, typer.Option(help="evaluations or generations.")] = "evaluations",
     width: Width = "double",
@@ -102,14 +112,14 @@ def curves(
     caption: Under = False,
     latex: Tex = False,
 ) -> None:
-    """How runs went: seeds of one spec as a median with a band, other specs as other bands."""
+    """Draw the curves of runs: the median and a band over the seeds of each spec."""
     from ..viz.figures import drawing
 
     *given, out = files
     if not given:
-        fail(f"FILE... OUT needs an archive file and the figure; got {out} alone")
+        fail(f"FILE... OUT needs an archive file and a figure to write; got only {out}")
     if missing := [str(file) for file in given if not file.is_file()]:
-        fail(f"FILE needs files that are there; got {', '.join(missing)}")
+        fail(f"FILE must exist; not found: {', '.join(missing)}")
     how = drawing.Print(width, dpi, caption, latex)
     _written(drawing.progress, given, out, how, _names(shown) or [], against)
 
@@ -119,9 +129,9 @@ def sheet(
     file: File,
     out: Out = None,
     axes: Axes = None,
-    columns: Annotated[int, typer.Option(help="Regions along the first axis.")] = 6,
-    rows: Annotated[int, typer.Option(help="Regions along the second.")] = 4,
-    moments: Annotated[int, typer.Option(help="Moments of each life.")] = 5,
+    columns: Annotated[int, typer.Option(help="Number of regions along the first axis.")] = 6,
+    rows: Annotated[int, typer.Option(help="Number of regions along the second axis.")] = 4,
+    moments: Annotated[int, typer.Option(help="Number of moments of each swimmer.")] = 5,
     width: Width = "double",
     dpi: Dpi = 300,
     caption: Under = False,
@@ -129,7 +139,7 @@ def sheet(
     palette: Palette = "viridis",
     module: Modules = None,
 ) -> None:
-    """The contact sheet of gaits: the fittest swimmer of each region over the axes."""
+    """Draw a contact sheet of gaits: the fittest swimmer of each region of the archive."""
     load_modules(module)
     from rich.progress import Progress
 
@@ -158,7 +168,8 @@ def lineage(
     file: File,
     out: Out = None,
     cell: Annotated[
-        int | None, typer.Option(help="Whose ancestors; default: the fittest elite's.")
+        int | None,
+        typer.Option(help="Cell of the elite whose ancestors are drawn; default: the fittest."),
     ] = None,
     width: Width = "double",
     dpi: Dpi = 300,
@@ -166,7 +177,7 @@ def lineage(
     latex: Tex = False,
     palette: Palette = "viridis",
 ) -> None:
-    """The descent of an archive's elites, and the ancestors of one of them."""
+    """Draw the pedigree of an archive's elites, and the ancestors of one of them."""
     from ..viz.figures import drawing
 
     how = drawing.Print(width, dpi, caption, latex, palette)
@@ -174,7 +185,7 @@ def lineage(
 
 
 def _written(draw: Any, *given: Any) -> None:
-    """Carry a drawing out and name what was written."""
+    """Draw, and print the paths of the written files."""
     try:
         written = draw(*given)
     except (ValueError, ImportError, OSError) as error:

@@ -25,7 +25,7 @@ From = Annotated[
         "--from",
         exists=True,
         dir_okay=False,
-        help="Begin from a creature file, or from all elites of an archive; more than once.",
+        help="Start from a creature file, or from all elites of an archive; repeatable.",
     ),
 ]
 
@@ -57,14 +57,14 @@ def begun(spec: Spec, paths: Sequence[Path]) -> tuple[Spec, list[CreatureFile]]:
 
 
 def refuse_without_files(spec: Spec, files: Sequence[CreatureFile], archive: Path) -> None:
-    """End here where a run cannot begin: its own archive file would do, too."""
+    """Fail if the files of the initial creatures are missing."""
     named = spec.search.origin if isinstance(spec, Evolution) else ()
     if named and not files and not archive.exists():
         fail(f"`search.origin` names {len(named)} creatures: --from needs the files with them")
 
 
 def creatures(path: Path) -> list[CreatureFile]:
-    """The creatures in a creature file or an archive; it ends here for any other file."""
+    """Return the creatures of a creature file or an archive; fail for any other file."""
     try:
         data = path.read_bytes()
         return _of_hdf5(data) if data.startswith(HDF5) else [parse(data)]

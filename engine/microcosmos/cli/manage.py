@@ -1,4 +1,4 @@
-"""Runs on a server: paused, extended, forked, deleted."""
+"""Commands that change runs and sweeps on a server: pause, extend, fork, delete."""
 
 from collections.abc import Callable
 from typing import Annotated, Any
@@ -11,19 +11,19 @@ from .monitor import ended
 from .remote import RUNS, Id, Ids, Json, Token, Url, about, found, reaching, say, show, title
 from .submit import Name, Set, Watch, tell
 
-Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")]
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask for confirmation.")]
 
 
 @app.command(rich_help_panel=RUNS)
 def extend(
     id: Id,
-    generations: Annotated[int, typer.Argument(min=1, help="So many more.")],
+    generations: Annotated[int, typer.Argument(min=1, help="Number of generations to add.")],
     watch: Watch = False,
     json: Json = False,
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Let a run go on for more generations."""
+    """Add generations to a run."""
     with reaching(url, token) as client:
         run = client.run(id).extend(generations)
         tell(run, json)
@@ -35,20 +35,25 @@ def extend(
 def fork(
     id: Id,
     elite: Annotated[
-        list[str] | None, typer.Option(metavar="SHA", help="Begin with this creature.")
+        list[str] | None,
+        typer.Option(metavar="SHA", help="Start from this creature; repeatable."),
     ] = None,
     cells: Annotated[
-        str | None, typer.Option(metavar="N,N,...", help="Begin with who is in these cells.")
+        str | None,
+        typer.Option(metavar="N,N,...", help="Start from the elites of these cells."),
     ] = None,
     region: Annotated[
         list[str] | None,
-        typer.Option(metavar="AXIS=LOW:HIGH", help="Begin with who is within."),
+        typer.Option(
+            metavar="AXIS=LOW:HIGH",
+            help="Start from the elites with measures in this range; repeatable.",
+        ),
     ] = None,
     whole: Annotated[
-        bool, typer.Option("--all", help="Begin with the whole archive: the default.")
+        bool, typer.Option("--all", help="Start from all elites (default).")
     ] = False,
     generation: Annotated[
-        int | None, typer.Option(min=0, help="The archive as it was then.")
+        int | None, typer.Option(min=0, help="Take the archive after this generation.")
     ] = None,
     settings: Set = None,
     name: Name = None,
@@ -57,7 +62,7 @@ def fork(
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Begin a new run with elites of another, in another world if you like."""
+    """Start a new run from elites of another run."""
     chosen: dict[str, Any] = {
         "creatures": elite or None,
         "cells": _numbers(cells),
@@ -65,7 +70,7 @@ def fork(
     }
     named = [how for how, what in chosen.items() if what is not None]
     if len(named) + whole > 1:
-        raise typer.BadParameter("fork needs one of --elite, --cells, --region and --all")
+        raise typer.BadParameter("fork takes one of --elite, --cells, --region and --all")
     patch = overrides.patch(settings or [])
     with reaching(url, token) as client:
         run = client.run(id).fork(**chosen, generation=generation, spec=patch, name=name)
@@ -76,55 +81,55 @@ def fork(
 
 @app.command(rich_help_panel=RUNS)
 def pause(ids: Ids, url: Url = None, token: Token = None) -> None:
-    """Stop runs or sweeps for a while; nothing is lost."""
+    """Pause runs or sweeps; `resume` continues them."""
     _each(ids, url, token, lambda one: one.pause())
 
 
 @app.command(rich_help_panel=RUNS)
 def resume(ids: Ids, url: Url = None, token: Token = None) -> None:
-    """Let runs or sweeps go on that were paused."""
+    """Resume paused runs or sweeps."""
     _each(ids, url, token, lambda one: one.resume())
 
 
 @app.command(rich_help_panel=RUNS)
 def cancel(ids: Ids, url: Url = None, token: Token = None) -> None:
-    """End runs or sweeps for good; what they have is kept."""
+    """Cancel runs or sweeps for good; results so far are kept."""
     _each(ids, url, token, lambda one: one.cancel())
 
 
 @app.command(rich_help_panel=RUNS)
 def delete(ids: Ids, yes: Yes = False, url: Url = None, token: Token = None) -> None:
-    """Put runs or sweeps into the bin; for a day `restore` takes them back."""
+    """Move runs or sweeps to the bin; `restore` brings them back within a day."""
     with reaching(url, token) as client:
         for one in [found(client, id) for id in ids]:
             if not yes and not typer.confirm(f"{about(one)}. Delete?", err=True):
-                say(f"{title(one)} stays.")
+                say(f"{title(one)} is not deleted.")
                 continue
             record = one.delete().record
             if record.get("total"):  # Of a sweep.
-                say(f"{about(one)}; these stay: cancel them first")
+                say(f"{about(one)}; the other runs have not ended: cancel them first")
             if record.get("deleted", True):
                 undo = f"microcosmos restore {one.id[:8]}"
-                say(f"{title(one)} is in the bin; to take it back: {undo}")
+                say(f"{title(one)} is in the bin. To restore it: {undo}")
 
 
 @app.command(rich_help_panel=RUNS)
 def restore(ids: Ids, url: Url = None, token: Token = None) -> None:
-    """Take runs or sweeps back from the bin."""
+    """Restore runs or sweeps from the bin."""
     with reaching(url, token) as client:
         for one in [found(client, id, deleted=True) for id in ids]:
-            say(f"{title(one.restore())} is back.")
+            say(f"{title(one.restore())} is restored.")
 
 
 @app.command(rich_help_panel=RUNS)
 def sweep(
     id: Id,
-    runs: Annotated[bool, typer.Option("--runs", help="A row for each run.")] = False,
+    runs: Annotated[bool, typer.Option("--runs", help="Print a row for each run.")] = False,
     json: Json = False,
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """What the runs of a sweep have come to: median and quarters of each case."""
+    """Print the results of a sweep: median and quartiles of each case."""
     from .sweeps import cases, members
 
     with reaching(url, token) as client:
@@ -150,4 +155,4 @@ def _numbers(text: str | None) -> list[int] | None:
     try:
         return [int(part) for part in text.split(",")]
     except ValueError:
-        raise typer.BadParameter(f"--cells needs numbers, as 3,17; got {text!r}") from None
+        raise typer.BadParameter(f"--cells needs numbers such as 3,17; got {text!r}") from None

@@ -1,4 +1,4 @@
-"""Modules of one's own, for the commands that compute."""
+"""Plug-ins for the commands that compute."""
 
 from pathlib import Path
 from typing import Annotated
@@ -11,13 +11,13 @@ from .app import app, console, fail
 Modules = Annotated[
     list[Path] | None,
     typer.Option(
-        "--module", help="A Python file with something of one's own; see docs/plugins.md."
+        "--module", help="A Python file with plug-ins, see docs/plugins.md; repeatable."
     ),
 ]
 
 
 def load_modules(files: list[Path] | None) -> None:
-    """Load what installed packages name and what is given: the latter has to be sound."""
+    """Load the plug-ins of installed packages and of these files; fail if a file is faulty."""
     for failed in plugins.load_all(()):
         console.print(f"{failed.module} is not loaded: {failed.reason}", style="yellow")
     for file in files or ():
@@ -29,7 +29,7 @@ def load_modules(files: list[Path] | None) -> None:
 
 @app.command("plugins")
 def show(module: Modules = None) -> None:
-    """What modules of one's own add: names, titles, versions."""
+    """List plug-ins: names, titles, versions."""
     load_modules(module)
     for plugin in plugins.loaded():
         one = plugin.declaration

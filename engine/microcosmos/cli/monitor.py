@@ -1,4 +1,4 @@
-"""Runs on a server: listed, watched, fetched."""
+"""Commands that read runs on a server: list, watch, pull."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -20,24 +20,36 @@ COLUMNS = ("id", "name", "experiment", "status", "done", "QD score", "coverage",
 @app.command(rich_help_panel=RUNS)
 def runs(
     status: Annotated[
-        list[str] | None, typer.Option(help="queued, running, finished ...; several may stand.")
+        list[str] | None,
+        typer.Option(
+            help="queued, running, paused, finished, failed or cancelled; repeatable."
+        ),
     ] = None,
-    experiment: Annotated[list[str] | None, typer.Option(help="Likewise.")] = None,
-    tag: Annotated[str | None, typer.Option(help="Only those with it.")] = None,
+    experiment: Annotated[
+        list[str] | None,
+        typer.Option(help="Kind of run, such as quality-diversity; repeatable."),
+    ] = None,
+    tag: Annotated[str | None, typer.Option(help="List only runs with this tag.")] = None,
     search: Annotated[
         str | None, typer.Option("--search", "-s", help="Text in names, tags and notes.")
     ] = None,
-    sweep: Annotated[str | None, typer.Option(metavar="ID", help="Only this sweep's.")] = None,
-    deleted: Annotated[bool, typer.Option("--deleted", help="Those in the bin.")] = False,
+    sweep: Annotated[
+        str | None, typer.Option(metavar="ID", help="List only runs of this sweep.")
+    ] = None,
+    deleted: Annotated[
+        bool, typer.Option("--deleted", help="List the runs in the bin.")
+    ] = False,
     sort: Annotated[
-        str, typer.Option(help="created, name, best, qd_score ...; with - descending.")
+        str, typer.Option(help="created, name, best, qd_score …; with - in front: descending.")
     ] = "-created",
-    most: Annotated[int, typer.Option("--most", "-n", min=1, help="At most so many.")] = 20,
+    most: Annotated[
+        int, typer.Option("--most", "-n", min=1, help="Number of runs to list at most.")
+    ] = 20,
     json: Json = False,
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """List runs, the newest first."""
+    """List runs, newest first."""
     from itertools import islice
 
     with reaching(url, token) as client:
@@ -56,24 +68,27 @@ def runs(
         return
     shown(COLUMNS, map(_row, records[:most]))
     if len(records) > most:
-        say(f"There are more: --most {10 * most} lists up to so many.")
+        say(f"More runs exist: --most {10 * most} lists them.")
 
 
 @app.command(rich_help_panel=RUNS)
 def watch(
     id: Annotated[
-        str | None, typer.Argument(metavar="ID", help="Of a run or a sweep, or its beginning.")
+        str | None,
+        typer.Argument(
+            metavar="ID", help="Id of a run or a sweep; its first characters are enough."
+        ),
     ] = None,
-    last: Annotated[bool, typer.Option("--last", help="The newest run.")] = False,
+    last: Annotated[bool, typer.Option("--last", help="Watch the newest run.")] = False,
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Watch a run or a sweep until it ends. Ctrl-C leaves it going.
+    """Watch a run or a sweep until it ends. Ctrl-C stops watching, not the run.
 
-    Ends with 0 where it finished, 1 where it failed or was cancelled, 130 after Ctrl-C.
+    Exit status: 0 if it finished, 1 if it failed or was cancelled, 130 after Ctrl-C.
     """
     if (id is None) != last:
-        raise typer.BadParameter("watch needs an ID or --last, and not both")
+        raise typer.BadParameter("watch needs an ID or --last, but not both")
     with reaching(url, token) as client:
         raise typer.Exit(ended(client.last() if id is None else found(client, id)))
 
@@ -82,18 +97,21 @@ def watch(
 def pull(
     id: Id,
     out: Annotated[
-        Path | None, typer.Option(help="A file or a folder; default: here.", show_default=False)
+        Path | None,
+        typer.Option(
+            help="File or folder to write to; default: the current folder.", show_default=False
+        ),
     ] = None,
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Fetch a run's archive file; broken off, the same command goes on."""
+    """Download the archive file of a run; repeat the command to resume a download."""
     with reaching(url, token) as client:
         print(client.run(id).pull(out))
 
 
 def ended(watched: "Run | Sweep") -> int:
-    """Watch it to its end; how the command ends then."""
+    """Watch until the end; return the exit status."""
     end = watched.watch()
     good = {"finished"} >= ({end} if isinstance(end, str) else {s for s in end if end[s]})
     return 0 if good else 1

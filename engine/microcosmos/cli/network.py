@@ -1,4 +1,4 @@
-"""The network of a creature as a picture, a formula, code, or a genome of TensorNEAT."""
+"""The command `network`."""
 
 import sys
 from pathlib import Path
@@ -12,22 +12,29 @@ if TYPE_CHECKING:
     from ..viz.networks import Network
 
 ZIP = b"PK"
-"""How a TensorNEAT genome begins."""
+"""The first bytes of a TensorNEAT genome."""
 
 
 @app.command()
 def network(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
-    svg: Annotated[bool, typer.Option("--svg", help="A picture.")] = False,
-    dot: Annotated[bool, typer.Option("--dot", help="For Graphviz.")] = False,
-    python: Annotated[bool, typer.Option("--python", help="A module of NumPy code.")] = False,
-    formula: Annotated[bool, typer.Option("--formula", help="Lines to read.")] = False,
-    tensorneat: Annotated[
-        bool, typer.Option("--tensorneat", help="A genome (.npz); see docs/networks.md.")
+    svg: Annotated[bool, typer.Option("--svg", help="Draw a picture.")] = False,
+    dot: Annotated[bool, typer.Option("--dot", help="Write a graph for Graphviz.")] = False,
+    python: Annotated[
+        bool, typer.Option("--python", help="Write a Python module that uses NumPy.")
     ] = False,
-    out: Annotated[Path | None, typer.Option(help="Default: standard output.")] = None,
+    formula: Annotated[bool, typer.Option("--formula", help="Print formulas.")] = False,
+    tensorneat: Annotated[
+        bool,
+        typer.Option(
+            "--tensorneat", help="Write a TensorNEAT genome (.npz), see docs/networks.md."
+        ),
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="File to write; default: standard output.")
+    ] = None,
 ) -> None:
-    """The network of a creature file, or of a TensorNEAT genome, in one of these forms."""
+    """Write the network of a creature file or of a TensorNEAT genome in one form."""
     forms = {
         "svg": svg,
         "dot": dot,
@@ -37,7 +44,7 @@ def network(
     }
     chosen = [name for name, wanted in forms.items() if wanted] or ["formula"]
     if len(chosen) > 1:
-        fail(f"network needs one form, got --{' --'.join(chosen)}")
+        fail(f"network takes one form, got --{' --'.join(chosen)}")
     try:
         data = _rendered(_read(file), chosen[0])
         if out is None:

@@ -8,7 +8,7 @@ import typer
 
 
 def value(text: str) -> Any:
-    """JSON, else the text itself."""
+    """Parse JSON; return other text as it is."""
     try:
         return json.loads(text)
     except ValueError:
@@ -19,13 +19,13 @@ def pair(text: str, option: str) -> tuple[str, str]:
     path, equals, given = text.partition("=")
     if not equals or not all(path.strip().split(".")):
         raise typer.BadParameter(
-            f"{option} needs FIELD=VALUE, as world.viscosity=0.1; got {text!r}"
+            f"{option} needs FIELD=VALUE, such as world.viscosity=0.1; got {text!r}"
         )
     return path.strip(), given.strip()
 
 
 def applied(spec: dict[str, Any], settings: Sequence[str]) -> dict[str, Any]:
-    """A copy of a spec with some fields set; parts that it leaves out are made."""
+    """Return a copy of a spec with some fields set; missing parts are added."""
     spec = json.loads(json.dumps(spec))
     for text in settings:
         path, given = pair(text, "--set")
@@ -43,7 +43,7 @@ def patch(settings: Sequence[str]) -> dict[str, Any]:
         path, _ = pair(text, "--set")
         if any(name.isdigit() for name in path.split(".")):
             raise typer.BadParameter(
-                f"--set needs a whole list where a fork changes one; got {path}"
+                f"a fork replaces a list as a whole: --set needs the list, got {path}"
             )
     return applied({}, settings)
 
@@ -68,7 +68,7 @@ def region(bounds: Sequence[str]) -> dict[str, list[float]]:
             low, high = map(float, given.split(":"))
         except ValueError:
             raise typer.BadParameter(
-                f"--region needs AXIS=LOW:HIGH, as turning=0:1.5; got {text!r}"
+                f"--region needs AXIS=LOW:HIGH, such as turning=0:1.5; got {text!r}"
             ) from None
         found[axis] = [low, high]
     return found
@@ -80,7 +80,7 @@ def _within(place: Any, name: str, path: str) -> Any:
     if place.get(name) is None:
         place[name] = {}
     if not isinstance(place[name], dict | list):
-        raise typer.BadParameter(f"{path}: {name} is no part with fields; got {place[name]!r}")
+        raise typer.BadParameter(f"{path}: {name} has no fields; it is {place[name]!r}")
     return place[name]
 
 
@@ -91,6 +91,6 @@ def _put(place: Any, name: str, given: Any, path: str) -> None:
 def _index(place: list[Any], name: str, path: str) -> int:
     if not name.isdigit() or int(name) >= len(place):
         raise typer.BadParameter(
-            f"{path}: a number from 0 to {len(place) - 1} is needed; got {name}"
+            f"{path}: needs a number from 0 to {len(place) - 1}; got {name}"
         )
     return int(name)

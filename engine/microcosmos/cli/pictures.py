@@ -1,4 +1,4 @@
-"""Pictures to fold into."""
+"""Commands for the target pictures of folding runs."""
 
 from hashlib import md5
 from pathlib import Path
@@ -12,31 +12,33 @@ from ..spec import targets
 from .app import app, console, fail
 
 MNIST = "https://ossci-datasets.s3.amazonaws.com/mnist/"
-"""Where PyTorch keeps a copy of LeCun's files."""
+"""PyTorch's mirror of LeCun's files."""
 
 MNIST_FILES = {
     "t10k-images-idx3-ubyte.gz": "9fb629c4189551a2d022fa330f9573f3",
     "t10k-labels-idx1-ubyte.gz": "ec29112dd5afa0611ce80d1b7f02629c",
 }
-"""The test set and its digests, as torchvision has them."""
+"""The test set, with the MD5 digests that torchvision checks."""
 
-data = typer.Typer(help="Data that others have published.", no_args_is_help=True)
+data = typer.Typer(help="Download public data sets.", no_args_is_help=True)
 app.add_typer(data, name="data")
 
 
 @app.command()
 def picture(
     file: Annotated[
-        Path | None, typer.Argument(help="A picture, or images as MNIST has them (IDX).")
+        Path | None, typer.Argument(help="A picture, or an IDX file of images such as MNIST's.")
     ] = None,
-    number: Annotated[int | None, typer.Option(help="Which of an IDX file's images.")] = None,
-    text: Annotated[str | None, typer.Option(help="Words, in place of a file.")] = None,
-    font: Annotated[Path | None, typer.Option(help="A font file for the words.")] = None,
-    name: Annotated[str | None, typer.Option(help="What it is called in the run.")] = None,
+    number: Annotated[
+        int | None, typer.Option(help="Number of the image in an IDX file, from 0.")
+    ] = None,
+    text: Annotated[str | None, typer.Option(help="Text to draw, instead of FILE.")] = None,
+    font: Annotated[Path | None, typer.Option(help="Font file for --text.")] = None,
+    name: Annotated[str | None, typer.Option(help="Name of the picture in the run.")] = None,
 ) -> None:
-    """A picture as it stands among a folding spec's `targets`, as JSON."""
+    """Print a picture as JSON, for `targets` of a folding spec."""
     if (file is None) == (text is None):
-        fail("picture needs a FILE or --text, and not both")
+        fail("picture needs FILE or --text, but not both")
     try:
         if text is not None:
             ink, own = targets.text(text, font), text
@@ -52,17 +54,17 @@ def picture(
 
 @data.command()
 def mnist(
-    folder: Annotated[Path, typer.Argument(help="Where the files come to lie.")] = Path(
+    folder: Annotated[Path, typer.Argument(help="Folder to write the files to.")] = Path(
         "mnist"
     ),
 ) -> None:
-    """Fetch the test images of MNIST and their labels, and verify them."""
+    """Download and verify the test images and labels of MNIST."""
     import httpx
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        fail(f"FOLDER must be a folder, or none yet: {error}")
+        fail(f"FOLDER must be a folder or a new path: {error}")
     for file, digest in MNIST_FILES.items():
         path = folder / file
         if path.exists() and _digest(path.read_bytes()) == digest:

@@ -1,4 +1,4 @@
-"""A creature made fitter by gradients."""
+"""The command `refine`."""
 
 import json
 from pathlib import Path
@@ -20,23 +20,28 @@ def refine(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
     like: Annotated[
         str | None,
-        typer.Option(help="A spec or preset whose archive's cells count; default: 20 × 20."),
+        typer.Option(
+            help="Spec or preset whose archive cells bound the search; default: 20 × 20 cells."
+        ),
     ] = None,
     steps: Annotated[int, typer.Option(min=1)] = 20,
-    length: Annotated[float, typer.Option(help="Of the first step.")] = 0.2,
+    length: Annotated[float, typer.Option(help="Length of the first step.")] = 0.2,
     out: Annotated[
-        Path | None, typer.Option(help="The run's file; default: NAME.refined.h5.")
+        Path | None, typer.Option(help="Archive file; default: NAME.refined.h5.")
     ] = None,
     segment: Annotated[
         int | None,
-        typer.Option(min=1, help="Steps that a gradient keeps at a time; default: all."),
+        typer.Option(
+            min=1,
+            help="Simulation steps whose states the gradient keeps in memory; default: all.",
+        ),
     ] = None,
     other_device: Annotated[
-        bool, typer.Option(help="Go on although another kind of device began the run.")
+        bool, typer.Option(help="Continue a run that another kind of device started.")
     ] = False,
     module: Modules = None,
 ) -> None:
-    """Make a creature fitter by gradient steps that do not leave its cell."""
+    """Improve a creature by gradient steps that stay in its cell."""
     load_modules(module)
     path = out or file.with_name(f"{file.name.removesuffix('.json')}.refined.h5")
     try:
@@ -72,7 +77,7 @@ def _archive(like: str | None) -> Archive:
 
 
 def _tell(path: Path) -> None:
-    """The creature before and after, side by side."""
+    """Print the creature before and after the refinement."""
     from ..archive.table import read_table
 
     rows = read_table(path.read_bytes()).rows

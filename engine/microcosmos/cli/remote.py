@@ -1,4 +1,4 @@
-"""What all commands that speak to a server share."""
+"""Options and output of all commands that use a server."""
 
 import json
 import sys
@@ -18,13 +18,13 @@ RUNS = "Runs on a server"
 SHARING = "Sharing and access"
 SERVER = "Server"
 WIDE = 200
-"""Columns of a table that no terminal shows."""
+"""Width of a table that is not written to a terminal."""
 
 Url = Annotated[
     str | None,
     typer.Option(
         envvar="MICROCOSMOS_URL",
-        help="Where the server is.",
+        help="Address of the server.",
         show_default="http://127.0.0.1:8000",
         rich_help_panel=SERVER,
     ),
@@ -32,17 +32,21 @@ Url = Annotated[
 Token = Annotated[
     str | None,
     typer.Option(
-        envvar="MICROCOSMOS_TOKEN", help="If the server asks for one.", rich_help_panel=SERVER
+        envvar="MICROCOSMOS_TOKEN",
+        help="Access token, if the server requires one.",
+        rich_help_panel=SERVER,
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="All that the server tells, as JSON.")]
-Id = Annotated[str, typer.Argument(metavar="ID", help="An id, or its beginning.")]
-Ids = Annotated[list[str], typer.Argument(metavar="ID...", help="Ids, or their beginnings.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the full record as JSON.")]
+Id = Annotated[str, typer.Argument(metavar="ID", help="Id; its first characters are enough.")]
+Ids = Annotated[
+    list[str], typer.Argument(metavar="ID...", help="Ids; their first characters are enough.")
+]
 
 
 @contextmanager
 def reaching(url: str | None, token: str | None) -> Iterator["Client"]:
-    """A client; whatever goes wrong is one sentence on standard error, and the end."""
+    """Yield a client; print a failure to standard error and exit with status 1."""
     from ..client import Client, ServerError
 
     try:
@@ -56,12 +60,12 @@ def reaching(url: str | None, token: str | None) -> Iterator["Client"]:
 
 
 def say(text: str, style: str | None = None) -> None:
-    """For people: on standard error, unbroken, so that standard output is for scripts."""
+    """Print to standard error, for people; lines are not wrapped."""
     console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
 
 def show(document: Any) -> None:
-    """For scripts."""
+    """Print JSON to standard output, for scripts."""
     print(json.dumps(document, indent=1, ensure_ascii=False))
 
 
@@ -91,17 +95,14 @@ def found(client: "Client", id: str, deleted: bool = False) -> "Run | Sweep":
 
 
 def about(thing: "Run | Sweep") -> str:
-    """Which it is and how it stands, for people."""
+    """Name a run or a sweep with its status."""
     record = thing.record
     if "cases" in record:
-        standing = ", ".join(
-            f"{n} {status}" for status, n in record["status_counts"].items() if n
-        )
+        counts = record["status_counts"].items()
+        status = ", ".join(f"{count} {name}" for name, count in counts if count)
     else:
-        requested = (
-            f", to be {record['requested_state']}" if record.get("requested_state") else ""
-        )
-        standing = f"{record['status']}{requested}"
+        requested = record.get("requested_state")
+        status = record["status"] + (f", to be {requested}" if requested else "")
     return f"{title(thing)}: {status}"
 
 
@@ -110,5 +111,5 @@ def title(thing: "Run | Sweep") -> str:
 
 
 def named(run: Mapping[str, Any]) -> str:
-    """Which run it is, for people."""
+    """Return the short id and the name of a run."""
     return run["id"][:8] + (f" “{run['name']}”" if run.get("name") else "")

@@ -1,4 +1,4 @@
-"""Runs without a server."""
+"""The command `evolve`: carry out a run without a server."""
 
 import os
 import signal
@@ -25,22 +25,24 @@ from .specs import lasting, presets, read_spec
 
 @app.command()
 def evolve(
-    spec: Annotated[str, typer.Argument(help="A spec file, or the name of a preset.")],
+    spec: Annotated[str, typer.Argument(help="Spec file, or name of a preset.")],
     archive: Annotated[
         Path | None, typer.Option("--out", help="Archive file; default: beside the spec.")
     ] = None,
     generations: Annotated[
         int | None,
-        typer.Option(help="In place of the spec's; a finished archive goes on to so many."),
+        typer.Option(
+            help="Total number of generations; extends a finished archive. Default: the spec's."
+        ),
     ] = None,
     checkpoint_seconds: Annotated[float, typer.Option(min=0.0)] = 60.0,
     other_device: Annotated[
-        bool, typer.Option(help="Go on although another kind of device began the run.")
+        bool, typer.Option(help="Continue a run that another kind of device started.")
     ] = False,
     begin_from: From = None,
     module: Modules = None,
 ) -> None:
-    """Carry out a run; called again, it goes on from the archive file."""
+    """Carry out a run. If the archive file exists, continue it."""
     load_modules(module)
     chosen = read_spec(spec)
     if generations is not None:
@@ -63,13 +65,13 @@ def evolve(
 
 
 def evaluations_of(spec: Spec, path: Path) -> int:
-    """How many a run takes; it ends here where there is no folder or memory for it."""
+    """Return the number of evaluations; fail if the folder or the memory is missing."""
     if not path.parent.is_dir():
         fail(f"--out needs an existing folder; got {path.parent}")
     need = estimate(spec)
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if need.memory_bytes > memory:
-        fail(f"the run needs about {need.memory_bytes:,} bytes of memory; there are {memory:,}")
+        fail(f"the run needs about {need.memory_bytes:,} bytes of memory; {memory:,} are free")
     return need.evaluations
 
 
@@ -80,7 +82,7 @@ def carry_on(
     other_device: bool,
     origin: Sequence[Mapping[str, Any]] = (),
 ) -> bool:
-    """Carry the run on behind a progress bar; the first Ctrl-C asks it to stop."""
+    """Carry out the run with a progress bar; the first Ctrl-C asks it to stop."""
     from .. import experiments
     from ..build import local
 
@@ -117,14 +119,14 @@ def carry_on(
             )
         except experiments.OtherDevice as error:
             progress.stop()
-            fail(f"{archive}: {error} To go on here all the same: --other-device.")
+            fail(f"{archive}: {error} To continue here anyway, add --other-device.")
         except (ValueError, OSError) as error:
             progress.stop()
             fail(f"{archive}: {error}")
 
 
 def _told(report: Any) -> str:
-    """What a generation came to, in a few words."""
+    """Summarise a generation in a few words."""
     if report.qd_score is None:
         return "  ".join(f"{name} {value}" for name, value in _short(report.summary).items())
     return (

@@ -1,4 +1,4 @@
-"""What is shared with others: creatures brought, links, tokens."""
+"""Commands for imports, shares and tokens."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,10 +10,10 @@ from .app import app
 from .remote import SHARING, Json, Token, Url, reaching, say, show
 from .tables import shown
 
-tokens = typer.Typer(help="Who may use the server.", no_args_is_help=True)
+tokens = typer.Typer(help="Create, list and revoke access tokens.", no_args_is_help=True)
 app.add_typer(tokens, name="tokens", rich_help_panel=SHARING)
 
-Days = Annotated[float | None, typer.Option(help="It expires after so many.")]
+Days = Annotated[float | None, typer.Option(help="Days until it expires; default: never.")]
 
 
 @app.command("import", rich_help_panel=SHARING)
@@ -22,7 +22,7 @@ def bring(
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Bring creature files to a server, their hashes verified."""
+    """Import creature files into a server, which verifies their hashes."""
     with reaching(url, token) as client:
         for file in files:
             print(client.import_creature(file).sha)
@@ -30,20 +30,24 @@ def bring(
 
 @app.command(rich_help_panel=SHARING)
 def share(
-    what: Annotated[str, typer.Argument(metavar="SHA|RUN", help="A creature, or a run's id.")],
+    what: Annotated[
+        str,
+        typer.Argument(metavar="SHA|RUN", help="Name of a creature (SHA-256), or id of a run."),
+    ],
     generation: Annotated[
-        int | None, typer.Option(min=0, help="The run's archive as it was then.")
+        int | None,
+        typer.Option(min=0, help="Publish the archive of the run after this generation."),
     ] = None,
     days: Days = None,
-    title: Annotated[str | None, typer.Option(help="What others read above it.")] = None,
-    credit: Annotated[str | None, typer.Option(help="Whose it is.")] = None,
-    licence: Annotated[str | None, typer.Option(help="What others may do with it.")] = None,
-    listed: Annotated[bool, typer.Option("--listed", help="In the commons, too.")] = False,
+    title: Annotated[str | None, typer.Option(help="Title of the shared page.")] = None,
+    credit: Annotated[str | None, typer.Option(help="Authors to credit.")] = None,
+    licence: Annotated[str | None, typer.Option(help="Licence, such as CC-BY-4.0.")] = None,
+    listed: Annotated[bool, typer.Option("--listed", help="List it in the commons.")] = False,
     json: Json = False,
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Publish a creature or an archive under a link, for people without a token."""
+    """Publish a creature or an archive; people without a token can open the link."""
     said = {"days": days, "title": title, "credit": credit, "licence": licence}
     if generation is not None:
         said |= {"generation": generation}
@@ -58,20 +62,20 @@ def share(
 
 @app.command(rich_help_panel=SHARING)
 def unshare(
-    slugs: Annotated[list[str], typer.Argument(metavar="LINK...", help="Links, or slugs.")],
+    slugs: Annotated[list[str], typer.Argument(metavar="LINK...", help="Links or slugs.")],
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Revoke links."""
+    """Revoke shares."""
     with reaching(url, token) as client:
         for slug in slugs:
             client.unshare(slug)
-            say(f"{slug} leads nowhere now.")
+            say(f"{slug} is revoked.")
 
 
 @app.command(rich_help_panel=SHARING)
 def shares(json: Json = False, url: Url = None, token: Token = None) -> None:
-    """List your links."""
+    """List your shares."""
     with reaching(url, token) as client:
         found = client.shares()
     if json:
@@ -84,23 +88,26 @@ def shares(json: Json = False, url: Url = None, token: Token = None) -> None:
 
 @tokens.command("create")
 def create_token(
-    name: Annotated[str, typer.Argument(help="Whose it is, or what it is for.")],
+    name: Annotated[str, typer.Argument(help="Owner or purpose of the token.")],
     scope: Annotated[
-        str, typer.Option(help="read; write: also one's own; admin: everything.")
+        str,
+        typer.Option(
+            help="read, write (also create runs and change your own), or admin (everything)."
+        ),
     ] = "write",
     days: Days = None,
     json: Json = False,
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Make a token; its secret is shown this once."""
+    """Create a token. Its secret is shown only once."""
     with reaching(url, token) as client:
         made = client.create_token(name, scope, days=days)
     if json:
         show(made)
         return
     print(made["secret"])
-    say("It is shown this once. To use it: export MICROCOSMOS_TOKEN=...")
+    say("The secret is shown only once. To use it: export MICROCOSMOS_TOKEN=...")
 
 
 @tokens.command("list")
@@ -118,11 +125,14 @@ def list_tokens(json: Json = False, url: Url = None, token: Token = None) -> Non
 
 @tokens.command("revoke")
 def revoke_token(
-    ids: Annotated[list[str], typer.Argument(metavar="ID...", help="Ids, or beginnings.")],
+    ids: Annotated[
+        list[str],
+        typer.Argument(metavar="ID...", help="Ids; their first characters are enough."),
+    ],
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Revoke tokens at once."""
+    """Revoke tokens; they stop working immediately."""
     with reaching(url, token) as client:
         for id in ids:
             client.revoke_token(id)

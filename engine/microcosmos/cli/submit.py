@@ -14,17 +14,21 @@ if TYPE_CHECKING:
 
 Set = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="FIELD=VALUE", help="Change a field: world.viscosity=0.1."),
+    typer.Option(
+        "--set",
+        metavar="FIELD=VALUE",
+        help="Set a field, such as world.viscosity=0.1; repeatable.",
+    ),
 ]
-Name = Annotated[str | None, typer.Option(help="What it is called.")]
-Watch = Annotated[bool, typer.Option("--watch", "-w", help="Watch it until it ends.")]
+Name = Annotated[str | None, typer.Option(help="Name of the run.")]
+Watch = Annotated[bool, typer.Option("--watch", "-w", help="Watch until it ends.")]
 
 
 @app.command(rich_help_panel=RUNS)
 def submit(
-    spec: Annotated[str, typer.Argument(help="A spec file, or the name of a preset.")],
+    spec: Annotated[str, typer.Argument(help="Spec file, or name of a preset.")],
     seeds: Annotated[
-        int | None, typer.Option(min=1, help="A sweep of so many runs with seeds of their own.")
+        int | None, typer.Option(min=1, help="Queue a sweep with this number of seeds.")
     ] = None,
     settings: Set = None,
     grid: Annotated[
@@ -32,7 +36,7 @@ def submit(
         typer.Option(
             "--sweep",
             metavar="FIELD=A,B,...",
-            help="A run for each value; several make a grid.",
+            help="Queue a run for each value of a field; several fields make a grid.",
         ),
     ] = None,
     name: Name = None,
@@ -41,7 +45,7 @@ def submit(
     url: Url = None,
     token: Token = None,
 ) -> None:
-    """Queue a run, or a sweep of many; its id goes to standard output."""
+    """Queue a run or a sweep, and print its id."""
     with reaching(url, token) as client:
         made = _submitted(client, spec, seeds, settings or [], overrides.grid(grid or []), name)
         tell(made, json)

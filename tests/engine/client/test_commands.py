@@ -125,7 +125,7 @@ def test_forking_elites_into_another_world(told, record):
 def test_deleting_asks_first(told, record):
     kept, asked = told("delete", "0f3c", input="n\n")
     assert "DELETE" not in {one.method for one in asked}
-    assert "stays" in kept.stderr
+    assert "not deleted" in kept.stderr
     gone, asked = told("delete", "0f3c", input="y\n")
     assert asked[-1][:2] == ("DELETE", f"runs/{record['id']}")
     assert "Run 0f3c1a2b “Big Eel” is in the bin" in gone.stderr
@@ -136,7 +136,7 @@ def test_deleting_asks_first(told, record):
     back, asked = told("restore", "0f3c")
     assert asked[-1][:2] == ("POST", f"runs/{record['id']}/restore")
     assert asked[-2].query["deleted"] == "true"
-    assert "is back" in back.stderr
+    assert "is restored" in back.stderr
 
 
 def test_sharing(told, record):

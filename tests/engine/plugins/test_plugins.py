@@ -21,7 +21,8 @@ from dataclasses import replace
 import jax.numpy as jnp
 import numpy as np
 from pydantic import Field
-from microcosmos import bodies, creatures, plugins
+from microcosmos import bodies, plugins
+from microcosmos.bodies import swimmers
 from microcosmos.spec import Part
 
 class Strict(Part):
@@ -58,7 +59,7 @@ def wiggler():
     def gait(time):
         wave = np.sin(2 * np.pi * (np.linspace(0, 1, 6)[None] - time[:, None]))
         return 0.3 * wave, np.zeros((len(time), 7))
-    return creatures.Swimmer("wiggler", body, gait)
+    return swimmers.Swimmer("wiggler", body, gait)
 
 @plugins.encoding("pulse", title="A pulse", genes=2, per_joint=1)
 def pulse(genes, clock):

@@ -10,7 +10,7 @@ from pydantic import SecretStr
 
 from server.auth import __main__ as commands
 from server.auth import bootstrap, tokens
-from server.core.errors import Refused
+from server.core.errors import ProblemError
 from server.tables import Run, Token
 
 KEY = {"Idempotency-Key": "first"}
@@ -82,7 +82,7 @@ def test_a_revoked_token_is_refused_at_once_by_name(required, client, admin, ser
 def test_an_expired_token_is_refused_and_gives_up_its_name(required, client, services):
     soon = datetime.now(UTC) + timedelta(hours=1)
     made = tokens.create(services, "carol", "read", soon)
-    with pytest.raises(Refused, match="named 'carol' is there already"):
+    with pytest.raises(ProblemError, match="named 'carol' is there already"):
         tokens.create(services, "carol", "read")
     expire(services, made.token.id)
     answer = client(required, made.secret).get("/runs")
@@ -296,7 +296,7 @@ def test_tokens_are_made_and_revoked_on_the_command_line(
     commands.main(["list"])
     assert "frank\tadmin\t" + secret[:9] in capsys.readouterr().out
     commands.main(["revoke", "frank"])
-    with pytest.raises(Refused, match="`frank` was revoked"):
+    with pytest.raises(ProblemError, match="`frank` was revoked"):
         tokens.holder(services, secret)
     with pytest.raises(SystemExit, match="No live token is named 'frank'"):
         commands.main(["revoke", "frank"])

@@ -61,11 +61,11 @@ def test_a_sweep_is_named_deleted_and_taken_back(command, client):
     gone = command("delete", sweep.id[:8], "--yes").stderr
     assert f"Sweep {sweep.id[:8]} “twins” is in the bin" in gone
     assert [list(client.sweeps()), list(client.runs())] == [[], []]
-    assert "is back" in command("restore", sweep.id[:8]).stderr
+    assert "is restored" in command("restore", sweep.id[:8]).stderr
     assert (sweep.refresh().total, client.sweep(sweep.id[:8])) == (2, sweep)
     waiting = client.submit("demo", seeds=2)
     told = command("delete", waiting.id[:8], "--yes").stderr
-    assert "2 queued; these stay: cancel them first" in told
+    assert "2 queued; the other runs have not ended: cancel them first" in told
     assert waiting.refresh().total == 2
 
 

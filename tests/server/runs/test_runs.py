@@ -229,7 +229,7 @@ def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, repo
     attempt = claim(services, run_id, "worker")
     paused = api.post(f"runs/{run_id}/pause").json()
     assert (paused["status"], paused["requested_state"]) == ("running", "paused")
-    assert attempt.record(report(1), 1.0) == "pause"
+    assert attempt.record(report(1), 1.0) == "paused"
     attempt.pause()
     run = api.get(f"runs/{run_id}").json()
     assert (run["status"], run["requested_state"]) == ("paused", None)

@@ -57,7 +57,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         {run.purge_at && (
           <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>
         )}
-        {run.waiting && <span class="row-note reason">{run.waiting}</span>}
+        {run.waiting_reason && <span class="row-note reason">{run.waiting_reason}</span>}
         {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
         {run.warning && <span class="row-note warning-text">{run.warning}</span>}
         <span class="labels">

@@ -59,8 +59,8 @@ async function attempt<T>(answered: Promise<T>): Promise<T | null> {
 }
 
 /** How many runs did it, and how many could not. */
-const outcome = ({ changed, left }: SweepChanged, done: string) =>
-  `${countRuns(changed.length)} ${done}${left.length > 0 ? `; ${countRuns(left.length)} left as they were` : ""}.`;
+const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
+  `${countRuns(changed.length)} ${done}${skipped.length > 0 ? `; ${countRuns(skipped.length)} left as they were` : ""}.`;
 
 /** Asks it of every run. */
 export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {

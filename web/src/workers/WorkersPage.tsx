@@ -122,12 +122,12 @@ function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
 }
 
 /** Events tell of a run's progress sooner than the next look at its worker. */
-function CurrentRun({ worker: { carries, status } }: { worker: Worker }) {
-  const live = useStore((state) => (carries ? state.runs.get(carries.id) : undefined));
-  if (!carries) {
+function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
+  const live = useStore((state) => (current_run ? state.runs.get(current_run.id) : undefined));
+  if (!current_run) {
     return <p class="quiet">{status === "busy" ? "Getting ready for a run." : "Waits for a run."}</p>;
   }
-  const run = { ...carries, ...(live && { generation: live.generation, progress: live.progress }) };
+  const run = { ...current_run, ...(live && { generation: live.generation, progress: live.progress }) };
   const share = Math.round(1000 * run.progress) / 10;
   const attempt = run.attempt > 1 ? `, attempt ${run.attempt}` : "";
   return (
@@ -169,7 +169,7 @@ function QueueCard({ queue: { total, items } }: { queue: Queue }) {
                 {run.memory_bytes !== null && `${bytes(run.memory_bytes)}, `}
                 waits for {duration(secondsSince(run.queued_at))}
               </span>
-              <span class="reason">{run.waiting}</span>
+              <span class="reason">{run.waiting_reason}</span>
             </li>
           ))}
         </ol>

@@ -62,7 +62,7 @@ def test_what_cannot_be_is_said(file, tmp_path):
     spoiled = tmp_path / "spoiled.npz"
     spoiled.write_bytes(b"PK nothing")
     for arguments, words in (
-        ((file, "--svg", "--dot"), "network needs one form, got --svg --dot"),
+        ((file, "--svg", "--dot"), "network takes one form, got --svg --dot"),
         ((spoiled, "--svg"), "must be a NumPy archive"),
     ):
         came = carried_out(*arguments)
