@@ -8,7 +8,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from microcosmos.archive.naming import REPLAY_VERSION
+from microcosmos.viz.replay_file import REPLAY_VERSION
 
 from ..core.database import insert_missing
 from ..creatures import storage as creatures

@@ -175,8 +175,8 @@ def delete_for_good(client: Client, laptop: Laptop, product: Installation, run: 
         database.execute("UPDATE runs SET purge_at = deleted_at WHERE deleted_at IS NOT NULL")
     wait_until(
         lambda: (
-            not rows(product, "leftovers")
-            and not rows(product, "discarded")
+            not rows(product, "garbage_creatures")
+            and not rows(product, "garbage_files")
             and not any(one.id == run.id for one in client.runs(deleted=True))
         ),
         60,
