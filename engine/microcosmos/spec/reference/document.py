@@ -16,8 +16,8 @@ A spec is a JSON object with an `experiment`. A field that is left out has its d
 unknown field is refused. Lengths are in cells and times in steps of the lattice, whose density
 is 1 at rest; a field without a unit has none. The range (a, b) excludes its ends, [a, b]
 includes them. The source names the origin of the method; *Tensen et al. 2026* is the
-Microcosmos paper, with which [reproduction.md](reproduction.md) compares each value. This page is
-generated: `python -m microcosmos.spec.reference > docs/spec.md`.
+Microcosmos paper, with which [reproduction.md](reproduction.md) compares each value. This page
+is generated: `python -m microcosmos.spec.reference > docs/spec.md`.
 """
 
 COLUMNS = ("field", "type", "unit", "range", "default", "meaning", "source")
