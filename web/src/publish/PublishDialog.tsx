@@ -50,15 +50,14 @@ export function PublishDialog({ opened, ...props }: Props & { opened: number }) 
   );
 }
 
-interface AskingProps extends Props {
+interface FormProps extends Props {
   onDone: (share: Share) => void;
   onEnd: () => void;
 }
 
-function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
+function PublishForm({ of, title, file, onDone, onEnd }: FormProps) {
   const [busy, setBusy] = useState(false);
   const [error, setError] = useState<string | null>(null);
-  const [term, setTerm] = useState<string>("never");
   const submit = async (event: SubmitEvent) => {
     event.preventDefault();
     setBusy(true);
@@ -72,9 +71,6 @@ function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
     }
     setBusy(false);
   };
-  const licences = LICENCES.some(([name]) => name === (file?.licence ?? name))
-    ? LICENCES
-    : [[file!.licence, `${file!.licence}: as its file says`] as const, ...LICENCES];
   return (
     <form onSubmit={(event) => void submit(event as unknown as SubmitEvent)}>
       <h2 id="publish-title">Publish</h2>
@@ -82,6 +78,31 @@ function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
         Whoever has the address sees {"run" in of ? "this archive as it is now" : "this creature"} and its
         ancestry, without a token, and nothing else. You can take it back at any time.
       </p>
+      <Fields title={title} file={file} />
+      {error && (
+        <p class="banner wrong" role="alert">
+          {error}
+        </p>
+      )}
+      <p class="links">
+        <button class="primary" disabled={busy}>
+          {busy ? "Publishing …" : "Publish"}
+        </button>
+        <button type="button" onClick={onEnd}>
+          Cancel
+        </button>
+      </p>
+    </form>
+  );
+}
+
+function Fields({ title, file }: Pick<Props, "title" | "file">) {
+  const [term, setTerm] = useState<string>("never");
+  const licences = LICENCES.some(([name]) => name === (file?.licence ?? name))
+    ? LICENCES
+    : [[file!.licence, `${file!.licence}: as its file says`] as const, ...LICENCES];
+  return (
+    <>
       <label>
         Title
         <input name="title" maxLength={200} defaultValue={title} placeholder="What it is called" />
@@ -114,20 +135,7 @@ function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
       <label class="check">
         <input name="listed" type="checkbox" /> List it in the commons, for everybody to find
       </label>
-      {error && (
-        <p class="banner wrong" role="alert">
-          {error}
-        </p>
-      )}
-      <p class="links">
-        <button class="primary" disabled={busy}>
-          {busy ? "Publishing …" : "Publish"}
-        </button>
-        <button type="button" onClick={onEnd}>
-          Cancel
-        </button>
-      </p>
-    </form>
+    </>
   );
 }
 

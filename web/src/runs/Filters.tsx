@@ -27,7 +27,6 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
     onChange({ q: text || null });
   };
   useDebounced(typed, SETTLE_MS, find);
-  const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
   return (
     <form
       class="filters"
@@ -46,6 +45,27 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
         value={typed ?? query.q ?? ""}
         onInput={(event) => setTyped(event.currentTarget.value)}
       />
+      <Selects {...{ query, experiments, tags, onChange }} />
+      {isFiltered(query) && (
+        <button
+          type="button"
+          class="plain"
+          onClick={() => {
+            setTyped(null);
+            onChange(NO_FILTERS);
+          }}
+        >
+          Show all
+        </button>
+      )}
+    </form>
+  );
+}
+
+function Selects({ query, experiments, tags, onChange }: Props) {
+  const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
+  return (
+    <>
       <Select
         title="State"
         value={query.status?.[0] ?? ""}
@@ -72,18 +92,6 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
         choices={ORDERS}
         onChange={(sort) => onChange({ sort: sort === NEWEST ? null : sort })}
       />
-      {isFiltered(query) && (
-        <button
-          type="button"
-          class="plain"
-          onClick={() => {
-            setTyped(null);
-            onChange(NO_FILTERS);
-          }}
-        >
-          Show all
-        </button>
-      )}
-    </form>
+    </>
   );
 }

@@ -43,7 +43,6 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const next = useStore((state) => state.next);
   const experiments = useExperiments().value ?? [];
   const tags = useTags();
-  const refusal = useRefusal();
   const [chosen, setChosen] = useState<string[]>([]);
   const choose = (id: string) =>
     setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
@@ -51,18 +50,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const empty = fetched && listed.length === 0 && !swept;
   return (
     <main>
-      <header class="page-head">
-        <h1>{query.deleted ? "Bin" : "Runs"}</h1>
-        <span class="spring" />
-        <a class="button" href={query.deleted ? "/" : "/?deleted=true"}>
-          {query.deleted ? "Runs" : "Bin"}
-        </a>
-        {!refusal && (
-          <a class="button primary" href="/new">
-            New run
-          </a>
-        )}
-      </header>
+      <Header bin={query.deleted ?? false} />
       <Welcome />
       {error && <p class="banner wrong">{error}</p>}
       {!fetched && !error && listed.length === 0 && <p class="quiet loading">Loading runs …</p>}
@@ -82,6 +70,24 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       </datalist>
       {next && <LoadMore query={listedQuery} />}
     </main>
+  );
+}
+
+function Header({ bin }: { bin: boolean }) {
+  const refusal = useRefusal();
+  return (
+    <header class="page-head">
+      <h1>{bin ? "Bin" : "Runs"}</h1>
+      <span class="spring" />
+      <a class="button" href={bin ? "/" : "/?deleted=true"}>
+        {bin ? "Runs" : "Bin"}
+      </a>
+      {!refusal && (
+        <a class="button primary" href="/new">
+          New run
+        </a>
+      )}
+    </header>
   );
 }
 

@@ -23,7 +23,6 @@ import { NameField } from "../run/RunLabels";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, Check } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
-import "./sweeps.css";
 
 interface Props {
   id: string;

@@ -3,6 +3,7 @@
 import type { Sweep } from "../api/types";
 import { count, short } from "../ui/format";
 import { STATES } from "../run/RunStatus";
+import "./sweeps.css";
 
 export const sweepTitle = ({ name, id }: Sweep) => name ?? `Sweep ${short(id)}`;
 
