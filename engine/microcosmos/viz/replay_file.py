@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ..archive.naming import REPLAY_FORMAT
-
+REPLAY_VERSION = 2
+"""The worker records a stored replay of an earlier version again."""
+REPLAY_FORMAT = f"microcosmos-replay/{REPLAY_VERSION}"
 FORMATS = ("microcosmos-replay/1", REPLAY_FORMAT)
 """The first one knew neither what drives a body nor energy."""
 

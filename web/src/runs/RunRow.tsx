@@ -1,4 +1,4 @@
-/** A run in the list: how it is doing, what people say of it, what can be done. */
+/** A run in the list: status, labels, result and actions. */
 
 import type { Experiment, Run } from "../api/types";
 import { useRefusal } from "../store/principal";
@@ -14,6 +14,7 @@ import { CommandButtons, StatusBadge, RunProgress, timeOf } from "../run/RunStat
 import { NameField, NoteField, TagList } from "../run/RunLabels";
 import { Sparkline } from "../charts/Sparkline";
 import { commandsFor } from "../run/runCommands";
+import { text } from "./text";
 
 interface Props {
   id: string;
@@ -34,7 +35,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
     <tr class={chosen ? "chosen-row" : ""}>
       <td class="row-choice">
         {!run.deleted_at && (
-          <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
+          <input type="checkbox" aria-label={text.compareRun(name)} checked={chosen} onChange={onChoose} />
         )}
       </td>
       <th scope="row">
@@ -42,10 +43,10 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         <RowNotes run={run} />
         <RowLabels {...{ run, name, fixed, knownTags }} />
       </th>
-      <td data-label="State">
+      <td data-label={text.state}>
         <StatusBadge run={run} />
       </td>
-      <td data-label="Progress" class="with-bar">
+      <td data-label={text.progress} class="with-bar">
         <RunProgress run={run} />
         <span class="quiet">
           {run.generation} / {run.generations}
@@ -53,16 +54,14 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
       </td>
       <td data-label={time.label} class="time">
         {time.text}
-        {run.status === "running" && time.text !== DASH && <span class="quiet"> left</span>}
+        {run.status === "running" && time.text !== DASH && <span class="quiet"> {text.left}</span>}
       </td>
-      <td data-label="Evaluations/s">{number(run.evaluations_per_second)}</td>
-      <td data-label="Result" class="with-spark">
+      <td data-label={text.evaluationsPerSecond}>{number(run.evaluations_per_second)}</td>
+      <td data-label={text.result} class="with-spark">
         <span>
           {figure} <span class="quiet small">{figureName}</span>
         </span>
-        {run.sparkline.length > 1 && (
-          <Sparkline values={run.sparkline} label={`QD score of ${name} over time`} />
-        )}
+        {run.sparkline.length > 1 && <Sparkline values={run.sparkline} label={text.sparkline(name)} />}
       </td>
       <RowActions {...{ run, title, name }} />
     </tr>
@@ -87,8 +86,8 @@ function RowTitle({ run, title, name, fixed }: PartProps) {
         </a>
       </NameField>
       {run.sweep && (
-        <a class="badge sweep-link" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
-          sweep
+        <a class="badge sweep-link" href={`/sweeps/${run.sweep}`} aria-label={text.sweepOf(name)}>
+          {text.sweep}
         </a>
       )}
       {forceFreeShare(run.spec) === "none" && <NotForceFree />}
@@ -101,11 +100,9 @@ function RowNotes({ run }: { run: Run }) {
   return (
     <>
       {run.status === "running" && run.generation === 0 && (
-        <span class="row-note quiet">compiling and computing its first generation</span>
+        <span class="row-note quiet">{text.compiling}</span>
       )}
-      {run.purge_at && (
-        <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>
-      )}
+      {run.purge_at && <span class="row-note gone quiet">{text.purged(moment(run.purge_at))}</span>}
       {run.waiting && <span class="row-note reason">{run.waiting}</span>}
       {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
       {run.warning && <span class="row-note warning-text">{run.warning}</span>}
@@ -139,14 +136,14 @@ function RowActions({ run, title, name }: Omit<PartProps, "fixed">) {
     <td class="row-actions">
       <span class="actions">
         {mayChange && run.deleted_at && (
-          <button onClick={() => void restore(run.id)} aria-label={`Restore ${name}`}>
-            Restore
+          <button onClick={() => void restore(run.id)} aria-label={text.restoreRun(name)}>
+            {text.restore}
           </button>
         )}
         {mayChange && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={name} />}
         {mayCreate && (
-          <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
-            Clone
+          <a class="button" href={`/new?from=${run.id}`} aria-label={text.cloneRun(name)}>
+            {text.clone}
           </a>
         )}
       </span>
@@ -154,6 +151,6 @@ function RowActions({ run, title, name }: Omit<PartProps, "fixed">) {
   );
 }
 
-function lastLine(text: string): string {
-  return text.trim().split("\n").at(-1) ?? "";
+function lastLine(traceback: string): string {
+  return traceback.trim().split("\n").at(-1) ?? "";
 }

@@ -1,9 +1,15 @@
-"""Numbers and names as they stand in creature files."""
+"""Canonical bytes of creatures: JSON by RFC 8785, SHA-256 names, arrays as base64."""
 
 from base64 import b64decode, b64encode
+from collections.abc import Mapping
+from hashlib import sha256
+from typing import Any
 
 import numpy as np
+import rfc8785
 
+FORMAT = "microcosmos-creature/1"
+LICENCE = "CC-BY-4.0"
 ACTIVATIONS = (
     "identity",
     "sigmoid",
@@ -15,7 +21,7 @@ ACTIVATIONS = (
     "abs",
     "square",
 )
-"""In the order of the numbers that genomes hold."""
+"""Activations, in the order of their numbers in genomes."""
 
 
 def encode(values: np.ndarray) -> str:
@@ -24,7 +30,7 @@ def encode(values: np.ndarray) -> str:
 
 
 def decode(text: str) -> np.ndarray:
-    """The float32 values in base64; raises `ValueError` where they are none or not finite."""
+    """The float32 values in base64; raises `ValueError` for anything else."""
     data = b64decode(text, validate=True)
     if len(data) % 4:
         raise ValueError(f"needs whole float32 values, got {len(data)} bytes")
@@ -34,3 +40,13 @@ def decode(text: str) -> np.ndarray:
     if encode(values) != text:
         raise ValueError("needs the canonical encoding, got another (−0 is written as 0)")
     return values
+
+
+def canonical(identity: Mapping[str, Any]) -> bytes:
+    """Return the canonical JSON (RFC 8785), over which the name is computed."""
+    return rfc8785.dumps(dict(identity))
+
+
+def name(identity: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of the canonical form, in hexadecimal."""
+    return sha256(canonical(identity)).hexdigest()
