@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from ..auth.authorize import MAY_READ
 from ..services.deps import SessionDep
 from . import log
 from .deps import RunDep
@@ -12,7 +13,7 @@ from .schemas import EntryRead, Log
 router = APIRouter(prefix="/runs/{run_id}/log", tags=["runs"])
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def read_log(
     run: RunDep,
     session: SessionDep,

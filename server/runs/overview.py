@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import and_, or_, select
 from sqlalchemy.orm import Session
 
-from ..auth import owners
+from ..auth import tokens
 from ..estimates import position
 from ..services.services import Services
 from ..tables import FAILED, RUNNING, Generation, Run
@@ -27,7 +27,7 @@ def evenly(last: int, points: int) -> list[int]:
 def read_runs(services: Services, session: Session, runs: Sequence[Run]) -> list[RunRead]:
     curves = _curves(session, runs)
     reasons = position.reasons(services, session, runs)
-    named = owners.names(session, (run.owner for run in runs))
+    named = tokens.names(session, (run.owner for run in runs))
     return [
         _read(run, curves[run.id], reasons.get(run.id), named.get(run.owner)) for run in runs
     ]

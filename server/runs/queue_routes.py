@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from sqlalchemy import select
 
+from ..auth.authorize import MAY_READ
 from ..estimates import position
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
@@ -14,7 +15,7 @@ from .schemas import QueueRead, Waiting
 router = APIRouter(prefix="/queue", tags=["workers"])
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def read_queue(
     services: ServicesDep,
     session: SessionDep,

@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
-from ..auth.principal import PrincipalDep
+from ..auth.authorize import MAY_READ, Writer
 from ..core.errors import ProblemError
 from ..core.openapi import described
 from ..core.schemas import FieldError, Wire
@@ -31,7 +31,7 @@ from ..specs import parsing
 from ..specs.drawings import drawing_read
 from ..tables import Run, Status
 from . import lifecycle, listing
-from .deps import AnyRunDep, find_run
+from .deps import AnyRunDep, OwnRunId, find_run
 from .idempotency import earlier
 from .overview import read_run, read_runs
 from .schemas import NAME, Extension, Fork, RunChange, RunPage, RunRead
@@ -74,9 +74,9 @@ Called = Annotated[
 
 @router.post("", status_code=202, openapi_extra=body)
 def create_run(
+    principal: Writer,
     spec: SpecDep,
     services: ServicesDep,
-    principal: PrincipalDep,
     response: Response,
     idempotency_key: Key = None,
     name: Called = None,
@@ -94,7 +94,7 @@ def create_run(
     return _submitted(services, response, run.id, new)
 
 
-@router.post("/estimate", openapi_extra=body)
+@router.post("/estimate", openapi_extra=body, dependencies=[MAY_READ])
 def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> EstimateRead:
     """What a run will need, and what it is about, without queueing it."""
     needed = estimate(spec)
@@ -115,7 +115,7 @@ def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> E
 Text = Annotated[str, Query(min_length=1, max_length=200, pattern=r"^[^\x00]*$")]
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def list_runs(
     services: ServicesDep,
     session: SessionDep,
@@ -151,7 +151,7 @@ def _refuse_unknown(experiments: list[str]) -> None:
             raise ProblemError(422, "Invalid input", f"experiment: {message}", [error])
 
 
-@router.get("/{run_id}")
+@router.get("/{run_id}", dependencies=[MAY_READ])
 def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     return read_run(services, session, run)
 
@@ -164,7 +164,7 @@ def change_sent(
 
 @router.patch("/{run_id}", openapi_extra=described(RunChange.model_json_schema()))
 def change_run(
-    run_id: UUID, services: ServicesDep, sent: Annotated[RunChange, Depends(change_sent)]
+    run_id: OwnRunId, services: ServicesDep, sent: Annotated[RunChange, Depends(change_sent)]
 ) -> RunRead:
     """Say what a run is called, its tags or a note; what it computes stays as it is."""
     said = sent.said()
@@ -176,31 +176,31 @@ def change_run(
 
 
 @router.post("/{run_id}/pause", status_code=202)
-def pause_run(run_id: UUID, services: ServicesDep) -> RunRead:
+def pause_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
     return _changed(services, run_id, lifecycle.pause)
 
 
 @router.post("/{run_id}/resume", status_code=202)
-def resume_run(run_id: UUID, services: ServicesDep) -> RunRead:
+def resume_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
     changed = _changed(services, run_id, lifecycle.resume)
     requeue(services, run_id)
     return changed
 
 
 @router.post("/{run_id}/cancel", status_code=202)
-def cancel_run(run_id: UUID, services: ServicesDep) -> RunRead:
+def cancel_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
     return _changed(services, run_id, lifecycle.cancel)
 
 
 @router.delete("/{run_id}")
-def delete_run(run_id: UUID, services: ServicesDep) -> RunRead:
+def delete_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
     """Into the bin, from which it can be restored until `purge_at`."""
     keep = services.settings.bin_seconds
     return _changed(services, run_id, lambda session, run: bin.put(session, run, keep))
 
 
 @router.post("/{run_id}/restore")
-def restore_run(run_id: UUID, services: ServicesDep) -> RunRead:
+def restore_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
     """Out of the bin, as it was."""
     return _changed(services, run_id, bin.restore, deleted=True)
 
@@ -217,7 +217,7 @@ def extension_sent(
     openapi_extra=described(Extension.model_json_schema()),
 )
 def extend_run(
-    run_id: UUID, services: ServicesDep, sent: Annotated[Extension, Depends(extension_sent)]
+    run_id: OwnRunId, services: ServicesDep, sent: Annotated[Extension, Depends(extension_sent)]
 ) -> RunRead:
     """More generations for a finished run, which ends as if it had had them from the start."""
     with services.sessions.read() as session:
@@ -237,9 +237,9 @@ def fork_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES
 
 @router.post("/{run_id}/fork", status_code=202, openapi_extra=described(inlined(Fork)))
 def fork_run(
+    principal: Writer,
     run_id: UUID,
     services: ServicesDep,
-    principal: PrincipalDep,
     response: Response,
     sent: Annotated[Fork, Depends(fork_sent)],
     idempotency_key: Key = None,

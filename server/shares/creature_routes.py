@@ -7,6 +7,7 @@ from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5, pedigree
 
+from ..auth.authorize import PUBLIC
 from ..core.errors import ProblemError
 from ..creatures import networks
 from ..creatures import routes as of_creatures
@@ -50,12 +51,12 @@ PNG: dict[int | str, dict[str, Any]] = {
 }
 
 
-@router.get("")
+@router.get("", dependencies=[PUBLIC])
 def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareRead:
     return told(request, session, share)
 
 
-@router.get("/preview.png", response_class=Response, responses=PNG)
+@router.get("/preview.png", response_class=Response, responses=PNG, dependencies=[PUBLIC])
 def read_preview(
     request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -65,7 +66,9 @@ def read_preview(
     return there or of_creature.ordered(services, share.cover, PREVIEW, patient=True)
 
 
-@router.get("/creatures/{sha}", responses={200: {"model": dict[str, Any]}})
+@router.get(
+    "/creatures/{sha}", responses={200: {"model": dict[str, Any]}}, dependencies=[PUBLIC]
+)
 def read_shared_creature(
     share: ShareDep,
     row: CreatureDep,
@@ -80,7 +83,7 @@ def read_shared_creature(
     return JSONResponse(file, headers=of_creatures.named(row) if download else None)
 
 
-@router.get("/creatures/{sha}/creature.h5", response_class=Response)
+@router.get("/creatures/{sha}/creature.h5", response_class=Response, dependencies=[PUBLIC])
 def read_shared_h5(share: ShareDep, row: CreatureDep) -> Response:
     file = creature.parse(publishing.licensed(share, creatures.document(row)))
     name = f'attachment; filename="creature-{row.sha256[:12]}.h5"'
@@ -88,7 +91,7 @@ def read_shared_h5(share: ShareDep, row: CreatureDep) -> Response:
     return Response(creature_h5.dump(file), headers=headers, media_type=of_creatures.H5)
 
 
-@router.get("/creatures/{sha}/ancestors")
+@router.get("/creatures/{sha}/ancestors", dependencies=[PUBLIC])
 def read_shared_ancestors(
     row: CreatureDep, session: SessionDep, depth: Annotated[int, Query(ge=1, le=32)] = 3
 ) -> Ancestors:
@@ -96,7 +99,7 @@ def read_shared_ancestors(
     return of_creatures.read_ancestors(row, session, depth)
 
 
-@router.get("/creatures/{sha}/network.{form}", response_class=Response)
+@router.get("/creatures/{sha}/network.{form}", response_class=Response, dependencies=[PUBLIC])
 def read_shared_network(row: CreatureDep, form: str) -> Response:
     if form not in networks.FORMS:
         known = ", ".join(networks.FORMS)
@@ -115,7 +118,7 @@ def of_networks(row: Creature, form: str) -> Response:
     return Response(networks.written(row, form), headers=headers, media_type=media_type)
 
 
-@router.get("/creatures/{sha}/replay", response_class=Response)
+@router.get("/creatures/{sha}/replay", response_class=Response, dependencies=[PUBLIC])
 def read_shared_replay(
     request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -124,7 +127,7 @@ def read_shared_replay(
     return there or of_creature.ordered(services, row.sha256, REPLAY, patient=True)
 
 
-@router.get("/creatures/{sha}/motion", response_class=Response)
+@router.get("/creatures/{sha}/motion", response_class=Response, dependencies=[PUBLIC])
 def read_shared_motion(
     request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -136,7 +139,7 @@ KEPT = (STRIP, GIF, MP4, MEASUREMENT)
 """What strangers see where it was made, and cannot have made."""
 
 
-@router.get("/creatures/{sha}/{kind}", response_class=Response)
+@router.get("/creatures/{sha}/{kind}", response_class=Response, dependencies=[PUBLIC])
 def read_shared_rendering(
     request: Request, row: CreatureDep, kind: str, session: SessionDep, services: ServicesDep
 ) -> Response:

@@ -8,7 +8,8 @@ from redis import RedisError
 from sqlalchemy import Select, and_, or_, select
 from sqlalchemy.orm import Session
 
-from ..auth.principal import ADMIN, PrincipalDep
+from ..auth.authorize import PUBLIC, Reader, Writer, authorize_owner
+from ..auth.principal import ADMIN
 from ..core.database import clock
 from ..core.errors import ProblemError
 from ..core.openapi import described
@@ -37,10 +38,10 @@ def asked(document: Annotated[dict[str, Any], Depends(json_object(ASKED_BYTES))]
     openapi_extra=described(ShareAsked.model_json_schema()),
 )
 def publish(
+    principal: Writer,
     sent: Annotated[ShareAsked, Depends(asked)],
     request: Request,
     services: ServicesDep,
-    principal: PrincipalDep,
     response: Response,
 ) -> ShareRead:
     """Publish a creature or an archive. What is live already is answered again, with 200."""
@@ -72,7 +73,7 @@ Limit = Annotated[int, Query(ge=1, le=200)]
 def list_shares(
     request: Request,
     session: SessionDep,
-    principal: PrincipalDep,
+    principal: Reader,
     cursor: str | None = None,
     limit: Limit = 50,
 ) -> SharePage:
@@ -85,7 +86,7 @@ def list_shares(
     return _page(request, session, select(Share) if everybody else mine, cursor, limit)
 
 
-@router.get("/commons")
+@router.get("/commons", dependencies=[PUBLIC])
 def read_commons(
     request: Request, session: SessionDep, cursor: str | None = None, limit: Limit = 50
 ) -> SharePage:
@@ -93,8 +94,18 @@ def read_commons(
     return _page(request, session, publishing.live().where(Share.listed), cursor, limit)
 
 
+def own_share(slug: str, principal: Writer, services: ServicesDep) -> str:
+    """Return the slug of a path; raise `ProblemError` if somebody else owns the share."""
+    if publishing.SLUG.fullmatch(slug):
+        authorize_owner(services, principal, Share, slug)
+    return slug
+
+
+OwnSlug = Annotated[str, Depends(own_share)]
+
+
 @router.delete("/shares/{slug}")
-def revoke(slug: str, request: Request, services: ServicesDep) -> ShareRead:
+def revoke(slug: OwnSlug, request: Request, services: ServicesDep) -> ShareRead:
     """Take it back: from now on its address shows nothing."""
     with services.sessions.write.begin() as session:
         share = publishing.find(session, slug)

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import estimate
 
-from ..auth.principal import PrincipalDep
+from ..auth.authorize import MAY_READ, Writer
 from ..core.openapi import described
 from ..core.uploads import json_object
 from ..deletion import bin
@@ -24,7 +24,7 @@ from ..services.services import Services
 from ..specs import parsing
 from ..tables import Run
 from . import summary
-from .deps import SweepDep, find_sweep
+from .deps import OwnSweepId, SweepDep, find_sweep
 from .planning import Plan, plan, refuse_too_large
 from .schemas import (
     SweepChange,
@@ -58,9 +58,9 @@ PlanDep = Annotated[Plan, Depends(plan_sent)]
 
 @router.post("", status_code=202, openapi_extra=body)
 def create_sweep(
+    principal: Writer,
     plan: PlanDep,
     services: ServicesDep,
-    principal: PrincipalDep,
     response: Response,
     idempotency_key: Key = None,
 ) -> SweepRead:
@@ -76,7 +76,7 @@ def create_sweep(
     return _current(services, sweep_id)
 
 
-@router.post("/estimate", openapi_extra=body)
+@router.post("/estimate", openapi_extra=body, dependencies=[MAY_READ])
 def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) -> SweepEstimate:
     """What all runs of a sweep will need, without queueing them."""
     needs = [estimate(case.spec) for case in plan.cases]
@@ -101,7 +101,7 @@ def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) ->
     )
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def list_sweeps(
     session: SessionDep,
     cursor: Annotated[str | None, Query(max_length=100)] = None,
@@ -112,7 +112,7 @@ def list_sweeps(
     return page(session, cursor, limit, deleted)
 
 
-@router.get("/{sweep_id}")
+@router.get("/{sweep_id}", dependencies=[MAY_READ])
 def read(sweep: SweepDep, session: SessionDep) -> SweepRead:
     return read_sweep(session, sweep)
 
@@ -125,7 +125,9 @@ def change_sent(
 
 @router.patch("/{sweep_id}", openapi_extra=described(SweepChange.model_json_schema()))
 def change_sweep(
-    sweep_id: UUID, services: ServicesDep, sent: Annotated[SweepChange, Depends(change_sent)]
+    sweep_id: OwnSweepId,
+    services: ServicesDep,
+    sent: Annotated[SweepChange, Depends(change_sent)],
 ) -> SweepRead:
     """Say what a sweep is called; its runs keep their names."""
     with services.sessions.write.begin() as session:
@@ -134,7 +136,7 @@ def change_sweep(
     return _current(services, sweep_id)
 
 
-@router.get("/{sweep_id}/summary")
+@router.get("/{sweep_id}/summary", dependencies=[MAY_READ])
 def read_summary(sweep: SweepDep, session: SessionDep, points: Points = None) -> SweepSummary:
     """Median and spread of each case, by generation and at last.
 
@@ -144,20 +146,20 @@ def read_summary(sweep: SweepDep, session: SessionDep, points: Points = None) ->
     return summary.summary(session, sweep, points)
 
 
-@router.get("/{sweep_id}/curves")
+@router.get("/{sweep_id}/curves", dependencies=[MAY_READ])
 def read_curves(sweep: SweepDep, session: SessionDep, points: Points = None) -> SweepCurves:
     """The curves of every run by itself, over the same generations."""
     return summary.curves(session, sweep, points)
 
 
 @router.post("/{sweep_id}/pause", status_code=202)
-def pause_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+def pause_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
     """Pause every run that can be paused; `left` tells of those that cannot."""
     return _steered(services, sweep_id, lifecycle.pause)
 
 
 @router.post("/{sweep_id}/resume", status_code=202)
-def resume_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+def resume_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
     """Resume every run that is paused; `left` tells of the others."""
     resumed = _steered(services, sweep_id, lifecycle.resume)
     requeue(services, resumed.changed)
@@ -165,20 +167,20 @@ def resume_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
 
 
 @router.post("/{sweep_id}/cancel", status_code=202)
-def cancel_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+def cancel_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
     """Cancel every run that has not ended; `left` tells of those that have."""
     return _steered(services, sweep_id, lifecycle.cancel)
 
 
 @router.delete("/{sweep_id}")
-def delete_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+def delete_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
     """Every run into the bin; `left` tells of those that wait or are at work."""
     keep = services.settings.bin_seconds
     return _steered(services, sweep_id, lambda session, run: bin.put(session, run, keep))
 
 
 @router.post("/{sweep_id}/restore")
-def restore_sweep(sweep_id: UUID, services: ServicesDep) -> SweepChanged:
+def restore_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
     """Every run that lies in the bin out of it, as it was."""
     return _steered(services, sweep_id, bin.restore, ~lifecycle.KEPT)
 

@@ -12,7 +12,7 @@ from redis import RedisError
 from sqlalchemy import ColumnElement, and_, or_, select
 from sqlalchemy.orm import Session
 
-from ..auth import owners
+from ..auth import tokens
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..runs import lifecycle
@@ -36,7 +36,7 @@ def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
     mine = Run.sweep.in_([sweep.id for sweep in sweeps])
     for row in session.execute(select(*columns).where(mine).order_by(Run.sweep, Run.place)):
         of_sweeps[row.sweep].append(row)
-    named = owners.names(session, (sweep.owner for sweep in sweeps))
+    named = tokens.names(session, (sweep.owner for sweep in sweeps))
     return [_read(one, of_sweeps[one.id], named.get(one.owner)) for one in sweeps]
 
 

@@ -2,6 +2,7 @@
 
 from fastapi import APIRouter
 
+from ..auth.authorize import MAY_READ
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Run, Worker
 from . import registry
@@ -11,7 +12,7 @@ from .schemas import PluginRead, WorkerRead
 router = APIRouter(prefix="/workers", tags=["workers"])
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def list_workers(services: ServicesDep, session: SessionDep) -> list[WorkerRead]:
     """By name, each with how busy its device is and the run that it carries out."""
     alive = registry.live(session, services.settings.lease)

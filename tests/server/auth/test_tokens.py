@@ -112,7 +112,7 @@ def test_when_a_token_was_last_used_is_told_coarsely(
     assert first is not None
     erin.get("/runs")
     assert first in [row.last_used_at for row in rows()]
-    monkeypatch.setattr(tokens, "COARSE", timedelta(0))
+    monkeypatch.setattr(tokens, "LAST_USED_INTERVAL", timedelta(0))
     erin.get("/runs")
     assert first not in [row.last_used_at for row in rows()]
 

@@ -875,12 +875,12 @@ export interface paths {
         put?: never;
         /**
          * Sign In
-         * @description Keep a token in a cookie of this site; 401 where it is wrong.
+         * @description Keep a token in a cookie of this site, which scripts cannot read; 401 if it is wrong.
          */
         post: operations["sign_in_api_v1_session_post"];
         /**
          * Sign Out
-         * @description Forget the cookie; the token stays good.
+         * @description Forget the cookie. The token stays valid.
          */
         delete: operations["sign_out_api_v1_session_delete"];
         options?: never;
@@ -1432,13 +1432,13 @@ export interface paths {
         };
         /**
          * List Tokens
-         * @description All of them, those that were revoked too, newest first; never a secret.
+         * @description Return all tokens, revoked ones too, newest first, without their secrets.
          */
         get: operations["list_tokens_api_v1_tokens_get"];
         put?: never;
         /**
          * Create Token
-         * @description Make a token. Its secret is in this answer and nowhere else.
+         * @description Create a token. Only this answer contains its secret.
          */
         post: operations["create_token_api_v1_tokens_post"];
         delete?: never;
@@ -1456,7 +1456,7 @@ export interface paths {
         };
         /**
          * Read Current
-         * @description Who asks, as the server has it.
+         * @description Return the principal of the request.
          */
         get: operations["read_current_api_v1_tokens_current_get"];
         put?: never;
@@ -1658,25 +1658,6 @@ export interface components {
             positions: number[][];
             /** Whole */
             whole: boolean;
-        };
-        /**
-         * CallerRead
-         * @description Who asks, and what they may.
-         */
-        CallerRead: {
-            /** Expires At */
-            expires_at: string | null;
-            /** Name */
-            name: string;
-            /** Needed */
-            needed: boolean;
-            /**
-             * Scope
-             * @enum {string}
-             */
-            scope: "read" | "write" | "admin";
-            /** Token */
-            token: string | null;
         };
         /**
          * Carried
@@ -2085,6 +2066,25 @@ export interface components {
             title: string;
         };
         /**
+         * PrincipalRead
+         * @description Who sends the request, and with which scope.
+         */
+        PrincipalRead: {
+            /** Expires At */
+            expires_at: string | null;
+            /** Name */
+            name: string;
+            /** Needed */
+            needed: boolean;
+            /**
+             * Scope
+             * @enum {string}
+             */
+            scope: "read" | "write" | "admin";
+            /** Token */
+            token: string | null;
+        };
+        /**
          * Problem
          * @description RFC 9457.
          */
@@ -2483,8 +2483,8 @@ export interface components {
             /** Width */
             width: number;
         };
-        /** TokenMade */
-        TokenMade: {
+        /** TokenCreated */
+        TokenCreated: {
             /** Beginning */
             beginning: string;
             /**
@@ -2515,7 +2515,7 @@ export interface components {
         };
         /**
          * TokenRead
-         * @description A token without its secret, which nobody has but its holder.
+         * @description A token without its secret.
          */
         TokenRead: {
             /** Beginning */
@@ -4279,7 +4279,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CallerRead"];
+                    "application/json": components["schemas"]["PrincipalRead"];
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -5485,7 +5485,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["TokenMade"];
+                    "application/json": components["schemas"]["TokenCreated"];
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -5514,7 +5514,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CallerRead"];
+                    "application/json": components["schemas"]["PrincipalRead"];
                 };
             };
             /** @description A problem (RFC 9457) */

@@ -66,9 +66,9 @@ export type ArchiveColumns = Pick<
 export type Generations = Wire["Curves"];
 export type LogEntry = Wire["EntryRead"];
 export type SpeciesHistory = Wire["Species"];
-export type Principal = Wire["CallerRead"];
+export type Principal = Wire["PrincipalRead"];
 export type Token = Wire["TokenRead"];
-export type CreatedToken = Wire["TokenMade"];
+export type CreatedToken = Wire["TokenCreated"];
 export type TokenCreate =
   operations["create_token_api_v1_tokens_post"]["requestBody"]["content"]["application/json"];
 export type TokenScope = Token["scope"];

@@ -22,6 +22,7 @@ import type { ArchiveViewProps } from "./binFocus";
 import type { Projection } from "./projection";
 import type { Selection } from "./selection";
 import { ArchiveGallery } from "./ArchiveGallery";
+import { text } from "./text";
 import "./map.css";
 import "./archive.css";
 
@@ -99,7 +100,7 @@ function useViewProps(
     projection,
     actions: ({ creature }, cell) => (
       <>
-        <ForkLink run={run.id} creature={creature} title="A new run that begins from this creature" inline />
+        <ForkLink run={run.id} creature={creature} title={text.forkCreature} inline />
         <SelectToggle {...{ cell, projection }} {...selection} />
       </>
     ),
@@ -113,14 +114,14 @@ function useViewProps(
 function Head({ count: elites, gallery, onGuide }: { count: number; gallery: boolean; onGuide: () => void }) {
   return (
     <div class="card-head archive-head">
-      <h2 id="archive-title">Archive</h2>
-      <span class="quiet">{count(elites)} elites</span>
+      <h2 id="archive-title">{text.archive}</h2>
+      <span class="quiet">{text.elites(count(elites))}</span>
       <span class="spring" />
       <button class="plain small-button" onClick={onGuide}>
-        What is this?
+        {text.explain}
       </button>
       <Segments
-        label="How the archive is shown"
+        label={text.view}
         choices={VIEWS}
         value={gallery ? "gallery" : "map"}
         onChoose={(view) => setQuery({ view: view === "map" ? null : view })}
@@ -130,8 +131,8 @@ function Head({ count: elites, gallery, onGuide }: { count: number; gallery: boo
 }
 
 const VIEWS = [
-  ["map", "Map"],
-  ["gallery", "Gallery"],
+  ["map", text.map],
+  ["gallery", text.gallery],
 ] as const;
 
 function Choices({ archive, view: { axes, colour, palette } }: { archive: Archive; view: ArchiveView }) {
@@ -155,8 +156,8 @@ const SETTLED_MS = 300;
 
 /** The generation that is shown, null for the newest; the address follows once it rests. */
 function useMoment(query: URLSearchParams, last: number) {
-  const text = query.get("at");
-  const asked = text !== null && /^\d+$/.test(text) ? Number(text) : null;
+  const given = query.get("at");
+  const asked = given !== null && /^\d+$/.test(given) ? Number(given) : null;
   const [at, setAt] = useState(asked);
   const written = useRef(asked);
   useEffect(() => {

@@ -12,6 +12,7 @@ import type { Layout } from "./layout";
 import { useMapCanvas } from "./mapCanvas";
 import type { Tiles } from "./projection";
 import { type Box, binsOf, binsWithin, cellsIn, isAdditive, keyHelp, toggle, union } from "./selection";
+import { text } from "./text";
 
 export interface HoveredElite {
   cell: number;
@@ -41,7 +42,7 @@ export function ArchiveMap(props: Props) {
       <EliteReading
         {...{ tile, axes, onOpen }}
         colour={colouring.measure}
-        hint={`Point at a cell to see its creature swim; click it to open it${onChoose ? "; drag over several to choose them" : ""}.`}
+        hint={text.mapHint(onChoose !== null)}
         actions={props.actions}
       />
     </div>
@@ -78,7 +79,7 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
       class={`map-plot ${hovered === null ? "" : "over"}`}
       tabIndex={0}
       role="application"
-      aria-label={`Archive map. Arrow keys move between elites, ${keyHelp(props)}`}
+      aria-label={text.mapLabel(keyHelp(props))}
       aria-describedby="map-reading"
       {...drag.handlers}
       onPointerMove={(event) => {

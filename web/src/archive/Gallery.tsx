@@ -15,6 +15,7 @@ import { cornerOf, visibleBins } from "./galleryTiles";
 import type { Shape } from "./geometry";
 import type { Projection } from "./projection";
 import { binsOf, cellsIn, isAdditive, keyHelp, toggle } from "./selection";
+import { text } from "./text";
 
 interface Props extends ArchiveViewProps {
   /** Pixels of a tile's side; null: as large as fits. */
@@ -74,7 +75,7 @@ export function Gallery(props: Props) {
         {...{ axes, onOpen }}
         tile={focus.tile}
         colour={colouring.measure}
-        hint="Point at a creature to read of it; click it to open it."
+        hint={text.galleryHint}
         actions={props.actions}
       />
     </div>
@@ -108,7 +109,7 @@ interface SizeProps extends Pick<Props, "onSide" | "onSettle"> {
 function TileSize({ side, onSide, onSettle }: SizeProps) {
   return (
     <label class="compact gallery-size">
-      Size of the tiles
+      {text.tileSize}
       <input
         type="range"
         min={SMALLEST}
@@ -138,7 +139,7 @@ function Port({ port, focus, binUnder, onScroll, children, ...props }: PortProps
       class={`gallery-port ${focus.hovered === null ? "" : "over"}`}
       tabIndex={0}
       role="application"
-      aria-label={`Gallery. Arrow keys move between creatures, ${keyHelp(props)}`}
+      aria-label={text.galleryLabel(keyHelp(props))}
       aria-describedby="map-reading"
       onScroll={({ currentTarget: { scrollLeft, scrollTop } }) => onScroll([scrollLeft, scrollTop])}
       onPointerMove={(event) => focus.setHovered(binUnder(event))}
