@@ -18,6 +18,7 @@ import { bestOf, stepsOf, useGuide } from "./guide";
 import { ElitePreview } from "./ElitePreview";
 import { setSlice, useArchiveView } from "./archiveView";
 import { ArchiveGallery } from "./ArchiveGallery";
+import { text } from "./text";
 import "./map.css";
 import "./archive.css";
 
@@ -47,7 +48,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
     projection,
     actions: ({ creature }: Elite, cell: number) => (
       <>
-        <ForkLink run={run.id} creature={creature} title="A new run that begins from this creature" inline />
+        <ForkLink run={run.id} creature={creature} title={text.forkCreature} inline />
         <SelectToggle {...{ cell, projection }} {...choosing} />
       </>
     ),
@@ -60,11 +61,11 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   return (
     <div data-guide={about}>
       <div class="card-head archive-head">
-        <h2 id="archive-title">Archive</h2>
-        <span class="quiet">{count(view.elites.size)} elites</span>
+        <h2 id="archive-title">{text.archive}</h2>
+        <span class="quiet">{text.elites(count(view.elites.size))}</span>
         <span class="spring" />
         <button class="plain small-button" onClick={guide.begin}>
-          What is this?
+          {text.explain}
         </button>
         <ViewSwitch gallery={gallery} />
       </div>
@@ -116,8 +117,8 @@ const SETTLED_MS = 300;
 
 /** The generation that is shown, null for the newest; the address follows once it rests. */
 function useMoment(query: URLSearchParams, last: number) {
-  const text = query.get("at");
-  const asked = text !== null && /^\d+$/.test(text) ? Number(text) : null;
+  const moment = query.get("at");
+  const asked = moment !== null && /^\d+$/.test(moment) ? Number(moment) : null;
   const [at, setAt] = useState(asked);
   const written = useRef(asked);
   useEffect(() => {
@@ -139,11 +140,11 @@ function useMoment(query: URLSearchParams, last: number) {
 
 function ViewSwitch({ gallery }: { gallery: boolean }) {
   const views = [
-    ["Map", null],
-    ["Gallery", "gallery"],
+    [text.map, null],
+    [text.gallery, "gallery"],
   ] as const;
   return (
-    <div class="choices" role="group" aria-label="How the archive is shown">
+    <div class="choices" role="group" aria-label={text.view}>
       {views.map(([title, view]) => (
         <button
           key={title}

@@ -1,4 +1,4 @@
-/** The archive as a map: one cell an elite, to be looked at, pointed at and opened. */
+/** The archive as a map of cells, which can be pointed at, selected and opened. */
 
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
@@ -24,6 +24,7 @@ import { ColourLegend } from "./ColourLegend";
 import { type Direction, type Layout, isDirection, nextBin } from "./layout";
 import type { Projection, Tiles } from "./projection";
 import { EliteReading } from "./EliteReading";
+import { text } from "./text";
 
 export interface HoveredElite {
   cell: number;
@@ -95,7 +96,7 @@ export function ArchiveMap(props: Props) {
         class={`map-plot ${hovered === null ? "" : "over"}`}
         tabIndex={0}
         role="application"
-        aria-label={`Archive map. Arrow keys move between elites, ${keyHelp(props)}`}
+        aria-label={text.mapLabel(keyHelp(props))}
         aria-describedby="map-reading"
         {...drag.handlers}
         onPointerMove={(event) => {
@@ -118,7 +119,7 @@ export function ArchiveMap(props: Props) {
       <EliteReading
         {...{ tile, axes, onOpen }}
         colour={colouring.measure}
-        hint={`Point at a cell to see its creature swim; click it to open it${onChoose ? "; drag over several to choose them" : ""}.`}
+        hint={text.mapHint(onChoose !== null)}
         actions={props.actions}
       />
     </div>

@@ -19,6 +19,7 @@ import { useClock } from "../replay/clock";
 import { prefersStillness, useTheme } from "../ui/theme";
 import { type GalleryPicture, drawGallery } from "./drawGallery";
 import { cornerOf, visibleBins } from "./galleryTiles";
+import { text } from "./text";
 
 interface Props extends Selection {
   axes: readonly [MapAxis, MapAxis];
@@ -95,7 +96,7 @@ export function Gallery(props: Props) {
   return (
     <div class="gallery" data-gallery>
       <label class="compact gallery-size">
-        Size of the tiles
+        {text.tileSize}
         <input
           type="range"
           min={SMALLEST}
@@ -114,7 +115,7 @@ export function Gallery(props: Props) {
           class={`gallery-port ${hovered === null ? "" : "over"}`}
           tabIndex={0}
           role="application"
-          aria-label={`Gallery. Arrow keys move between creatures, ${keyHelp(props)}`}
+          aria-label={text.galleryLabel(keyHelp(props))}
           aria-describedby="map-reading"
           onScroll={({ currentTarget: { scrollLeft, scrollTop } }) => setScroll([scrollLeft, scrollTop])}
           onPointerMove={(event) => setHovered(binUnder(event))}
@@ -139,7 +140,7 @@ export function Gallery(props: Props) {
         tile={looked === null ? undefined : tiles.get(looked)}
         axes={axes}
         colour={colouring.measure}
-        hint="Point at a creature to read of it; click it to open it."
+        hint={text.galleryHint}
         onOpen={onOpen}
         actions={props.actions}
       />
