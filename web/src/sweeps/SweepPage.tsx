@@ -24,7 +24,6 @@ import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, Check } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
 import { text } from "./text";
-import "./sweeps.css";
 
 interface Props {
   id: string;

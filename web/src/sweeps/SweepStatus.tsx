@@ -4,6 +4,7 @@ import type { Sweep } from "../api/types";
 import { short } from "../ui/format";
 import { STATES } from "../run/RunStatus";
 import { text } from "./text";
+import "./sweeps.css";
 
 export const sweepTitle = ({ name, id }: Sweep) => name ?? text.sweepTitle(short(id));
 
