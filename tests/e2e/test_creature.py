@@ -44,7 +44,7 @@ def pixels(page: Page) -> str:
 
 
 def step_by_keyboard_alone(page: Page) -> None:
-    moment = page.get_by_role("slider", name="Moment of the replay")
+    moment = page.get_by_role("slider", name="Time in the replay")
     page.keyboard.press("Space")
     expect(page.get_by_role("button", name="Play")).to_be_visible(timeout=FAST)
     paused = moment.input_value()
@@ -61,7 +61,7 @@ def step_by_keyboard_alone(page: Page) -> None:
     assert pixels(page) != first
     page.keyboard.press("End")
     expect(moment).to_have_attribute("aria-valuetext", "step 40 of 40")
-    page.get_by_role("button", name="One frame back").press("Enter")
+    page.get_by_role("button", name="Previous frame").press("Enter")
     expect(moment).to_have_attribute("aria-valuetext", "step 39 of 40")
 
 
@@ -99,7 +99,7 @@ def read_the_shape_over_time(page: Page) -> None:
         page.get_by_text(re.compile(r"^Step 40, joint 6: asked .* rad, did"))
     ).to_be_visible()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 20)
-    moment = page.get_by_role("slider", name="Moment of the replay")
+    moment = page.get_by_role("slider", name="Time in the replay")
     expect(moment).to_have_attribute("aria-valuetext", "step 20 of 40")
     page.get_by_role("button", name="Lengths").click()
     lengths = page.get_by_role("application", name=re.compile("^Rest lengths, as applied"))

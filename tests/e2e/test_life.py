@@ -55,12 +55,12 @@ def choose_by_keyboard(page: Page) -> None:
     map_of(page).focus()
     for key in ("ArrowRight", "Space"):
         page.keyboard.press(key)
-    expect(chosen(page)).to_have_text("1 creature chosen")
+    expect(chosen(page)).to_have_text("1 creature selected")
     page.keyboard.press("Space")
     expect(chosen(page)).to_be_empty()
     for key in ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"):
         page.keyboard.press(f"Shift+{key}")
-    expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures chosen$"))
+    expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures selected$"))
     text = chosen(page).inner_text()
     page.reload()
     expect(chosen(page)).to_have_text(text, timeout=FAST)
@@ -80,23 +80,23 @@ def choose_by_mouse(page: Page) -> None:
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.move(box["x"] + box["width"] - 2, box["y"] + box["height"] - 2)
     page.mouse.up()
-    expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures chosen$"))
+    expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures selected$"))
     assert re.search(r"/runs/[^/]+\?", page.url), "a drag opens nobody"
     everybody = int(chosen(page).inner_text().split()[0])
-    page.get_by_role("button", name="Choose", exact=True).click()
-    expect(chosen(page)).to_have_text(re.compile(f"^{everybody - 1} creatures? chosen$"))
+    page.get_by_role("button", name="Select", exact=True).click()
+    expect(chosen(page)).to_have_text(re.compile(f"^{everybody - 1} creatures? selected$"))
 
 
 def fork_the_chosen(page: Page, address: str, run: str) -> None:
     """The form says whom the run begins from, and leads back to them."""
-    text = chosen(page).inner_text().removesuffix(" chosen")
+    text = chosen(page).inner_text().removesuffix(" selected")
     page.locator(".chosen-bar").get_by_role("link", name="Fork").click()
     beginning = page.locator(".base-bar")
     expect(beginning).to_contain_text(f"Begins from {text} of run {run[:8]}.", timeout=FAST)
     assert "cells=" in page.url
     expect(page.get_by_label("Estimate")).to_be_visible(timeout=FAST)
     beginning.get_by_role("link", name=text).click()
-    expect(chosen(page)).to_have_text(f"{text} chosen", timeout=FAST)
+    expect(chosen(page)).to_have_text(f"{text} selected", timeout=FAST)
 
 
 def fork_the_past(page: Page, address: str, run: str) -> None:
