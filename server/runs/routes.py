@@ -21,7 +21,7 @@ from ..core.uploads import json_object
 from ..creatures.initial import named
 from ..deletion import bin
 from ..estimates import position
-from ..estimates.eta import pace_of
+from ..estimates.eta import speed_of
 from ..estimates.schemas import EstimateRead
 from ..forks import extending, forking
 from ..maintenance.reconcile import requeue
@@ -99,14 +99,14 @@ def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> E
     """What a run will need, and what it is about, without queueing it."""
     needed = estimate(spec)
     line = position.line(services, session)
-    pace = pace_of(session, spec, line.alive)
+    speed = speed_of(session, spec, line.alive)
     return EstimateRead(
         memory_bytes=needed.memory_bytes,
         memory_limit_bytes=memory_limit(services, session),
         evaluations=needed.evaluations,
         cell_steps=needed.cell_steps,
-        seconds=pace.seconds(needed.cell_steps) if pace else None,
-        pace=pace.read(needed.cell_steps) if pace else None,
+        seconds=speed.seconds(needed.cell_steps) if speed else None,
+        speed=speed.read(needed.cell_steps) if speed else None,
         queue=line.ahead(),
         drawing=drawing_read(drawing(spec)),
     )
@@ -254,7 +254,7 @@ def fork_run(
     with services.sessions.read() as session, parsing.parsing(services) as parse:
         spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
     refuse_too_large(services, spec)
-    said = {"name": sent.name or None, "forked_from": run_id, "forked": len(named(spec))}
+    said = {"name": sent.name or None, "forked_from": run_id, "n_initial": len(named(spec))}
     run, new = submit(services, spec, idempotency_key, request, owner=principal.token, **said)
     return _submitted(services, response, run.id, new)
 

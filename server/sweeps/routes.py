@@ -15,7 +15,7 @@ from ..core.openapi import described
 from ..core.uploads import json_object
 from ..deletion import bin
 from ..estimates import position
-from ..estimates.eta import paces_of
+from ..estimates.eta import speeds_of
 from ..runs import lifecycle
 from ..runs.routes import CHANGE_BYTES, SPEC_BYTES, Key
 from ..runs.submission import memory_limit
@@ -81,11 +81,11 @@ def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) ->
     """What all runs of a sweep will need, without queueing them."""
     needs = [estimate(case.spec) for case in plan.cases]
     line = position.line(services, session)
-    paces = paces_of(session, [case.spec for case in plan.cases], line.alive)
+    speeds = speeds_of(session, [case.spec for case in plan.cases], line.alive)
     times = [
-        pace.seconds(needed.cell_steps)
-        for pace, needed in zip(paces, needs, strict=True)
-        if pace
+        speed.seconds(needed.cell_steps)
+        for speed, needed in zip(speeds, needs, strict=True)
+        if speed
     ]
     seeds = plan.total // len(plan.cases)
     return SweepEstimate(
@@ -96,7 +96,7 @@ def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) ->
         evaluations=seeds * sum(needed.evaluations for needed in needs),
         cell_steps=seeds * sum(needed.cell_steps for needed in needs),
         seconds=seeds * sum(times) if len(times) == len(needs) else None,
-        pace=paces[0].read(needs[0].cell_steps) if paces[0] else None,
+        speed=speeds[0].read(needs[0].cell_steps) if speeds[0] else None,
         queue=line.ahead(sweep=True),
     )
 
@@ -154,13 +154,13 @@ def read_curves(sweep: SweepDep, session: SessionDep, points: Points = None) -> 
 
 @router.post("/{sweep_id}/pause", status_code=202)
 def pause_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
-    """Pause every run that can be paused; `left` tells of those that cannot."""
+    """Pause every run that can be paused; `skipped` tells of those that cannot."""
     return _steered(services, sweep_id, lifecycle.pause)
 
 
 @router.post("/{sweep_id}/resume", status_code=202)
 def resume_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
-    """Resume every run that is paused; `left` tells of the others."""
+    """Resume every run that is paused; `skipped` tells of the others."""
     resumed = _steered(services, sweep_id, lifecycle.resume)
     requeue(services, resumed.changed)
     return resumed
@@ -168,13 +168,13 @@ def resume_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
 
 @router.post("/{sweep_id}/cancel", status_code=202)
 def cancel_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
-    """Cancel every run that has not ended; `left` tells of those that have."""
+    """Cancel every run that has not ended; `skipped` tells of those that have."""
     return _steered(services, sweep_id, lifecycle.cancel)
 
 
 @router.delete("/{sweep_id}")
 def delete_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
-    """Every run into the bin; `left` tells of those that wait or are at work."""
+    """Every run into the bin; `skipped` tells of those that wait or are at work."""
     keep = services.settings.bin_seconds
     return _steered(services, sweep_id, lambda session, run: bin.put(session, run, keep))
 
@@ -193,8 +193,8 @@ def _steered(
 ) -> SweepChanged:
     with services.sessions.read() as session:
         find_sweep(session, sweep_id)
-    changed, left = steer(services, sweep_id, change, among)
-    return SweepChanged(**dict(_current(services, sweep_id)), changed=changed, left=left)
+    changed, skipped = steer(services, sweep_id, change, among)
+    return SweepChanged(**dict(_current(services, sweep_id)), changed=changed, skipped=skipped)
 
 
 def _current(services: Services, sweep_id: UUID) -> SweepRead:

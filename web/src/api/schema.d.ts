@@ -532,7 +532,7 @@ export interface paths {
          * Read Archive
          * @description The elite of each cell, now or as of a generation.
          *
-         *     With `features`, names with commas between them, what was recorded of the elites under
+         *     With `measures`, names with commas between them, what was recorded of the elites under
          *     those names too: an archive can be looked at along any of them. With `after`, a generation,
          *     only the elites that entered later, for who knows the others.
          */
@@ -1268,7 +1268,7 @@ export interface paths {
         post?: never;
         /**
          * Delete Sweep
-         * @description Every run into the bin; `left` tells of those that wait or are at work.
+         * @description Every run into the bin; `skipped` tells of those that wait or are at work.
          */
         delete: operations["delete_sweep_api_v1_sweeps__sweep_id__delete"];
         options?: never;
@@ -1291,7 +1291,7 @@ export interface paths {
         put?: never;
         /**
          * Cancel Sweep
-         * @description Cancel every run that has not ended; `left` tells of those that have.
+         * @description Cancel every run that has not ended; `skipped` tells of those that have.
          */
         post: operations["cancel_sweep_api_v1_sweeps__sweep_id__cancel_post"];
         delete?: never;
@@ -1331,7 +1331,7 @@ export interface paths {
         put?: never;
         /**
          * Pause Sweep
-         * @description Pause every run that can be paused; `left` tells of those that cannot.
+         * @description Pause every run that can be paused; `skipped` tells of those that cannot.
          */
         post: operations["pause_sweep_api_v1_sweeps__sweep_id__pause_post"];
         delete?: never;
@@ -1371,7 +1371,7 @@ export interface paths {
         put?: never;
         /**
          * Resume Sweep
-         * @description Resume every run that is paused; `left` tells of the others.
+         * @description Resume every run that is paused; `skipped` tells of the others.
          */
         post: operations["resume_sweep_api_v1_sweeps__sweep_id__resume_post"];
         delete?: never;
@@ -1557,15 +1557,6 @@ export interface components {
             /** Recorded */
             recorded: number;
         };
-        /** AheadRead */
-        AheadRead: {
-            /** Free */
-            free: number;
-            /** Waiting */
-            waiting: number;
-            /** Workers */
-            workers: number;
-        };
         /** Ancestors */
         Ancestors: {
             /** Items */
@@ -1595,10 +1586,6 @@ export interface components {
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
-            /** Features */
-            features: {
-                [key: string]: (number | null)[];
-            };
             /** Fitness */
             fitness: number[];
             /** Generation */
@@ -1608,8 +1595,12 @@ export interface components {
              * @enum {string}
              */
             kind: "grid" | "cvt";
+            /** Measures */
+            measures: {
+                [key: string]: (number | null)[];
+            };
             /** Recorded */
-            recorded: components["schemas"]["Feature"][];
+            recorded: components["schemas"]["Measure"][];
         };
         /** Axis */
         Axis: {
@@ -1628,22 +1619,6 @@ export interface components {
             scale: "log10" | "linear";
         };
         /**
-         * Band
-         * @description A spread at each generation, as columns.
-         */
-        Band: {
-            /** High */
-            high: (number | null)[];
-            /** Low */
-            low: (number | null)[];
-            /** Max */
-            max: (number | null)[];
-            /** Median */
-            median: (number | null)[];
-            /** Min */
-            min: (number | null)[];
-        };
-        /**
          * BodyRead
          * @description A body at rest in its world; of one with many nodes some are left out.
          */
@@ -1658,36 +1633,6 @@ export interface components {
             positions: number[][];
             /** Whole */
             whole: boolean;
-        };
-        /**
-         * Carried
-         * @description A run as it is named beside a worker or in the queue.
-         */
-        Carried: {
-            /** Attempt */
-            attempt: number;
-            /** Demonstration */
-            demonstration: boolean;
-            /** Experiment */
-            experiment: string;
-            /** Generation */
-            generation: number;
-            /** Generations */
-            generations: number;
-            /**
-             * Id
-             * Format: uuid
-             */
-            id: string;
-            /** Name */
-            name: string | null;
-            /** Progress */
-            progress: number;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
         };
         /**
          * CaseRead
@@ -1706,8 +1651,8 @@ export interface components {
          * @description What the runs of one case say together; columns have one entry per generation.
          */
         CaseSummary: {
-            best: components["schemas"]["Band"];
-            coverage: components["schemas"]["Band"];
+            best: components["schemas"]["Quantiles"];
+            coverage: components["schemas"]["Quantiles"];
             /** Finals */
             finals: {
                 [key: string]: components["schemas"]["Final"];
@@ -1715,8 +1660,8 @@ export interface components {
             /** Generation */
             generation: number[];
             /** Members */
-            members: components["schemas"]["Member"][];
-            qd_score: components["schemas"]["Band"];
+            members: components["schemas"]["SweepRun"][];
+            qd_score: components["schemas"]["Quantiles"];
             /** Runs */
             runs: number[];
             /** Values */
@@ -1788,28 +1733,6 @@ export interface components {
             /** Width */
             width: number;
         };
-        /**
-         * EntryRead
-         * @description What happened to a run.
-         */
-        EntryRead: {
-            /**
-             * At
-             * Format: date-time
-             */
-            at: string;
-            /** Attempt */
-            attempt: number;
-            /** Id */
-            id: number;
-            /**
-             * Level
-             * @enum {string}
-             */
-            level: "info" | "warning" | "error";
-            /** Text */
-            text: string;
-        };
         /** EstimateRead */
         EstimateRead: {
             /** Cell Steps */
@@ -1821,10 +1744,10 @@ export interface components {
             memory_bytes: number;
             /** Memory Limit Bytes */
             memory_limit_bytes: number;
-            pace: components["schemas"]["PaceRead"] | null;
-            queue: components["schemas"]["AheadRead"];
+            queue: components["schemas"]["QueueAhead"];
             /** Seconds */
             seconds: number | null;
+            speed: components["schemas"]["MeasuredSpeed"] | null;
         };
         /** ExperimentRead */
         ExperimentRead: {
@@ -1838,27 +1761,6 @@ export interface components {
             };
             /** Title */
             title: string;
-        };
-        /**
-         * Feature
-         * @description What is recorded of every elite, and where an axis of it begins and ends by default.
-         */
-        Feature: {
-            /** High */
-            high: number | null;
-            /** Low */
-            low: number | null;
-            /** Name */
-            name: string;
-            /**
-             * Scale
-             * @enum {string}
-             */
-            scale: "log10" | "linear";
-            /** Title */
-            title: string;
-            /** Unit */
-            unit: string;
         };
         /** FieldError */
         FieldError: {
@@ -1887,10 +1789,10 @@ export interface components {
             values: (number | null)[];
         };
         /**
-         * Forked
+         * ForkedFrom
          * @description Where a fork began.
          */
-        Forked: {
+        ForkedFrom: {
             /** Creatures */
             creatures: number;
             /** Run */
@@ -1920,54 +1822,78 @@ export interface components {
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
-            /** Features */
-            features: {
-                [key: string]: (number | null)[];
-            };
             /** Fitness */
             fitness: number[];
             /** Generation */
             generation: number;
-        };
-        /**
-         * Left
-         * @description A run that was left as it is.
-         */
-        Left: {
-            /** Reason */
-            reason: string;
-            /**
-             * Run
-             * Format: uuid
-             */
-            run: string;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-        };
-        /**
-         * Line
-         * @description The curves of one run; None beyond the last generation that it has recorded.
-         */
-        Line: {
-            /** Best */
-            best: (number | null)[];
-            /** Coverage */
-            coverage: (number | null)[];
-            /** Qd Score */
-            qd_score: (number | null)[];
-            /**
-             * Run
-             * Format: uuid
-             */
-            run: string;
+            /** Measures */
+            measures: {
+                [key: string]: (number | null)[];
+            };
         };
         /** Log */
         Log: {
             /** Entries */
-            entries: components["schemas"]["EntryRead"][];
+            entries: components["schemas"]["LogEntryRead"][];
+        };
+        /**
+         * LogEntryRead
+         * @description What happened to a run.
+         */
+        LogEntryRead: {
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /** Attempt */
+            attempt: number;
+            /** Id */
+            id: number;
+            /**
+             * Level
+             * @enum {string}
+             */
+            level: "info" | "warning" | "error";
+            /** Text */
+            text: string;
+        };
+        /**
+         * Measure
+         * @description What is recorded of every elite, and where an axis of it begins and ends by default.
+         */
+        Measure: {
+            /** High */
+            high: number | null;
+            /** Low */
+            low: number | null;
+            /** Name */
+            name: string;
+            /**
+             * Scale
+             * @enum {string}
+             */
+            scale: "log10" | "linear";
+            /** Title */
+            title: string;
+            /** Unit */
+            unit: string;
+        };
+        /**
+         * MeasuredSpeed
+         * @description How fast earlier runs of the same kind were, on a device that there is.
+         */
+        MeasuredSpeed: {
+            /** Cell Steps Per Second */
+            cell_steps_per_second: number;
+            /** Device */
+            device: string;
+            /** High */
+            high: number;
+            /** Low */
+            low: number;
+            /** Runs */
+            runs: number;
         };
         /**
          * Measurement
@@ -1985,44 +1911,6 @@ export interface components {
             fitness: components["schemas"]["Again"];
             /** Recorded Device */
             recorded_device: string;
-        };
-        /**
-         * Member
-         * @description A run as its sweep tells of it.
-         */
-        Member: {
-            /** Generation */
-            generation: number;
-            /** Generations */
-            generations: number;
-            /**
-             * Run
-             * Format: uuid
-             */
-            run: string;
-            /** Seed */
-            seed: number | null;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-        };
-        /**
-         * PaceRead
-         * @description How fast earlier runs of the same kind were, on a device that there is.
-         */
-        PaceRead: {
-            /** Cell Steps Per Second */
-            cell_steps_per_second: number;
-            /** Device */
-            device: string;
-            /** High */
-            high: number;
-            /** Low */
-            low: number;
-            /** Runs */
-            runs: number;
         };
         /** PictureRead */
         PictureRead: {
@@ -2103,12 +1991,73 @@ export interface components {
              */
             type: string;
         };
+        /**
+         * Quantiles
+         * @description A spread at each generation, as columns.
+         */
+        Quantiles: {
+            /** High */
+            high: (number | null)[];
+            /** Low */
+            low: (number | null)[];
+            /** Max */
+            max: (number | null)[];
+            /** Median */
+            median: (number | null)[];
+            /** Min */
+            min: (number | null)[];
+        };
+        /** QueueAhead */
+        QueueAhead: {
+            /** Idle Workers */
+            idle_workers: number;
+            /** Runs Ahead */
+            runs_ahead: number;
+            /** Workers */
+            workers: number;
+        };
         /** QueueRead */
         QueueRead: {
             /** Items */
-            items: components["schemas"]["Waiting"][];
+            items: components["schemas"]["QueuedRun"][];
             /** Total */
             total: number;
+        };
+        /** QueuedRun */
+        QueuedRun: {
+            /** Attempt */
+            attempt: number;
+            /** Demonstration */
+            demonstration: boolean;
+            /** Experiment */
+            experiment: string;
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Memory Bytes */
+            memory_bytes: number | null;
+            /** Name */
+            name: string | null;
+            /** Progress */
+            progress: number;
+            /**
+             * Queued At
+             * Format: date-time
+             */
+            queued_at: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+            /** Waiting Reason */
+            waiting_reason: string;
         };
         /** Readiness */
         Readiness: {
@@ -2175,6 +2124,53 @@ export interface components {
                 [key: string]: unknown;
             } | null;
         };
+        /**
+         * RunBrief
+         * @description A run as it is named beside a worker or in the queue.
+         */
+        RunBrief: {
+            /** Attempt */
+            attempt: number;
+            /** Demonstration */
+            demonstration: boolean;
+            /** Experiment */
+            experiment: string;
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Name */
+            name: string | null;
+            /** Progress */
+            progress: number;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /**
+         * RunCurves
+         * @description The curves of one run; None beyond the last generation that it has recorded.
+         */
+        RunCurves: {
+            /** Best */
+            best: (number | null)[];
+            /** Coverage */
+            coverage: (number | null)[];
+            /** Qd Score */
+            qd_score: (number | null)[];
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+        };
         /** RunPage */
         RunPage: {
             /** Items */
@@ -2215,7 +2211,7 @@ export interface components {
             experiment: string;
             /** Finished At */
             finished_at: string | null;
-            forked_from: components["schemas"]["Forked"] | null;
+            forked_from: components["schemas"]["ForkedFrom"] | null;
             /** Generation */
             generation: number;
             /** Generations */
@@ -2242,6 +2238,8 @@ export interface components {
              * Format: date-time
              */
             queued_at: string;
+            /** Requested State */
+            requested_state: ("paused" | "cancelled") | null;
             /** Sparkline */
             sparkline: number[];
             /** Spec */
@@ -2265,12 +2263,10 @@ export interface components {
             tags: string[];
             /** Version */
             version: string;
-            /** Waiting */
-            waiting: string | null;
+            /** Waiting Reason */
+            waiting_reason: string | null;
             /** Warning */
             warning: string | null;
-            /** Wish */
-            wish: ("pause" | "cancel") | null;
         };
         /** SharePage */
         SharePage: {
@@ -2320,6 +2316,24 @@ export interface components {
             url: string;
         };
         /**
+         * SkippedRun
+         * @description A run that was left as it is.
+         */
+        SkippedRun: {
+            /** Reason */
+            reason: string;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /**
          * Species
          * @description Columns, one entry for each generation that tells its species, those that live.
          */
@@ -2355,8 +2369,6 @@ export interface components {
              * Format: uuid
              */
             id: string;
-            /** Left */
-            left: components["schemas"]["Left"][];
             /** Name */
             name: string | null;
             /** Owner */
@@ -2365,12 +2377,14 @@ export interface components {
             progress: number;
             /** Seeds */
             seeds: number[];
+            /** Skipped */
+            skipped: components["schemas"]["SkippedRun"][];
             /** Spec */
             spec: {
                 [key: string]: unknown;
             };
-            /** Standing */
-            standing: {
+            /** Status Counts */
+            status_counts: {
                 [key: string]: number;
             };
             /** Total */
@@ -2380,8 +2394,8 @@ export interface components {
         SweepCurves: {
             /** Generation */
             generation: number[];
-            /** Lines */
-            lines: components["schemas"]["Line"][];
+            /** Runs */
+            runs: components["schemas"]["RunCurves"][];
         };
         /** SweepEstimate */
         SweepEstimate: {
@@ -2395,12 +2409,12 @@ export interface components {
             memory_bytes: number;
             /** Memory Limit Bytes */
             memory_limit_bytes: number;
-            pace: components["schemas"]["PaceRead"] | null;
-            queue: components["schemas"]["AheadRead"];
+            queue: components["schemas"]["QueueAhead"];
             /** Runs */
             runs: number;
             /** Seconds */
             seconds: number | null;
+            speed: components["schemas"]["MeasuredSpeed"] | null;
         };
         /** SweepPage */
         SweepPage: {
@@ -2443,12 +2457,34 @@ export interface components {
             spec: {
                 [key: string]: unknown;
             };
-            /** Standing */
-            standing: {
+            /** Status Counts */
+            status_counts: {
                 [key: string]: number;
             };
             /** Total */
             total: number;
+        };
+        /**
+         * SweepRun
+         * @description A run as its sweep tells of it.
+         */
+        SweepRun: {
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /** Seed */
+            seed: number | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
         };
         /** SweepSummary */
         SweepSummary: {
@@ -2485,8 +2521,6 @@ export interface components {
         };
         /** TokenCreated */
         TokenCreated: {
-            /** Beginning */
-            beginning: string;
             /**
              * Created At
              * Format: date-time
@@ -2503,6 +2537,8 @@ export interface components {
             last_used_at: string | null;
             /** Name */
             name: string;
+            /** Prefix */
+            prefix: string;
             /** Revoked At */
             revoked_at: string | null;
             /**
@@ -2518,8 +2554,6 @@ export interface components {
          * @description A token without its secret.
          */
         TokenRead: {
-            /** Beginning */
-            beginning: string;
             /**
              * Created At
              * Format: date-time
@@ -2536,6 +2570,8 @@ export interface components {
             last_used_at: string | null;
             /** Name */
             name: string;
+            /** Prefix */
+            prefix: string;
             /** Revoked At */
             revoked_at: string | null;
             /**
@@ -2554,45 +2590,9 @@ export interface components {
             /** Reason */
             reason: string;
         };
-        /** Waiting */
-        Waiting: {
-            /** Attempt */
-            attempt: number;
-            /** Demonstration */
-            demonstration: boolean;
-            /** Experiment */
-            experiment: string;
-            /** Generation */
-            generation: number;
-            /** Generations */
-            generations: number;
-            /**
-             * Id
-             * Format: uuid
-             */
-            id: string;
-            /** Memory Bytes */
-            memory_bytes: number | null;
-            /** Name */
-            name: string | null;
-            /** Progress */
-            progress: number;
-            /**
-             * Queued At
-             * Format: date-time
-             */
-            queued_at: string;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-            /** Waiting */
-            waiting: string;
-        };
         /** WorkerRead */
         WorkerRead: {
-            carries: components["schemas"]["Carried"] | null;
+            current_run: components["schemas"]["RunBrief"] | null;
             /** Device */
             device: string;
             /**
@@ -3670,7 +3670,7 @@ export interface operations {
         parameters: {
             query?: {
                 generation?: number | null;
-                features?: string;
+                measures?: string;
                 after?: number | null;
             };
             header?: never;
@@ -3804,7 +3804,7 @@ export interface operations {
     read_history_api_v1_runs__run_id__archive_history_get: {
         parameters: {
             query?: {
-                features?: string;
+                measures?: string;
             };
             header?: never;
             path: {

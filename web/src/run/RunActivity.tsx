@@ -6,7 +6,7 @@ import "../replay/replay.css";
 
 /** A sentence, or null where generations tell enough. */
 export function activityOf(run: Run): string | null {
-  if (run.status === "queued") return run.waiting ?? "It waits for a worker that is free.";
+  if (run.status === "queued") return run.waiting_reason ?? "It waits for a worker that is free.";
   if (run.status !== "running" || run.generation > 0) return null;
   const device = run.device?.toLowerCase() ?? "";
   if (!run.device) return "A worker has begun; it is getting ready.";

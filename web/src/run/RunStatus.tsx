@@ -6,10 +6,10 @@ import "./run.css";
 
 export const STATES = ["queued", "running", "paused", "finished", "failed", "cancelled"] as const;
 
-const REQUESTED = { pause: "pausing", cancel: "cancelling" };
+const REQUESTED = { paused: "pausing", cancelled: "cancelling" };
 
 export function StatusBadge({ run }: { run: Run }) {
-  const text = run.wish ? REQUESTED[run.wish] : run.status;
+  const text = run.requested_state ? REQUESTED[run.requested_state] : run.status;
   return <span class={`badge ${run.status}`}>{text}</span>;
 }
 
@@ -52,7 +52,7 @@ interface CommandHandlers {
 /** Only what the run's state allows. */
 export function CommandButtons({ run, on, name }: { run: Run; on: CommandHandlers; name: string }) {
   const alive = ["queued", "running", "paused"].includes(run.status);
-  if (!alive || run.wish === "cancel") return null;
+  if (!alive || run.requested_state === "cancelled") return null;
   return (
     <span class="actions">
       {run.status === "paused" && (
@@ -60,7 +60,7 @@ export function CommandButtons({ run, on, name }: { run: Run; on: CommandHandler
           Resume
         </button>
       )}
-      {run.status !== "paused" && run.wish !== "pause" && (
+      {run.status !== "paused" && run.requested_state !== "paused" && (
         <button onClick={() => on.pause(run)} aria-label={`Pause ${name}`}>
           Pause
         </button>
