@@ -29,7 +29,7 @@ class TokenRead(Wire):
 
     id: UUID
     name: str
-    beginning: str
+    prefix: str
     """The first characters of the secret, by which its holder recognises it."""
     scope: Scope
     created_at: datetime

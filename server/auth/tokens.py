@@ -75,7 +75,7 @@ def create(
             token = Token(
                 name=name,
                 secret_sha256=hashed(secret),
-                beginning=secret[:PREVIEW_LENGTH],
+                prefix=secret[:PREVIEW_LENGTH],
                 scope=scope,
                 expires_at=expires_at,
             )

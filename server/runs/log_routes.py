@@ -8,7 +8,7 @@ from ..auth.authorize import MAY_READ
 from ..services.deps import SessionDep
 from . import log
 from .deps import RunDep
-from .schemas import EntryRead, Log
+from .schemas import Log, LogEntryRead
 
 router = APIRouter(prefix="/runs/{run_id}/log", tags=["runs"])
 
@@ -25,4 +25,4 @@ def read_log(
     Of the checkpoints of an attempt only the first and the last are told.
     """
     found = log.read(session, run.id, after, limit)
-    return Log(entries=[EntryRead.model_validate(entry) for entry in found])
+    return Log(entries=[LogEntryRead.model_validate(entry) for entry in found])

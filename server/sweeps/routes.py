@@ -1,7 +1,7 @@
 """Sweeps: many runs that are asked for, looked at and steered together."""
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Query, Response
@@ -11,13 +11,12 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import estimate
 
 from ..auth.authorize import MAY_READ, Writer
-from ..core.openapi import described
-from ..core.uploads import json_object
+from ..core.uploads import json_route
 from ..deletion import bin
 from ..estimates import position
-from ..estimates.eta import paces_of
+from ..estimates.eta import speeds_of
 from ..runs import lifecycle
-from ..runs.routes import CHANGE_BYTES, SPEC_BYTES, Key
+from ..runs.routes import SPEC_BYTES, Key
 from ..runs.submission import memory_limit
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
@@ -39,16 +38,11 @@ from .schemas import (
 from .steering import announce, page, read_sweep, requeue, steer
 from .submission import earlier_sweep, submit_sweep
 
-router = APIRouter(prefix="/sweeps", tags=["sweeps"])
-body = described(SweepSent.model_json_schema())
+router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=json_route(SPEC_BYTES))
 Points = Annotated[int | None, Query(ge=2, le=10_000)]
 
 
-def plan_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))],
-    services: ServicesDep,
-) -> Plan:
-    sent = SweepSent.model_validate(document)
+def plan_sent(sent: SweepSent, services: ServicesDep) -> Plan:
     with parsing.parsing(services) as parse:
         return plan(sent, parse)
 
@@ -56,7 +50,7 @@ def plan_sent(
 PlanDep = Annotated[Plan, Depends(plan_sent)]
 
 
-@router.post("", status_code=202, openapi_extra=body)
+@router.post("", status_code=202)
 def create_sweep(
     principal: Writer,
     plan: PlanDep,
@@ -76,16 +70,16 @@ def create_sweep(
     return _current(services, sweep_id)
 
 
-@router.post("/estimate", openapi_extra=body, dependencies=[MAY_READ])
+@router.post("/estimate", dependencies=[MAY_READ])
 def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) -> SweepEstimate:
     """What all runs of a sweep will need, without queueing them."""
     needs = [estimate(case.spec) for case in plan.cases]
     line = position.line(services, session)
-    paces = paces_of(session, [case.spec for case in plan.cases], line.alive)
+    speeds = speeds_of(session, [case.spec for case in plan.cases], line.alive)
     times = [
-        pace.seconds(needed.cell_steps)
-        for pace, needed in zip(paces, needs, strict=True)
-        if pace
+        speed.seconds(needed.cell_steps)
+        for speed, needed in zip(speeds, needs, strict=True)
+        if speed
     ]
     seeds = plan.total // len(plan.cases)
     return SweepEstimate(
@@ -96,7 +90,7 @@ def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) ->
         evaluations=seeds * sum(needed.evaluations for needed in needs),
         cell_steps=seeds * sum(needed.cell_steps for needed in needs),
         seconds=seeds * sum(times) if len(times) == len(needs) else None,
-        pace=paces[0].read(needs[0].cell_steps) if paces[0] else None,
+        speed=speeds[0].read(needs[0].cell_steps) if speeds[0] else None,
         queue=line.ahead(sweep=True),
     )
 
@@ -117,17 +111,11 @@ def read(sweep: SweepDep, session: SessionDep) -> SweepRead:
     return read_sweep(session, sweep)
 
 
-def change_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
-) -> SweepChange:
-    return SweepChange.model_validate(document)
-
-
-@router.patch("/{sweep_id}", openapi_extra=described(SweepChange.model_json_schema()))
+@router.patch("/{sweep_id}")
 def change_sweep(
     sweep_id: OwnSweepId,
     services: ServicesDep,
-    sent: Annotated[SweepChange, Depends(change_sent)],
+    sent: SweepChange,
 ) -> SweepRead:
     """Say what a sweep is called; its runs keep their names."""
     with services.sessions.write.begin() as session:
@@ -154,13 +142,13 @@ def read_curves(sweep: SweepDep, session: SessionDep, points: Points = None) -> 
 
 @router.post("/{sweep_id}/pause", status_code=202)
 def pause_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
-    """Pause every run that can be paused; `left` tells of those that cannot."""
+    """Pause every run that can be paused; `skipped` tells of those that cannot."""
     return _steered(services, sweep_id, lifecycle.pause)
 
 
 @router.post("/{sweep_id}/resume", status_code=202)
 def resume_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
-    """Resume every run that is paused; `left` tells of the others."""
+    """Resume every run that is paused; `skipped` tells of the others."""
     resumed = _steered(services, sweep_id, lifecycle.resume)
     requeue(services, resumed.changed)
     return resumed
@@ -168,13 +156,13 @@ def resume_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
 
 @router.post("/{sweep_id}/cancel", status_code=202)
 def cancel_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
-    """Cancel every run that has not ended; `left` tells of those that have."""
+    """Cancel every run that has not ended; `skipped` tells of those that have."""
     return _steered(services, sweep_id, lifecycle.cancel)
 
 
 @router.delete("/{sweep_id}")
 def delete_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
-    """Every run into the bin; `left` tells of those that wait or are at work."""
+    """Every run into the bin; `skipped` tells of those that wait or are at work."""
     keep = services.settings.bin_seconds
     return _steered(services, sweep_id, lambda session, run: bin.put(session, run, keep))
 
@@ -193,8 +181,8 @@ def _steered(
 ) -> SweepChanged:
     with services.sessions.read() as session:
         find_sweep(session, sweep_id)
-    changed, left = steer(services, sweep_id, change, among)
-    return SweepChanged(**dict(_current(services, sweep_id)), changed=changed, left=left)
+    changed, skipped = steer(services, sweep_id, change, among)
+    return SweepChanged(**dict(_current(services, sweep_id)), changed=changed, skipped=skipped)
 
 
 def _current(services: Services, sweep_id: UUID) -> SweepRead:

@@ -66,7 +66,8 @@ def copy_repository(to: Path) -> None:
 def environment(copy: Path) -> Mapping[str, str]:
     """The copy's own packages go before those that are installed."""
     path = os.pathsep.join([str(copy / ".venv" / "bin"), os.environ["PATH"]])
-    return os.environ | {"PYTHONPATH": f"{copy}:{copy / 'engine'}", "PATH": path}
+    here = {"PYTHONPATH": f"{copy}:{copy / 'engine'}", "PATH": path, "NO_COLOR": "1"}
+    return os.environ | here
 
 
 def caught_by(mutant: Mutant, copy: Path) -> str | None:
@@ -88,7 +89,8 @@ def caught_by(mutant: Mutant, copy: Path) -> str | None:
     # Pytest ends with 1 where a test failed; 2 and more mean that it could not run them.
     if done.returncode not in (0, 1):
         raise RuntimeError(f"{mutant.name}: {' '.join(command)}\n{done.stdout}{done.stderr}")
-    failed = (line for line in done.stdout.splitlines() if line.lstrip().startswith("FAIL"))
+    lines = (done.stdout + done.stderr).splitlines()
+    failed = (line for line in lines if line.lstrip().startswith("FAIL"))
     return next(failed, "an error").strip()[:150] if done.returncode == 1 else None
 
 

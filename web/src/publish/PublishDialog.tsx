@@ -51,15 +51,14 @@ export function PublishDialog({ opened, ...props }: Props & { opened: number }) 
   );
 }
 
-interface AskingProps extends Props {
+interface FormProps extends Props {
   onDone: (share: Share) => void;
   onEnd: () => void;
 }
 
-function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
+function PublishForm({ of, title, file, onDone, onEnd }: FormProps) {
   const [busy, setBusy] = useState(false);
   const [error, setError] = useState<string | null>(null);
-  const [term, setTerm] = useState<string>("never");
   const submit = async (event: SubmitEvent) => {
     event.preventDefault();
     setBusy(true);
@@ -73,13 +72,35 @@ function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
     }
     setBusy(false);
   };
-  const licences = LICENCES.some(([name]) => name === (file?.licence ?? name))
-    ? LICENCES
-    : [[file!.licence, text.licenceOfFile(file!.licence)] as const, ...LICENCES];
   return (
     <form onSubmit={(event) => void submit(event as unknown as SubmitEvent)}>
       <h2 id="publish-title">{text.publish}</h2>
       <p class="quiet small">{text.about("run" in of)}</p>
+      <Fields title={title} file={file} />
+      {error && (
+        <p class="banner wrong" role="alert">
+          {error}
+        </p>
+      )}
+      <p class="links">
+        <button class="primary" disabled={busy}>
+          {busy ? text.publishing : text.publish}
+        </button>
+        <button type="button" onClick={onEnd}>
+          {text.cancel}
+        </button>
+      </p>
+    </form>
+  );
+}
+
+function Fields({ title, file }: Pick<Props, "title" | "file">) {
+  const [term, setTerm] = useState<string>("never");
+  const licences = LICENCES.some(([name]) => name === (file?.licence ?? name))
+    ? LICENCES
+    : [[file!.licence, text.licenceOfFile(file!.licence)] as const, ...LICENCES];
+  return (
+    <>
       <label>
         {text.title}
         <input name="title" maxLength={200} defaultValue={title} placeholder={text.titleHint} />
@@ -112,20 +133,7 @@ function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
       <label class="check">
         <input name="listed" type="checkbox" /> {text.list}
       </label>
-      {error && (
-        <p class="banner wrong" role="alert">
-          {error}
-        </p>
-      )}
-      <p class="links">
-        <button class="primary" disabled={busy}>
-          {busy ? text.publishing : text.publish}
-        </button>
-        <button type="button" onClick={onEnd}>
-          {text.cancel}
-        </button>
-      </p>
-    </form>
+    </>
   );
 }
 

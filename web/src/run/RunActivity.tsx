@@ -7,7 +7,7 @@ import "../replay/replay.css";
 
 /** A sentence; null once there are generations. */
 export function activityOf(run: Run): string | null {
-  if (run.status === "queued") return run.waiting ?? text.waitingForWorker;
+  if (run.status === "queued") return run.waiting_reason ?? text.waitingForWorker;
   if (run.status !== "running" || run.generation > 0) return null;
   const device = run.device?.toLowerCase() ?? "";
   if (!run.device) return text.preparing;

@@ -49,7 +49,6 @@ export function RunPage({ id, query }: Props) {
   const run = useStore((state) => state.runs.get(id));
   const detail = useStore((state) => state.details.get(id));
   const title = useTitle(run);
-  const refusal = useRefusal(run);
   useEffect(() => {
     document.title = text.pageTitle(title);
   }, [title]);
@@ -64,48 +63,55 @@ export function RunPage({ id, query }: Props) {
       </main>
     );
   }
-  const freedom = forceFreeShare(run.spec);
   return (
     <main>
       <nav class="crumbs" aria-label={text.breadcrumbs}>
         <a href="/">{text.runs}</a>
         {run.sweep && <a href={`/sweeps/${run.sweep}`}>{text.sweep}</a>}
       </nav>
-      <header class="page-head">
-        <NameField
-          of={run}
-          title={title}
-          fixed={!!refusal || !!run.deleted_at}
-          onName={(name) => void editRun(id, { name })}
-        >
-          <h1>
-            {title} <code>{short(run.id)}</code>
-          </h1>
-        </NameField>
-        <StatusBadge run={run} />
-        {freedom !== "all" && <NotForceFree some={freedom === "some"} />}
-        <span class="spring" />
-        {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
-          <PublishButton of={{ run: run.id }} title={run.name ?? ""} />
-        )}
-        {hasArchive(run) && !!run.coverage && !run.deleted_at && <ForkLink run={run.id} title={text.fork} />}
-        {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
-        {!refusal && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={title} />}
-        {!refusal && <LifecycleButtons run={run} title={title} />}
-      </header>
+      <Header run={run} title={title} />
       {run.deleted_at ? <BinNotice run={run} /> : <RunSections {...{ run, query, error, detail }} />}
     </main>
   );
 }
 
-interface WholeProps {
+function Header({ run, title }: { run: Run; title: string }) {
+  const refusal = useRefusal(run);
+  const forceFree = forceFreeShare(run.spec);
+  return (
+    <header class="page-head">
+      <NameField
+        of={run}
+        title={title}
+        fixed={!!refusal || !!run.deleted_at}
+        onName={(name) => void editRun(run.id, { name })}
+      >
+        <h1>
+          {title} <code>{short(run.id)}</code>
+        </h1>
+      </NameField>
+      <StatusBadge run={run} />
+      {forceFree !== "all" && <NotForceFree some={forceFree === "some"} />}
+      <span class="spring" />
+      {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
+        <PublishButton of={{ run: run.id }} title={run.name ?? ""} />
+      )}
+      {hasArchive(run) && !!run.coverage && !run.deleted_at && <ForkLink run={run.id} title={text.fork} />}
+      {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
+      {!refusal && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={title} />}
+      {!refusal && <LifecycleButtons run={run} title={title} />}
+    </header>
+  );
+}
+
+interface SectionsProps {
   run: Run;
   query: URLSearchParams;
   error: string | null;
   detail: Detail | undefined;
 }
 
-function RunSections({ run, query, error, detail }: WholeProps) {
+function RunSections({ run, query, error, detail }: SectionsProps) {
   return (
     <>
       {error && <p class="banner wrong">{error}</p>}

@@ -7,10 +7,10 @@ import "./run.css";
 
 export const STATES = ["queued", "running", "paused", "finished", "failed", "cancelled"] as const;
 
-const REQUESTED = { pause: text.pausing, cancel: text.cancelling };
+const REQUESTED = { paused: text.pausing, cancelled: text.cancelling };
 
 export function StatusBadge({ run }: { run: Run }) {
-  const status = run.wish ? REQUESTED[run.wish] : run.status;
+  const status = run.requested_state ? REQUESTED[run.requested_state] : run.status;
   return <span class={`badge ${run.status}`}>{status}</span>;
 }
 
@@ -53,7 +53,7 @@ interface CommandHandlers {
 /** Buttons for the commands that the status allows. */
 export function CommandButtons({ run, on, name }: { run: Run; on: CommandHandlers; name: string }) {
   const alive = ["queued", "running", "paused"].includes(run.status);
-  if (!alive || run.wish === "cancel") return null;
+  if (!alive || run.requested_state === "cancelled") return null;
   return (
     <span class="actions">
       {run.status === "paused" && (
@@ -61,7 +61,7 @@ export function CommandButtons({ run, on, name }: { run: Run; on: CommandHandler
           {text.resume}
         </button>
       )}
-      {run.status !== "paused" && run.wish !== "pause" && (
+      {run.status !== "paused" && run.requested_state !== "paused" && (
         <button onClick={() => on.pause(run)} aria-label={text.pauseRun(name)}>
           {text.pause}
         </button>

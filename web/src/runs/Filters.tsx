@@ -28,7 +28,6 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
     onChange({ q: query || null });
   };
   useDebounced(typed, SETTLE_MS, find);
-  const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
   return (
     <form
       class="filters"
@@ -47,6 +46,27 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
         value={typed ?? query.q ?? ""}
         onInput={(event) => setTyped(event.currentTarget.value)}
       />
+      <Selects {...{ query, experiments, tags, onChange }} />
+      {isFiltered(query) && (
+        <button
+          type="button"
+          class="plain"
+          onClick={() => {
+            setTyped(null);
+            onChange(NO_FILTERS);
+          }}
+        >
+          {text.showAll}
+        </button>
+      )}
+    </form>
+  );
+}
+
+function Selects({ query, experiments, tags, onChange }: Props) {
+  const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
+  return (
+    <>
       <Select
         title={text.state}
         value={query.status?.[0] ?? ""}
@@ -73,18 +93,6 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
         choices={ORDERS}
         onChange={(sort) => onChange({ sort: sort === NEWEST ? null : sort })}
       />
-      {isFiltered(query) && (
-        <button
-          type="button"
-          class="plain"
-          onClick={() => {
-            setTyped(null);
-            onChange(NO_FILTERS);
-          }}
-        >
-          {text.showAll}
-        </button>
-      )}
-    </form>
+    </>
   );
 }

@@ -1,6 +1,6 @@
 /** A run in the list: status, labels, result and actions. */
 
-import type { Experiment } from "../api/types";
+import type { Experiment, Run } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { restore } from "../store/lifecycle";
 import { useStore } from "../store/store";
@@ -28,10 +28,8 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
   const run = useStore((state) => state.runs.get(id)!);
   const title = titleOf(run, experiments);
   const name = `${title} ${short(run.id)}`;
+  const fixed = useRefusal(run) !== null || run.deleted_at !== null;
   const time = timeOf(run);
-  const mayMake = !useRefusal();
-  const mayChange = !useRefusal(run);
-  const fixed = !mayChange || run.deleted_at !== null;
   const [figureName, figure] = keyFigureOf(run);
   return (
     <tr class={chosen ? "chosen-row" : ""}>
@@ -41,38 +39,9 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         )}
       </td>
       <th scope="row">
-        <NameField of={run} {...{ title, fixed }} onName={(name) => void editRun(run.id, { name })}>
-          <a class="run-name" href={`/runs/${run.id}`}>
-            {title} <code>{short(run.id)}</code>
-          </a>
-        </NameField>
-        {run.sweep && (
-          <a class="badge sweep-link" href={`/sweeps/${run.sweep}`} aria-label={text.sweepOf(name)}>
-            {text.sweep}
-          </a>
-        )}
-        {forceFreeShare(run.spec) === "none" && <NotForceFree />}
-        {run.status === "running" && run.generation === 0 && (
-          <span class="row-note quiet">{text.compiling}</span>
-        )}
-        {run.purge_at && <span class="row-note gone quiet">{text.purged(moment(run.purge_at))}</span>}
-        {run.waiting && <span class="row-note reason">{run.waiting}</span>}
-        {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
-        {run.warning && <span class="row-note warning-text">{run.warning}</span>}
-        <span class="labels">
-          <TagList
-            {...{ run, name, fixed }}
-            known={knownTags}
-            onPick={(tag) => setQuery({ tag })}
-            onAdd={(tag) => addTag(run, tag)}
-            onRemove={(tag) => removeTag(run, tag)}
-          />
-          <NoteField
-            {...{ run, name, fixed }}
-            onNote={(note) => void editRun(run.id, { note })}
-            onRemove={() => removeNote(run)}
-          />
-        </span>
+        <RowTitle {...{ run, title, name, fixed }} />
+        <RowNotes run={run} />
+        <RowLabels {...{ run, name, fixed, knownTags }} />
       </th>
       <td data-label={text.state}>
         <StatusBadge run={run} />
@@ -94,22 +63,91 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
         </span>
         {run.sparkline.length > 1 && <Sparkline values={run.sparkline} label={text.sparkline(name)} />}
       </td>
-      <td class="row-actions">
-        <span class="actions">
-          {mayChange && run.deleted_at && (
-            <button onClick={() => void restore(run.id)} aria-label={text.restoreRun(name)}>
-              {text.restore}
-            </button>
-          )}
-          {!fixed && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={name} />}
-          {mayMake && (
-            <a class="button" href={`/new?from=${run.id}`} aria-label={text.cloneRun(name)}>
-              {text.clone}
-            </a>
-          )}
-        </span>
-      </td>
+      <RowActions {...{ run, title, name }} />
     </tr>
+  );
+}
+
+interface PartProps {
+  run: Run;
+  title: string;
+  /** The title with the run's id. */
+  name: string;
+  /** Whether we may not change the run. */
+  fixed: boolean;
+}
+
+function RowTitle({ run, title, name, fixed }: PartProps) {
+  return (
+    <>
+      <NameField of={run} {...{ title, fixed }} onName={(name) => void editRun(run.id, { name })}>
+        <a class="run-name" href={`/runs/${run.id}`}>
+          {title} <code>{short(run.id)}</code>
+        </a>
+      </NameField>
+      {run.sweep && (
+        <a class="badge sweep-link" href={`/sweeps/${run.sweep}`} aria-label={text.sweepOf(name)}>
+          {text.sweep}
+        </a>
+      )}
+      {forceFreeShare(run.spec) === "none" && <NotForceFree />}
+    </>
+  );
+}
+
+/** Why the run waits, is compiling, failed or will be purged. */
+function RowNotes({ run }: { run: Run }) {
+  return (
+    <>
+      {run.status === "running" && run.generation === 0 && (
+        <span class="row-note quiet">{text.compiling}</span>
+      )}
+      {run.purge_at && <span class="row-note gone quiet">{text.purged(moment(run.purge_at))}</span>}
+      {run.waiting_reason && <span class="row-note reason">{run.waiting_reason}</span>}
+      {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
+      {run.warning && <span class="row-note warning-text">{run.warning}</span>}
+    </>
+  );
+}
+
+function RowLabels({ run, name, fixed, knownTags }: Omit<PartProps, "title"> & { knownTags: string }) {
+  return (
+    <span class="labels">
+      <TagList
+        {...{ run, name, fixed }}
+        known={knownTags}
+        onPick={(tag) => setQuery({ tag })}
+        onAdd={(tag) => addTag(run, tag)}
+        onRemove={(tag) => removeTag(run, tag)}
+      />
+      <NoteField
+        {...{ run, name, fixed }}
+        onNote={(note) => void editRun(run.id, { note })}
+        onRemove={() => removeNote(run)}
+      />
+    </span>
+  );
+}
+
+function RowActions({ run, title, name }: Omit<PartProps, "fixed">) {
+  const mayCreate = useRefusal() === null;
+  const mayChange = useRefusal(run) === null;
+  return (
+    <td class="row-actions">
+      <span class="actions">
+        {mayChange && run.deleted_at && (
+          <button onClick={() => void restore(run.id)} aria-label={text.restoreRun(name)}>
+            {text.restore}
+          </button>
+        )}
+        {mayChange && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={name} />}
+        {mayCreate && (
+          <a class="button" href={`/new?from=${run.id}`} aria-label={text.cloneRun(name)}>
+            {text.clone}
+          </a>
+        )}
+      </span>
+    </td>
   );
 }
 

@@ -44,7 +44,6 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const next = useStore((state) => state.next);
   const experiments = useExperiments().value ?? [];
   const tags = useTags();
-  const refusal = useRefusal();
   const [chosen, setChosen] = useState<string[]>([]);
   const choose = (id: string) =>
     setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
@@ -52,18 +51,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const empty = fetched && listed.length === 0 && !swept;
   return (
     <main>
-      <header class="page-head">
-        <h1>{query.deleted ? text.bin : text.runs}</h1>
-        <span class="spring" />
-        <a class="button" href={query.deleted ? "/" : "/?deleted=true"}>
-          {query.deleted ? text.runs : text.bin}
-        </a>
-        {!refusal && (
-          <a class="button primary" href="/new">
-            {text.newRun}
-          </a>
-        )}
-      </header>
+      <Header bin={query.deleted ?? false} />
       <Welcome />
       {error && <p class="banner wrong">{error}</p>}
       {!fetched && !error && listed.length === 0 && <p class="quiet loading">{text.loadingRuns}</p>}
@@ -83,6 +71,24 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       </datalist>
       {next && <LoadMore query={listedQuery} />}
     </main>
+  );
+}
+
+function Header({ bin }: { bin: boolean }) {
+  const refusal = useRefusal();
+  return (
+    <header class="page-head">
+      <h1>{bin ? text.bin : text.runs}</h1>
+      <span class="spring" />
+      <a class="button" href={bin ? "/" : "/?deleted=true"}>
+        {bin ? text.runs : text.bin}
+      </a>
+      {!refusal && (
+        <a class="button primary" href="/new">
+          {text.newRun}
+        </a>
+      )}
+    </header>
   );
 }
 

@@ -138,7 +138,7 @@ function Table({ tokens, own, onRevoked }: TableProps) {
                 {token.id === own && ` ${text.you}`}
               </th>
               <td>
-                <code>{token.beginning}…</code>
+                <code>{token.prefix}…</code>
               </td>
               <td>{token.scope}</td>
               <td>{day(token.created_at)}</td>

@@ -7,7 +7,7 @@ const NOW = Date.parse("2026-06-15T12:00:00Z");
 const token = (changes: Partial<Token>): Token => ({
   id: "0",
   name: "alice",
-  beginning: "mc_abcdef",
+  prefix: "mc_abcdef",
   scope: "write",
   created_at: "2026-01-01T12:00:00Z",
   expires_at: null,

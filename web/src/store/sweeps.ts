@@ -60,8 +60,8 @@ async function attempt<T>(answered: Promise<T>): Promise<T | null> {
 }
 
 /** Count the runs that changed and those that did not. */
-const outcome = ({ changed, left }: SweepChanged, done: string) =>
-  text.outcome(text.runs(changed.length), done, left.length > 0 ? text.runs(left.length) : null);
+const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
+  text.outcome(text.runs(changed.length), done, skipped.length > 0 ? text.runs(skipped.length) : null);
 
 /** Send a command to every run. */
 export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {

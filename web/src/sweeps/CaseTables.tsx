@@ -1,6 +1,6 @@
 /** The cases of a sweep as a legend, their final values, and every run. */
 
-import type { Spread } from "../api/types";
+import type { Member, Spread } from "../api/types";
 import { count, number, percent, words } from "../ui/format";
 import { LineKey } from "../charts/lineStyle";
 import { type ShownCase, memberName } from "./bands";
@@ -134,32 +134,47 @@ export function Members({ cases }: { cases: ShownCase[] }) {
             </tr>
           </thead>
           <tbody>
-            {cases.flatMap(({ summary, place, name }) =>
-              summary.members.map((member, i) => (
-                <tr key={member.run}>
-                  <th scope="row">
-                    <a href={`/runs/${member.run}`}>{memberName(member)}</a>
-                  </th>
-                  {several && (
-                    <td>
-                      <LineKey index={place} /> {name}
-                    </td>
-                  )}
-                  <td>
-                    <span class={`badge ${member.status}`}>{member.status}</span>
-                  </td>
-                  <td>
-                    {count(member.generation)} / {count(member.generations)}
-                  </td>
-                  {figures.map((figure) => (
-                    <td key={figure}>{writerOf(figure)(summary.finals[figure]?.values[i] ?? null)}</td>
-                  ))}
-                </tr>
+            {cases.flatMap((shown) =>
+              shown.summary.members.map((member, i) => (
+                <MemberRow key={member.run} {...{ shown, member, i, figures, several }} />
               )),
             )}
           </tbody>
         </table>
       </div>
     </section>
+  );
+}
+
+interface MemberProps {
+  shown: ShownCase;
+  member: Member;
+  /** The member's index within its case. */
+  i: number;
+  figures: string[];
+  several: boolean;
+}
+
+function MemberRow({ shown: { summary, place, name }, member, i, figures, several }: MemberProps) {
+  return (
+    <tr>
+      <th scope="row">
+        <a href={`/runs/${member.run}`}>{memberName(member)}</a>
+      </th>
+      {several && (
+        <td>
+          <LineKey index={place} /> {name}
+        </td>
+      )}
+      <td>
+        <span class={`badge ${member.status}`}>{member.status}</span>
+      </td>
+      <td>
+        {count(member.generation)} / {count(member.generations)}
+      </td>
+      {figures.map((figure) => (
+        <td key={figure}>{writerOf(figure)(summary.finals[figure]?.values[i] ?? null)}</td>
+      ))}
+    </tr>
   );
 }

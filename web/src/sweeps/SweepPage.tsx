@@ -24,7 +24,6 @@ import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, Check } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
 import { text } from "./text";
-import "./sweeps.css";
 
 interface Props {
   id: string;
@@ -143,10 +142,10 @@ function Head({ sweep }: { sweep: Sweep }) {
 
 /** Only what the state of any run allows. */
 function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
-  const { id, standing, total } = sweep;
+  const { id, status_counts, total } = sweep;
   const refusal = useRefusal(sweep);
   if (refusal) return <span class="quiet small">{refusal}</span>;
-  const { queued = 0, running = 0, paused = 0 } = standing;
+  const { queued = 0, running = 0, paused = 0 } = status_counts;
   const going = queued + running;
   if (total === 0) return null;
   return (

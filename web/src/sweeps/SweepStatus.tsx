@@ -4,6 +4,7 @@ import type { Sweep } from "../api/types";
 import { short } from "../ui/format";
 import { STATES } from "../run/RunStatus";
 import { text } from "./text";
+import "./sweeps.css";
 
 export const sweepTitle = ({ name, id }: Sweep) => name ?? text.sweepTitle(short(id));
 
@@ -18,7 +19,7 @@ export function sizeOf({ seeds, grid, cases, total }: Sweep): string {
 
 export function SweepProgress({ sweep }: { sweep: Sweep }) {
   const share = Math.round(1000 * sweep.progress) / 10;
-  const alive = Boolean(sweep.standing.running);
+  const alive = Boolean(sweep.status_counts.running);
   return (
     <div
       class={`progress ${alive ? "running" : ""}`}
@@ -37,9 +38,9 @@ export function SweepProgress({ sweep }: { sweep: Sweep }) {
 export function SweepStates({ sweep }: { sweep: Sweep }) {
   return (
     <span class="sweep-states">
-      {STATES.filter((state) => sweep.standing[state]).map((state) => (
+      {STATES.filter((state) => sweep.status_counts[state]).map((state) => (
         <span key={state} class={`badge ${state}`}>
-          {sweep.standing[state]} {state}
+          {sweep.status_counts[state]} {state}
         </span>
       ))}
     </span>

@@ -49,7 +49,7 @@ function bandOf({ summary, name, colour, dash }: ShownCase, figure: Figure): Ser
 
 function linesOf({ summary, colour }: ShownCase, figure: Figure, curves: SweepCurves | null): Series[] {
   const mine = new Set(summary.members.map(({ run }) => run));
-  const lines = curves?.lines.filter(({ run }) => mine.has(run)) ?? [];
+  const lines = curves?.runs.filter(({ run }) => mine.has(run)) ?? [];
   return lines.map((line) => ({
     name: short(line.run),
     colour,

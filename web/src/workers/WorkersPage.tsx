@@ -123,12 +123,12 @@ function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
 }
 
 /** The run of a worker; events update its progress earlier than the list of workers. */
-function CurrentRun({ worker: { carries, status } }: { worker: Worker }) {
-  const live = useStore((state) => (carries ? state.runs.get(carries.id) : undefined));
-  if (!carries) {
+function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
+  const live = useStore((state) => (current_run ? state.runs.get(current_run.id) : undefined));
+  if (!current_run) {
     return <p class="quiet">{status === "busy" ? text.preparing : text.waiting}</p>;
   }
-  const run = { ...carries, ...(live && { generation: live.generation, progress: live.progress }) };
+  const run = { ...current_run, ...(live && { generation: live.generation, progress: live.progress }) };
   const share = Math.round(1000 * run.progress) / 10;
   const attempt = run.attempt > 1 ? text.attempt(run.attempt) : "";
   return (
@@ -170,7 +170,7 @@ function QueueCard({ queue: { total, items } }: { queue: Queue }) {
                 {run.memory_bytes !== null && `${bytes(run.memory_bytes)}, `}
                 {text.waitingFor(duration(secondsSince(run.queued_at)))}
               </span>
-              <span class="reason">{run.waiting}</span>
+              <span class="reason">{run.waiting_reason}</span>
             </li>
           ))}
         </ol>
