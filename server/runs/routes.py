@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
-from fastapi import APIRouter, Depends, Header, Query, Response
+from fastapi import APIRouter, Body, Depends, Header, Query, Response
 from pydantic import StringConstraints
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -15,9 +15,8 @@ from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
 from ..auth.authorize import MAY_READ, Writer
 from ..core.errors import ProblemError
-from ..core.openapi import described
-from ..core.schemas import FieldError, Wire
-from ..core.uploads import json_object
+from ..core.schemas import FieldError
+from ..core.uploads import json_route
 from ..creatures.initial import named
 from ..deletion import bin
 from ..estimates import position
@@ -38,26 +37,15 @@ from .schemas import NAME, Extension, Fork, RunChange, RunPage, RunRead
 from .submission import memory_limit, refuse_too_large, submit
 
 SPEC_BYTES = 1 << 20
-CHANGE_BYTES = 1 << 18
 
-router = APIRouter(prefix="/runs", tags=["runs"])
-
-
-def inlined(model: type[Wire]) -> dict[str, Any]:
-    """A model's schema whose fields are written out: references would lead out of the body."""
-    schema = model.model_json_schema()
-    parts = {f"#/$defs/{name}": part for name, part in schema.pop("$defs", {}).items()}
-    fields = schema["properties"].items()
-    return {**schema, "properties": {n: parts.get(f.get("$ref"), f) for n, f in fields}}
+router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
 
 
-body = described({"type": "object"})
+Document = Annotated[dict[str, Any], Body()]
+"""A spec, which `microcosmos.spec` checks: its messages name fields as people write them."""
 
 
-def spec_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))],
-    services: ServicesDep,
-) -> Spec:
+def spec_sent(document: Document, services: ServicesDep) -> Spec:
     return parsing.parse(services, document)
 
 
@@ -72,7 +60,7 @@ Called = Annotated[
 ]
 
 
-@router.post("", status_code=202, openapi_extra=body)
+@router.post("", status_code=202)
 def create_run(
     principal: Writer,
     spec: SpecDep,
@@ -94,7 +82,7 @@ def create_run(
     return _submitted(services, response, run.id, new)
 
 
-@router.post("/estimate", openapi_extra=body, dependencies=[MAY_READ])
+@router.post("/estimate", dependencies=[MAY_READ])
 def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> EstimateRead:
     """What a run will need, and what it is about, without queueing it."""
     needed = estimate(spec)
@@ -156,16 +144,8 @@ def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     return read_run(services, session, run)
 
 
-def change_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
-) -> RunChange:
-    return RunChange.model_validate(document)
-
-
-@router.patch("/{run_id}", openapi_extra=described(RunChange.model_json_schema()))
-def change_run(
-    run_id: OwnRunId, services: ServicesDep, sent: Annotated[RunChange, Depends(change_sent)]
-) -> RunRead:
+@router.patch("/{run_id}")
+def change_run(run_id: OwnRunId, services: ServicesDep, sent: RunChange) -> RunRead:
     """Say what a run is called, its tags or a note; what it computes stays as it is."""
     said = sent.said()
 
@@ -205,20 +185,11 @@ def restore_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
     return _changed(services, run_id, bin.restore, deleted=True)
 
 
-def extension_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
-) -> Extension:
-    return Extension.model_validate(document)
-
-
 @router.post(
     "/{run_id}/extend",
     status_code=202,
-    openapi_extra=described(Extension.model_json_schema()),
 )
-def extend_run(
-    run_id: OwnRunId, services: ServicesDep, sent: Annotated[Extension, Depends(extension_sent)]
-) -> RunRead:
+def extend_run(run_id: OwnRunId, services: ServicesDep, sent: Extension) -> RunRead:
     """More generations for a finished run, which ends as if it had had them from the start."""
     with services.sessions.read() as session:
         run = find_run(session, run_id)
@@ -231,17 +202,13 @@ def extend_run(
     return changed
 
 
-def fork_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))]) -> Fork:
-    return Fork.model_validate(document)
-
-
-@router.post("/{run_id}/fork", status_code=202, openapi_extra=described(inlined(Fork)))
+@router.post("/{run_id}/fork", status_code=202)
 def fork_run(
     principal: Writer,
     run_id: UUID,
     services: ServicesDep,
     response: Response,
-    sent: Annotated[Fork, Depends(fork_sent)],
+    sent: Fork,
     idempotency_key: Key = None,
 ) -> RunRead:
     """A new run that begins from creatures of this one, its spec changed by a merge patch.
