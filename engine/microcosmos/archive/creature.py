@@ -12,7 +12,7 @@ from ..spec import Part, Scene, Task, field_path
 from ..spec.plugins import Own
 from .genomes import Network
 from .identity import Identity
-from .naming import FORMAT, LICENCE, canonical, name
+from .naming import FORMAT, LICENCE, canonical, document, name
 
 __all__ = [
     "FORMAT",
@@ -109,22 +109,6 @@ def fitness_of(task: Task, features: Mapping[str, float]) -> float:
     energy = np.float32(task.energy_weight) * np.float32(features.get("energy", np.nan))
     both = {"displacement": displacement, "energy": energy}
     return float(both.get(task.fitness, displacement + energy))
-
-
-def document(
-    identity: Mapping[str, Any],
-    measured: Mapping[str, Any] | None,
-    provenance: Mapping[str, Any] | None,
-) -> dict[str, Any]:
-    """The creature file around an identity."""
-    return {
-        "identity": dict(identity),
-        "sha256": name(identity),
-        "measured": dict(measured) if measured else None,
-        "provenance": dict(provenance) if provenance else None,
-        "licence": LICENCE,
-        "credit": [],
-    }
 
 
 def parse(data: Any) -> dict[str, Any]:

@@ -10,7 +10,6 @@ import numpy as np
 from .. import search, units
 from ..archive import naming
 from ..archive.report import Report, Row
-from ..version import VERSION
 from . import table_file
 from .table_file import Table
 
@@ -116,15 +115,8 @@ class Gaits:
             "room": None,
             "device": self.device,
         }
-        provenance = {
-            "parents": [],
-            "operator": "hand-made",
-            "generation": 0,
-            "seed": 0,
-            "version": VERSION,
-        }
-        canonical = naming.canonical(identity)
-        return Row(row, naming.name(identity), canonical, measured, provenance)
+        name, canonical = naming.name(identity), naming.canonical(identity)
+        return Row(row, name, canonical, measured, naming.provenance("hand-made"))
 
 
 def stack(points: list[search.Conditions]) -> search.Conditions:
