@@ -110,7 +110,9 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
     await asyncio.to_thread(bootstrap.refuse_without_admin, services)
     app.state.hub = hub = Hub(services.settings.redis_url, services.events.stream)
     await hub.begin()
-    tasks = [asyncio.create_task(task) for task in (hub.run(), watch(hub, services))]
+    tasks = [
+        asyncio.create_task(task) for task in (hub.run(), watch(services, hub.tokens, hub.end))
+    ]
     app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
     await asyncio.to_thread(quarantine().begin)
     with reconciling(services), told_to_stop(app.state.end_streams):

@@ -14,7 +14,7 @@ SMALL = """"experiment": "quality-diversity",
 
 def test_the_library_example_runs_and_its_check_is_exact():
     examples = re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL)
-    (example,) = (text for text in examples if "Client" not in text)  # That one is in e2e.
+    (example,) = examples
     spec = '"experiment": "quality-diversity", "search": {"generations": 10}'
     assert spec in example
     environment = os.environ | {"JAX_PLATFORMS": "cpu"}

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import Own, used
 from microcosmos.spec.measures import FEATURES
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..tables import Creature, Elite, Run
 from .schemas import Axis, Feature
@@ -75,10 +75,10 @@ def column(name: str) -> ColumnElement[float | None]:
 
 
 def refuse_unknown(names: Sequence[str], known: Sequence[Feature]) -> None:
-    """Raise `Refused` where a name is of nothing that was recorded."""
+    """Raise `ProblemError` where a name is of nothing that was recorded."""
     there = [feature.name for feature in known]
     if wrong := [name for name in names if name not in there]:
         needed = f"names among {', '.join(there)}"
         detail = f"`features` must be {needed}; got {', '.join(map(repr, wrong))}."
         error = FieldError(field="features", message=detail, needed=needed, got=wrong)
-        raise Refused(422, "Invalid input", detail, [error])
+        raise ProblemError(422, "Invalid input", detail, [error])

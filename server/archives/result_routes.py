@@ -9,7 +9,7 @@ from fastapi.responses import Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..runs.deps import RunDep
 from ..services.deps import SessionDep
 from ..tables import Result, Run
@@ -34,7 +34,7 @@ def download_results(run: RunDep, session: SessionDep) -> Response:
     rows = _rows(session, run)
     if not rows:
         detail = f"Run {run.id} has no results yet; it is {run.status}."
-        raise Refused(404, "No results yet", detail)
+        raise ProblemError(404, "No results yet", detail)
     name = f"{run.experiment}-{str(run.id)[:8]}.csv"
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     return Response(_table(rows), headers=headers, media_type="text/csv")
@@ -46,7 +46,7 @@ def _refuse_archive(run: Run) -> None:
             f"A run of `{run.experiment}` fills an archive, at "
             f"/api/v1/runs/{run.id}/archive, and has no table."
         )
-        raise Refused(404, "No table", detail)
+        raise ProblemError(404, "No table", detail)
 
 
 def _rows(session: Session, run: Run) -> list[dict[str, Any]]:

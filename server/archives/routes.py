@@ -11,10 +11,10 @@ from sqlalchemy.orm import Session
 from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
-from ..core import ranges
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..runs.deps import RunDep
 from ..services.deps import ServicesDep, SessionDep
+from ..storage import ranges
 from ..tables import Artifact, Elite, Run
 from . import elites
 from . import measures as of_elites
@@ -77,7 +77,7 @@ def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> C
     _refuse_without(run)
     if of_elites.kind(run)[0] != "cvt":
         detail = "The cells of this archive are a grid's: its axes say where they are."
-        raise Refused(404, "No centroids", detail)
+        raise ProblemError(404, "No centroids", detail)
     first = last_checkpoint(session, run.id)
     if first is None:
         return CentroidsRead(centroids=None)
@@ -95,11 +95,11 @@ def _refuse_too_long(session: Session, run: Run) -> None:
             f"{HISTORY_ENTRIES:,} are sent at once; single generations are at "
             f"/api/v1/runs/{run.id}/archive?generation=."
         )
-        raise Refused(422, "Too long a history", detail)
+        raise ProblemError(422, "Too long a history", detail)
 
 
 def _asked(features: str, recorded: Sequence[Feature]) -> list[str]:
-    """Names of features with commas between them; `Refused` where one was not recorded."""
+    """Names of features with commas between them; `ProblemError` where one was not recorded."""
     names = list(dict.fromkeys(filter(None, features.split(","))))
     of_elites.refuse_unknown(names, recorded)
     return names
@@ -125,7 +125,7 @@ def _refuse_without(run: Run) -> None:
             f"A run of `{run.experiment}` fills no archive; its result is at "
             f"/api/v1/runs/{run.id}/results."
         )
-        raise Refused(404, "No archive", detail)
+        raise ProblemError(404, "No archive", detail)
 
 
 @router.get("/archive.h5", response_class=Response, responses=binary)
@@ -152,7 +152,7 @@ def _checkpoint(session: Session, run: Run) -> Artifact:
     artifact = last_checkpoint(session, run.id)
     if artifact is None:
         detail = f"Run {run.id} has no checkpoint yet; it is {run.status}."
-        raise Refused(404, "No checkpoint yet", detail)
+        raise ProblemError(404, "No checkpoint yet", detail)
     return artifact
 
 

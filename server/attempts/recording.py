@@ -1,23 +1,20 @@
 """What an experiment reports, as rows and as events."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 from uuid import UUID
 
 from sqlalchemy import func, insert, select
-from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from microcosmos.archive.creature import LICENCE
 
-from ..events.stream import finite
-from ..tables import Base, Creature, Elite, Generation, Parent, Result
+from ..creatures.insertion import creature_columns, insert_and_lock, link
+from ..services.event_stream import finite
+from ..tables import Elite, Generation, Result
 from .report import NewElite, NewRow, Report
-
-AT_ONCE = 500
-"""Names in one question to the database."""
 
 
 @dataclass(frozen=True)
@@ -103,71 +100,13 @@ def creature_row(found: Any) -> dict[str, Any]:
     )
 
 
-def creature_columns(
-    sha256: str,
-    identity: bytes,
-    measured: Mapping[str, Any] | None,
-    provenance: Mapping[str, Any] | None,
-    licence: str,
-    credit: Sequence[str] = (),
-) -> dict[str, Any]:
-    """A creature's row; lineage has columns of its own."""
-    origin = dict(provenance) if provenance else {}
-    return {
-        "sha256": sha256,
-        "identity": identity,
-        "parents": list(origin.pop("parents", ())),
-        "operator": origin.pop("operator", None),
-        "measured": dict(measured) if measured else None,
-        "provenance": origin or None,
-        "licence": licence,
-        "credit": list(credit),
-    }
-
-
-def insert_missing(session: Session, table: type[Base], rows: Sequence[dict[str, Any]]) -> None:
-    """Insert rows, leaving those alone whose key is there already."""
-    if rows:
-        session.execute(_insert(session, table).on_conflict_do_nothing(), rows)
-
-
-def hold(session: Session, rows: Sequence[dict[str, Any]]) -> None:
-    """Insert creatures; those that are there already cannot go before the transaction ends."""
-    if rows:
-        # A change that changes nothing, for the sake of its lock.
-        same = {"licence": Creature.__table__.c.licence}
-        keyed = _insert(session, Creature).on_conflict_do_update(
-            index_elements=["sha256"], set_=same
-        )
-        session.execute(keyed, rows)
-
-
-def _insert(session: Session, table: type[Base]) -> Any:
-    postgres = session.get_bind().dialect.name == "postgresql"
-    return (postgresql if postgres else sqlite).insert(table)
-
-
-def link(session: Session, names: Sequence[str]) -> None:
-    """Keep the links of creatures that are there to their parents, as their rows have them."""
-    for first in range(0, len(names), AT_ONCE):
-        mine = Creature.sha256.in_(names[first : first + AT_ONCE])
-        found = session.execute(select(Creature.sha256, Creature.parents).where(mine))
-        insert_missing(session, Parent, [row for one in found for row in links(*one)])
-
-
-def links(child: str, parents: Sequence[str]) -> Iterator[dict[str, Any]]:
-    """A row for each parent of a creature."""
-    for place, parent in enumerate(parents):
-        yield {"child": child, "place": place, "parent": parent}
-
-
 def write(session: Session, run_id: UUID, rows: Rows) -> None:
     session.execute(
         insert(Generation), [{"run_id": run_id, **rows.curve, "summary": rows.summary}]
     )
     # In one order, so that two runs with the same creatures cannot wait for each other.
     found = sorted(rows.creatures, key=itemgetter("sha256"))
-    hold(session, found)
+    insert_and_lock(session, found)
     link(session, [row["sha256"] for row in found])
     if rows.elites:
         session.execute(insert(Elite), [{"run_id": run_id, **row} for row in rows.elites])

@@ -7,12 +7,12 @@ from uuid import UUID
 
 from sqlalchemy import select
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..services.services import Services, connect
 from ..settings import Settings
 from ..tables import Token, migrations
+from ..tables.tokens import SCOPES
 from . import tokens
-from .principal import RANKS
 
 
 def main(words: list[str] | None = None) -> None:
@@ -21,7 +21,7 @@ def main(words: list[str] | None = None) -> None:
     try:
         migrations.upgrade(services.sessions)
         asked.act(services, asked)
-    except Refused as error:
+    except ProblemError as error:
         sys.exit(error.problem.detail)
     finally:
         services.close()
@@ -32,7 +32,7 @@ def _arguments() -> argparse.ArgumentParser:
     actions = parser.add_subparsers(required=True, metavar="create | list | revoke")
     create = actions.add_parser("create", help="make a token; its secret is shown once")
     create.add_argument("name")
-    create.add_argument("--scope", choices=RANKS, default="write")
+    create.add_argument("--scope", choices=SCOPES, default="write")
     create.add_argument("--days", type=float, help="for how long it is good (for ever)")
     create.set_defaults(act=_create)
     actions.add_parser("list", help="all tokens").set_defaults(act=_list)
@@ -65,7 +65,7 @@ def _named(services: Services, name: str) -> UUID:
         mine = select(Token.id).where(Token.name == name, Token.revoked_at.is_(None))
         found = session.scalars(mine).one_or_none()
     if found is None:
-        raise Refused(404, "Not found", f"No live token is named {name!r}.")
+        raise ProblemError(404, "Not found", f"No live token is named {name!r}.")
     return found
 
 

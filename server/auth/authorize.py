@@ -7,11 +7,11 @@ from typing import Any
 from sqlalchemy import inspect
 from sqlalchemy.orm import Session
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..services.services import Services
 from ..tables import Owned
 from . import owners, tokens
-from .principal import ADMIN, LOCAL, NOBODY, SETTING, WRITE, Caller
+from .principal import ADMIN, ANONYMOUS, ENVIRONMENT, LOCAL, WRITE, Principal
 from .ratelimit import Guesses
 from .scopes import OWNED, OWNER, PUBLIC, Need
 
@@ -32,23 +32,23 @@ class Door:
     def __init__(self, services: Services):
         self.services, self.guesses = services, Guesses()
 
-    def admit(self, shown: Shown, need: Need) -> Caller:
-        """Whoever shows a token, if they may what needs this; `Refused` says what they lack."""
+    def admit(self, shown: Shown, need: Need) -> Principal:
+        """Return the principal; raise `ProblemError` where it may not do this."""
         if need.need == PUBLIC:
-            return NOBODY
+            return ANONYMOUS
         caller = self.identify(shown)
         scope = WRITE if need.need == OWNER else need.need
         if not caller.may(scope):
             detail = (
                 f"This needs a token of scope `{scope}`; `{caller.name}` has `{caller.scope}`."
             )
-            raise Refused(403, "Forbidden", detail)
+            raise ProblemError(403, "Forbidden", detail)
         if need.need == OWNER and not caller.may(ADMIN):
             _refuse_other(self.services, caller, need.parameters)
         return caller
 
-    def identify(self, shown: Shown) -> Caller:
-        """Who shows a token, or none; `Refused` where it is wrong, or one is needed."""
+    def identify(self, shown: Shown) -> Principal:
+        """Who shows a token, or none; `ProblemError` where it is wrong, or one is needed."""
         try:
             return _holder(self.services, shown.token)
         except tokens.Wrong:
@@ -57,33 +57,33 @@ class Door:
             raise
 
 
-def _holder(services: Services, token: str | None) -> Caller:
+def _holder(services: Services, token: str | None) -> Principal:
     settings = services.settings
     if not token:
         if settings.needs_token:
-            raise Refused(401, "Unauthorized", SHOW, headers=tokens.CHALLENGE)
+            raise ProblemError(401, "Unauthorized", SHOW, headers=tokens.CHALLENGE)
         return LOCAL
     set_token = settings.token.get_secret_value() if settings.token else ""
     if set_token and compare_digest(token.encode(), set_token.encode()):
-        return SETTING
+        return ENVIRONMENT
     return tokens.holder(services, token)
 
 
-def _too_many(wait: int) -> Refused:
+def _too_many(wait: int) -> ProblemError:
     detail = (
         f"The token that was sent is none of this server's, and many such came from your "
         f"address: try the next one in {wait} s. A good one need not wait."
     )
     headers = {"Retry-After": str(wait)}
-    return Refused(429, "Too many wrong tokens", detail, headers=headers)
+    return ProblemError(429, "Too many wrong tokens", detail, headers=headers)
 
 
-def _refuse_other(services: Services, caller: Caller, parameters: dict[str, str]) -> None:
+def _refuse_other(services: Services, caller: Principal, parameters: dict[str, str]) -> None:
     """Refuse whoever does not own what a path names; where nothing is there, let it be said."""
     (name,) = parameters.keys() & OWNED.keys() or (None,)
     if name is None:
         detail = "Only an admin may do this: whose it is is not known."
-        raise Refused(403, "Forbidden", detail)
+        raise ProblemError(403, "Forbidden", detail)
     key = _key(OWNED[name], parameters[name])
     with services.sessions.read() as session:
         row = session.get(OWNED[name], key) if key is not None else None
@@ -91,8 +91,8 @@ def _refuse_other(services: Services, caller: Caller, parameters: dict[str, str]
             refuse_other(session, caller, row, "change")
 
 
-def refuse_other(session: Session, caller: Caller, row: Owned, deed: str) -> None:
-    """Raise `Refused` unless what somebody wants to do something to is theirs, or all is."""
+def refuse_other(session: Session, caller: Principal, row: Owned, deed: str) -> None:
+    """Raise `ProblemError` unless the principal owns the row or is an admin."""
     if caller.may(ADMIN) or row.owner == caller.token:
         return
     owner = owners.names(session, [row.owner]).get(row.owner)
@@ -102,7 +102,7 @@ def refuse_other(session: Session, caller: Caller, row: Owned, deed: str) -> Non
         f"The {type(row).__name__.lower()} {key} {whose}: only "
         f"{'its owner or ' if owner else ''}an admin may {deed} it; you are `{caller.name}`."
     )
-    raise Refused(403, "Forbidden", detail)
+    raise ProblemError(403, "Forbidden", detail)
 
 
 def _key(table: type[Any], text: str) -> Any:

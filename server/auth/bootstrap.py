@@ -5,7 +5,7 @@ from pathlib import Path
 
 from sqlalchemy import exists, select
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..core.folders import private
 from ..services.services import Services
 from ..settings import Settings
@@ -33,7 +33,7 @@ def begin(services: Services) -> str | None:
         return None
     try:
         made = create(services, NAME, ADMIN)
-    except Refused:  # Another server, that started beside us, was first.
+    except ProblemError:  # Another server, that started beside us, was first.
         return None
     _keep(settings.data / FILE, made.secret)
     return made.secret

@@ -1,33 +1,39 @@
-"""Event streams end when the token does with which they were opened."""
+"""End event streams when the token that opened them ends."""
 
 import asyncio
 import logging
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from uuid import UUID
 
 from sqlalchemy.exc import SQLAlchemyError
 
-from ..events.fanout import Hub
 from ..services.services import Services
 from .tokens import live
 
-EVERY = 1.0
-"""Seconds for which a stream may outlive its token."""
+CHECK_SECONDS = 1.0
+"""Longest time that a stream outlives its token."""
 
 log = logging.getLogger(__name__)
 
 
-async def watch(hub: Hub, services: Services) -> None:
-    """One question a second for all streams together, and none where nobody listens."""
-    while not hub.closed:
-        await asyncio.sleep(EVERY)
-        if held := hub.tokens():
+async def watch(
+    services: Services,
+    tokens: Callable[[], set[UUID]],
+    end: Callable[[Collection[UUID]], None],
+) -> None:
+    """Call `end` with those of the `tokens` in use that have ended, until cancelled.
+
+    One query each second serves all streams; without a stream there is none.
+    """
+    while True:
+        await asyncio.sleep(CHECK_SECONDS)
+        if used := tokens():
             try:
-                good = await asyncio.to_thread(_live, services, held)
+                valid = await asyncio.to_thread(_live, services, used)
             except SQLAlchemyError as error:
-                log.warning("no token can be looked up: %s", error)
+                log.warning("The tokens of event streams cannot be looked up: %s", error)
             else:
-                hub.end(held - good)
+                end(used - valid)
 
 
 def _live(services: Services, tokens: Collection[UUID]) -> set[UUID]:

@@ -9,11 +9,11 @@ from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from ..core.errors import Refused, answer, unavailable
+from ..core.errors import ProblemError, answer, unavailable
 from ..settings import LOOPBACK
 from .authorize import Door, Shown
 from .cookies import remember, remembered
-from .principal import CALLER, NOBODY, Caller
+from .principal import ANONYMOUS, Principal
 from .scopes import METRICS, Unnamed, need_of
 
 SAFE = ("GET", "HEAD")
@@ -31,23 +31,21 @@ class Guard:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
-            return await self.app(scope, receive, send)
+            await self.app(scope, receive, send)
+            return None
         request = HTTPConnection(scope)
         try:
             caller = await self._admitted(request)
-        except Refused as error:
+        except ProblemError as error:
             return await answer(error.problem, error.headers)(scope, receive, send)
         except SQLAlchemyError as error:
             return await unavailable(error)(scope, receive, send)
         if isinstance(caller, Response):
             return await caller(scope, receive, send)
-        known = CALLER.set(caller)
-        try:
-            await self.app(scope, receive, send)
-        finally:
-            CALLER.reset(known)
+        request.state.principal = caller
+        return await self.app(scope, receive, send)
 
-    async def _admitted(self, request: HTTPConnection) -> Caller | Response:
+    async def _admitted(self, request: HTTPConnection) -> Principal | Response:
         """Whoever asks, or what is answered in place of the application."""
         if not self.needs_token:
             _refuse_foreign_host(request.headers)
@@ -63,7 +61,7 @@ class Guard:
         shown = Shown(cookie if bearer is None else bearer, address(request))
         return await self._api(request.scope["method"], path, shown)
 
-    async def _api(self, method: str, path: str, shown: Shown) -> Caller:
+    async def _api(self, method: str, path: str, shown: Shown) -> Principal:
         try:
             need = need_of(method, path)
         except Unnamed as error:
@@ -71,10 +69,10 @@ class Guard:
             raise _nothing(method, path, error.methods) from None
         return await run_in_threadpool(self.door.admit, shown, need)
 
-    async def _page(self, request: HTTPConnection) -> Caller | Response:
+    async def _page(self, request: HTTPConnection) -> Principal | Response:
         """The page itself is for everybody; a token in its address is taken into a cookie."""
         given = request.query_params.get("token")
-        everybody = NOBODY
+        everybody = ANONYMOUS
         if given is None or not self.needs_token:
             return everybody
         clean = request.url.remove_query_params("token")
@@ -83,7 +81,7 @@ class Guard:
         try:
             shown = Shown(given, address(request))
             caller = await run_in_threadpool(self.door.identify, shown)
-        except Refused:
+        except ProblemError:
             return everybody  # Its page asks for a token.
         redirect = RedirectResponse(clean, 303)
         remember(redirect, request, given, caller.expires_at)
@@ -104,26 +102,26 @@ def _bearer(headers: Headers) -> str | None:
     return token.strip() if scheme.lower() == "bearer" else ""
 
 
-def _nothing(method: str, path: str, methods: list[str]) -> Refused:
+def _nothing(method: str, path: str, methods: list[str]) -> ProblemError:
     if not methods:
-        return Refused(404, "Not found", f"There is nothing at {path:.200}.")
+        return ProblemError(404, "Not found", f"There is nothing at {path:.200}.")
     allowed = ", ".join(methods)
     detail = f"{path:.200} takes {allowed}; got {method}."
-    return Refused(405, "Method not allowed", detail, headers={"Allow": allowed})
+    return ProblemError(405, "Method not allowed", detail, headers={"Allow": allowed})
 
 
 def _refuse_foreign_host(headers: Headers) -> None:
     host = headers.get("host", "")
     if _split(f"//{host}").hostname not in LOOPBACK:
         needed = f"Host must be one of {', '.join(LOOPBACK)}; got {host!r}."
-        raise Refused(403, "Forbidden", needed)
+        raise ProblemError(403, "Forbidden", needed)
 
 
 def _refuse_foreign_origin(headers: Headers) -> None:
     origin = headers.get("origin")
     if origin is not None and _split(origin).netloc != headers.get("host", ""):
         needed = f"Origin must be this server's own page; got {origin!r}."
-        raise Refused(403, "Forbidden", needed)
+        raise ProblemError(403, "Forbidden", needed)
 
 
 def _split(address: str) -> SplitResult:

@@ -1,40 +1,42 @@
-"""Who asks: found by the guard, known to everything that a request does."""
+"""Principals: who sends a request, and with which scope."""
 
-from contextvars import ContextVar
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Literal
+from typing import Annotated, Literal
 from uuid import UUID
 
+from fastapi import Depends, Request
+
+from ..tables.tokens import SCOPES
+
 Scope = Literal["read", "write", "admin"]
-READ, WRITE, ADMIN = "read", "write", "admin"
-RANKS = (READ, WRITE, ADMIN)
-"""Each may what those before it may."""
+READ, WRITE, ADMIN = SCOPES
 
 
 @dataclass(frozen=True)
-class Caller:
-    """The holder of a token, or this machine's own user, who has none of the table's."""
+class Principal:
+    """The holder of a token, or the user of this machine, who has no token of the table."""
 
     name: str
-    scope: Scope
+    scope: str
     token: UUID | None = None
     expires_at: datetime | None = None
 
     def may(self, scope: str) -> bool:
-        return RANKS.index(self.scope) >= RANKS.index(scope)
+        return SCOPES.index(self.scope) >= SCOPES.index(scope)
 
 
-LOCAL = Caller("local", ADMIN)
-"""Everybody, where no token is needed; and all that is done without a request."""
-SETTING = Caller("MICROCOSMOS_TOKEN", ADMIN)
-"""Whoever has the token that the environment names."""
-NOBODY = Caller("nobody", READ)
-"""A stranger, who gets no further than what is public."""
-
-CALLER: ContextVar[Caller] = ContextVar("caller", default=LOCAL)
+LOCAL = Principal("local", ADMIN)
+"""The user of this machine, where no token is needed."""
+ENVIRONMENT = Principal("MICROCOSMOS_TOKEN", ADMIN)
+"""The holder of the token that the environment sets."""
+ANONYMOUS = Principal("nobody", READ)
+"""A stranger on a public route."""
 
 
-def owner() -> UUID | None:
-    """To whom belongs what is made now: a token, or nobody."""
-    return CALLER.get().token
+def principal(request: Request) -> Principal:
+    """Return who sends the request. Outside HTTP there is no principal."""
+    return request.state.principal
+
+
+PrincipalDep = Annotated[Principal, Depends(principal)]

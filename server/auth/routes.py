@@ -5,11 +5,11 @@ from uuid import UUID
 
 from fastapi import APIRouter, Depends
 
+from ..core.openapi import described
 from ..core.uploads import sent
-from ..runs.routes import described
 from ..services.deps import ServicesDep, SessionDep
 from . import tokens
-from .principal import CALLER
+from .principal import PrincipalDep
 from .schemas import CallerRead, TokenCreate, TokenMade, TokenRead
 
 BYTES = 1 << 12
@@ -18,9 +18,8 @@ router = APIRouter(prefix="/tokens", tags=["tokens"])
 
 
 @router.get("/current")
-async def read_current(services: ServicesDep) -> CallerRead:
+async def read_current(services: ServicesDep, caller: PrincipalDep) -> CallerRead:
     """Who asks, as the server has it."""
-    caller = CALLER.get()
     return CallerRead(
         name=caller.name,
         scope=caller.scope,

@@ -4,8 +4,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request, Response
 
+from ..core.openapi import described
 from ..core.uploads import sent
-from ..runs.routes import described
 from .authorize import Door, Shown
 from .cookies import forget, remember
 from .middleware import address

@@ -14,11 +14,11 @@ from sqlalchemy.exc import IntegrityError, OperationalError
 from sqlalchemy.orm import Session
 
 from ..core.database import clock
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..services.services import Services
 from ..tables import Token
-from .principal import ADMIN, Caller, Scope
+from .principal import ADMIN, Principal, Scope
 
 PREFIX = "mc_"
 """Begins every secret, so that people and scanners of leaks know it for what it is."""
@@ -30,7 +30,7 @@ COARSE = timedelta(minutes=5)
 CHALLENGE = {"WWW-Authenticate": "Bearer"}
 
 
-class Wrong(Refused):
+class Wrong(ProblemError):
     """What was sent is no token of this server's, and never was: somebody may be guessing."""
 
     def __init__(self) -> None:
@@ -54,7 +54,7 @@ def hashed(secret: str) -> str:
 def create(
     services: Services, name: str, scope: Scope, expires_at: datetime | None = None
 ) -> Made:
-    """Make a token; `Refused` where a live one has the name."""
+    """Make a token; `ProblemError` where a live one has the name."""
     secret = PREFIX + secrets.token_urlsafe(BYTES)
     try:
         with services.sessions.write.begin() as session:
@@ -74,7 +74,7 @@ def create(
             session.flush()
     except IntegrityError:
         detail = f"A token named {name!r} is there already; revoke it, or take another name."
-        raise Refused(409, "Name taken", detail) from None
+        raise ProblemError(409, "Name taken", detail) from None
     return Made(token, secret)
 
 
@@ -85,11 +85,11 @@ def _refuse_past(expires_at: datetime | None, now: datetime) -> None:
         error = FieldError(
             field="expires_at", message=message, needed=needed, got=expires_at.isoformat()
         )
-        raise Refused(422, "Invalid input", f"expires_at: {message}", [error])
+        raise ProblemError(422, "Invalid input", f"expires_at: {message}", [error])
 
 
-def holder(services: Services, secret: str) -> Caller:
-    """Who holds a secret; `Wrong` where it is none, `Refused` where it is one no longer."""
+def holder(services: Services, secret: str) -> Principal:
+    """Return the principal of a secret; raise `Wrong` or `ProblemError` where there is none."""
     with services.sessions.read() as session:
         now = _now(session)
         mine = select(Token).where(Token.secret_sha256 == hashed(secret))
@@ -104,7 +104,7 @@ def holder(services: Services, secret: str) -> Caller:
         )
     if token.last_used_at is None or now - token.last_used_at > COARSE:
         _note_use(services, token.id)
-    return Caller(token.name, cast(Scope, token.scope), token.id, token.expires_at)
+    return Principal(token.name, cast(Scope, token.scope), token.id, token.expires_at)
 
 
 def _note_use(services: Services, token: UUID) -> None:
@@ -114,8 +114,8 @@ def _note_use(services: Services, token: UUID) -> None:
         session.execute(used)
 
 
-def _over(detail: str) -> Refused:
-    return Refused(401, "Unauthorized", detail, headers=CHALLENGE)
+def _over(detail: str) -> ProblemError:
+    return ProblemError(401, "Unauthorized", detail, headers=CHALLENGE)
 
 
 def known(session: Session) -> Sequence[Token]:
@@ -135,11 +135,11 @@ def has_admin(session: Session, but: UUID | None = None) -> bool:
 
 
 def revoke(services: Services, token: UUID, last: bool = False) -> Token:
-    """End a token now. `Refused` for the `last` of an admin, unless that may go too."""
+    """End a token now. `ProblemError` for the `last` of an admin, unless that may go too."""
     with services.sessions.write.begin() as session:
         found = session.get(Token, token)
         if found is None:
-            raise Refused(404, "Not found", f"No token has the id {token}.")
+            raise ProblemError(404, "Not found", f"No token has the id {token}.")
         if found.revoked_at is None:
             if not last:
                 _refuse_last(services, session, found)
@@ -158,7 +158,7 @@ def _refuse_last(services: Services, session: Session, token: Token) -> None:
             f"`{token.name}` is the only token of an admin, without which nobody could make "
             "others: make another one first."
         )
-        raise Refused(409, "The last admin", detail)
+        raise ProblemError(409, "The last admin", detail)
 
 
 def _live() -> tuple[ColumnElement[bool], ...]:

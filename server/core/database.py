@@ -1,10 +1,12 @@
 """The database: an engine with the settings that were measured, sessions, its clock."""
 
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
 from sqlalchemy import DateTime, Engine, create_engine, event, make_url, select
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.expression import FunctionElement
@@ -50,6 +52,29 @@ def _postgresql_clock(element: clock, compiler: Any, **_: Any) -> str:
 def ago(session: Session, seconds: float) -> datetime:
     """The moment so many seconds before the database's now."""
     return session.execute(select(clock())).scalar_one() - timedelta(seconds=seconds)
+
+
+def insert_missing(session: Session, table: Any, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Insert rows, except those whose key exists already."""
+    if rows:
+        session.execute(_insert(session, table).on_conflict_do_nothing(), rows)
+
+
+def insert_or_update(
+    session: Session,
+    table: Any,
+    rows: Sequence[Mapping[str, Any]],
+    keys: Sequence[str],
+    values: Mapping[str, Any],
+) -> None:
+    """Insert rows; where a key exists already, set `values` instead."""
+    statement = _insert(session, table)
+    session.execute(statement.on_conflict_do_update(index_elements=keys, set_=values), rows)
+
+
+def _insert(session: Session, table: Any) -> Any:
+    postgres = session.get_bind().dialect.name == "postgresql"
+    return (postgresql if postgres else sqlite).insert(table)
 
 
 class Sessions:

@@ -16,7 +16,6 @@ from starlette.exceptions import HTTPException
 from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import field_path
 
-from ..runs.lifecycle import Conflict
 from .schemas import FieldError, Problem
 
 log = logging.getLogger(__name__)
@@ -27,8 +26,8 @@ MEDIA_TYPE = "application/problem+json"
 NAMED = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
 
 
-class Refused(Exception):
-    """Something that cannot be done, and why."""
+class ProblemError(Exception):
+    """Base class of the errors that packages raise and that are answered as problems."""
 
     def __init__(
         self,
@@ -44,7 +43,7 @@ class Refused(Exception):
 
     @classmethod
     def of(cls, problem: Problem) -> Self:
-        """Of a problem that was found elsewhere."""
+        """Return the error of a problem that another process found."""
         return cls(problem.status, problem.title, problem.detail, problem.errors)
 
 
@@ -56,13 +55,9 @@ def answer(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONRe
 def install(app: FastAPI) -> None:
     """Have the application answer every error as a problem."""
 
-    @app.exception_handler(Refused)
-    def refused(_: Request, error: Refused) -> JSONResponse:
+    @app.exception_handler(ProblemError)
+    def refused(_: Request, error: ProblemError) -> JSONResponse:
         return answer(error.problem, error.headers)
-
-    @app.exception_handler(Conflict)
-    def conflict(_: Request, error: Conflict) -> JSONResponse:
-        return answer(Problem(title="Conflict", status=409, detail=str(error)))
 
     @app.exception_handler(ValidationError)
     def unsound(_: Request, error: ValidationError) -> JSONResponse:

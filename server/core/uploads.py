@@ -11,7 +11,7 @@ from fastapi import Request
 from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
-from .errors import Refused
+from .errors import ProblemError
 
 Sent = TypeVar("Sent", bound=BaseModel)
 DEPTH = 32
@@ -43,7 +43,9 @@ def sent(model: type[Sent], limit: int) -> Callable[[Request], Awaitable[Sent]]:
 def mapping(document: Any) -> dict[str, Any]:
     """The document, if it is a JSON object."""
     if not isinstance(document, dict):
-        raise Refused(422, "Not an object", f"A JSON object is needed; got {document!r:.80}.")
+        raise ProblemError(
+            422, "Not an object", f"A JSON object is needed; got {document!r:.80}."
+        )
     return document
 
 
@@ -53,7 +55,9 @@ async def limited(request: Request, limit: int) -> bytes:
     async for chunk in request.stream():
         body += chunk
         if len(body) > limit:
-            raise Refused(413, "Too large", f"At most {limit:,} bytes are taken; more came.")
+            raise ProblemError(
+                413, "Too large", f"At most {limit:,} bytes are taken; more came."
+            )
     return bytes(body)
 
 
@@ -63,7 +67,7 @@ def parse(body: bytes) -> Any:
     That is NaN, infinities, a name twice, deep nesting, and text with lone surrogates or NUL.
     """
     if body.count(b",") > VALUES:
-        raise Refused(413, "Too large", f"At most {VALUES:,} values are taken; more came.")
+        raise ProblemError(413, "Too large", f"At most {VALUES:,} values are taken; more came.")
     try:
         document = json.loads(
             body.decode(),  # JSON between programs is UTF-8, without a mark that says so.
@@ -74,7 +78,7 @@ def parse(body: bytes) -> Any:
     except RecursionError:
         raise _too_deep() from None
     except ValueError as error:  # Among them bytes that are no UTF-8.
-        raise Refused(
+        raise ProblemError(
             422, "Not JSON", f"JSON is needed; got something else: {error}."
         ) from error
     refuse_unkeepable(document)
@@ -82,7 +86,7 @@ def parse(body: bytes) -> Any:
 
 
 def refuse_unkeepable(document: Any) -> None:
-    """Raise `Refused` for what databases and other readers of JSON may stumble over."""
+    """Raise `ProblemError` for what databases and other readers of JSON may stumble over."""
     _refuse_depth(document)
     _refuse_text(document)
 
@@ -92,12 +96,12 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) < len(pairs):
         ((twice, _),) = Counter(name for name, _ in pairs).most_common(1)
-        raise Refused(422, "Not JSON", f"Names must differ; got {twice[:60]!r} twice.")
+        raise ProblemError(422, "Not JSON", f"Names must differ; got {twice[:60]!r} twice.")
     return found
 
 
 def _refuse_constant(name: str) -> None:
-    raise Refused(422, "Not JSON", f"Numbers must be finite; got {name}.")
+    raise ProblemError(422, "Not JSON", f"Numbers must be finite; got {name}.")
 
 
 def _finite(text: str) -> float:
@@ -127,10 +131,12 @@ def _refuse_text(document: Any) -> None:
         text.encode()
     except UnicodeEncodeError as error:
         found = ascii(text[error.start])
-        raise Refused(422, "Not Unicode", f"Text must be Unicode; got {found}.") from None
+        raise ProblemError(422, "Not Unicode", f"Text must be Unicode; got {found}.") from None
     if NUL.search(text):
-        raise Refused(422, "Not text", "Text must be without NUL; got \\u0000.")
+        raise ProblemError(422, "Not text", "Text must be without NUL; got \\u0000.")
 
 
-def _too_deep() -> Refused:
-    return Refused(422, "Nested too deeply", f"At most {DEPTH} levels are taken; more came.")
+def _too_deep() -> ProblemError:
+    return ProblemError(
+        422, "Nested too deeply", f"At most {DEPTH} levels are taken; more came."
+    )

@@ -9,7 +9,7 @@ from microcosmos.archive import creature_h5, pedigree
 from microcosmos.archive.creature import CreatureError
 
 from ..core import errors, uploads
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..core.schemas import Problem
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -17,7 +17,7 @@ HDF5 = b"\x89HDF\r\n\x1a\n"
 
 def creature_file(body: bytes) -> dict[str, Any]:
     """The creature file in some bytes, checked, with those of its `ancestors`, as few as
-    there may be; `Refused` says why there is none."""
+    there may be; `ProblemError` says why there is none."""
     if not body.startswith(HDF5):
         return pedigree.document(*pedigree.split(uploads.mapping(uploads.parse(body))))
     try:
@@ -25,7 +25,7 @@ def creature_file(body: bytes) -> dict[str, Any]:
     except CreatureError:
         raise
     except ValueError as error:
-        raise Refused(422, "Not a creature file", f"{error}.") from error
+        raise ProblemError(422, "Not a creature file", f"{error}.") from error
     uploads.refuse_unkeepable(file)
     return pedigree.document(file, [])
 
@@ -34,7 +34,7 @@ def answer(body: bytes) -> bytes:
     """The file as JSON, or the problem with it: what goes back from where files are read."""
     try:
         return json.dumps({"file": creature_file(body)}).encode()
-    except Refused as error:
+    except ProblemError as error:
         problem = error.problem
     except CreatureError as error:
         problem = errors.bad_creature(error)

@@ -11,7 +11,7 @@ from microcosmos.archive.creature import CreatureError
 from microcosmos.archive.initial import genes_of
 from microcosmos.spec import Evolution, Refinement, Spec
 
-from ..attempts.recording import insert_missing
+from ..core.database import insert_missing
 from ..tables import Creature, Origin
 from .storage import document
 

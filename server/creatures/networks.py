@@ -7,12 +7,12 @@ from typing import Any
 from microcosmos.viz import networks
 from microcosmos.viz.networks import Network
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..tables import Creature
 
 
 def network_of(row: Creature) -> Network:
-    """The network of a creature; raises `Refused` where its genes are none."""
+    """The network of a creature; raises `ProblemError` where its genes are none."""
     identity = json.loads(row.identity)
     genome: dict[str, Any] = identity["genome"]
     if "nodes" not in genome:
@@ -20,7 +20,7 @@ def network_of(row: Creature) -> Network:
             f"The creature has no network: its `genome.encoding` is {genome['encoding']!r}; "
             "needed are genes of nodes and connections."
         )
-        raise Refused(404, "No network", detail)
+        raise ProblemError(404, "No network", detail)
     return networks.of_creature(identity)
 
 
@@ -39,11 +39,11 @@ FORMS: dict[str, tuple[str, Callable[[Network], str | bytes]]] = {
 
 
 def written(row: Creature, form: str) -> bytes:
-    """The network in a form; raises `Refused` where it cannot be written so."""
+    """The network in a form; raises `ProblemError` where it cannot be written so."""
     network = network_of(row)
     try:
         data = FORMS[form][1](network)
     except ValueError as error:
         detail = f"The network cannot be written as .{form}: {error}."
-        raise Refused(422, "Not expressible", detail) from error
+        raise ProblemError(422, "Not expressible", detail) from error
     return data.encode() if isinstance(data, str) else data

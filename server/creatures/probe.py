@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from microcosmos.archive.encoding import encode
-from microcosmos.archive.naming import FORMAT
+from microcosmos.naming import FORMAT, encode
 from microcosmos.spec import EXPERIMENTS
 
 

@@ -11,7 +11,7 @@ from functools import cache
 from threading import Lock
 from typing import Any
 
-from ..core.errors import RETRY, Refused
+from ..core.errors import RETRY, ProblemError
 from ..core.schemas import Problem
 from .sandbox_process import LENGTH, SECONDS
 
@@ -35,7 +35,7 @@ class Quarantine:
         self._control: socket.socket | None = None
 
     def creature(self, body: bytes) -> dict[str, Any]:
-        """The creature file in some bytes; `Refused` says why there is none."""
+        """The creature file in some bytes; `ProblemError` says why there is none."""
         told = json.loads(self._read(body) or "null")
         if told is None:
             self._refuse_gone()
@@ -43,9 +43,9 @@ class Quarantine:
                 "Reading the file took too long, or ended the process that read it; a sound "
                 f"one takes much less than {SECONDS:g} seconds."
             )
-            raise Refused(422, "Unreadable", detail)
+            raise ProblemError(422, "Unreadable", detail)
         if problem := told.get("problem"):
-            raise Refused.of(Problem.model_validate(problem))
+            raise ProblemError.of(Problem.model_validate(problem))
         return told["file"]
 
     def _read(self, body: bytes) -> bytes:
@@ -65,7 +65,7 @@ class Quarantine:
             if self._process:
                 self._process.wait(ENDING)
             detail = "Files cannot be read just now; try again."
-            raise Refused(503, "Unavailable", detail, headers=RETRY)
+            raise ProblemError(503, "Unavailable", detail, headers=RETRY)
 
     def _connection(self) -> socket.socket:
         """To a child of its own for one file."""

@@ -10,9 +10,10 @@ from sqlalchemy.orm import Session
 
 from microcosmos.archive import creature, pedigree
 
-from ..attempts.recording import creature_columns, insert_missing, link
+from ..core.database import insert_missing
 from ..tables import Creature
 from . import lineage
+from .insertion import creature_columns, link
 
 FARTHEST = 32
 """Generations of ancestors that travel with a creature."""

@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import Select, delete, select, union
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from ..attempts.recording import insert_missing
+from ..core.database import insert_missing
 from ..tables import (
     Artifact,
     Creature,

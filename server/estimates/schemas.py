@@ -1,6 +1,7 @@
 """What a run will need, before it is one."""
 
 from ..core.schemas import Wire
+from ..specs.schemas import DrawingRead
 
 
 class PaceRead(Wire):
@@ -21,38 +22,6 @@ class AheadRead(Wire):
     workers: int
     free: int
     """Workers that have nothing to do."""
-
-
-class BodyRead(Wire):
-    """A body at rest in its world; of one with many nodes some are left out."""
-
-    name: str
-    nodes: int
-    """How many there are."""
-    positions: list[list[float]]
-    """[x, y] in cells."""
-    edges: list[list[int]]
-    whole: bool
-    """Whether every filament is drawn."""
-
-
-class PictureRead(Wire):
-    name: str
-    width: int
-    height: int
-    pixels: str
-    """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
-
-
-class DrawingRead(Wire):
-    """Bodies, each in a world of its own, and the pictures that they are to become."""
-
-    width: int
-    height: int
-    bodies: list[BodyRead]
-    pictures: list[PictureRead]
-    picture_size: int
-    """The longer side of a picture, in cells."""
 
 
 class EstimateRead(Wire):

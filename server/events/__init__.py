@@ -1,1 +1,1 @@
-"""Events: a Redis stream, its fan-out to listeners, and the route."""
+"""Events: fan-out of the event stream to listeners, and the route."""

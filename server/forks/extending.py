@@ -7,21 +7,21 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import Evolution, Spec, parse
 
 from ..core.database import clock
-from ..core.errors import FieldError, Refused
+from ..core.errors import FieldError, ProblemError
 from ..runs.lifecycle import KEPT, change, refuse
 from ..runs.log import note
 from ..tables import FINISHED, QUEUED, Run
 
 
 def longer(run: Run, more: int) -> Spec:
-    """The run's spec with so many generations more; `Refused` where that is not to be had."""
+    """Return the spec with more generations; raise `ProblemError` where that cannot be."""
     _refuse_without_generations(run)
     if run.status == FINISHED and (ended := (run.summary or {}).get("ended")):
         detail = (
             f"`search.stop` ended the run ({ended}), as it would end a longer one; fork it "
             "with another `search.stop`."
         )
-        raise Refused(409, "It would change nothing", detail)
+        raise ProblemError(409, "It would change nothing", detail)
     search = {**run.spec["search"], "generations": run.generations + more}
     spec = parse({**run.spec, "search": search})
     assert isinstance(spec, Evolution)
@@ -61,4 +61,4 @@ def _refuse_without_generations(run: Run) -> None:
         "`search.generations`, can be extended."
     )
     error = FieldError(field="search.generations", message=detail, got=run.experiment)
-    raise Refused(409, "Not to be extended", detail, [error])
+    raise ProblemError(409, "Not to be extended", detail, [error])

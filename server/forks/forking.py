@@ -10,7 +10,7 @@ from microcosmos.spec import EXPERIMENTS, Evolution, Spec
 from microcosmos.spec.search import ORIGINS
 
 from ..archives import elites, measures
-from ..core.errors import FieldError, Refused, brief
+from ..core.errors import FieldError, ProblemError, brief
 from ..runs.schemas import Beginning, Fork
 from ..specs.parsing import Parse
 from ..tables import Run
@@ -58,7 +58,7 @@ def emptied(document: Any, before: Any, patch: Any, parse: Parse) -> Any:
         place[path[-1]] = None
         try:
             parse(other)
-        except (ValidationError, Refused):
+        except (ValidationError, ProblemError):
             continue
         document = other
     return document
@@ -116,7 +116,7 @@ def _refuse_empty(start: Beginning, occupied: set[int], names: list[str]) -> Non
         raise refused(place, "somebody to begin from; nobody lives there", None)
 
 
-def refused(field: str, needed: str, got: Any) -> Refused:
+def refused(field: str, needed: str, got: Any) -> ProblemError:
     message = f"needs {needed}; got {brief(got)!r}"
     error = FieldError(field=field, message=message, needed=needed, got=brief(got))
-    return Refused(422, "Invalid input", f"{field}: {message}", [error])
+    return ProblemError(422, "Invalid input", f"{field}: {message}", [error])

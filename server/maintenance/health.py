@@ -1,4 +1,4 @@
-"""Whether the server lives, and whether it can work."""
+"""Routes of liveness and readiness."""
 
 from typing import Literal
 
@@ -8,12 +8,23 @@ from sqlalchemy import text
 from sqlalchemy.exc import SQLAlchemyError
 
 from ..core import page
+from ..core.schemas import Wire
 from ..services.deps import ServicesDep
 from ..services.services import Services
-from ..workers.schemas import Health, Readiness
 
 router = APIRouter(tags=["health"])
 Answer = Literal["ok", "unreachable"]
+
+
+class Health(Wire):
+    status: Literal["ok"] = "ok"
+    help: bool
+    """The documentation is served at `/help/`."""
+
+
+class Readiness(Wire):
+    database: Answer
+    redis: Answer
 
 
 @router.get("/healthz")

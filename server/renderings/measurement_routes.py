@@ -5,7 +5,7 @@ from typing import Any
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
 from ..creatures.schemas import Measurement, Rendering
 from ..services.deps import ServicesDep, SessionDep
@@ -24,7 +24,7 @@ def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
     """Have it evaluated again, by the program that measured it; then read `measurement`."""
     if not row.measured:
         detail = "Its file holds no measurement: there is nothing to compare a new one with."
-        raise Refused(422, "Never measured", detail)
+        raise ProblemError(422, "Never measured", detail)
     if not renderings.underway(services, row.sha256, MEASUREMENT):
         renderings.forget(services, row.sha256, MEASUREMENT)
         services.jobs.render(row.sha256, MEASUREMENT)

@@ -7,13 +7,13 @@ from fastapi import APIRouter, Request
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.orm import Session
 
-from ..core import ranges
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
 from ..creatures.schemas import Rendering
 from ..queue.jobs import FAILURE_KEPT
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
+from ..storage import ranges
 from ..tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP, Creature
 from . import motions
 from . import storage as renderings
@@ -70,7 +70,7 @@ def ordered(services: Services, sha: str, kind: str, *, patient: bool = False) -
         detail = f"The {WORDS.get(kind, kind)} could not be made{why}. "
         detail += "It can be tried again in a minute."
         headers = {"Retry-After": str(FAILURE_KEPT)}
-        raise Refused(500, "Rendering failed", detail, headers=headers) from error
+        raise ProblemError(500, "Rendering failed", detail, headers=headers) from error
     return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})
 
 

@@ -8,9 +8,9 @@ from sqlalchemy import delete, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from microcosmos.archive.naming import REPLAY_VERSION
+from microcosmos.viz.replay_file import REPLAY_VERSION
 
-from ..attempts.recording import insert_missing
+from ..core.database import insert_missing
 from ..creatures import storage as creatures
 from ..services.services import Services
 from ..storage.artifacts import Stored, rendering_path

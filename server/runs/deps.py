@@ -7,7 +7,7 @@ from uuid import UUID
 from fastapi import Depends
 from sqlalchemy.orm import Session
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..services.deps import SessionDep
 from ..tables import Run
 
@@ -16,9 +16,9 @@ def find_run(session: Session, run_id: UUID, deleted: bool = False) -> Run:
     """Return the row; a run in the bin is found only with `deleted`."""
     found = session.get(Run, run_id)
     if found is None:
-        raise Refused(404, "Not found", f"No run has the id {run_id}.")
+        raise ProblemError(404, "Not found", f"No run has the id {run_id}.")
     if found.purge_at and not deleted:
-        raise Refused(404, "In the bin", in_the_bin(found.id, found.purge_at))
+        raise ProblemError(404, "In the bin", in_the_bin(found.id, found.purge_at))
     return found
 
 

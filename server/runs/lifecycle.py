@@ -13,6 +13,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from ..core.database import ago, clock
+from ..core.errors import ProblemError
 from ..services.services import Services
 from ..tables import (
     CANCEL,
@@ -45,14 +46,15 @@ ATTEMPTS = 3
 """So many attempts without a new checkpoint end a run."""
 
 
-class Conflict(Exception):
-    """The state of a run does not allow what was asked."""
+class Conflict(ProblemError):
+    """The state of a run does not allow an action."""
 
     def __init__(self, action: str, run: Run, needed: str):
         wish = f", asked to {run.wish}" if run.wish else ""
         place = " and in the bin" if run.deleted_at else ""
         standing = f"{run.status}{wish}{place}"
-        super().__init__(f"to {action} a run it must be {needed}; it is {standing}")
+        detail = f"to {action} a run it must be {needed}; it is {standing}"
+        super().__init__(409, "Conflict", detail)
 
 
 def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | None:

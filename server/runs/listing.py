@@ -26,7 +26,7 @@ from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session
 from sqlalchemy.sql.functions import GenericFunction
 
-from ..core.errors import Refused, brief
+from ..core.errors import ProblemError, brief
 from ..core.schemas import FieldError
 from ..tables import FINISHED, STATUSES, Run
 from .lifecycle import KEPT
@@ -163,7 +163,7 @@ def _position(cursor: str, sort: str) -> tuple[Any, UUID]:
         needed = "the `next` of an earlier answer to the same `sort`"
         detail = f"`cursor` must be {needed}; got {cursor!r:.80}."
         error = FieldError(field="cursor", message=detail, needed=needed, got=brief(cursor))
-        raise Refused(422, "Invalid input", detail, [error]) from None
+        raise ProblemError(422, "Invalid input", detail, [error]) from None
 
 
 def _value(value: Any, name: str) -> Any:

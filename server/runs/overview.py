@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 from ..auth import owners
 from ..estimates import position
 from ..services.services import Services
-from ..tables import FAILED, FINISHED, RUNNING, Generation, Run
-from ..workers.schemas import Carried
+from ..tables import FAILED, RUNNING, Generation, Run
+from ..workers.carried import progress
 from .schemas import Forked, RunRead
 
 POINTS = 32
@@ -74,17 +74,6 @@ def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | No
 def forked(run: Run) -> Forked | None:
     """Where it began, if it is a fork."""
     return None if run.forked is None else Forked(run=run.forked_from, creatures=run.forked)
-
-
-def carried(run: Run) -> Carried:
-    """A run as it is named beside others."""
-    names = (name for name in Carried.model_fields if name != "progress")
-    return Carried(**{name: getattr(run, name) for name in names}, progress=progress(run))
-
-
-def progress(run: Run) -> float:
-    """A run may end before its generations are through: a finished one is done."""
-    return 1.0 if run.status == FINISHED else min(1.0, run.generation / run.generations)
 
 
 def _rates(run: Run, curve: list[Generation]) -> tuple[float | None, float | None]:

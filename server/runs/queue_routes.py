@@ -8,8 +8,8 @@ from sqlalchemy import select
 from ..estimates import position
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
-from ..workers.schemas import QueueRead, Waiting
-from . import overview
+from ..workers.carried import carried
+from .schemas import QueueRead, Waiting
 
 router = APIRouter(prefix="/queue", tags=["workers"])
 
@@ -29,7 +29,7 @@ def read_queue(
     reasons = position.reasons_in(line, runs)
     items = [
         Waiting(
-            **overview.carried(run).model_dump(),
+            **carried(run).model_dump(),
             waiting=reasons[run.id],
             queued_at=run.queued_at,
             memory_bytes=position.needed_bytes(run),

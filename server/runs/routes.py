@@ -13,7 +13,9 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
-from ..core.errors import Refused
+from ..auth.principal import PrincipalDep
+from ..core.errors import ProblemError
+from ..core.openapi import described
 from ..core.schemas import FieldError, Wire
 from ..core.uploads import json_object
 from ..creatures.initial import named
@@ -27,24 +29,18 @@ from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
 from ..specs import parsing
 from ..specs.drawings import drawing_read
-from ..tables import Run
+from ..tables import Run, Status
 from . import lifecycle, listing
 from .deps import AnyRunDep, find_run
 from .idempotency import earlier
 from .overview import read_run, read_runs
-from .schemas import NAME, Extension, Fork, RunChange, RunPage, RunRead, Status
+from .schemas import NAME, Extension, Fork, RunChange, RunPage, RunRead
 from .submission import memory_limit, refuse_too_large, submit
 
 SPEC_BYTES = 1 << 20
 CHANGE_BYTES = 1 << 18
 
 router = APIRouter(prefix="/runs", tags=["runs"])
-
-
-def described(schema: dict[str, Any]) -> dict[str, Any]:
-    """What OpenAPI says of a body that is read by `json_object`."""
-    content = {"application/json": {"schema": schema}}
-    return {"requestBody": {"required": True, "content": content}}
 
 
 def inlined(model: type[Wire]) -> dict[str, Any]:
@@ -80,6 +76,7 @@ Called = Annotated[
 def create_run(
     spec: SpecDep,
     services: ServicesDep,
+    principal: PrincipalDep,
     response: Response,
     idempotency_key: Key = None,
     name: Called = None,
@@ -88,10 +85,12 @@ def create_run(
 
     `name` is what it is called, as `PATCH` could say later.
     """
-    if known := earlier(services, idempotency_key, spec.model_dump(mode="json")):
+    if known := earlier(
+        services, idempotency_key, principal.token, spec.model_dump(mode="json")
+    ):
         return _submitted(services, response, known.run_id, new=False)
     refuse_too_large(services, spec)
-    run, new = submit(services, spec, idempotency_key, name=name or None)
+    run, new = submit(services, spec, idempotency_key, owner=principal.token, name=name or None)
     return _submitted(services, response, run.id, new)
 
 
@@ -149,7 +148,7 @@ def _refuse_unknown(experiments: list[str]) -> None:
             known = ", ".join(EXPERIMENTS)
             message = f"needs one of {known}; got {name!r}"
             error = FieldError(field="experiment", message=message, needed=known, got=name)
-            raise Refused(422, "Invalid input", f"experiment: {message}", [error])
+            raise ProblemError(422, "Invalid input", f"experiment: {message}", [error])
 
 
 @router.get("/{run_id}")
@@ -240,6 +239,7 @@ def fork_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES
 def fork_run(
     run_id: UUID,
     services: ServicesDep,
+    principal: PrincipalDep,
     response: Response,
     sent: Annotated[Fork, Depends(fork_sent)],
     idempotency_key: Key = None,
@@ -249,13 +249,13 @@ def fork_run(
     The same key with the same request is the same run, though others may live there by then.
     """
     request = {"fork": str(run_id), **sent.model_dump(mode="json")}
-    if known := earlier(services, idempotency_key, request):
+    if known := earlier(services, idempotency_key, principal.token, request):
         return _submitted(services, response, known.run_id, new=False)
     with services.sessions.read() as session, parsing.parsing(services) as parse:
         spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
     refuse_too_large(services, spec)
     said = {"name": sent.name or None, "forked_from": run_id, "forked": len(named(spec))}
-    run, new = submit(services, spec, idempotency_key, request, **said)
+    run, new = submit(services, spec, idempotency_key, request, owner=principal.token, **said)
     return _submitted(services, response, run.id, new)
 
 

@@ -7,8 +7,8 @@ from uuid import UUID
 from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from ..core.schemas import Wire
-
-Status = Literal["queued", "running", "paused", "finished", "failed", "cancelled"]
+from ..tables import Status
+from ..workers.schemas import Carried
 
 NAME = 200
 
@@ -203,3 +203,18 @@ class TagRead(Wire):
     tag: str
     runs: int
     """How many have it."""
+
+
+class Waiting(Carried):
+    waiting: str
+    """Why it waits, in words."""
+    queued_at: datetime
+    memory_bytes: int | None
+    """What it needs, as far as can be said."""
+
+
+class QueueRead(Wire):
+    total: int
+    """Among them those that a worker is about to begin."""
+    items: list[Waiting]
+    """The first ones, in the order in which they will be taken."""

@@ -3,6 +3,7 @@
 import os
 from dataclasses import dataclass, field
 from typing import Any
+from uuid import UUID
 
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
@@ -10,7 +11,7 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import Spec, estimate
 from microcosmos.version import VERSION
 
-from ..core.errors import FieldError, Refused
+from ..core.errors import FieldError, ProblemError
 from ..creatures import initial
 from ..maintenance.reconcile import requeue
 from ..services.services import Services
@@ -52,11 +53,11 @@ def memory_limit(services: Services, session: Session) -> int:
 
 
 def refuse_too_large(services: Services, spec: Spec) -> None:
-    """Raise `Refused` where no worker has the memory."""
+    """Raise `ProblemError` where no worker has the memory."""
     with services.sessions.read() as session:
         limit = memory_limit(services, session)
     if error := too_large(spec, limit):
-        raise Refused(422, TOO_LARGE, error.message, [error])
+        raise ProblemError(422, TOO_LARGE, error.message, [error])
 
 
 def too_large(spec: Spec, limit: int) -> FieldError | None:
@@ -88,7 +89,13 @@ def _least(spec: Any, field: str) -> Spec:
 
 
 def submit(
-    services: Services, spec: Spec, key: str | None = None, request: Any = None, **said: Any
+    services: Services,
+    spec: Spec,
+    key: str | None = None,
+    request: Any = None,
+    *,
+    owner: UUID | None = None,
+    **said: Any,
 ) -> tuple[Run, bool]:
     """The run of a spec and whether it is new; the same key with the same request is one run.
 
@@ -103,6 +110,7 @@ def submit(
         sources=plugins.needs(document),
         generations=spec.generations,
         version=VERSION,
+        owner=owner,
         **said,
     )
     with services.sessions.read() as session:
@@ -113,9 +121,9 @@ def submit(
             session.flush()
             note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
             initial.keep(session, [(spec, [run.id])])
-            idempotency.remember(session, key, request, run_id=run.id)
+            idempotency.remember(session, key, owner, request, run_id=run.id)
     except IntegrityError:
-        known = idempotency.earlier(services, key, request)
+        known = idempotency.earlier(services, key, owner, request)
         if known is None:
             raise
         return _made(services, known), False

@@ -4,7 +4,7 @@ from fastapi import APIRouter
 
 from microcosmos.spec import Folding, parse, targets
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from .deps import RunDep
 from .schemas import Target
 
@@ -16,7 +16,7 @@ def read_targets(run: RunDep) -> list[Target]:
     """In the order of the spec; at most 256 pixels along a side."""
     if run.experiment != "folding":
         detail = f"A run of `{run.experiment}` folds nothing into pictures."
-        raise Refused(404, "No pictures", detail)
+        raise ProblemError(404, "No pictures", detail)
     chosen = parse(run.spec)
     assert isinstance(chosen, Folding)
     longest = min(chosen.size, targets.MOST)

@@ -6,10 +6,10 @@ from redis import Redis
 
 from ..core import database
 from ..core.database import Sessions
-from ..events.stream import Events
 from ..queue.jobs import Jobs, open_redis
 from ..settings import Settings
 from ..storage.artifacts import Artifacts
+from .event_stream import Events
 
 
 @dataclass(frozen=True)

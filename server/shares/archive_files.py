@@ -5,7 +5,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
 
-from ..attempts.recording import insert_missing
+from ..core.database import insert_missing
 from ..services.services import Services
 from ..storage.artifacts import Stored
 from ..tables import CHECKPOINT, PUBLISHED, Artifact, Share

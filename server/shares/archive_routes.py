@@ -9,12 +9,12 @@ from microcosmos.archive import export
 
 from ..archives import routes as archives
 from ..archives.schemas import ArchiveRead, CentroidsRead, HistoryRead
-from ..core import ranges
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..runs import curve_routes
 from ..runs.overview import read_run
 from ..runs.schemas import Curves, RunRead
 from ..services.deps import ServicesDep, SessionDep
+from ..storage import ranges
 from ..tables import Artifact, Run, Share
 from . import archive_files, publishing
 from .creature_routes import ShareDep
@@ -24,7 +24,7 @@ router = APIRouter(prefix="/shares/{slug}", tags=["shares"])
 
 def shared_run(share: ShareDep, run_id: str, session: SessionDep) -> Run:
     if share.run_id is None or run_id != str(share.run_id):
-        raise Refused(404, "Not found", f"This share holds no run of the id {run_id:.64}.")
+        raise ProblemError(404, "Not found", f"This share holds no run of the id {run_id:.64}.")
     return publishing.frozen(session, share)
 
 
@@ -89,5 +89,5 @@ def _file(session: SessionDep, share: Share) -> Artifact:
     found = archive_files.find(session, share)
     if found is None:
         detail = f"No file was kept of generation {share.generation}; its elites are here."
-        raise Refused(404, "No file", detail)
+        raise ProblemError(404, "No file", detail)
     return found

@@ -7,7 +7,7 @@ from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5, pedigree
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..creatures import networks
 from ..creatures import routes as of_creatures
 from ..creatures import storage as creatures
@@ -39,7 +39,7 @@ ShareDep = Annotated[Share, Depends(share)]
 
 def shared_creature(share: ShareDep, sha: Sha, session: SessionDep) -> Creature:
     if not publishing.holds(session, share, sha):
-        raise Refused(404, "Not found", f"This share holds no creature of the name {sha}.")
+        raise ProblemError(404, "Not found", f"This share holds no creature of the name {sha}.")
     return named_creature(sha, session)
 
 
@@ -100,7 +100,9 @@ def read_shared_ancestors(
 def read_shared_network(row: CreatureDep, form: str) -> Response:
     if form not in networks.FORMS:
         known = ", ".join(networks.FORMS)
-        raise Refused(404, "Not found", f"A network is written as {known}; got {form!r:.20}.")
+        raise ProblemError(
+            404, "Not found", f"A network is written as {known}; got {form!r:.20}."
+        )
     return of_networks(row, form)
 
 
@@ -143,5 +145,5 @@ def read_shared_rendering(
     if there is None and kind == MEASUREMENT:
         return Response(status_code=204)  # As where it was not shared.
     if there is None:
-        raise Refused(404, "Not found", f"Nothing was made of it as {kind!r:.20}.")
+        raise ProblemError(404, "Not found", f"Nothing was made of it as {kind!r:.20}.")
     return there

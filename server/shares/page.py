@@ -8,7 +8,7 @@ from fastapi.responses import HTMLResponse, Response
 from sqlalchemy.orm import Session
 
 from ..core import page
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..services.deps import SessionDep
 from ..tables import Creature, Share
 from . import publishing
@@ -29,7 +29,7 @@ def read_share_page(request: Request, slug: str, session: SessionDep) -> Respons
     index = (page.BUILT / "index.html").read_text()
     try:
         share = publishing.opened(session, slug)
-    except Refused as error:
+    except ProblemError as error:
         return HTMLResponse(index, error.problem.status)
     request.state.listed = share.listed
     return HTMLResponse(with_tags(index, tags(base(request), share, described(session, share))))

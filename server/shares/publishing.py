@@ -12,9 +12,9 @@ from sqlalchemy.orm import Session
 
 from ..archives import measures
 from ..auth.authorize import refuse_other
-from ..auth.principal import CALLER, owner
+from ..auth.principal import Principal
 from ..core.database import clock
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..runs.deps import find_run
 from ..tables import FINISHED, Creature, Elite, Generation, Run, Share
@@ -39,20 +39,20 @@ class Subject:
     generation: int | None = None
 
 
-def subject(session: Session, asked: ShareAsked) -> Subject:
-    """What somebody asks to publish; `Refused` where it is not there."""
+def subject(session: Session, asked: ShareAsked, principal: Principal) -> Subject:
+    """What somebody asks to publish; `ProblemError` where it is not there."""
     if asked.creature:
         row = session.get(Creature, asked.creature)
         if row is None:
-            raise Refused(404, "Not found", f"No creature has the name {asked.creature}.")
+            raise ProblemError(404, "Not found", f"No creature has the name {asked.creature}.")
         title = f"Creature {row.sha256[:8]}"
         return Subject(row.sha256, title, row.licence, row.credit, creature=row.sha256)
     assert asked.run is not None
     run = find_run(session, asked.run)
-    refuse_other(session, CALLER.get(), run, "publish")
+    refuse_other(session, principal, run, "publish")
     if not measures.searched(run):
         detail = f"A run of `{run.experiment}` fills no archive that could be published."
-        raise Refused(422, "No archive", detail)
+        raise ProblemError(422, "No archive", detail)
     generation = _last(run, asked.generation)
     best = session.get_one(Creature, _best(session, run, generation))
     title = run.name or f"Archive {str(run.id)[:8]}"
@@ -66,7 +66,7 @@ def _last(run: Run, asked: int | None) -> int:
         needed = f"at most {run.generation}, which the run has come to"
         detail = f"`generation` must be {needed}; got {last}."
         error = FieldError(field="generation", message=detail, needed=needed, got=last)
-        raise Refused(422, "Invalid input", detail, [error])
+        raise ProblemError(422, "Invalid input", detail, [error])
     return last
 
 
@@ -75,14 +75,14 @@ def _best(session: Session, run: Run, generation: int) -> str:
     ordered = select(Elite.creature).where(mine).order_by(Elite.fitness.desc(), Elite.cell)
     found = session.scalars(ordered.limit(1)).first()
     if found is None:
-        raise Refused(409, "Nothing to publish", f"Run {run.id} has no elite yet.")
+        raise ProblemError(409, "Nothing to publish", f"Run {run.id} has no elite yet.")
     return found
 
 
-def publish(session: Session, asked: ShareAsked) -> tuple[Share, bool]:
+def publish(session: Session, asked: ShareAsked, principal: Principal) -> tuple[Share, bool]:
     """The share, and whether it is new: one that says the same and is live is taken again."""
     _refuse_past(session, asked.expires_at)
-    of = subject(session, asked)
+    of = subject(session, asked, principal)
     made = Share(
         slug=token_urlsafe(BYTES),
         creature=of.creature,
@@ -94,8 +94,9 @@ def publish(session: Session, asked: ShareAsked) -> tuple[Share, bool]:
         licence=asked.licence or of.licence,
         listed=asked.listed,
         expires_at=asked.expires_at,
+        owner=principal.token,
     )
-    mine = Share.owner.is_not_distinct_from(owner())
+    mine = Share.owner.is_not_distinct_from(principal.token)
     for known in session.scalars(live().where(Share.cover == of.cover, mine)):
         same = all(getattr(known, name) == getattr(made, name) for name in MEANT)
         if same and known.expires_at == made.expires_at:
@@ -111,7 +112,7 @@ def _refuse_past(session: Session, expires: datetime | None) -> None:
         needed = f"a moment to come; it is {now:%Y-%m-%dT%H:%M:%SZ}"
         detail = f"`expires_at` must be {needed}; got {expires.isoformat()}."
         error = FieldError(field="expires_at", message=detail, needed=needed, got=str(expires))
-        raise Refused(422, "Invalid input", detail, [error])
+        raise ProblemError(422, "Invalid input", detail, [error])
 
 
 def live() -> Select[Share]:
@@ -134,18 +135,18 @@ def find(session: Session, slug: str) -> Share | None:
 
 
 def opened(session: Session, slug: str) -> Share:
-    """The share at an address; `Refused` says that there is none, or none any more."""
+    """The share at an address; `ProblemError` says that there is none, or none any more."""
     share = find(session, slug)
     if share is None:
-        raise Refused(404, "Not found", "Nothing is shared at this address.")
+        raise ProblemError(404, "Not found", "Nothing is shared at this address.")
     standing = state(session, share)
     if standing == "revoked":
-        raise Refused(410, "Gone", "Whoever shared this has taken it back.")
+        raise ProblemError(410, "Gone", "Whoever shared this has taken it back.")
     if standing == "expired":
         detail = f"This was shared until {share.expires_at:%d %B %Y, %H:%M} UTC."
-        raise Refused(410, "Gone", detail)
+        raise ProblemError(410, "Gone", detail)
     if share.run_id and session.get_one(Run, share.run_id).deleted_at:
-        raise Refused(410, "Gone", "The run that was shared has been deleted.")
+        raise ProblemError(410, "Gone", "The run that was shared has been deleted.")
     return share
 
 

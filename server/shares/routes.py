@@ -8,12 +8,12 @@ from redis import RedisError
 from sqlalchemy import Select, and_, or_, select
 from sqlalchemy.orm import Session
 
-from ..auth.principal import ADMIN, CALLER, owner
+from ..auth.principal import ADMIN, PrincipalDep
 from ..core.database import clock
-from ..core.errors import Refused
+from ..core.errors import ProblemError
+from ..core.openapi import described
 from ..core.uploads import json_object
 from ..renderings import storage as renderings
-from ..runs.routes import described
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
 from ..tables import PREVIEW, Share
@@ -40,11 +40,12 @@ def publish(
     sent: Annotated[ShareAsked, Depends(asked)],
     request: Request,
     services: ServicesDep,
+    principal: PrincipalDep,
     response: Response,
 ) -> ShareRead:
     """Publish a creature or an archive. What is live already is answered again, with 200."""
     with services.sessions.write.begin() as session:
-        share, new = publishing.publish(session, sent)
+        share, new = publishing.publish(session, sent, principal)
         read = told(request, session, share)
     if share.run_id:
         archive_files.keep(services, share)
@@ -69,14 +70,18 @@ Limit = Annotated[int, Query(ge=1, le=200)]
 
 @router.get("/shares")
 def list_shares(
-    request: Request, session: SessionDep, cursor: str | None = None, limit: Limit = 50
+    request: Request,
+    session: SessionDep,
+    principal: PrincipalDep,
+    cursor: str | None = None,
+    limit: Limit = 50,
 ) -> SharePage:
     """One's own shares, newest first, with those that were taken back or have expired.
 
     An admin sees everybody's: who knows an address sees what was shared.
     """
-    mine = select(Share).where(Share.owner == owner())
-    everybody = CALLER.get().may(ADMIN)
+    mine = select(Share).where(Share.owner == principal.token)
+    everybody = principal.may(ADMIN)
     return _page(request, session, select(Share) if everybody else mine, cursor, limit)
 
 
@@ -94,7 +99,7 @@ def revoke(slug: str, request: Request, services: ServicesDep) -> ShareRead:
     with services.sessions.write.begin() as session:
         share = publishing.find(session, slug)
         if share is None:
-            raise Refused(404, "Not found", "Nothing is shared under this name.")
+            raise ProblemError(404, "Not found", "Nothing is shared under this name.")
         if share.revoked_at is None:
             share.revoked_at = session.execute(select(clock())).scalar_one()
         stored = archive_files.forget(session, share)
@@ -140,6 +145,6 @@ def _after(session: Session, cursor: str) -> Any:
     last = publishing.find(session, cursor)
     if last is None:
         detail = f"`cursor` must be the `next` of an earlier answer; got {cursor!r:.80}."
-        raise Refused(422, "Invalid input", detail)
+        raise ProblemError(422, "Invalid input", detail)
     at_once = and_(Share.created_at == last.created_at, Share.slug < last.slug)
     return or_(Share.created_at < last.created_at, at_once)

@@ -2,7 +2,7 @@
 
 from microcosmos.spec import Drawing, targets
 
-from ..estimates.schemas import BodyRead, DrawingRead, PictureRead
+from .schemas import BodyRead, DrawingRead, PictureRead
 
 DECIMALS = 3
 

@@ -7,7 +7,7 @@ from typing import Any
 from microcosmos import spec as words
 from microcosmos.spec import Spec, Used, used
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..services.services import Services
 from ..workers.plugins import HELP, Reported, reported
@@ -18,7 +18,7 @@ Parse = Callable[[Mapping[str, Any]], Spec]
 def parse(services: Services, document: Mapping[str, Any]) -> Spec:
     """The spec in a document; what is of users' own in it has to be known.
 
-    Raises `ValidationError` or `Refused`.
+    Raises `ValidationError` or `ProblemError`.
     """
     with parsing(services) as parse_one:
         return parse_one(document)
@@ -38,7 +38,7 @@ def _parse(known: Reported, document: Mapping[str, Any]) -> Spec:
     if unknown:
         errors = [_unknown(known, one) for one in unknown]
         detail = "; ".join(f"{error.field}: {error.message}" for error in errors)
-        raise Refused(422, "Unknown version", detail, errors)
+        raise ProblemError(422, "Unknown version", detail, errors)
     return spec
 
 

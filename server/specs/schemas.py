@@ -1,4 +1,4 @@
-"""Kinds of run with their schemas and presets."""
+"""Wire types of experiments with schemas and presets, and of the drawing of a spec."""
 
 from typing import Any
 
@@ -25,3 +25,35 @@ class ExperimentRead(Wire):
         serialize_by_alias=True,
         alias_generator=lambda name: name.rstrip("_"),
     )
+
+
+class BodyRead(Wire):
+    """A body at rest in its world; of one with many nodes some are left out."""
+
+    name: str
+    nodes: int
+    """How many there are."""
+    positions: list[list[float]]
+    """[x, y] in cells."""
+    edges: list[list[int]]
+    whole: bool
+    """Whether every filament is drawn."""
+
+
+class PictureRead(Wire):
+    name: str
+    width: int
+    height: int
+    pixels: str
+    """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
+
+
+class DrawingRead(Wire):
+    """Bodies, each in a world of its own, and the pictures that they are to become."""
+
+    width: int
+    height: int
+    bodies: list[BodyRead]
+    pictures: list[PictureRead]
+    picture_size: int
+    """The longer side of a picture, in cells."""

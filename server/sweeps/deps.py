@@ -6,7 +6,7 @@ from uuid import UUID
 from fastapi import Depends
 from sqlalchemy.orm import Session
 
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..services.deps import SessionDep
 from ..tables import Sweep
 
@@ -14,7 +14,7 @@ from ..tables import Sweep
 def find_sweep(session: Session, sweep_id: UUID) -> Sweep:
     found = session.get(Sweep, sweep_id)
     if found is None:
-        raise Refused(404, "Not found", f"No sweep has the id {sweep_id}.")
+        raise ProblemError(404, "Not found", f"No sweep has the id {sweep_id}.")
     return found
 
 

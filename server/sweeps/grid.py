@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from microcosmos.spec import Spec
 
-from ..core.errors import Refused, field_errors, invalid_input
+from ..core.errors import ProblemError, field_errors, invalid_input
 from ..core.schemas import FieldError
 from ..runs.schemas import NAME
 from ..specs.parsing import Parse
@@ -36,7 +36,7 @@ class Case:
 def cases_of(
     document: dict[str, Any], asked: Mapping[str, Sequence[Any]], parse: Parse
 ) -> list[Case]:
-    """Every combination, the last field fastest; `Refused` with all that is wrong with any."""
+    """Return every combination, the last field fastest; raise all errors as one."""
     cases: list[Case] = []
     errors: dict[str, FieldError] = {}
     for places in product(*(range(len(values)) for values in asked.values())):
@@ -94,9 +94,9 @@ def moved(error: FieldError, field: str, before: str = "") -> FieldError:
     return error.model_copy(update={"field": field, "message": message})
 
 
-def refused(errors: list[FieldError]) -> Refused:
+def refused(errors: list[FieldError]) -> ProblemError:
     problem = invalid_input(errors)
-    return Refused(problem.status, problem.title, problem.detail, problem.errors)
+    return ProblemError(problem.status, problem.title, problem.detail, problem.errors)
 
 
 def run_name(name: str | None, values: Mapping[str, Any], seed: int | None) -> str | None:

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import Spec
 
-from ..core.errors import Refused, bad_creature, brief, field_errors
+from ..core.errors import ProblemError, bad_creature, brief, field_errors
 from ..core.schemas import FieldError
 from ..creatures import initial
 from ..runs.submission import TOO_LARGE, too_large
@@ -50,7 +50,7 @@ class Plan:
 
 
 def plan(sent: SweepSent, parse: Parse) -> Plan:
-    """The runs that are asked for; `Refused` where any of them could not be."""
+    """The runs that are asked for; `ProblemError` where any of them could not be."""
     base = _base(sent.spec, parse)
     document = base.model_dump(mode="json")
     _refuse_paths(document, sent.grid)
@@ -127,7 +127,7 @@ def _refuse_many(sent: SweepSent, seeds: int) -> None:
 
 
 def refuse_too_large(plan: Plan, limit: int) -> None:
-    """Raise `Refused` where no worker has the memory for one of the runs."""
+    """Raise `ProblemError` where no worker has the memory for one of the runs."""
     errors: dict[str, FieldError] = {}
     for case in plan.cases:
         if found := too_large(case.spec, limit):
@@ -135,11 +135,11 @@ def refuse_too_large(plan: Plan, limit: int) -> None:
             errors.setdefault(placed.field, placed)
     if errors:
         told = list(errors.values())[:TOLD]
-        raise Refused(422, TOO_LARGE, "; ".join(error.message for error in told), told)
+        raise ProblemError(422, TOO_LARGE, "; ".join(error.message for error in told), told)
 
 
 def refuse_origins(session: Session, plan: Plan) -> None:
-    """Raise `Refused` where one of the runs cannot begin from what it names."""
+    """Raise `ProblemError` where one of the runs cannot begin from what it names."""
     alike = {case.spec.model_dump_json(include=initial.DECISIVE): case for case in plan.cases}
     for case in alike.values():
         try:

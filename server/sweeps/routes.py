@@ -10,12 +10,14 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import estimate
 
+from ..auth.principal import PrincipalDep
+from ..core.openapi import described
 from ..core.uploads import json_object
 from ..deletion import bin
 from ..estimates import position
 from ..estimates.eta import paces_of
 from ..runs import lifecycle
-from ..runs.routes import CHANGE_BYTES, SPEC_BYTES, Key, described
+from ..runs.routes import CHANGE_BYTES, SPEC_BYTES, Key
 from ..runs.submission import memory_limit
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
@@ -56,15 +58,19 @@ PlanDep = Annotated[Plan, Depends(plan_sent)]
 
 @router.post("", status_code=202, openapi_extra=body)
 def create_sweep(
-    plan: PlanDep, services: ServicesDep, response: Response, idempotency_key: Key = None
+    plan: PlanDep,
+    services: ServicesDep,
+    principal: PrincipalDep,
+    response: Response,
+    idempotency_key: Key = None,
 ) -> SweepRead:
     """Queue all runs of a sweep, or none. The same key with the same request is the same."""
-    sweep_id, new = earlier_sweep(services, plan, idempotency_key), False
+    sweep_id, new = earlier_sweep(services, plan, idempotency_key, principal.token), False
     if sweep_id is None:
         with services.sessions.read() as session:
             limit = memory_limit(services, session)
         refuse_too_large(plan, limit)
-        sweep_id, new = submit_sweep(services, plan, idempotency_key)
+        sweep_id, new = submit_sweep(services, plan, idempotency_key, principal.token)
     response.status_code = 202 if new else 200
     response.headers["Location"] = f"/api/v1/sweeps/{sweep_id}"
     return _current(services, sweep_id)

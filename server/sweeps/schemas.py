@@ -8,7 +8,8 @@ from pydantic import BeforeValidator, Field, StringConstraints
 
 from ..core.schemas import Wire
 from ..estimates.schemas import AheadRead, PaceRead
-from ..runs.schemas import Name, Status
+from ..runs.schemas import Name
+from ..tables import Status
 
 MOST = 1000
 """Runs that one request may ask for."""

@@ -13,7 +13,7 @@ from sqlalchemy import ColumnElement, and_, or_, select
 from sqlalchemy.orm import Session
 
 from ..auth import owners
-from ..core.errors import Refused
+from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..runs import lifecycle
 from ..runs.lifecycle import KEPT, Conflict
@@ -66,7 +66,7 @@ def _after(cursor: str) -> ColumnElement[bool]:
         needed = "the `next` of an earlier answer"
         detail = f"`cursor` must be {needed}; got {cursor!r:.80}."
         error = FieldError(field="cursor", message=detail, needed=needed, got=cursor)
-        raise Refused(422, "Invalid input", detail, [error]) from None
+        raise ProblemError(422, "Invalid input", detail, [error]) from None
     same = and_(Sweep.created_at == created, Sweep.id < identity)
     return or_(Sweep.created_at < created, same)
 

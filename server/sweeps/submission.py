@@ -23,16 +23,18 @@ from .steering import announce
 log = logging.getLogger(__name__)
 
 
-def submit_sweep(services: Services, plan: Plan, key: str | None = None) -> tuple[UUID, bool]:
+def submit_sweep(
+    services: Services, plan: Plan, key: str | None = None, owner: UUID | None = None
+) -> tuple[UUID, bool]:
     """The sweep of a plan and whether it is new; the same key with the same plan is one."""
     with services.sessions.read() as session:
         refuse_origins(session, plan)
     try:
         with services.sessions.write.begin() as session:
-            sweep = _write(session, plan, key)
+            sweep = _write(session, plan, key, owner)
             runs = _write_runs(session, plan, sweep)
     except IntegrityError:
-        known = earlier_sweep(services, plan, key)
+        known = earlier_sweep(services, plan, key, owner)
         if known is None:
             raise
         return known, False
@@ -45,23 +47,26 @@ def submit_sweep(services: Services, plan: Plan, key: str | None = None) -> tupl
     return sweep.id, True
 
 
-def earlier_sweep(services: Services, plan: Plan, key: str | None) -> UUID | None:
-    """The sweep that a key stands for already; `Refused` where another request did."""
-    known = idempotency.earlier(services, key, _request(plan))
+def earlier_sweep(
+    services: Services, plan: Plan, key: str | None, owner: UUID | None
+) -> UUID | None:
+    """The sweep that a key stands for already; `ProblemError` where another request did."""
+    known = idempotency.earlier(services, key, owner, _request(plan))
     return known.sweep if known else None
 
 
-def _write(session: Session, plan: Plan, key: str | None) -> Sweep:
+def _write(session: Session, plan: Plan, key: str | None, owner: UUID | None) -> Sweep:
     sweep = Sweep(
         experiment=plan.spec.experiment,
         name=plan.name,
         spec=plan.spec.model_dump(mode="json"),
         seeds=plan.seeds,
         grid=plan.grid,
+        owner=owner,
     )
     session.add(sweep)
     session.flush()
-    idempotency.remember(session, key, _request(plan), sweep=sweep.id)
+    idempotency.remember(session, key, owner, _request(plan), sweep=sweep.id)
     return sweep
 
 
@@ -78,6 +83,7 @@ def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[Run]:
             version=VERSION,
             name=name,
             sweep=sweep.id,
+            owner=sweep.owner,
             place=place,
             created_at=now + timedelta(microseconds=place),
             queued_at=now + timedelta(microseconds=place),

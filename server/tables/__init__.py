@@ -32,6 +32,7 @@ from .runs import (
     STATUSES,
     TERMINAL,
     Run,
+    Status,
 )
 from .shares import Share
 from .sweeps import Sweep
@@ -77,6 +78,7 @@ __all__ = [
     "Run",
     "Sha256",
     "Share",
+    "Status",
     "Sweep",
     "Token",
     "Worker",

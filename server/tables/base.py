@@ -5,10 +5,9 @@ from typing import Any, ClassVar
 from uuid import UUID
 
 from sqlalchemy import JSON, Double, LargeBinary, MetaData
-from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy.orm import DeclarativeBase, Mapped
 from sqlalchemy.types import TypeDecorator
 
-from ..auth.principal import owner
 from ..core.database import Moment
 
 
@@ -47,7 +46,7 @@ class Base(DeclarativeBase):
 
 
 class Owned:
-    """What belongs to whoever made it: the holder of a token, else nobody."""
+    """A row with an owner: the token of whoever created it, or None without a token."""
 
-    owner: Mapped[UUID | None] = mapped_column(default=owner)
-    """A token, of which none is ever deleted: what is revoked still has a name."""
+    owner: Mapped[UUID | None]
+    """The id of a token. Tokens are never deleted, so a revoked one still has a name."""

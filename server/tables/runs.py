@@ -1,7 +1,7 @@
 """Runs: what is to be computed, and how each stands."""
 
 from datetime import datetime
-from typing import Any
+from typing import Any, Literal
 from uuid import UUID, uuid4
 
 from sqlalchemy import JSON, BigInteger, CheckConstraint, Index, String, Text
@@ -10,6 +10,7 @@ from sqlalchemy.orm import Mapped, mapped_column
 from ..core.database import clock
 from .base import Base, Owned
 
+Status = Literal["queued", "running", "paused", "finished", "failed", "cancelled"]
 QUEUED, RUNNING, PAUSED = "queued", "running", "paused"
 FINISHED, FAILED, CANCELLED = "finished", "failed", "cancelled"
 STATUSES = (QUEUED, RUNNING, PAUSED, FINISHED, FAILED, CANCELLED)

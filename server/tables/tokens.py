@@ -1,4 +1,4 @@
-"""Who may use the server."""
+"""The table of tokens."""
 
 from datetime import datetime
 from uuid import UUID, uuid4
@@ -6,17 +6,19 @@ from uuid import UUID, uuid4
 from sqlalchemy import CheckConstraint, Index, String, text
 from sqlalchemy.orm import Mapped, mapped_column
 
-from ..auth.principal import RANKS
 from ..core.database import clock
 from .base import Base, Sha256
 
+SCOPES = ("read", "write", "admin")
+"""Each scope includes those before it."""
+
 
 class Token(Base):
-    """Leave to use the server: of the secret only the hash, so that nobody can read it here."""
+    """A token. The row holds the hash of the secret, never the secret."""
 
     __tablename__ = "tokens"
     __table_args__ = (
-        CheckConstraint(f"scope IN {RANKS}", name="scope"),
+        CheckConstraint(f"scope IN {SCOPES}", name="scope"),
         Index(
             None,
             "name",

@@ -2,10 +2,10 @@
 
 from fastapi import APIRouter
 
-from ..runs.overview import carried
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Run, Worker
 from . import registry
+from .carried import carried
 from .schemas import PluginRead, WorkerRead
 
 router = APIRouter(prefix="/workers", tags=["workers"])

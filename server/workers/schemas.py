@@ -1,11 +1,11 @@
-"""Workers, the queue, and how the server is."""
+"""Wire types of workers and of the runs that they carry out."""
 
 from datetime import datetime
 from typing import Literal
 from uuid import UUID
 
 from ..core.schemas import Wire
-from ..runs.schemas import Status
+from ..tables import Status
 
 
 class Carried(Wire):
@@ -58,29 +58,3 @@ class WorkerRead(Wire):
     heartbeat_at: datetime
     plugins: list[PluginRead]
     unloaded: list[UnloadedRead]
-
-
-class Waiting(Carried):
-    waiting: str
-    """Why it waits, in words."""
-    queued_at: datetime
-    memory_bytes: int | None
-    """What it needs, as far as can be said."""
-
-
-class QueueRead(Wire):
-    total: int
-    """Among them those that a worker is about to begin."""
-    items: list[Waiting]
-    """The first ones, in the order in which they will be taken."""
-
-
-class Health(Wire):
-    status: Literal["ok"] = "ok"
-    help: bool
-    """The documentation is served at `/help/`."""
-
-
-class Readiness(Wire):
-    database: Literal["ok", "unreachable"]
-    redis: Literal["ok", "unreachable"]

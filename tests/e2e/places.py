@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import httpx
 from playwright.sync_api import Page
 
-NOWHERE = "Nothing lives here"
+NOWHERE = "Page not found"
 UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
 """What stands for something that is still on its way."""
 CALM_S = 0.3

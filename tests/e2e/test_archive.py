@@ -207,13 +207,13 @@ def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, shared_page: Page
 def test_a_first_visit_is_guided_once(shared, shared_page: Page):
     page = shared_page
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
-    guide = page.get_by_role("complementary", name="A short guide")
+    guide = page.get_by_role("complementary", name="Tour")
     expect(guide).to_contain_text("of 256 kinds have one", timeout=FAST)
     for title in ("What a kind is", "How good they are", "How it came to be", "Look closer"):
         guide.get_by_role("button", name="Next").press("Enter")
         expect(guide.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
     expect(page.locator("#map-reading")).to_contain_text("Fitness")
-    guide.get_by_role("button", name="Look around").press("Enter")
+    guide.get_by_role("button", name="Finish").press("Enter")
     expect(guide).not_to_be_visible()
     page.reload()
     expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)

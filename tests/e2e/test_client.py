@@ -18,7 +18,7 @@ from small import TINY
 from microcosmos.archive.file import load
 from microcosmos.client import Client, Replay
 
-README = Path(__file__).parents[2] / "README.md"
+GUIDE = Path(__file__).parents[2] / "docs" / "client.md"
 
 
 @pytest.mark.e2e
@@ -38,9 +38,9 @@ def test_a_run_by_commands_and_its_best_by_the_client(shared, common, tmp_path, 
 
 
 @pytest.mark.e2e
-def test_the_clients_example_in_the_readme_works_as_it_stands(shared, common, tmp_path):
-    examples = re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL)
-    (example,) = (text for text in examples if "Client" in text)
+def test_the_clients_example_in_its_guide_works_as_it_stands(shared, common, tmp_path):
+    examples = re.findall(r"```python\n(.*?)```", GUIDE.read_text(), re.DOTALL)
+    (example,) = (text for text in examples if "mc.Client" in text)
     spec = '{"experiment": "quality-diversity", "search": {"generations": 10}}'
     for written, small in ((spec, repr(TINY)), ("http://127.0.0.1:8000", shared.product.url)):
         assert written in example

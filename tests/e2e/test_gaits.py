@@ -80,7 +80,7 @@ def read_the_warnings(page: Page) -> None:
 
 
 def open_a_point(page: Page) -> str:
-    page.get_by_role("button", name="The paper’s").click()
+    page.get_by_role("button", name="Paper").click()
     point = page.get_by_role("link", name=re.compile("^Worm at ν = 1,"))
     point.scroll_into_view_if_needed()
     box = point.bounding_box()

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from drive import Installation
 from rich.console import Console
 
-from microcosmos.archive.encoding import decode, encode
-from microcosmos.archive.naming import name
+from microcosmos.naming import decode, encode, name
 from microcosmos.spec import parse
 
 SEEDS = (0, 1, 2)

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from microcosmos import genomes, neat
-from microcosmos.archive.encoding import encode
+from microcosmos.naming import encode
 
 ROWS, COLUMNS = 48, 96
 """Places along the body and moments of the page's pictures."""

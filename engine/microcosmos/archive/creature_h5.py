@@ -9,13 +9,12 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..naming import canonical, decode
 from ..spec import shape
 from . import file as hdf5
 from . import hdf5_guard
 from .creature import parse, scene_of
-from .encoding import decode
 from .file import Tree
-from .naming import canonical
 
 FORMAT = "microcosmos-creature-hdf5/1"
 

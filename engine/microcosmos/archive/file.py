@@ -8,6 +8,8 @@ import h5py
 import numpy as np
 
 FORMAT = "microcosmos-archive/1"
+HDF5 = b"\x89HDF\r\n\x1a\n"
+"""The first bytes of every HDF5 file."""
 
 Tree = dict[str, Any]
 

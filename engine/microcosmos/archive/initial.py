@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import count
 from typing import Any
 
+from ..naming import decode, encode
 from ..spec import Direct, Evolution, Grown, Weights, shape
 from ..spec.control import Control
-from .cppn_genes import Connections, Nodes, check_genes
+from ..spec.creature import Identity
+from ..spec.creature.cppn_genes import Connections, Nodes, check_genes
 from .creature import CreatureError
-from .encoding import decode, encode
-from .identity import Identity
 
 Genes = dict[str, Any]
 """The genome of a creature's identity."""

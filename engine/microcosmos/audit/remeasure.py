@@ -7,6 +7,7 @@ import numpy as np
 
 from ..archive import creature
 from ..device import device_kind
+from ..spec.creature import fitness_of
 from .reproducibility import check
 
 
@@ -20,7 +21,7 @@ def measurement(file: Mapping[str, Any]) -> dict[str, Any]:
     fitness = file["measured"]["fitness"]
     task = creature.Identity.model_validate(file["identity"]).task
     # Compilers may fuse the sum that fitness is: figures that are the same settle it.
-    repeated = fitness if found.exact else creature.fitness_of(task, found.repeated)
+    repeated = fitness if found.exact else fitness_of(task, found.repeated)
     return {
         "creature": file["sha256"],
         "exact": found.exact,

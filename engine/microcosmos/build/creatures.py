@@ -4,8 +4,7 @@ from typing import Any
 
 import jax.numpy as jnp
 
-from .. import device, search, spec
-from ..archive import naming
+from .. import device, naming, search, spec
 from ..spec.control import Sight
 from .scene import build_limits, build_stroke, build_task
 

@@ -70,7 +70,7 @@ def swimmer_of(gait: spec.Gait) -> swimmers.Swimmer:
     plugin = plugins.find(("gait",), gait.swimmer, gait.own.source)
     found = plugin(settings=gait.own.settings)
     if not isinstance(found, swimmers.Swimmer):
-        raise plugins.Broken(f"{gait.swimmer} must give a `creatures.Swimmer`, got another")
+        raise plugins.Broken(f"{gait.swimmer} must give a `swimmers.Swimmer`, got another")
     return found
 
 

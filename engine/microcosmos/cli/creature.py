@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from ..archive.atomic import write_whole
+from ..archive.creature import CreatureError, parse
 from ..plugins import Broken, Missing
 from .app import CACHE, app, fail
 from .modules import Modules, load_modules
@@ -23,7 +25,6 @@ def replay(
 ) -> None:
     """Simulate a creature file again."""
     load_modules(module)
-    from ..archive.creature import CreatureError
     from ..device import prepare
 
     prepare(cache=CACHE)
@@ -46,8 +47,6 @@ def audit(
 ) -> None:
     """Audit the physics of a creature: does it still swim on a finer lattice?"""
     load_modules(module)
-    from ..archive.atomic import write_whole
-    from ..archive.creature import CreatureError, parse
     from ..device import prepare
 
     prepare(cache=CACHE)
@@ -82,8 +81,6 @@ def gradient(
 ) -> None:
     """Measure how far the gradient of a creature's fitness or of a measure can be trusted."""
     load_modules(module)
-    from ..archive.atomic import write_whole
-    from ..archive.creature import CreatureError, parse
     from ..device import prepare
 
     prepare(cache=CACHE)
@@ -101,7 +98,6 @@ def gradient(
 
 
 def _check(file: Path) -> None:
-    from ..archive.creature import parse
     from ..audit.reproducibility import check
 
     result = check(parse(file.read_bytes()))
@@ -117,8 +113,6 @@ def _check(file: Path) -> None:
 
 
 def _record(file: Path, out: Path) -> None:
-    from ..archive.atomic import write_whole
-    from ..archive.creature import parse
     from ..viz.replay import record
 
     write_whole(out, record(parse(file.read_bytes())))

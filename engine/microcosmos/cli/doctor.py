@@ -1,14 +1,10 @@
 """The command `doctor`."""
 
-from typing import TYPE_CHECKING
-
 import typer
 
+from ..doctor import Finding, examine
 from .app import CACHE, app
 from .remote import Json, Token, Url, show, stdout
-
-if TYPE_CHECKING:
-    from ..doctor import Finding
 
 COLOURS = {"ok": "green", "warning": "yellow", "problem": "red"}
 
@@ -16,8 +12,6 @@ COLOURS = {"ok": "green", "warning": "yellow", "problem": "red"}
 @app.command()
 def doctor(json: Json = False, url: Url = None, token: Token = None) -> None:
     """Check devices, memory, disk, Redis, database and server, and say what to do."""
-    from ..doctor import examine
-
     found: list[Finding] = []
     for finding in examine(url, token, CACHE):
         found.append(finding)

@@ -4,10 +4,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.progress import Progress
 from typer.core import TyperGroup
 
-from ..archive.file import load
-from ..archive.naming import HDF5
+from ..archive.creature import parse
+from ..archive.file import HDF5, load
+from ..viz.figures import drawing, experiments
+from ..viz.files import export
 from .app import CACHE, app, console, fail
 from .modules import Modules, load_modules
 
@@ -88,8 +91,6 @@ def archive(
     palette: Palette = "viridis",
 ) -> None:
     """Draw the map of an archive: bins, or the cells of a tessellation."""
-    from ..viz.figures import drawing
-
     how = drawing.Print(width, dpi, caption, latex, palette)
     _written(drawing.archive, file, _beside(file, out, "archive"), how, _names(axes), colour)
 
@@ -113,8 +114,6 @@ def curves(
     latex: Tex = False,
 ) -> None:
     """Draw the curves of runs: the median and a band over the seeds of each spec."""
-    from ..viz.figures import drawing
-
     *given, out = files
     if not given:
         fail(f"FILE... OUT needs an archive file and a figure to write; got only {out}")
@@ -141,12 +140,10 @@ def sheet(
 ) -> None:
     """Draw a contact sheet of gaits: the fittest swimmer of each region of the archive."""
     load_modules(module)
-    from rich.progress import Progress
 
     from ..device import prepare
 
     prepare(cache=CACHE)
-    from ..viz.figures import drawing
 
     how = drawing.Print(width, dpi, caption, latex, palette)
     with Progress(console=console, transient=True) as bar:
@@ -178,8 +175,6 @@ def lineage(
     palette: Palette = "viridis",
 ) -> None:
     """Draw the pedigree of an archive's elites, and the ancestors of one of them."""
-    from ..viz.figures import drawing
-
     how = drawing.Print(width, dpi, caption, latex, palette)
     _written(drawing.tree, file, _beside(file, out, "lineage"), how, cell)
 
@@ -206,19 +201,13 @@ def _draw(file: Path, out: Path) -> None:
     """A creature file is simulated first; the file of a run holds its table or its archive."""
     data = file.read_bytes()
     if data.startswith(HDF5) and "archive" in load(data)[0]:
-        from ..viz.figures import drawing
-
         drawing.archive(file, out, drawing.Print(), None, "fitness")
         return
     if data.startswith(HDF5):
-        from ..viz.figures import experiments
-
         experiments.save(experiments.of(data), out)
         return
-    from ..viz.files import export
 
     if data[:1] == b"{":
-        from ..archive.creature import parse
         from ..device import prepare
         from ..viz.replay import record
 

@@ -9,11 +9,11 @@ from pydantic import ValidationError
 
 from ..archive import creature_h5, initial
 from ..archive.creature import CreatureError, parse
-from ..archive.file import load
-from ..archive.naming import HDF5
+from ..archive.file import HDF5, load
 from ..plugins import Broken, Missing
 from ..spec import Evolution, Spec
 from ..spec import parse as parse_spec
+from ..viz.figures.reading import read
 from .app import fail
 from .specs import said
 
@@ -84,7 +84,6 @@ def _elites(data: bytes) -> list[CreatureFile]:
     import jax
 
     from ..build import build
-    from ..viz.figures.reading import read
 
     found = read(data)
     experiment = build(found.spec)

@@ -10,6 +10,7 @@ from .app import app
 from .monitor import ended
 from .remote import RUNS, Id, Ids, Json, Token, Url, about, found, reaching, say, show, title
 from .submit import Name, Set, Watch, tell
+from .sweeps import cases, members, table
 
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask for confirmation.")]
 
@@ -130,16 +131,12 @@ def sweep(
     token: Token = None,
 ) -> None:
     """Print the results of a sweep: median and quartiles of each case."""
-    from .sweeps import cases, members
-
     with reaching(url, token) as client:
         one = client.sweep(id)
         rows = members(one) if runs else cases(one)
     if json:
         show(rows)
     else:
-        from .sweeps import table
-
         table(rows)
 
 

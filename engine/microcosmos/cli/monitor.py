@@ -1,17 +1,16 @@
 """Commands that read runs on a server: list, watch, pull."""
 
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from rich.text import Text
 
+from ..client import Run, Sweep, formatting
 from .app import app
 from .remote import RUNS, Id, Json, Token, Url, found, reaching, say, show
 from .tables import shown
-
-if TYPE_CHECKING:
-    from ..client import Run, Sweep
 
 COLOURS = {"finished": "green", "failed": "red", "running": "cyan", "paused": "yellow"}
 COLUMNS = ("id", "name", "experiment", "status", "done", "QD score", "coverage", "best")
@@ -50,8 +49,6 @@ def runs(
     token: Token = None,
 ) -> None:
     """List runs, newest first."""
-    from itertools import islice
-
     with reaching(url, token) as client:
         like = client.runs(
             status=status or (),
@@ -118,8 +115,6 @@ def ended(watched: "Run | Sweep") -> int:
 
 
 def _row(record: dict[str, Any]) -> list[Any]:
-    from ..client import formatting
-
     status = record["status"]
     figures = [
         formatting.figure(name, record[name]) for name in ("qd_score", "coverage", "best")

@@ -2,14 +2,15 @@
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from ..archive.atomic import write_whole
+from ..archive.creature import parse
+from ..viz import networks
+from ..viz.networks import Network, load_tensorneat, of_creature
 from .app import app, fail
-
-if TYPE_CHECKING:
-    from ..viz.networks import Network
 
 ZIP = b"PK"
 """The first bytes of a TensorNEAT genome."""
@@ -50,8 +51,6 @@ def network(
         if out is None:
             sys.stdout.buffer.write(data)
         else:
-            from ..archive.atomic import write_whole
-
             write_whole(out, data)
             print(out)
     except (ValueError, OSError) as error:
@@ -59,9 +58,6 @@ def network(
 
 
 def _read(file: Path) -> "Network":
-    from ..archive.creature import parse
-    from ..viz.networks import load_tensorneat, of_creature
-
     data = file.read_bytes()
     if data[:2] == ZIP:
         return load_tensorneat(data)[0]
@@ -69,8 +65,6 @@ def _read(file: Path) -> "Network":
 
 
 def _rendered(network: "Network", form: str) -> bytes:
-    from ..viz import networks
-
     if form == "tensorneat":
         return networks.dump_tensorneat(networks.write_tensorneat(network))
     texts = {

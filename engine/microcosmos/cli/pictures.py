@@ -4,6 +4,7 @@ from hashlib import md5
 from pathlib import Path
 from typing import Annotated
 
+import httpx
 import typer
 
 from ..archive.atomic import write_whole
@@ -59,8 +60,6 @@ def mnist(
     ),
 ) -> None:
     """Download and verify the test images and labels of MNIST."""
-    import httpx
-
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -8,6 +8,7 @@ import typer
 from pydantic import ValidationError
 
 from ..archive.creature import CreatureError, parse
+from ..archive.table import read_table
 from ..spec import Archive, Refinement
 from .app import CACHE, app, console, fail
 from .modules import Modules, load_modules
@@ -78,8 +79,6 @@ def _archive(like: str | None) -> Archive:
 
 def _tell(path: Path) -> None:
     """Print the creature before and after the refinement."""
-    from ..archive.table import read_table
-
     rows = read_table(path.read_bytes()).rows
     before, after = rows[0], rows[-1]
     print(f"{'':>20}  {'before':>12}  {'after':>12}")

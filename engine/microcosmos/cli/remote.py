@@ -4,15 +4,13 @@ import json
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 
+from ..client import Client, NotFound, Refused, Run, ServerError, Sweep
 from .app import console
-
-if TYPE_CHECKING:
-    from ..client import Client, Run, Sweep
 
 RUNS = "Runs on a server"
 SHARING = "Sharing and access"
@@ -47,8 +45,6 @@ Ids = Annotated[
 @contextmanager
 def reaching(url: str | None, token: str | None) -> Iterator["Client"]:
     """Yield a client; print a failure to standard error and exit with status 1."""
-    from ..client import Client, ServerError
-
     try:
         with Client(url, token) as client:
             yield client
@@ -78,8 +74,6 @@ def found(client: "Client", id: str, deleted: bool = False) -> "Run | Sweep":
 
     Raises `NotFound`, and `Refused` where the id begins one of each.
     """
-    from ..client import NotFound, Refused
-
     both: list[Run | Sweep] = []
     for look in (client.run, client.sweep):
         with suppress(NotFound):

@@ -1,16 +1,14 @@
 """Submitting runs and sweeps to a server."""
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from ..client import Client, Run, Sweep, specs
 from . import overrides
 from .app import app
 from .monitor import ended
 from .remote import RUNS, Json, Token, Url, reaching, say, show
-
-if TYPE_CHECKING:
-    from ..client import Client, Run, Sweep
 
 Set = Annotated[
     list[str] | None,
@@ -61,8 +59,6 @@ def _submitted(
     grid: dict[str, list[Any]],
     name: str | None,
 ) -> "Run | Sweep":
-    from ..client import specs
-
     document = overrides.applied(specs.document(client.connection, spec), settings)
     if seeds is None and not grid:
         return client.submit(document, name=name)

@@ -1,11 +1,9 @@
 """The table of a sweep."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ..client import Sweep
 from .tables import shown
-
-if TYPE_CHECKING:
-    from ..client import Sweep
 
 MEASURES = ("qd_score", "coverage", "best")
 

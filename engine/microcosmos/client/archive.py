@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..archive.export import scaled, unit
 from . import columns, maps
 from .connection import Connection
 from .creature import Creature
@@ -77,8 +78,6 @@ class Archive:
 
     def columns(self) -> dict[str, Any]:
         """The columns of the data frame."""
-        from ..archive.export import scaled, unit  # It loads h5py.
-
         place = unit if self.kind == "cvt" else scaled
         measures = {
             f"measures_{i}": place(self.descriptors[:, i], axis)

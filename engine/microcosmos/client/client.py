@@ -10,7 +10,8 @@ from uuid import uuid4
 
 import httpx
 
-from ..archive.naming import HDF5
+from ..archive import creature_h5
+from ..archive.file import HDF5
 from . import specs
 from .connection import Connection
 from .creature import Creature
@@ -242,8 +243,6 @@ def several(values: str | Sequence[str]) -> list[str]:
 
 def creature_file(path: Path) -> dict[str, Any]:
     """What is in a file. Raises `ValueError` where it is no creature's."""
-    from ..archive import creature_h5  # It loads all that a spec can be.
-
     data = path.read_bytes()
     try:
         return creature_h5.load(data) if data.startswith(HDF5) else json.loads(data)

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 
+from ..archive.file import load
 from .columns import Columns
 
 
@@ -13,8 +14,6 @@ def entries(data: bytes) -> Columns:
 
     Raises `ValueError` where the file holds no archive.
     """
-    from ..archive.file import load  # It loads h5py.
-
     tree, attributes = load(data)
     if "lineage" not in tree:
         raise ValueError("a run that fills an archive is needed for a lineage; got a table")

@@ -8,8 +8,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .. import search
-from ..archive import file, naming
+from .. import naming, search
+from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Encoding, Vector
 from . import table_file

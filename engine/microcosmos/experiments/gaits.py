@@ -7,8 +7,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from .. import search, units
-from ..archive import naming
+from .. import naming, search, units
 from ..archive.report import Report, Row
 from . import table_file
 from .table_file import Table

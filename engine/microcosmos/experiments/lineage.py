@@ -8,8 +8,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from .. import search
-from ..archive import naming
+from .. import naming, search
 from ..archive.report import Elite
 from ..genomes import Encoding, Genotype, take
 from .state import Lineage, Plan, State

@@ -13,8 +13,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .. import search
-from ..archive import file, naming
+from .. import naming, search
+from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Encoding, Genotype, Vector, take
 from ..search.gradients import genes_of, with_genes

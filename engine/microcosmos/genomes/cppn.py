@@ -18,7 +18,7 @@ Points = Float[Array, "_ point"]
 BOUND = 1e6
 """Values are kept within this, so that a chain of squares cannot overflow into NaN."""
 
-# The order is the one of `archive.encoding.ACTIVATIONS`, which a test compares.
+# The order is the one of `naming.ACTIVATIONS`, which a test compares.
 ACTIVATIONS = {
     "identity": lambda z: z,
     "sigmoid": jax.nn.sigmoid,

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..archive.encoding import ACTIVATIONS, decode, encode
+from ..naming import ACTIVATIONS, decode, encode
 from .cppn import CPPN
 
 T = TypeVar("T")

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import PRNGKeyArray
 
-from ..archive.encoding import decode, encode
+from ..naming import decode, encode
 from .genotype import Vector
 
 

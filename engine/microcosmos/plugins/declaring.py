@@ -56,7 +56,7 @@ def body(name: str, *, title: str, nodes: int, settings: Settings = None):
 
 
 def gait(name: str, *, title: str, nodes: int, settings: Settings = None):
-    """Declares what gives a `creatures.Swimmer`, a body with its gait, in NumPy."""
+    """Declares what gives a `swimmers.Swimmer`, a body with its gait, in NumPy."""
     return _declared(Draft("gait", name, title, sizes={"nodes": nodes}, settings=settings))
 
 

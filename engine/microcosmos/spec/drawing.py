@@ -8,6 +8,7 @@ import numpy as np
 from .. import bodies
 from . import targets
 from .body import Body, made_elsewhere, shape
+from .creature import scene_of
 from .evolution import Evolution
 from .experiments import Spec
 from .folding import Folding
@@ -67,8 +68,6 @@ def _(spec: Evolution) -> Drawing:
 
 @drawing.register
 def _(spec: Refinement) -> Drawing:
-    from ..archive.creature import scene_of  # Which reads specs itself.
-
     scene = scene_of(parsed(spec.creature))
     return _alone(scene.world, scene.body)
 

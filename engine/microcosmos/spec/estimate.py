@@ -7,6 +7,7 @@ from math import ceil
 from ..bodies.unfolding import MOST as LAID_OUT
 from . import reverse
 from .body import about as shape
+from .creature import room, scene_of
 from .encodings import Controller, Direct, Grown, Weights, genes
 from .evolution import Evolution
 from .experiments import Spec
@@ -83,8 +84,6 @@ def _(spec: Folding) -> Estimate:
 
 @estimate.register
 def _(spec: Refinement) -> Estimate:
-    from ..archive.creature import room, scene_of  # Which reads specs itself.
-
     file = parsed(spec.creature)
     scene = scene_of(file)
     cells, steps = scene.world.width * scene.world.height, scene.task.steps

@@ -6,6 +6,8 @@ from typing import Any, Literal, Self
 from pydantic import Field, model_validator
 
 from .base import Part, unit
+from .creature import CreatureError
+from .creature import check as checked
 from .search import Archive, refuse_flat_axes
 
 
@@ -45,10 +47,8 @@ class Refinement(Part):
 
 def parsed(creature: Mapping[str, Any]) -> dict[str, Any]:
     """The creature file, checked; raises `ValueError` with the field."""
-    from ..archive.creature import CreatureError, parse  # Which reads specs itself.
-
     try:
-        return parse(creature)
+        return checked(creature)
     except CreatureError as error:
         raise ValueError(f"`creature.{error.field}` {error.needed}; got another") from error
 

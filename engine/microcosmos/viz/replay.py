@@ -20,14 +20,15 @@ from jaxtyping import Array
 
 from .. import plugins, search, world
 from ..archive import creature
-from ..archive.naming import REPLAY_FORMAT
 from ..build import build_encoding, build_measures, build_stroke, build_task
 from ..device import device_kind
 from ..filaments import Rest
 from ..fluid import vorticity
 from ..genomes import Drive
 from ..spec import Gait, Scene, Task, shape
+from ..spec.creature import fitness_of
 from ..spec.estimate import placements, simulation
+from .replay_file import REPLAY_FORMAT
 
 FRAMES = 250
 """At most so many frames are kept besides the first, whatever the number of steps."""
@@ -100,7 +101,7 @@ def _comparison(
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
     told = creature.scene_of(file).task
-    fitness = creature.fitness_of(told, replayed) if told == scene.task else None
+    fitness = fitness_of(told, replayed) if told == scene.task else None
     names = list(measured.get("descriptors", ())) or ["bending_effort", "stretching_effort"]
     return {
         "fitness": {

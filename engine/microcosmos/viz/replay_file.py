@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ..archive.naming import REPLAY_FORMAT
+REPLAY_VERSION = 2
+"""The worker records a stored replay of an earlier version again."""
+REPLAY_FORMAT = f"microcosmos-replay/{REPLAY_VERSION}"
 
 
 class ReplayError(ValueError):

@@ -4,7 +4,7 @@ import time
 
 from sqlalchemy.exc import OperationalError
 
-from ...services.services import connect
+from ...core.database import connect
 from ...settings import Settings
 from . import upgrade
 
@@ -13,18 +13,18 @@ PATIENCE, PAUSE = 60.0, 2.0
 
 
 def main() -> None:
-    services = connect(Settings())
+    sessions = connect(Settings().database)
     until = time.monotonic() + PATIENCE
     while True:
         try:
-            upgrade(services.sessions)
+            upgrade(sessions)
             break
         except OperationalError as error:
             if time.monotonic() > until:
                 raise
             print(f"The database does not answer yet: {error.orig}", flush=True)
             time.sleep(PAUSE)
-    services.close()
+    sessions.engine.dispose()
 
 
 if __name__ == "__main__":

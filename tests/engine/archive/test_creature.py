@@ -6,7 +6,7 @@ import json
 import pytest
 
 from microcosmos.archive import creature
-from microcosmos.archive.encoding import encode
+from microcosmos.naming import encode
 
 pytestmark = pytest.mark.fast
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from microcosmos.archive import creature, creature_h5
-from microcosmos.archive.encoding import decode
 from microcosmos.build import build
+from microcosmos.naming import decode
 from microcosmos.spec import parse, shape
 
 SPEC = parse(

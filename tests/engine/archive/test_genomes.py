@@ -7,8 +7,8 @@ import pytest
 
 from microcosmos import spec
 from microcosmos.archive import creature
-from microcosmos.archive.encoding import encode
 from microcosmos.build import frame
+from microcosmos.naming import encode
 
 pytestmark = pytest.mark.fast
 

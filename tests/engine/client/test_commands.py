@@ -8,8 +8,8 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from microcosmos import client
-from microcosmos.cli import app, overrides, tables
+from microcosmos.cli import app, overrides, remote, tables
+from microcosmos.client import Run
 from microcosmos.version import VERSION
 
 SHA = "ab" * 32
@@ -56,7 +56,7 @@ def told(fake, record, monkeypatch):
         **{("POST", f"{run}/{do}"): record for do in ("extend", "fork", "restore", "pause")},
     }
     served = fake(answers)
-    monkeypatch.setattr(client, "Client", lambda *_: served.connect())
+    monkeypatch.setattr(remote, "Client", lambda *_: served.connect())
 
     def carry_out(*arguments: str, code: int = 0, **options: Any) -> Any:
         found = CliRunner().invoke(app, list(arguments), **options)
@@ -90,13 +90,11 @@ def test_what_was_deleted_when_the_answer_was_lost_is_deleted(fake, record):
     path, gone = f"runs/{record['id']}", record | {"deleted_at": "2026-01-01T00:00:00Z"}
     problem = {"content-type": "application/problem+json"}
     there = httpx.Response(404, headers=problem, json={"detail": "It is in the bin."})
-    run = client.Run(
-        fake({("DELETE", path): there, ("GET", path): gone}).client.connection, record
-    )
+    run = Run(fake({("DELETE", path): there, ("GET", path): gone}).client.connection, record)
     assert run.delete().record == gone
     never = fake({("DELETE", path): there, ("GET", path): record})
-    with pytest.raises(client.NotFound):
-        client.Run(never.client.connection, record).delete()
+    with pytest.raises(NotFound):
+        Run(never.client.connection, record).delete()
 
 
 def test_the_version_is_told():

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from microcosmos.archive import creature, file, naming
+from microcosmos import naming
+from microcosmos.archive import creature, file
 from microcosmos.build import build
 from microcosmos.experiments.archive_file import OtherDevice
 from microcosmos.search import FEATURES

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from microcosmos.archive import creature
-from microcosmos.archive.encoding import decode, encode
 from microcosmos.archive.initial import counters, fitting, genes_of, renumbered
 from microcosmos.build import build
 from microcosmos.build.experiments import begun
 from microcosmos.experiments.offspring import born
+from microcosmos.naming import decode, encode
 from microcosmos.search import OPERATORS, never
 from microcosmos.spec import parse
 

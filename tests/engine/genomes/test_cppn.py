@@ -9,8 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import genomes, neat
-from microcosmos.archive import encoding
+from microcosmos import genomes, naming, neat
 
 INPUTS, OUTPUTS = 3, 2
 
@@ -71,7 +70,7 @@ def test_a_network_equals_the_recursion_over_its_genes(networks):
 
 
 def test_activations_have_the_same_order_in_files_and_in_the_engine():
-    assert tuple(genomes.ACTIVATIONS) == encoding.ACTIVATIONS == tuple(FUNCTIONS)
+    assert tuple(genomes.ACTIVATIONS) == naming.ACTIVATIONS == tuple(FUNCTIONS)
 
 
 def test_growing_squares_stay_finite():

@@ -11,11 +11,11 @@ import pytest
 
 from microcosmos import fields, search
 from microcosmos.archive import creature
-from microcosmos.archive.identity import Identity
 from microcosmos.audit.remeasure import measurement
 from microcosmos.audit.reproducibility import check
 from microcosmos.build import build, build_encoding, build_task
 from microcosmos.spec import parse
+from microcosmos.spec.creature.identity import Identity
 from microcosmos.viz.replay import actuator_of, record
 from microcosmos.viz.replay_file import read_replay
 from microcosmos.world import flow

@@ -1,7 +1,6 @@
 """Every route of the application × everybody who may come: who is let in."""
 
 import re
-from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from uuid import uuid4
 
@@ -13,7 +12,7 @@ from microcosmos.archive import creature
 from microcosmos.spec import parse
 from server.app import create_app
 from server.auth import tokens
-from server.auth.principal import ADMIN, CALLER, READ, WRITE
+from server.auth.principal import ADMIN, READ, WRITE
 from server.auth.scopes import METRICS, NEEDS, OWNED, OWNER, PUBLIC, ROOT, need_of
 from server.creatures import storage as creatures
 from server.runs.submission import submit
@@ -133,14 +132,6 @@ def secrets(services) -> dict[str, str | None]:
     return {"none": None, **{who: one.secret for who, one in made.items()}}
 
 
-@contextmanager
-def being(services, secret):
-    """What is made meanwhile belongs to the holder of a token."""
-    known = CALLER.set(tokens.holder(services, secret))
-    yield
-    CALLER.reset(known)
-
-
 @pytest.fixture
 def parameters(services, secrets, spec, identity):
     """Makes what paths name, anew each time where it belongs to somebody: the `owner`."""
@@ -148,18 +139,19 @@ def parameters(services, secrets, spec, identity):
     with services.sessions.write.begin() as session:
         creatures.add(session, file)
 
+    owner = tokens.holder(services, secrets["owner"])
+
     def run() -> str:
-        with being(services, secrets["owner"]):
-            return str(submit(services, parse(spec))[0].id)
+        return str(submit(services, parse(spec), owner=owner.token)[0].id)
 
     def sweep() -> str:
-        with being(services, secrets["owner"]):
-            return str(submit_sweep(services, plan(SweepSent(spec=spec), parse))[0])
+        planned = plan(SweepSent(spec=spec), parse)
+        return str(submit_sweep(services, planned, owner=owner.token)[0])
 
     def share() -> str:
         asked = ShareAsked(creature=file["sha256"], title=uuid4().hex)
-        with being(services, secrets["owner"]), services.sessions.write.begin() as session:
-            return publishing.publish(session, asked)[0].slug
+        with services.sessions.write.begin() as session:
+            return publishing.publish(session, asked, owner)[0].slug
 
     examples = {
         **{name: lambda shape=shape: shape for name, shape in SHAPES.items()},

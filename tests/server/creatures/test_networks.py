@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from microcosmos.archive import creature, naming
+from microcosmos import naming
+from microcosmos.archive import creature
 from server.tables import Creature
 
 TYPES = {

@@ -11,8 +11,8 @@ import pytest
 
 from server.attempts.begin import claim
 from server.events import fanout
-from server.events import stream as events
 from server.runs import lifecycle
+from server.services import event_stream as events
 
 
 def read(lines):

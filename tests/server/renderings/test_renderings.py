@@ -5,7 +5,7 @@ import pytest
 from sqlalchemy import select
 
 from microcosmos.archive import creature
-from microcosmos.archive.naming import REPLAY_VERSION
+from microcosmos.viz.replay_file import REPLAY_VERSION
 from server.renderings import storage as renderings
 from server.tables import REPLAY, Artifact
 

@@ -1,4 +1,4 @@
-/** The frame around every page: where one can go, how the connection is, notes. */
+/** The frame around every page: navigation, connection, notes. */
 
 import { useEffect } from "preact/hooks";
 import { readHealth } from "../api/client";
@@ -10,6 +10,7 @@ import { type Toast, dismissToast, undoLatest, useToasts } from "../store/toasts
 import { DropTarget, OpenButton } from "../ui/DropTarget";
 import { RunsPage } from "../runs/RunsPage";
 import { type PageLocation, useLocation } from "../store/router";
+import { text } from "./text";
 import "./app.css";
 
 const ComparePage = lazy(async () => (await import("../compare/ComparePage")).ComparePage);
@@ -23,13 +24,13 @@ const SweepPage = lazy(async () => (await import("../sweeps/SweepPage")).SweepPa
 const WorkersPage = lazy(async () => (await import("../workers/WorkersPage")).WorkersPage);
 
 const TITLES: Record<string, string> = {
-  runs: "Runs",
-  new: "New run",
-  compare: "Compare",
-  workers: "Workers",
-  shares: "Shares",
-  settings: "Settings",
-  unknown: "Not found",
+  runs: text.runs,
+  new: text.newRun,
+  compare: text.compare,
+  workers: text.workers,
+  shares: text.shares,
+  settings: text.settings,
+  unknown: text.notFound,
 };
 
 export function App() {
@@ -38,8 +39,8 @@ export function App() {
   const unknown = useSignedOut();
   useEffect(() => void loadPrincipal(), []);
   useEffect(() => {
-    const title = unknown ? "Sign in" : TITLES[page];
-    if (title) document.title = `${title} · Microcosmos`;
+    const title = unknown ? text.signIn : TITLES[page];
+    if (title) document.title = text.title(title);
   }, [page, unknown]);
   return (
     <>
@@ -48,7 +49,7 @@ export function App() {
           <svg viewBox="0 0 32 20" aria-hidden="true">
             <path d="M2 11c4-9 8-9 12 0s8 9 12 0c1.3-3 2.5-4.5 4-5" />
           </svg>
-          Microcosmos
+          {text.brand}
         </a>
         {!unknown && <Navigation page={page} />}
       </header>
@@ -59,34 +60,34 @@ export function App() {
   );
 }
 
-/** Where one can go and what one can open, once the server knows who asks. */
+/** The navigation of a signed-in user. */
 function Navigation({ page }: { page: string }) {
   const refusal = useRefusal();
   const health = useFetched(readHealth, []);
   return (
     <>
-      <nav aria-label="Pages">
+      <nav aria-label={text.pages}>
         <a href="/" aria-current={page === "runs" ? "page" : undefined}>
-          Runs
+          {text.runs}
         </a>
         <a href="/new" aria-current={page === "new" ? "page" : undefined}>
-          New run
+          {text.newRun}
         </a>
         <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
-          Workers
+          {text.workers}
         </a>
         <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
-          Shares
+          {text.shares}
         </a>
         <a href="/commons" target="_self">
-          Commons
+          {text.commons}
         </a>
         <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
-          Settings
+          {text.settings}
         </a>
         {health.value?.help && (
           <a href="/help/" target="_self">
-            Help
+            {text.help}
           </a>
         )}
       </nav>
@@ -121,9 +122,9 @@ function Page({ route, query }: PageLocation) {
       return (
         <main>
           <section class="empty card">
-            <h1>Nothing lives here</h1>
+            <h1>{text.noSuchPage}</h1>
             <p>
-              This address belongs to no run and no creature. <a href="/">See all runs.</a>
+              {text.noSuchPageAbout} <a href="/">{text.allRuns}</a>
             </p>
           </section>
         </main>
@@ -132,18 +133,18 @@ function Page({ route, query }: PageLocation) {
 }
 
 const CONNECTIONS = {
-  connecting: "Connecting …",
-  live: "Live",
-  lost: "Connection lost, trying again",
+  connecting: text.connecting,
+  live: text.live,
+  lost: text.lost,
 };
 
 function Connection() {
   const connection = useStore((state) => state.connection);
-  const text = CONNECTIONS[connection];
+  const status = CONNECTIONS[connection];
   return (
-    <span class={`connection ${connection}`} role="status" title={text}>
+    <span class={`connection ${connection}`} role="status" title={status}>
       <span class="dot" aria-hidden="true" />
-      <span class={connection === "lost" ? "" : "wide-only"}>{text}</span>
+      <span class={connection === "lost" ? "" : "wide-only"}>{status}</span>
     </span>
   );
 }
@@ -163,16 +164,16 @@ export function Toasts() {
   );
 }
 
-function ToastNote({ id, text, kind, action }: Toast) {
+function ToastNote({ id, text: message, kind, action }: Toast) {
   return (
     <div class={`toast ${kind}`}>
-      <span>{text}</span>
+      <span>{message}</span>
       {action ? (
         <button onClick={action.run} aria-keyshortcuts="Control+Z" title="Ctrl + Z">
           {action.label}
         </button>
       ) : (
-        <button class="plain" aria-label="Dismiss" onClick={() => dismissToast(id)}>
+        <button class="plain" aria-label={text.dismiss} onClick={() => dismissToast(id)}>
           ✕
         </button>
       )}

@@ -1,4 +1,4 @@
-/** The frame around what strangers may see: they have no runs to go to, and no connection. */
+/** The frame around shared pages, for people without a token. */
 
 import { Toasts } from "./App";
 import { sharedSlug } from "../api/address";
@@ -6,6 +6,7 @@ import { CommonsPage } from "../shares/CommonsPage";
 import { SharedPage } from "../shares/SharedPage";
 import { useLocation } from "../store/router";
 import { NotFound } from "../ui/NotFound";
+import { text } from "./text";
 
 export function PublicApp() {
   const { route, query } = useLocation();
@@ -16,11 +17,11 @@ export function PublicApp() {
           <svg viewBox="0 0 32 20" aria-hidden="true">
             <path d="M2 11c4-9 8-9 12 0s8 9 12 0c1.3-3 2.5-4.5 4-5" />
           </svg>
-          Microcosmos
+          {text.brand}
         </a>
-        <nav aria-label="Pages">
+        <nav aria-label={text.pages}>
           <a href="/commons" target="_self" aria-current={sharedSlug ? undefined : "page"}>
-            Commons
+            {text.commons}
           </a>
         </nav>
         <span class="spring" />
@@ -29,7 +30,7 @@ export function PublicApp() {
       {route.page === "commons" && <CommonsPage />}
       {route.page === "unknown" && (
         <main>
-          <NotFound what="Nothing to see here" reason="Nothing was shared at this address." />
+          <NotFound what={text.notShared} reason={text.notSharedAbout} />
         </main>
       )}
       <Toasts />

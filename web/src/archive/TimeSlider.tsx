@@ -3,6 +3,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { count } from "../ui/format";
 import { useClock } from "../replay/clock";
+import { IconButton, TimeRange } from "../replay/Transport";
 
 interface Props {
   /** The newest generation. */
@@ -44,27 +45,20 @@ export function TimeSlider({ last, at, ready, onMove }: Props) {
   };
   return (
     <div class="time-slider">
-      <button
-        class="round"
+      <IconButton
+        icon={playing ? "pause" : "play"}
+        label={playing ? "Pause the history" : "Play the history"}
+        title={playing ? "Pause" : "Play the history of the archive"}
         disabled={last === 0}
         onClick={playing ? () => setPlaying(false) : play}
-        title={playing ? "Pause" : "Play the history of the archive"}
-      >
-        <span class="unseen">{playing ? "Pause the history" : "Play the history"}</span>
-        <svg viewBox="0 0 16 16" aria-hidden="true">
-          <path d={playing ? "M4 2.5h3v11H4zM9 2.5h3v11H9z" : "M4.5 2.5v11l9-5.5z"} />
-        </svg>
-      </button>
-      <input
-        type="range"
-        class="scrub"
-        aria-label="Generation that the map shows"
-        aria-valuetext={at === null ? `newest, ${shown}` : `${shown} of ${last}`}
-        min="0"
-        max={last}
+      />
+      <TimeRange
+        label="Generation that the map shows"
+        valueText={at === null ? `newest, ${shown}` : `${shown} of ${last}`}
+        last={last}
         value={shown}
         disabled={last === 0}
-        onInput={(event) => scrub(event.currentTarget.valueAsNumber)}
+        onScrub={scrub}
       />
       <output class="moment">{at !== null && !ready ? "Loading …" : `generation ${count(shown)}`}</output>
       <button class="small-button" disabled={at === null} onClick={() => scrub(last)}>

@@ -9,35 +9,14 @@ import { useRefusal } from "../store/principal";
 import { poll } from "../store/polling";
 import { number, words } from "../ui/format";
 
-type Standing = "unknown" | "never" | "underway" | Measurement;
+type State = "unknown" | "never" | "underway" | Measurement;
 
 export function RemeasureCard({ sha }: { sha: string }) {
-  const [standing, setStanding] = useState<Standing>("unknown");
-  const [note, setNote] = useState<string | null>(null);
-  const [error, setError] = useState<string | null>(null);
-  const [turn, setTurn] = useState(0);
+  const { state, note, error, start } = useMeasurement(sha);
   const refusal = useRefusal();
-  useEffect(() => {
-    const look = async () => {
-      const found = await api.readMeasurement(sha);
-      if (found === null) setStanding("underway");
-      return found;
-    };
-    return poll(look, { value: setStanding, note: setNote, error: setError });
-  }, [sha, turn]);
-  const measure = async () => {
-    setError(null);
-    setStanding("underway");
-    try {
-      await api.startMeasurement(sha);
-      setTurn((count) => count + 1);
-    } catch (reason) {
-      setError(messageOf(reason));
-    }
-  };
-  const found = typeof standing === "string" ? null : standing;
+  const found = typeof state === "string" ? null : state;
   if (sharedSlug && !found) return null; // Strangers have nothing measured.
-  const idle = standing !== "unknown" && standing !== "underway";
+  const idle = state !== "unknown" && state !== "underway";
   return (
     <section class="card" aria-labelledby="measured-title">
       <div class="card-head">
@@ -45,15 +24,15 @@ export function RemeasureCard({ sha }: { sha: string }) {
         {found && <Verdict {...found} />}
         <span class="spring" />
         {!sharedSlug && !refusal && (idle || error) && (
-          <button onClick={() => void measure()}>{found ? "Measure once more" : "Measure it here"}</button>
+          <button onClick={() => void start()}>{found ? "Measure once more" : "Measure it here"}</button>
         )}
       </div>
-      {standing === "never" && (
+      {state === "never" && (
         <p class="quiet small">
           Runs the very program that measured it, and compares every recorded number bit for bit.
         </p>
       )}
-      {standing === "underway" && !error && (
+      {state === "underway" && !error && (
         <p class="quiet" role="status">
           {note ? `${note} Trying again …` : "Measuring it; its program may have to be compiled first …"}
         </p>
@@ -62,6 +41,33 @@ export function RemeasureCard({ sha }: { sha: string }) {
       {found && <MeasurementResult {...found} />}
     </section>
   );
+}
+
+/** The measurement of a creature on this installation, and what starts one. */
+function useMeasurement(sha: string) {
+  const [state, setState] = useState<State>("unknown");
+  const [note, setNote] = useState<string | null>(null);
+  const [error, setError] = useState<string | null>(null);
+  const [turn, setTurn] = useState(0);
+  useEffect(() => {
+    const read = async () => {
+      const found = await api.readMeasurement(sha);
+      if (found === null) setState("underway");
+      return found;
+    };
+    return poll(read, { value: setState, note: setNote, error: setError });
+  }, [sha, turn]);
+  const start = async () => {
+    setError(null);
+    setState("underway");
+    try {
+      await api.startMeasurement(sha);
+      setTurn((count) => count + 1);
+    } catch (reason) {
+      setError(messageOf(reason));
+    }
+  };
+  return { state, note, error, start };
 }
 
 function Verdict({ exact }: Measurement) {

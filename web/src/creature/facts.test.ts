@@ -60,7 +60,7 @@ describe("a creature file", () => {
     expect(isForceFree(paper)).toBe(false);
     expect(isForceFree({ projection: "force" })).toBe(true);
     expect(Object.fromEntries(couplingFacts(paper))).toMatchObject({
-      "Forcing freed of": "nothing: not force-free",
+      "Removed from the forcing": "nothing (not force-free)",
       "Edge angles": "free, as in the paper",
       Forcing: "two layers, factor 2",
       "Actuator strength": "unlimited",

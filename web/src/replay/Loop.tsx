@@ -1,18 +1,18 @@
 /** A small replay that plays by itself, again and again. */
 
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useRef, useState } from "preact/hooks";
 import type { Replay } from "../decode/replay";
-import { useSize } from "../ui/canvas";
+import type { Size } from "../ui/canvas";
 import { prefersStillness, useTheme } from "../ui/theme";
+import { CanvasStage } from "./CanvasStage";
 import { useClock } from "./clock";
 import { fieldOf } from "./fields";
 import { FluidPainter } from "./fluid";
 import { chainsOf } from "./motion";
 import { drawScene, wayOf } from "./scene";
-import "./replay.css";
 
 /** Steps of the simulation in a second. */
-const PACE = 80;
+const STEPS_PER_SECOND = 80;
 
 interface Props {
   replay: Replay;
@@ -22,32 +22,23 @@ interface Props {
 }
 
 export function ReplayLoop({ replay, name, onFirst }: Props) {
-  const stage = useRef<HTMLDivElement>(null);
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const size = useSize(stage);
   const theme = useTheme();
   const { frames, every } = replay.header;
-  const [width, height] = replay.header.size;
   const [time, setTime] = useState(0);
   const drawn = useRef(false);
   const still = prefersStillness();
   useClock(!still, (seconds) => {
-    setTime((now) => (now + (seconds * PACE) / every) % Math.max(1, frames - 1));
+    setTime((now) => (now + (seconds * STEPS_PER_SECOND) / every) % Math.max(1, frames - 1));
   });
   const scene = useMemo(() => {
     const painter = new FluidPainter(replay, fieldOf("vorticity", [replay], theme)!);
     const chains = chainsOf(replay.header.edges);
     return { replay, painter, chains, way: wayOf(replay), follow: true, theme };
   }, [replay, theme]);
-  useEffect(() => {
-    if (size.width === 0) return;
-    drawScene(canvas.current!, size, scene, still ? frames - 1 : time);
+  const draw = (canvas: HTMLCanvasElement, size: Size) => {
+    drawScene(canvas, size, scene, still ? frames - 1 : time);
     if (!drawn.current) onFirst?.();
     drawn.current = true;
-  }, [size, scene, time]);
-  return (
-    <div ref={stage} class="stage" style={{ aspectRatio: `${width} / ${height}` }}>
-      <canvas ref={canvas} role="img" aria-label={name} />
-    </div>
-  );
+  };
+  return <CanvasStage size={replay.header.size} label={name} draw={draw} inputs={[scene, time]} />;
 }

@@ -1,10 +1,10 @@
 /** Replays to watch, one or several side by side: play, pause, step, scrub, speed. */
 
-import type { ComponentChildren } from "preact";
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { ComponentChildren, RefObject } from "preact";
+import { useMemo, useRef, useState } from "preact/hooks";
 import type { Replay } from "../decode/replay";
-import { useSize } from "../ui/canvas";
 import { useTheme } from "../ui/theme";
+import { CanvasStage } from "./CanvasStage";
 import { useClock, useKeys } from "./clock";
 import { FieldLegend, LookChoice, Speed } from "./Controls";
 import { type Field, fieldOf, fieldsOf } from "./fields";
@@ -14,10 +14,11 @@ import { type Moment, newMoment, useMoment } from "./moment";
 import { chainsOf } from "./motion";
 import { drawScene, wayOf } from "./scene";
 import { Tracers } from "./tracers";
+import { IconButton, StepRange } from "./Transport";
 import "./replay.css";
 
 /** Steps of the simulation in a second at speed 1. */
-const FRAMES_PER_SECOND = 40;
+const STEPS_PER_SECOND = 40;
 
 /** A replay, and what it is called where it is not alone. */
 export interface Film {
@@ -35,28 +36,63 @@ interface Props {
 
 /** Films of one task: equally long, in one clock and on one scale of colours. */
 export function ReplayPlayer({ films, ...given }: Props) {
-  const { frames, every, steps } = films[0]!.replay.header;
-  const last = frames - 1;
   const theme = useTheme();
   const [own, setOwn] = useState(DEFAULT_VIEW);
   const look = given.look ?? own;
   const change = given.onLook ?? ((part) => setOwn((old) => ({ ...old, ...part })));
-  const moment = useMoment(useMemo(() => given.moment ?? newMoment(), [given.moment]));
-  const names = useMemo(() => fieldsOf(films.map(({ replay }) => replay)), [films]);
+  const replays = useMemo(() => films.map(({ replay }) => replay), [films]);
+  const names = useMemo(() => fieldsOf(replays), [replays]);
   const name = names.includes(look.field!) ? look.field! : names[0]!;
-  const field = useMemo(() => {
-    return fieldOf(
-      name,
-      films.map(({ replay }) => replay),
-      theme,
-    );
-  }, [films, name, theme]);
+  const field = useMemo(() => fieldOf(name, replays, theme), [replays, name, theme]);
+  const player = useRef<HTMLDivElement>(null);
+  const playback = usePlayback(replays[0]!, look.speed, given.moment, player);
+  const flows = replays.every(({ drive }) => drive);
+  return (
+    <div ref={player} class="player" role="group" aria-label="Replay player" tabIndex={-1}>
+      <div class="stages">
+        {films.map(({ replay, name }, i) => (
+          <figure key={i}>
+            <Stage
+              {...{ replay, theme, field }}
+              tracing={look.tracers && flows}
+              follow={look.follow}
+              time={playback.moment.time}
+              onClick={playback.toggle}
+            />
+            {name && <figcaption>{name}</figcaption>}
+          </figure>
+        ))}
+      </div>
+      <div class="controls">
+        <Transport {...playback} header={replays[0]!.header} />
+        <Speed value={look.speed} onChange={(speed) => change({ speed })} />
+      </div>
+      <LookChoice {...{ names, name, look, change, flows }} />
+      {field && <FieldLegend field={field} />}
+    </div>
+  );
+}
+
+interface Playback {
+  moment: Moment;
+  toggle: () => void;
+  step: (by: 1 | -1) => void;
+}
+
+/** The moment that is shown, moved by the clock and by keys on the player. */
+function usePlayback(
+  { header: { frames, every } }: Replay,
+  speed: number,
+  given: Moment | undefined,
+  player: RefObject<HTMLElement | null>,
+): Playback {
+  const last = frames - 1;
+  const moment = useMoment(useMemo(() => given ?? newMoment(), [given]));
   useClock(moment.playing, (seconds) => {
-    moment.move((moment.time + (seconds * look.speed * FRAMES_PER_SECOND) / every) % Math.max(1, last));
+    moment.move((moment.time + (seconds * speed * STEPS_PER_SECOND) / every) % Math.max(1, last));
   });
   const toggle = () => moment.play(!moment.playing);
   const step = (by: 1 | -1) => moment.step(by, last);
-  const player = useRef<HTMLDivElement>(null);
   useKeys(player, {
     " ": toggle,
     ",": () => step(-1),
@@ -66,49 +102,30 @@ export function ReplayPlayer({ films, ...given }: Props) {
     Home: () => moment.scrub(0),
     End: () => moment.scrub(last),
   });
-  const tracing = look.tracers && films.every(({ replay }) => replay.drive);
+  return { moment, toggle, step };
+}
+
+function Transport({ moment, toggle, step, header }: Playback & { header: Replay["header"] }) {
+  const { frames, every, steps } = header;
+  const { playing, time } = moment;
   return (
-    <div ref={player} class="player" role="group" aria-label="Replay player" tabIndex={-1}>
-      <div class="stages">
-        {films.map(({ replay, name }, i) => (
-          <figure key={i}>
-            <Stage
-              {...{ replay, theme, field, tracing }}
-              follow={look.follow}
-              time={moment.time}
-              onClick={toggle}
-            />
-            {name && <figcaption>{name}</figcaption>}
-          </figure>
-        ))}
-      </div>
-      <div class="controls">
-        <Button
-          label="One frame back"
-          keys=", ArrowLeft"
-          small
-          path="M11 3v10L4.5 8zM3 3h1.8v10H3z"
-          onClick={() => step(-1)}
-        />
-        <Button
-          label={moment.playing ? "Pause" : "Play"}
-          keys="Space"
-          path={moment.playing ? "M4 2.5h3v11H4zM9 2.5h3v11H9z" : "M4.5 2.5v11l9-5.5z"}
-          onClick={toggle}
-        />
-        <Button
-          label="One frame on"
-          keys=". ArrowRight"
-          small
-          path="M5 3v10l6.5-5zM11.2 3H13v10h-1.8z"
-          onClick={() => step(1)}
-        />
-        <Scrubber time={moment.time} {...{ last, every, steps }} onScrub={(time) => moment.scrub(time)} />
-        <Speed value={look.speed} onChange={(speed) => change({ speed })} />
-      </div>
-      <LookChoice {...{ names, name, look, change }} flows={films.every(({ replay }) => replay.drive)} />
-      {field && <FieldLegend field={field} />}
-    </div>
+    <>
+      <IconButton icon="back" label="One frame back" keys=", ArrowLeft" onClick={() => step(-1)} />
+      <IconButton
+        icon={playing ? "pause" : "play"}
+        label={playing ? "Pause" : "Play"}
+        keys="Space"
+        onClick={toggle}
+      />
+      <IconButton icon="forward" label="One frame on" keys=". ArrowRight" onClick={() => step(1)} />
+      <StepRange
+        {...{ time, every, steps }}
+        last={frames - 1}
+        keys="Home End"
+        title="Home and End lead to the first and the last frame"
+        onScrub={(time) => moment.scrub(time)}
+      />
+    </>
   );
 }
 
@@ -123,92 +140,22 @@ interface StageProps {
 }
 
 function Stage({ replay, theme, field, tracing, follow, time, onClick }: StageProps) {
-  const stage = useRef<HTMLDivElement>(null);
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const size = useSize(stage);
-  const [width, height] = replay.header.size;
   const tracers = useMemo(() => (tracing ? new Tracers(replay) : null), [replay, tracing]);
   const scene = useMemo(() => {
     const painter = field && new FluidPainter(replay, field);
     const chains = chainsOf(replay.header.edges);
     return { replay, painter, chains, way: wayOf(replay), follow, theme: field?.ground ?? theme };
   }, [replay, theme, field, follow]);
-  useEffect(() => {
-    if (size.width > 0) drawScene(canvas.current!, size, { ...scene, tracers }, time);
-  }, [size, scene, tracers, time]);
   const shown = field ? `colours show the fluid's ${field.title.toLowerCase()}` : "the fluid is left blank";
   return (
-    <div
-      ref={stage}
-      class={`stage ${field ? "" : "blank"}`}
-      style={{ aspectRatio: `${width} / ${height}`, maxWidth: `calc(70vh * ${width / height})` }}
-    >
-      <canvas
-        ref={canvas}
-        role="img"
-        aria-label={`The creature swimming; ${shown}${tracing ? ", tracers its paths" : ""}.`}
-        onClick={onClick}
-      />
-    </div>
-  );
-}
-
-interface ButtonProps {
-  label: string;
-  /** As `aria-keyshortcuts` has them. */
-  keys: string;
-  small?: boolean;
-  path: string;
-  onClick: () => void;
-}
-
-const KEY_NAMES: Record<string, string> = { Space: "space bar", ArrowLeft: "←", ArrowRight: "→" };
-
-function Button({ label, keys, small, path, onClick }: ButtonProps) {
-  const named = keys.split(" ").map((key) => KEY_NAMES[key] ?? key);
-  return (
-    <button
-      class={`round ${small ? "small-round" : ""}`}
+    <CanvasStage
+      size={replay.header.size}
+      label={`The creature swimming; ${shown}${tracing ? ", tracers its paths" : ""}.`}
+      blank={!field}
+      fits
+      draw={(canvas, size) => drawScene(canvas, size, { ...scene, tracers }, time)}
+      inputs={[scene, tracers, time]}
       onClick={onClick}
-      aria-keyshortcuts={keys}
-      title={`${label} (${named.join(" or ")})`}
-    >
-      <span class="unseen">{label}</span>
-      <svg viewBox="0 0 16 16" aria-hidden="true">
-        <path d={path} />
-      </svg>
-    </button>
-  );
-}
-
-interface ScrubberProps {
-  time: number;
-  last: number;
-  every: number;
-  steps: number;
-  onScrub: (time: number) => void;
-}
-
-function Scrubber({ time, last, every, steps, onScrub }: ScrubberProps) {
-  const step = Math.min(steps, Math.round(time * every));
-  return (
-    <>
-      <input
-        type="range"
-        class="scrub"
-        aria-label="Moment of the replay"
-        aria-keyshortcuts="Home End"
-        title="Home and End lead to the first and the last frame"
-        aria-valuetext={`step ${step} of ${steps}`}
-        min="0"
-        max={last}
-        step="any"
-        value={time}
-        onInput={(event) => onScrub(event.currentTarget.valueAsNumber)}
-      />
-      <output class="moment">
-        {step} / {steps}
-      </output>
-    </>
+    />
   );
 }

@@ -7,6 +7,7 @@ import type { Token, CreatedToken, TokenScope } from "../api/types";
 import { useFetched } from "../store/fetch";
 import { showToast } from "../store/toasts";
 import { ConfirmButton } from "../ui/ConfirmButton";
+import { Select } from "../ui/Select";
 import { copyText } from "../ui/clipboard";
 import { TERMS, day, endOf, isExpired, tokenStatus } from "./tokenText";
 
@@ -35,12 +36,12 @@ export function Tokens({ own }: { own: string | null }) {
 function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
   const [name, setName] = useState("");
   const [scope, setScope] = useState<TokenScope>("write");
-  const [days, setDays] = useState(90);
+  const [days, setDays] = useState("90");
   const [error, setError] = useState<string | null>(null);
   const submit = async (event: Event) => {
     event.preventDefault();
     try {
-      onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(days) }));
+      onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(Number(days)) }));
       setName("");
       setError(null);
     } catch (problem) {
@@ -60,24 +61,8 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
           onInput={({ currentTarget }) => setName(currentTarget.value)}
         />
       </label>
-      <label>
-        May
-        <select value={scope} onChange={({ currentTarget }) => setScope(currentTarget.value as TokenScope)}>
-          <option value="read">look (read)</option>
-          <option value="write">look and make (write)</option>
-          <option value="admin">everything (admin)</option>
-        </select>
-      </label>
-      <label>
-        Good for
-        <select value={days} onChange={({ currentTarget }) => setDays(Number(currentTarget.value))}>
-          {TERMS.map(([title, value]) => (
-            <option key={value} value={value}>
-              {title.toLowerCase()}
-            </option>
-          ))}
-        </select>
-      </label>
+      <Select title="May" choices={SCOPES} value={scope} onChange={(name) => setScope(name as TokenScope)} />
+      <Select title="Good for" choices={LIFETIMES} value={days} onChange={setDays} />
       <button class="primary" disabled={!name.trim()}>
         Make a token
       </button>
@@ -89,6 +74,13 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
     </form>
   );
 }
+
+const SCOPES = [
+  ["read", "look (read)"],
+  ["write", "look and make (write)"],
+  ["admin", "everything (admin)"],
+] as const;
+const LIFETIMES = TERMS.map(([title, days]) => [String(days), title.toLowerCase()] as const);
 
 /** The only time that it can be read. */
 function Secret({ made, onDone }: { made: CreatedToken; onDone: () => void }) {

@@ -1,10 +1,10 @@
-/** What colours mean: a bar of them, named, with numbers at even distances beneath. */
+/** A legend: a bar of colours with a name and numbers below. */
 
 interface Props {
   name: string;
-  /** Its words for who does not see it. */
+  /** Description for screen readers. */
   label: string;
-  /** The colour at a share of the way, from 0 to 1. */
+  /** The colour at a position from 0 to 1. */
   colourAt: (share: number) => string;
   numbers: string[];
 }

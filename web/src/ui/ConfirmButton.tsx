@@ -1,9 +1,10 @@
-/** A button for what cannot be taken back: it asks once more, in its own place. */
+/** A button for an action that cannot be undone: it asks for confirmation in place. */
 
 import { useDisclosure } from "./disclosure";
+import { text } from "./text";
 
 interface Props {
-  /** What it does, and to what. */
+  /** The action and its object. */
   verb: string;
   what: string;
   onConfirm: () => Promise<void>;
@@ -24,13 +25,13 @@ export function ConfirmButton({ verb, what, onConfirm: onDo }: Props) {
       <button
         ref={first}
         class="slim danger"
-        aria-label={`${verb} now: ${what}`}
+        aria-label={text.confirm(verb, what)}
         onClick={() => void onDo().finally(keep)}
       >
-        {verb} now
+        {text.confirmShort(verb)}
       </button>
       <button class="slim plain" onClick={keep}>
-        Keep
+        {text.keep}
       </button>
     </span>
   );

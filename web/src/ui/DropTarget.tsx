@@ -1,4 +1,4 @@
-/** Opening creature files: dropped anywhere, or chosen; a page may take what is dropped itself. */
+/** Open creature files that are dropped or chosen; a page may handle dropped files itself. */
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
@@ -6,6 +6,7 @@ import { importCreature } from "../api/client";
 import { messageOf } from "../api/problem";
 import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
+import { text } from "./text";
 
 async function open(file: File): Promise<void> {
   try {
@@ -22,13 +23,13 @@ interface DropHandler {
 }
 
 const OPEN_CREATURE: DropHandler = {
-  prompt: "Drop a creature file to open it",
+  prompt: text.dropCreature,
   take: (file) => void open(file),
 };
 
 let handler = OPEN_CREATURE;
 
-/** While a component is shown, it takes what is dropped. */
+/** Handle dropped files while a component is shown. */
 export function useFileDrop(prompt: string, take: DropHandler["take"]): void {
   useEffect(() => {
     handler = { prompt, take };
@@ -40,8 +41,9 @@ export function useFileDrop(prompt: string, take: DropHandler["take"]): void {
 
 export function OpenButton() {
   return (
-    <FileButton kind="plain" name="Creature file" take={OPEN_CREATURE.take}>
-      Open creature<span class="wide-only"> file</span>
+    <FileButton kind="plain" name={text.creatureFile} take={OPEN_CREATURE.take}>
+      {text.openCreature}
+      <span class="wide-only"> {text.file}</span>
     </FileButton>
   );
 }
@@ -53,7 +55,7 @@ interface ButtonProps {
   children: ComponentChildren;
 }
 
-/** A button that asks for a creature file, or another in JSON. */
+/** A button that asks for a creature file or another JSON file. */
 export function FileButton({ kind = "", name, take, children }: ButtonProps) {
   const input = useRef<HTMLInputElement>(null);
   return (

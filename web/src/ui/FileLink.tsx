@@ -1,4 +1,4 @@
-/** A download that says why where there is no such file. */
+/** A download link that shows an error if the file does not exist. */
 
 import { checkFile } from "../api/files";
 import { messageOf } from "../api/problem";
@@ -18,7 +18,7 @@ export function FileLink({ url, name }: { url: string; name: string }) {
   );
 }
 
-/** As a click on a link would; the server says what the file is called. */
+/** Download a file under the name that the server gives it. */
 export function save(url: string): void {
   const link = document.createElement("a");
   link.href = url;

@@ -1,13 +1,14 @@
-/** The way to a new run that begins from creatures. */
+/** A link to a new run that starts from creatures. */
 
 import { sharedSlug } from "../api/address";
 import { useRefusal } from "../store/principal";
 import { forkAddress } from "../store/draft";
+import { text } from "./text";
 
 interface Props {
-  /** Whose elites; null where no run is known. */
+  /** The run with the elites; null if unknown. */
   run: string | null;
-  /** One of them, or which cells', after which generation; without: all, as they are. */
+  /** One creature, or cells and a generation; by default all current elites. */
   creature?: string;
   cells?: string | null;
   at?: number | null;
@@ -26,7 +27,7 @@ export function ForkLink({ run, creature, cells, at = null, title, inline = fals
       href={`/new?${new URLSearchParams(address as string[][])}`}
       title={title}
     >
-      Fork
+      {text.fork}
     </a>
   );
 }

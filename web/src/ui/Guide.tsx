@@ -1,18 +1,19 @@
-/** A few steps that explain what is on the page, beside it and not over it. */
+/** A short tour: a panel beside the page explains its parts step by step. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
+import { text } from "./text";
 import "./guide.css";
 
 export interface Step {
   title: string;
   text: string;
-  /** The part of the page that the step is about, as the style sheet knows it. */
+  /** CSS selector of the part that the step explains. */
   about: string;
 }
 
 interface Props {
   steps: Step[];
-  /** Whether somebody asked for it: then it has the focus until it ends. */
+  /** True if the user started the tour; it then has the focus until it ends. */
   asked: boolean;
   onStep: (step: Step) => void;
   onEnd: () => void;
@@ -39,22 +40,20 @@ export function Guide({ steps, asked, onStep, onEnd }: Props) {
     return () => window.removeEventListener("keydown", press);
   }, [onEnd]);
   return (
-    <aside ref={panel} class="guide" aria-label="A short guide" tabIndex={-1}>
-      <p class="guide-count quiet small">
-        {number + 1} of {steps.length}
-      </p>
+    <aside ref={panel} class="guide" aria-label={text.guide} tabIndex={-1}>
+      <p class="guide-count quiet small">{text.step(number + 1, steps.length)}</p>
       <div aria-live="polite">
         <h2>{step.title}</h2>
         <p>{step.text}</p>
       </div>
       <p class="guide-buttons">
         <button class="plain" onClick={onEnd}>
-          {last ? "Close" : "Skip"}
+          {last ? text.close : text.skip}
         </button>
         <span class="spring" />
-        {number > 0 && <button onClick={() => setNumber(number - 1)}>Back</button>}
+        {number > 0 && <button onClick={() => setNumber(number - 1)}>{text.back}</button>}
         <button class="primary" onClick={() => (last ? onEnd() : setNumber(number + 1))}>
-          {last ? "Look around" : "Next"}
+          {last ? text.finish : text.next}
         </button>
       </p>
     </aside>

@@ -1,4 +1,4 @@
-/** Text that is changed where it stands. */
+/** A text field for editing in place. */
 
 import { useLayoutEffect, useRef } from "preact/hooks";
 
@@ -12,7 +12,7 @@ interface Props {
   onDone: (value: string | null) => void;
 }
 
-/** Enter or leaving takes what was typed, Escape takes nothing. */
+/** Enter or leaving the field accepts the text, Escape discards it. */
 export function InlineText({ label, value, limit, long = false, list, onDone }: Props) {
   const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null);
   const over = useRef(false);

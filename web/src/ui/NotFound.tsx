@@ -1,9 +1,9 @@
-/** In place of a page about something that the server does not have. */
+/** A page for something that does not exist on the server. */
 
 interface Props {
-  /** What the page would have been about. */
+  /** Title of the missing thing. */
   what: string;
-  /** What the server says. */
+  /** Message of the server. */
   reason: string;
 }
 

@@ -1,4 +1,4 @@
-/** One of several words, which have a title each: from a list, or from a row of buttons. */
+/** A choice between named options: a list, or a row of buttons. */
 
 type Option<T extends string = string> = readonly (readonly [name: T, title: string])[];
 
@@ -20,7 +20,7 @@ export function Select({ title, choices, value, onChange }: Props) {
   );
 }
 
-/** What a list has to choose from. */
+/** The options of a list. */
 export const Options = ({ of }: { of: Option }) => (
   <>
     {of.map(([name, words]) => (

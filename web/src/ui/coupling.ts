@@ -1,7 +1,8 @@
-/** In which form bodies and fluid are coupled, in words. */
+/** Descriptions of the coupling between bodies and fluid. */
 
 import type { Json, Spec } from "../api/types";
 import { number } from "./format";
+import { text } from "./text";
 
 export interface Form {
   title: string;
@@ -12,25 +13,23 @@ export interface Form {
 /** The forms of a sweep, by their names in a spec. */
 export const FORMS: Record<string, Form> = {
   ours: {
-    title: "Ours",
-    about: "Force- and torque-free; one actuator strength for all.",
+    title: text.ours,
+    about: text.oursAbout,
     free: true,
   },
   strong: {
-    title: "Ours, tireless",
-    about: "Force- and torque-free; actuators of unlimited strength.",
+    title: text.tireless,
+    about: text.tirelessAbout,
     free: true,
   },
   paper: {
-    title: "The paper’s",
-    about: "Two layers, free edge angles, as in the paper.",
+    title: text.paper,
+    about: text.paperAbout,
     free: false,
   },
 };
 
-export const NOT_FREE =
-  "In this form a body and the fluid need not push each other equally: " +
-  "part of its swimming can come from the solver.";
+export const NOT_FREE = text.notForceFreeAbout;
 
 export function formOf(name: string): Form {
   return FORMS[name] ?? { title: name, about: "", free: true };
@@ -39,10 +38,10 @@ export function formOf(name: string): Form {
 const part = (value: Json | undefined): Spec =>
   value && typeof value === "object" && !Array.isArray(value) ? value : {};
 
-/** Whether a body cannot push itself, as far as a coupling says. */
+/** True if a coupling cannot exert a net force on a body. */
 export const isForceFree = (coupling: Json | undefined) => part(coupling).projection !== "none";
 
-/** Whether everything that a run simulates is force-free, some of it, or nothing. */
+/** How many of the simulations of a run are force-free. */
 export function forceFreeShare(spec: Spec): "all" | "some" | "none" {
   const forms = Array.isArray(spec.forms) ? spec.forms : null;
   if (!forms) return isForceFree(spec.coupling) ? "all" : "none";
@@ -51,18 +50,18 @@ export function forceFreeShare(spec: Spec): "all" | "some" | "none" {
   return free > 0 ? "some" : "none";
 }
 
-/** The coupling of a creature as rows of words. */
+/** The coupling of a creature as rows of a table. */
 export function couplingFacts(coupling: Json | undefined): [string, string][] {
   const { projection, theta_feedback, layers, nu_c, kernel, force_factor, limits } = part(coupling);
-  const free = { none: "nothing: not force-free", force: "net force" }[String(projection)];
-  const angles = theta_feedback === 0 ? "free, as in the paper" : "follow the geometry";
-  const strength = typeof nu_c === "number" ? `half at ν = ${number(nu_c)}` : "unlimited";
+  const free = { none: text.freedOfNothing, force: text.netForce }[String(projection)];
+  const angles = theta_feedback === 0 ? text.anglesFree : text.anglesFollow;
+  const strength = typeof nu_c === "number" ? text.halfStrength(number(nu_c)) : text.unlimited;
   return [
-    ["Forcing freed of", free ?? "net force and torque"],
-    ["Edge angles", angles],
-    ["Actuator strength", strength],
-    ["Forcing", `${layers === 2 ? "two layers" : "one layer"}, factor ${force_factor ?? 2}`],
-    ["Delta kernel", String(kernel ?? "peskin")],
-    ["Limits", limits === false ? "off" : "on"],
+    [text.forcingFreedOf, free ?? text.netForceAndTorque],
+    [text.edgeAngles, angles],
+    [text.actuatorStrength, strength],
+    [text.forcing, text.layers(layers, force_factor ?? 2)],
+    [text.deltaKernel, String(kernel ?? "peskin")],
+    [text.limits, limits === false ? text.off : text.on],
   ];
 }

@@ -1,4 +1,4 @@
-/** A button that turns into something else: the focus goes along, there and back. */
+/** A button that opens other controls in its place; the focus follows. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 

@@ -1,6 +1,7 @@
 /** Numbers, times and names as people read them. */
 
 import type { Experiment, Json, Run, Spec } from "../api/types";
+import { text } from "./text";
 
 export const DASH = "–";
 
@@ -43,7 +44,7 @@ export function percent(value: number | null | undefined): string {
 
 export function duration(seconds: number | null): string {
   if (seconds === null || !Number.isFinite(seconds)) return DASH;
-  if (seconds < 1) return "under 1 s";
+  if (seconds < 1) return text.underOneSecond;
   const s = Math.round(seconds);
   if (s < 60) return `${s} s`;
   if (s < 3600) return `${Math.floor(s / 60)} min ${s % 60} s`;
@@ -62,8 +63,8 @@ export function short(id: string): string {
 
 /** `bending_effort` as words. */
 export function words(name: string): string {
-  const text = name.replaceAll("_", " ");
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  const spaced = name.replaceAll("_", " ");
+  return spaced.charAt(0).toUpperCase() + spaced.slice(1);
 }
 
 /** A run's name, else the preset that it was started from, its seed aside, else its experiment. */
@@ -71,28 +72,28 @@ export function titleOf(run: Run, experiments: Experiment[]): string {
   if (run.name) return run.name;
   const presets = experiments.find(({ experiment }) => experiment === run.experiment)?.presets;
   const preset = presets?.find(({ spec }) => seedless(spec) === seedless(run.spec));
-  if (run.demonstration) return "Demonstration";
+  if (run.demonstration) return text.demonstration;
   const kind = words(run.experiment.replaceAll("-", " "));
   if (!preset) return kind;
   // Most runs are searches: those are known by their presets alone.
   return run.experiment === "quality-diversity" ? words(preset.name) : `${kind}, ${preset.name}`;
 }
 
-/** What a run is called where its spec is not known. */
+/** The title of a run whose spec is not known. */
 export function labelOf(run: Pick<Run, "name" | "experiment" | "demonstration">): string {
   if (run.name) return run.name;
-  return run.demonstration ? "Demonstration" : words(run.experiment.replaceAll("-", " "));
+  return run.demonstration ? text.demonstration : words(run.experiment.replaceAll("-", " "));
 }
 
 const SEEDLESS = new WeakMap<Spec, string>();
 
-/** Lists ask this of every run again and again: it is written once. */
+/** The JSON of a spec without its seed, cached because lists ask for it often. */
 function seedless(spec: Spec): string {
   const known = SEEDLESS.get(spec);
   if (known !== undefined) return known;
-  const text = JSON.stringify(sorted({ ...spec, seed: 0 }));
-  SEEDLESS.set(spec, text);
-  return text;
+  const json = JSON.stringify(sorted({ ...spec, seed: 0 }));
+  SEEDLESS.set(spec, json);
+  return json;
 }
 
 function sorted(value: Json): Json {

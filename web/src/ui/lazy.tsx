@@ -1,9 +1,10 @@
-/** Pages, and parts of them, whose script comes when they are first opened. */
+/** Components that are loaded when they are first shown. */
 
 import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
+import { text } from "./text";
 
-/** A part of a page is a `section` until it is there. */
+/** Show a `section` (or `main`) until the component is loaded. */
 export function lazy<P extends object>(
   load: () => Promise<ComponentType<P>>,
   Around: "main" | "section" = "main",
@@ -23,7 +24,7 @@ export function lazy<P extends object>(
       );
     }, []);
     if (Found) return <Found {...props} />;
-    return <Around>{failed ? <LoadFailed /> : <p class="quiet loading">Loading …</p>}</Around>;
+    return <Around>{failed ? <LoadFailed /> : <p class="quiet loading">{text.loading}</p>}</Around>;
   };
 }
 
@@ -31,7 +32,7 @@ export function lazy<P extends object>(
 function LoadFailed() {
   return (
     <p class="banner wrong" role="alert">
-      This part of the page could not be loaded. <button onClick={() => location.reload()}>Reload</button>
+      {text.notLoaded} <button onClick={() => location.reload()}>{text.reload}</button>
     </p>
   );
 }

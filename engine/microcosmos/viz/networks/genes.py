@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...archive.encoding import ACTIVATIONS, decode, encode
+from ...naming import ACTIVATIONS, decode, encode
 from .evaluation import require_agreement
 from .graph import depths, order, reached
 from .network import Network

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from microcosmos.archive.encoding import ACTIVATIONS, encode
+from microcosmos.naming import ACTIVATIONS, encode
 
 HERE = Path(__file__).parent / "tensorneat"
 INPUTS, OUTPUTS = ("position", "sine", "cosine"), ("rest_angle", "rest_length")

@@ -9,7 +9,7 @@ from io import BytesIO
 import numpy as np
 import pytest
 
-from microcosmos.archive.cppn_genes import Connections, Nodes, check_genes
+from microcosmos.spec.creature.cppn_genes import Connections, Nodes, check_genes
 from microcosmos.viz import networks
 
 INPUTS, OUTPUTS = ("position", "sine", "cosine"), ("rest_angle", "rest_length")

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from microcosmos.archive.encoding import encode
+from microcosmos.naming import encode
 from microcosmos.viz import networks
 from microcosmos.viz.networks import code
 from microcosmos.viz.networks.layout import layout

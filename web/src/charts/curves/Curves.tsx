@@ -8,6 +8,7 @@ import { type CurveView, OVER, tableOf } from "./look";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";
 import "uplot/dist/uPlot.min.css";
+import "../lineStyle.css";
 import "./curves.css";
 
 interface Props {

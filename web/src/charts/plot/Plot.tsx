@@ -51,19 +51,14 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
   const [lit, setLit] = useState<string | null>(null);
   const [near, setNear] = useState<Point | null>(null);
   useEffect(() => onNear?.(near), [near]);
-  const room: Room = {
-    left: 78,
-    right: width - 14,
-    top: upper ? 48 : 14,
-    bottom: height - 48,
-  };
+  const room: Room = { left: 78, right: width - 14, top: upper ? 48 : 14, bottom: height - 48 };
   const spot = ({ x: at, y: value }: Point, k: number): [number, number] => [
     room.left + place(x.scale, at) * (room.right - room.left),
     value === null ? room.top + 10 + 12 * k : room.bottom - place(y.scale, value) * (room.bottom - room.top),
   ];
   const drawn = lines.map((line, k) => ({ line, spots: line.points.map((p) => spot(p, k)) }));
-  const look = lit ?? lines.find(({ points }) => points.includes(near!))?.name ?? null;
-  const faint = (line: Line) => (look !== null && look !== line.name ? "faint" : "");
+  const highlighted = lit ?? lines.find(({ points }) => points.includes(near!))?.name ?? null;
+  const faint = (line: Line) => (highlighted !== null && highlighted !== line.name ? "faint" : "");
   const follow = (event: PointerEvent) => {
     const box = host.current!.getBoundingClientRect();
     setNear(nearest(drawn, event.clientX - box.left, event.clientY - box.top));
@@ -83,17 +78,8 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
         {width > 0 && (
           <svg width={width} height={height} aria-hidden="true">
             <Frame {...{ x, y, room, upper, shaded }} />
-            {drawn.map(({ line, spots }) => (
-              <path
-                key={line.name}
-                class={`xy-line ${faint(line)}`}
-                d={pathOf(spots.filter((_, i) => line.points[i]!.y !== null))}
-                style={{
-                  stroke: `var(${line.colour})`,
-                  strokeDasharray: line.dash,
-                  strokeWidth: line.width,
-                }}
-              />
+            {drawn.map((each) => (
+              <LinePath key={each.line.name} {...each} faint={faint(each.line)} />
             ))}
           </svg>
         )}
@@ -110,6 +96,16 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
           )}
       </div>
     </figure>
+  );
+}
+
+function LinePath({ line, spots, faint }: Drawn & { faint: string }) {
+  return (
+    <path
+      class={`xy-line ${faint}`}
+      d={pathOf(spots.filter((_, i) => line.points[i]!.y !== null))}
+      style={{ stroke: `var(${line.colour})`, strokeDasharray: line.dash, strokeWidth: line.width }}
+    />
   );
 }
 

@@ -1,11 +1,12 @@
 /** A filament that folds over its picture: to play and scrub, and moments of it in a row. */
 
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import type { Target } from "../../api/types";
 import type { Replay } from "../../decode/replay";
-import { useSize } from "../../ui/canvas";
 import { prefersStillness, useTheme } from "../../ui/theme";
+import { CanvasStage } from "../../replay/CanvasStage";
 import { useClock } from "../../replay/clock";
+import { StepRange } from "../../replay/Transport";
 import { type Fold, drawFold, pictureOf } from "./fold";
 import { chainsOf } from "../../replay/motion";
 
@@ -36,7 +37,6 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
     return { replay, target, chains, picture: pictureOf(target, picture), shown, ink };
   }, [replay, target, theme, shown]);
   const moment = Math.min(last, time);
-  const step = Math.min(steps, Math.round(moment * every));
   const scrub = (value: number) => {
     setPlaying(false);
     setTime(value);
@@ -46,20 +46,7 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
       <Still fold={fold} time={moment} name={`The filament for ${target.name} over its picture`} />
       <div class="controls">
         <button onClick={() => setPlaying(!playing)}>{playing ? "Pause" : "Play"}</button>
-        <input
-          type="range"
-          class="scrub"
-          aria-label="Moment of the replay"
-          aria-valuetext={`step ${step} of ${steps}`}
-          min="0"
-          max={last}
-          step="any"
-          value={moment}
-          onInput={(event) => scrub(event.currentTarget.valueAsNumber)}
-        />
-        <output class="moment">
-          {step} / {steps}
-        </output>
+        <StepRange time={moment} {...{ last, every, steps }} onScrub={scrub} />
         <label class="compact">
           Picture
           <input
@@ -72,31 +59,38 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
           />
         </label>
       </div>
-      <ol class="fold-moments" aria-label="Moments of its life">
-        {MOMENTS.map((share) => (
-          <li key={share}>
-            <button class="plain" onClick={() => scrub(share * last)}>
-              <Still fold={fold} time={share * last} name={`After ${Math.round(share * steps)} steps`} />
-              <span class="small quiet">step {Math.round(share * steps)}</span>
-            </button>
-          </li>
-        ))}
-      </ol>
+      <Moments fold={fold} onChoose={(share) => scrub(share * last)} />
     </div>
   );
 }
 
-function Still({ fold, time, name }: { fold: Fold; time: number; name: string }) {
-  const stage = useRef<HTMLDivElement>(null);
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const size = useSize(stage);
-  const [width, height] = fold.replay.header.size;
-  useEffect(() => {
-    if (size.width > 0) drawFold(canvas.current!, size, fold, time);
-  }, [size, fold, time]);
+function Moments({ fold, onChoose }: { fold: Fold; onChoose: (share: number) => void }) {
+  const { frames, steps } = fold.replay.header;
   return (
-    <div ref={stage} class="stage" style={{ aspectRatio: `${width} / ${height}` }}>
-      <canvas ref={canvas} role="img" aria-label={name} />
-    </div>
+    <ol class="fold-moments" aria-label="Moments of its life">
+      {MOMENTS.map((share) => (
+        <li key={share}>
+          <button class="plain" onClick={() => onChoose(share)}>
+            <Still
+              fold={fold}
+              time={share * (frames - 1)}
+              name={`After ${Math.round(share * steps)} steps`}
+            />
+            <span class="small quiet">step {Math.round(share * steps)}</span>
+          </button>
+        </li>
+      ))}
+    </ol>
+  );
+}
+
+function Still({ fold, time, name }: { fold: Fold; time: number; name: string }) {
+  return (
+    <CanvasStage
+      size={fold.replay.header.size}
+      label={name}
+      draw={(canvas, size) => drawFold(canvas, size, fold, time)}
+      inputs={[fold, time]}
+    />
   );
 }

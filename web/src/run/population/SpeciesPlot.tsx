@@ -2,7 +2,7 @@
 
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { SpeciesHistory } from "../../api/types";
-import { useSize } from "../../ui/canvas";
+import { type Size, useSize } from "../../ui/canvas";
 import { count } from "../../ui/format";
 import { ticksOf } from "../../charts/plot/scale";
 import { type Stack, colourOf, pathOf, speciesAt, stackOf } from "./speciesStack";
@@ -15,28 +15,48 @@ interface Place {
   height: number | null;
 }
 
+interface Scales {
+  last: number;
+  x: (i: number) => number;
+  y: (members: number) => number;
+  placeAt: (x: number, y: number) => Place;
+}
+
+function scalesOf({ generation, size }: Stack, width: number, height: number): Scales {
+  const last = generation.length - 1;
+  const [wide, high] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
+  return {
+    last,
+    x: (i) => LEFT + (last === 0 ? wide / 2 : (i / last) * wide),
+    y: (members) => TOP + high * (1 - members / size),
+    placeAt: (x, y) => ({
+      i: within(Math.round(((x - LEFT) / wide) * last), last),
+      height: size * (1 - (y - TOP) / high),
+    }),
+  };
+}
+
+const within = (i: number, last: number) => Math.min(last, Math.max(0, i));
+
 export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
   const host = useRef<HTMLDivElement>(null);
-  const { width, height } = useSize(host);
+  const size = useSize(host);
   const stack = useMemo(() => stackOf(history), [history]);
   const [place, setPlace] = useState<Place | null>(null);
-  const last = stack.generation.length - 1;
-  const [wide, high] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
-  const x = (i: number) => LEFT + (last === 0 ? wide / 2 : (i / last) * wide);
-  const y = (members: number) => TOP + high * (1 - members / stack.size);
+  const scales = scalesOf(stack, size.width, size.height);
+  const { last } = scales;
   const follow = (event: PointerEvent) => {
     const box = host.current!.getBoundingClientRect();
-    const i = Math.round(((event.clientX - box.left - LEFT) / wide) * last);
-    const members = stack.size * (1 - (event.clientY - box.top - TOP) / high);
-    setPlace({ i: Math.min(last, Math.max(0, i)), height: members });
+    setPlace(scales.placeAt(event.clientX - box.left, event.clientY - box.top));
   };
   const walk = (event: KeyboardEvent) => {
-    const to = { ArrowLeft: -1, ArrowRight: 1, Home: -last, End: last }[event.key];
-    if (to === undefined) return;
+    const by = { ArrowLeft: -1, ArrowRight: 1, Home: -last, End: last }[event.key];
+    if (by === undefined) return;
     event.preventDefault();
-    setPlace((old) => ({ i: Math.min(last, Math.max(0, (old?.i ?? last) + to)), height: null }));
+    setPlace((old) => ({ i: within((old?.i ?? last) + by, last), height: null }));
   };
-  const told = place && place.i <= last ? readingOf(stack, place) : null;
+  const shown = place && place.i <= last ? place : null;
+  const reading = shown && readingOf(stack, shown);
   return (
     <figure class="species">
       <div
@@ -52,25 +72,38 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
         onKeyDown={walk}
         onBlur={() => setPlace(null)}
       >
-        {width > 0 && (
-          <svg width={width} height={height} aria-hidden="true">
-            <Axes {...{ stack, width, x, y }} />
-            {stack.areas.map((area) => (
-              <path
-                key={area.number}
-                d={pathOf(area, x, y)}
-                class={told?.number === area.number ? "lit" : ""}
-                style={{ fill: colourOf(area.number) }}
-              />
-            ))}
-            {told && <path class="cursor" d={`M${x(place!.i)} ${TOP}v${high}`} />}
-          </svg>
-        )}
+        {size.width > 0 && <Areas {...{ stack, size, scales, shown }} lit={reading?.number ?? null} />}
       </div>
       <figcaption id="species-reading" class="small" aria-live="polite">
-        {told ? told.text : summaryOf(stack)}
+        {reading ? reading.text : summaryOf(stack)}
       </figcaption>
     </figure>
+  );
+}
+
+interface AreasProps {
+  stack: Stack;
+  size: Size;
+  scales: Scales;
+  shown: Place | null;
+  /** The species that is pointed at. */
+  lit: number | null;
+}
+
+function Areas({ stack, size: { width, height }, scales: { x, y }, shown, lit }: AreasProps) {
+  return (
+    <svg width={width} height={height} aria-hidden="true">
+      <Axes {...{ stack, width, x, y }} />
+      {stack.areas.map((area) => (
+        <path
+          key={area.number}
+          d={pathOf(area, x, y)}
+          class={lit === area.number ? "lit" : ""}
+          style={{ fill: colourOf(area.number) }}
+        />
+      ))}
+      {shown && <path class="cursor" d={`M${x(shown.i)} ${TOP}V${height - BOTTOM}`} />}
+    </svg>
   );
 }
 

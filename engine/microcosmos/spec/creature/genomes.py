@@ -5,12 +5,14 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
-from .. import spec
-from ..spec import Body, Gait, Part
-from ..spec.control import Sight
-from ..spec.encodings import MOST_GENES
+from ...naming import decode
+from .. import encodings, scene
+from ..base import Part
+from ..body import Body, shape
+from ..control import Control, Sight
+from ..encodings import MOST_GENES
+from ..scene import Gait
 from .cppn_genes import Connections, Nodes, check_genes
-from .encoding import decode
 
 
 class CPPN(Part):
@@ -19,7 +21,7 @@ class CPPN(Part):
     encoding: Literal["cppn"]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    control: spec.Control
+    control: Control
     nodes: Nodes
     connections: Connections
 
@@ -37,7 +39,7 @@ class Grown(Part):
     encoding: Literal["cppn-body"]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    control: spec.Grown
+    control: encodings.Grown
     nodes: Nodes
     connections: Connections
 
@@ -66,7 +68,7 @@ class Direct(Vector):
     """The control of every joint and edge, and measures of the body."""
 
     encoding: Literal["direct"]
-    control: spec.Direct
+    control: encodings.Direct
 
     def refuse_other_length(self, body: Body) -> None:
         """There must be as many genes as the body needs."""
@@ -79,7 +81,7 @@ class Weights(Vector):
     encoding: Literal["weights"]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    control: spec.Weights
+    control: encodings.Weights
 
     @model_validator(mode="after")
     def check(self) -> Self:
@@ -95,7 +97,7 @@ class Own(Vector):
     """Numbers that a module of one's own makes movements of."""
 
     encoding: str
-    control: spec.OwnControl
+    control: encodings.OwnControl
 
     @model_validator(mode="after")
     def check(self) -> Self:
@@ -115,14 +117,14 @@ class Fold(Part):
     """The rest angle of every joint and the rest length of every edge."""
 
     encoding: Literal["fold"]
-    control: spec.Fold
+    control: scene.Fold
     values: str = Field(max_length=8 * MOST_GENES)
     """Base64 of float32: rad that are added to the body's angles, then what
     `control.lengths` makes of its lengths."""
 
     def refuse_other_length(self, body: Body) -> None:
         """A number for each joint and edge."""
-        whole = spec.shape(body)
+        whole = shape(body)
         needed, found = len(whole.joints) + len(whole.edges), len(decode(self.values))
         if found != needed:
             raise ValueError(f"`genome.values` must hold {needed} numbers, got {found}")
@@ -146,7 +148,7 @@ def _check_network(genome: CPPN | Grown | Weights, control: Sight) -> None:
             raise ValueError(f"`{name}` must be {list(needed)}, got {list(found)}")
 
 
-def _refuse_other_length(values: str, control: spec.Controller, body: Body) -> None:
-    needed, found = spec.genes(control, spec.shape(body)), len(decode(values))
+def _refuse_other_length(values: str, control: encodings.Controller, body: Body) -> None:
+    needed, found = encodings.genes(control, shape(body)), len(decode(values))
     if found != needed:
         raise ValueError(f"`genome.values` must hold {needed} numbers, got {found}")

@@ -1,4 +1,4 @@
-"""What happens, told to everybody who watches: a Redis stream that the server fans out."""
+"""The event stream: publish events to Redis, from where the server fans them out."""
 
 import json
 import logging
@@ -8,8 +8,8 @@ from uuid import UUID
 
 from redis import Redis, RedisError
 
-KEPT = 10_000
-"""Events that a stream keeps, about; who has missed more fetches everything anew."""
+STREAM_LENGTH = 10_000
+"""Events that the stream keeps, approximately. A client that missed more fetches everything."""
 
 log = logging.getLogger(__name__)
 
@@ -22,16 +22,16 @@ class Events:
         self.stream = f"{prefix}events"
 
     def publish(self, kind: str, run_id: UUID, data: dict[str, Any]) -> None:
-        """Tell it, if Redis answers."""
+        """Publish an event, if Redis answers."""
         fields = {"event": kind, "run": str(run_id), "data": json.dumps(data, allow_nan=False)}
         try:
-            self.redis.xadd(self.stream, fields, maxlen=KEPT, approximate=True)  # pyright: ignore
+            self.redis.xadd(self.stream, fields, maxlen=STREAM_LENGTH, approximate=True)  # pyright: ignore
         except RedisError as error:
-            # An event is a courtesy: what it tells is in SQL already, and a run of days must
-            # not end because nobody could be told. Pages fetch anew when Redis is back.
+            # SQL already holds what the event says, so a run must not end when Redis does
+            # not answer. Pages fetch everything again when it is back.
             log.warning("no event %s of run %s: %s", kind, run_id, error)
 
 
 def finite(value: float | None) -> float | None:
-    """JSON and SQL know no NaN and no infinity: None."""
+    """Return the value, or None where JSON and SQL cannot hold it (NaN, infinity)."""
     return value if value is not None and math.isfinite(value) else None

@@ -5,9 +5,9 @@ import re
 from fastapi import Request
 from fastapi.responses import Response, StreamingResponse
 
-from ..storage.artifacts import Artifacts
+from ..core.errors import ProblemError
 from ..tables import Artifact
-from .errors import Refused
+from .artifacts import Artifacts
 
 ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")
 
@@ -47,5 +47,5 @@ def _part(wanted: str, size: int) -> tuple[int, int] | None:
     if start >= size or start >= stop:
         detail = f"A range within 0 to {size - 1} is needed; got {wanted}."
         headers = {"Content-Range": f"bytes */{size}"}
-        raise Refused(416, "Range not satisfiable", detail, headers=headers)
+        raise ProblemError(416, "Range not satisfiable", detail, headers=headers)
     return start, stop

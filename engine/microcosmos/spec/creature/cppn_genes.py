@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
-from ..spec.base import Part
-from .encoding import decode
+from ...naming import decode
+from ..base import Part
 
 Activation = Literal[
     "identity", "sigmoid", "tanh", "relu", "sin", "cos", "gaussian", "abs", "square"

@@ -4,9 +4,13 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Tag, model_validator
 
-from ..spec import Body, Coupling, Gait, Part, Scene, Task, World
-from ..spec.body import OwnBody
-from ..spec.encodings import kind
+from ..base import Part
+from ..body import Body, OwnBody
+from ..coupling import Coupling
+from ..encodings import kind
+from ..scene import Gait, Scene
+from ..search import Task
+from ..world import World
 from .genomes import CPPN, Direct, Fold, Grown, Own, Stroke, Weights
 
 NAMES = ("cppn", "direct", "weights", "cppn-body", "gait", "fold")

@@ -1,0 +1,83 @@
+"""Canonical bytes of creatures: JSON by RFC 8785, SHA-256 names, arrays as base64."""
+
+from base64 import b64decode, b64encode
+from collections.abc import Iterable, Mapping
+from hashlib import sha256
+from typing import Any
+
+import numpy as np
+import rfc8785
+
+from .version import VERSION
+
+FORMAT = "microcosmos-creature/1"
+LICENCE = "CC-BY-4.0"
+ACTIVATIONS = (
+    "identity",
+    "sigmoid",
+    "tanh",
+    "relu",
+    "sin",
+    "cos",
+    "gaussian",
+    "abs",
+    "square",
+)
+"""Activations, in the order of their numbers in genomes."""
+
+
+def encode(values: np.ndarray) -> str:
+    """Little-endian float32 as base64, −0 as 0."""
+    return b64encode((np.asarray(values, "<f4") + np.float32(0)).tobytes()).decode()
+
+
+def decode(text: str) -> np.ndarray:
+    """The float32 values in base64; raises `ValueError` for anything else."""
+    data = b64decode(text, validate=True)
+    if len(data) % 4:
+        raise ValueError(f"needs whole float32 values, got {len(data)} bytes")
+    values = np.frombuffer(data, "<f4")
+    if not np.all(np.isfinite(values)):
+        raise ValueError("needs finite values, got NaN or infinity")
+    if encode(values) != text:
+        raise ValueError("needs the canonical encoding, got another (−0 is written as 0)")
+    return values
+
+
+def canonical(identity: Mapping[str, Any]) -> bytes:
+    """Return the canonical JSON (RFC 8785), over which the name is computed."""
+    return rfc8785.dumps(dict(identity))
+
+
+def name(identity: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of the canonical form, in hexadecimal."""
+    return sha256(canonical(identity)).hexdigest()
+
+
+def document(
+    identity: Mapping[str, Any],
+    measured: Mapping[str, Any] | None,
+    provenance: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """Return the creature file around an identity."""
+    return {
+        "identity": dict(identity),
+        "sha256": name(identity),
+        "measured": dict(measured) if measured else None,
+        "provenance": dict(provenance) if provenance else None,
+        "licence": LICENCE,
+        "credit": [],
+    }
+
+
+def provenance(
+    operator: str, *, generation: int = 0, parents: Iterable[str] = (), seed: int = 0
+) -> dict[str, Any]:
+    """Return how a creature came to be, in this version."""
+    return {
+        "parents": list(parents),
+        "operator": operator,
+        "generation": generation,
+        "seed": seed,
+        "version": VERSION,
+    }

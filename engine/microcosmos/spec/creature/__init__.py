@@ -1,0 +1,14 @@
+"""The creature file as pydantic models: identity, genomes, measured numbers, provenance."""
+
+from .file import CreatureError, CreatureFile, check, fitness_of, room, scene_of
+from .identity import Identity
+
+__all__ = [
+    "CreatureError",
+    "CreatureFile",
+    "Identity",
+    "check",
+    "fitness_of",
+    "room",
+    "scene_of",
+]

@@ -1,0 +1,146 @@
+"""The creature file: identity, hash, measured numbers, provenance, licence, credit."""
+
+import re
+from collections.abc import Mapping
+from typing import Annotated, Any, Self
+
+import numpy as np
+from pydantic import Field, StringConstraints, ValidationError, model_validator
+
+from ...naming import LICENCE, name
+from ..base import Part, field_path
+from ..plugins import Own
+from ..scene import Scene
+from ..search import Task
+from .genomes import Network
+from .identity import Identity
+
+Room = Annotated[int, Field(ge=8, le=8192)]
+Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+Figures = Annotated[dict[str, float], Field(max_length=1000)]
+Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+Credit = Annotated[tuple[Name, ...], Field(max_length=50)]
+
+
+class CreatureError(ValueError):
+    """A creature file that cannot be accepted: `field`, what it `needed` and what it `got`."""
+
+    def __init__(self, field: str, needed: str, got: object):
+        super().__init__(f"`{field}` needs {needed}; got {got!r:.120}")
+        self.field, self.needed, self.got = field, needed, got
+
+
+class Measured(Part):
+    """What was found when the creature was evaluated, and what repeating it exactly needs."""
+
+    fitness: float
+    descriptors: Figures
+    features: Figures
+    block: int = Field(ge=1, le=4096)
+    room: tuple[Room, Room] | None = None
+    """`max_nodes` and `max_connections` of the evaluated arrays; none without a network."""
+    device: str
+    own: dict[str, Own] = Field(default={}, exclude_if=lambda own: not own)
+    """Versions of the measures of one's own among the features."""
+
+    @model_validator(mode="after")
+    def check_agreement(self) -> Self:
+        """Descriptors are features, so that a check of those is one of all."""
+        told = self.descriptors
+        if wrong := [name for name in told if told[name] != self.features.get(name)]:
+            raise ValueError(f"`features` must hold descriptors; got other values of {wrong}")
+        return self
+
+
+class Provenance(Part):
+    """Where the creature came from."""
+
+    parents: tuple[Digest, ...]
+    operator: str
+    generation: int = Field(ge=0)
+    seed: int = Field(ge=0)
+    version: str
+
+
+class CreatureFile(Part):
+    """The whole document that people share."""
+
+    identity: Identity
+    sha256: Digest
+    measured: Measured | None = None
+    provenance: Provenance | None = None
+    licence: str = LICENCE
+    credit: Credit = ()
+    """Who is to be named wherever the creature is shown."""
+
+    @model_validator(mode="after")
+    def check_measured(self) -> Self:
+        """The arrays that were measured had room for the genes; fitness is its features'."""
+        if self.measured is None:
+            return self
+        room_of(self.identity.genome, self.measured.room)
+        expected = fitness_of(self.identity.task, self.measured.features)
+        # Compilers may fuse the sum, which rounds it otherwise.
+        if not np.isclose(self.measured.fitness, expected, rtol=1e-5, atol=1e-9):
+            raise ValueError(
+                f"`measured.fitness` must be {expected!r} as `features` have it for "
+                f"{self.identity.task.fitness}; got {self.measured.fitness!r}"
+            )
+        return self
+
+
+def fitness_of(task: Task, features: Mapping[str, float]) -> float:
+    """Fitness in float32, as it is computed where a creature is evaluated."""
+    if task.own is not None:  # Which is among what was measured.
+        return features.get(task.fitness, np.nan)
+    displacement = np.float32(features.get("displacement", np.nan))
+    energy = np.float32(task.energy_weight) * np.float32(features.get("energy", np.nan))
+    both = {"displacement": displacement, "energy": energy}
+    return float(both.get(task.fitness, displacement + energy))
+
+
+def check(data: Any) -> dict[str, Any]:
+    """Return the creature file, checked: its genes, its world and its hash.
+
+    Raises `CreatureError`, which names the field, what was needed and what came.
+    """
+    try:
+        file = CreatureFile.model_validate(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        needed = first["msg"].removeprefix("Value error, ")
+        named = re.match(r"`([\w.]+)`", needed)
+        field = field_path(first["loc"]) or (named[1] if named else "file")
+        raise CreatureError(field, needed, first["input"]) from error
+    whole = file.model_dump(mode="json")
+    expected = name(whole["identity"])
+    if expected != file.sha256:
+        raise CreatureError("sha256", f"the identity's own hash {expected}", file.sha256)
+    return whole
+
+
+def scene_of(file: Mapping[str, Any]) -> Scene:
+    """What is simulated when a parsed file is evaluated or replayed."""
+    scene = Identity.model_validate(file["identity"]).scene
+    own = (file.get("measured") or {}).get("own")
+    return Scene(**{**dict(scene), "own": own}) if own else scene
+
+
+def room_of(genome: Part, recorded: tuple[int, int] | None) -> tuple[int, int] | None:
+    """The room that was recorded, else just enough: sums round differently in another."""
+    if not isinstance(genome, Network):
+        return None
+    least = (max(8, len(genome.nodes.id)), max(8, len(genome.connections.innovation)))
+    nodes, connections = recorded or (least[0], max(least))
+    if nodes < least[0] or connections < least[1]:
+        raise ValueError(
+            f"`measured.room` must be at least {list(least)}, got {[nodes, connections]}"
+        )
+    return nodes, connections
+
+
+def room(file: Mapping[str, Any]) -> tuple[int, int] | None:
+    """`max_nodes` and `max_connections` for a parsed file's network; None without one."""
+    parsed = CreatureFile.model_validate(file)
+    measured = parsed.measured
+    return room_of(parsed.identity.genome, measured.room if measured else None)

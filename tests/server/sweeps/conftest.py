@@ -1,0 +1,49 @@
+"""Sweeps of the small search."""
+
+from uuid import UUID
+
+import pytest
+
+from server.attempts.begin import claim
+from server.attempts.claim import Claim
+
+VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
+
+
+@pytest.fixture
+def post(api, spec):
+    """Submits a sweep of the small search."""
+
+    def send(**asked):
+        return api.post("sweeps", json={"spec": spec, **asked})
+
+    return send
+
+
+@pytest.fixture
+def six(post):
+    """Two viscosities with three seeds each."""
+    return post(seeds=3, grid=VISCOSITIES, name="thick and thin").json()
+
+
+@pytest.fixture
+def claimed(services):
+    """Claims a run of a sweep for a worker."""
+
+    def claimed(run: str | UUID, worker: str = "worker") -> Claim:
+        found = claim(services, UUID(str(run)), worker)
+        assert found
+        return found
+
+    return claimed
+
+
+@pytest.fixture
+def runs_of(api):
+    """The ids of the runs of a sweep, in their order."""
+
+    def runs_of(sweep):
+        query = {"sweep": sweep["id"], "sort": "created"}
+        return [run["id"] for run in api.get("runs", params=query).json()["items"]]
+
+    return runs_of

@@ -1,0 +1,207 @@
+"""Submitting a sweep: its grid and seeds, and what is refused as a whole."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from sqlalchemy import select
+
+from microcosmos.archive import creature
+from server.maintenance.reconcile import reconcile
+from server.sweeps import submission
+from server.tables import Run, Sweep
+
+VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
+
+
+def test_a_sweep_is_each_case_with_each_seed_the_first_seed_first(api, services, six):
+    assert (six["total"], six["standing"], six["progress"]) == (6, {"queued": 6}, 0)
+    assert [case["values"] for case in six["cases"]] == [
+        {"world.viscosity": 0.05},
+        {"world.viscosity": 0.1},
+    ]
+    found = api.get("runs", params={"sweep": six["id"], "sort": "created"}).json()["items"]
+    told = [(run["spec"]["world"]["viscosity"], run["spec"]["seed"]) for run in found]
+    assert told == [(nu, seed) for seed in (0, 1, 2) for nu in (0.05, 0.1)]
+    assert found[3]["name"] == "thick and thin · world.viscosity=0.1 · seed 1"
+    assert {run["sweep"] for run in found} == {six["id"]}
+    ids = [run["id"] for run in found]
+    assert [case["runs"] for case in six["cases"]] == [ids[::2], ids[1::2]]
+    assert services.jobs.sweeps.get_job_ids() == ids
+    assert api.get(f"sweeps/{six['id']}").json() == six
+
+
+def test_a_number_of_seeds_goes_on_from_the_specs_own(api, post, spec):
+    spec["seed"] = 7
+    assert post(seeds=3).json()["seeds"] == [7, 8, 9]
+    assert post(seeds=[4, 2]).json()["seeds"] == [4, 2]
+    assert post().json()["total"] == 1
+
+
+def test_a_path_reaches_into_lists_and_a_value_may_be_a_whole_part(api, post):
+    grid = {"archive.descriptors.0.bins": [4, 8], "body": [{"builder": "ring", "nodes": 8}]}
+    found = post(grid=grid).json()
+    specs = [api.get(f"runs/{case['runs'][0]}").json()["spec"] for case in found["cases"]]
+    assert [one["archive"]["descriptors"][0]["bins"] for one in specs] == [4, 8]
+    assert {one["archive"]["descriptors"][1]["bins"] for one in specs} == {16}
+    assert {one["body"]["builder"] for one in specs} == {"ring"}
+
+
+def test_a_part_that_is_off_can_be_given_fields(api, post):
+    found = post(grid={"world.energy.packets": [2, 3]}).json()
+    specs = [api.get(f"runs/{case['runs'][0]}").json()["spec"] for case in found["cases"]]
+    assert [one["world"]["energy"]["packets"] for one in specs] == [2, 3]
+
+
+@pytest.mark.parametrize(
+    ("asked", "field", "words"),
+    [
+        ({"grid": {"world.viscosity": [0.1, 0.2, -1]}}, "grid.world.viscosity[2]", "0.001"),
+        ({"grid": {"world.viscosti": [1]}}, "grid.world.viscosti", "`world.viscosity`"),
+        ({"grid": {"viscosity": [1]}}, "grid.viscosity", "did you mean `world.viscosity`"),
+        ({"grid": {"archive.descriptors.2.bins": [4]}}, "grid.archive.descriptors.2.bins", ""),
+        ({"grid": {"seed": [1]}}, "grid.seed", "`seeds`"),
+        ({"grid": {"experiment": ["folding"]}}, "grid.experiment", "one experiment"),
+        ({"grid": {"seed.low": [1]}}, "grid.seed.low", "no field"),
+        ({"grid": {"world.viscosity": []}}, "grid.world.viscosity", "at least 1 item"),
+        ({"grid": {"world.viscosity": [1, 1.0]}}, "grid.world.viscosity[1]", "viscosity[0]"),
+        ({"grid": {"world": [{}], "world.width": [64]}}, "grid.world.width", "lies in `world`"),
+        ({"grid": {"body.nodes": [8, 512]}}, "grid.body.nodes[1]", "with body.nodes=512"),
+        (
+            {"grid": {"body.nodes": [8, 64], "world.width": [64, 128]}},
+            "grid",
+            "with body.nodes=64, world.width=64: `world.height` must be at least 80",
+        ),
+        (
+            {"grid": {"world.height": [128], "body.nodes": [8, 99], "world.width": [64, 128]}},
+            "grid.world.width[0]",
+            "with world.height=128, body.nodes=99, world.width=64: `world.width` must",
+        ),
+        ({"grid": {"world.energy.colour": [1]}}, "grid.world.energy.colour[0]", "no field"),
+        ({"seeds": 0}, "seeds", "from 1 to 1,000"),
+        ({"seeds": [1, 2, 1]}, "seeds", "got 1 more than once"),
+        ({"seeds": [-1]}, "seeds", "whole numbers"),
+        ({"seeds": "many"}, "seeds", "whole numbers"),
+        ({"seeds": True}, "seeds", "whole numbers"),
+        ({"seeds": 1001}, "seeds", "from 1 to 1,000"),
+        ({"seeds": 501, "grid": VISCOSITIES}, "grid", "got 2 x 501 = 1,002"),
+        (
+            {"grid": {"world.viscosity": [10**20], "body.nodes": [512]}},
+            "grid.world.viscosity[0]",
+            "",
+        ),
+        ({"grid": {"world.width": [10**20, "x"]}}, "grid.world.width[1]", "valid integer"),
+        ({"surprise": 1}, "surprise", "no field of this name"),
+        ({"name": "x" * 201}, "name", "200"),
+    ],
+)
+def test_nothing_is_written_where_any_run_could_not_be(api, post, asked, field, words):
+    answer = post(**asked)
+    assert answer.status_code == 422
+    problem = answer.json()
+    assert field in [error["field"] for error in problem["errors"]]
+    assert words in problem["detail"]
+    assert api.get("sweeps").json()["items"] == []
+    assert api.get("runs").json()["items"] == []
+
+
+def test_a_spec_that_is_wrong_by_itself_is_told_as_such(api, spec):
+    spec["world"]["viscosity"] = -1
+    (error,) = api.post("sweeps", json={"spec": spec}).json()["errors"]
+    assert error["field"] == "spec.world.viscosity"
+    spec["world"]["viscosity"], spec["seed"] = 0.1, 2**32 - 1
+    (error,) = api.post("sweeps", json={"spec": spec, "seeds": 2}).json()["errors"]
+    assert (error["field"], "seeds end at 4294967296" in error["message"]) == ("seeds", True)
+
+
+def test_memory_is_refused_at_the_value_that_asks_for_it(api, post, spec):
+    spec["archive"]["descriptors"][1]["bins"] = 1024
+    grid = {"archive.descriptors.0.bins": [16, 900, 1000], **VISCOSITIES}
+    answer = post(grid=grid)
+    problem = answer.json()
+    assert (answer.status_code, problem["title"]) == (422, "More memory than there is")
+    fields = [error["field"] for error in problem["errors"]]
+    assert fields == [f"grid.archive.descriptors.0.bins[{place}]" for place in (1, 2)]
+    assert "with archive.descriptors.0.bins=900, world.viscosity=0.05" in problem["detail"]
+    assert api.get("runs").json()["items"] == []
+
+
+def test_a_write_that_fails_half_way_leaves_nothing(services, post, monkeypatch):
+    def fail(*_):
+        raise RuntimeError("half way")
+
+    monkeypatch.setattr(submission, "_first_entry", fail)
+    assert post(seeds=3).status_code == 500
+    with services.sessions.read() as session:
+        assert not session.scalars(select(Run.id)).all()
+        assert not session.scalars(select(Sweep.id)).all()
+
+
+@pytest.mark.postgresql
+def test_the_same_key_at_once_gives_one_sweep(api, services, spec):
+    headers = {"Idempotency-Key": "a key"}
+    asked = {"spec": spec, "seeds": 2}
+    with ThreadPoolExecutor(4) as pool:
+        answers = list(
+            pool.map(lambda _: api.post("sweeps", json=asked, headers=headers), range(4))
+        )
+    assert sorted(answer.status_code for answer in answers) == [200] * 3 + [202]
+    assert len({answer.json()["id"] for answer in answers}) == 1
+    assert services.jobs.sweeps.count == 2
+    for path, other in (("sweeps", {**asked, "seeds": 3}), ("runs", spec)):
+        refused = api.post(path, json=other, headers=headers)
+        assert (refused.status_code, refused.json()["title"]) == (422, "Idempotency key reused")
+        assert f"sweep {answers[0].json()['id']}" in refused.json()["detail"]
+
+
+def test_whole_numbers_that_canonical_json_has_not_are_no_hindrance(api, spec):
+    asked = {"spec": spec, "grid": {"search.stop.evaluations": [10**20, 10**21]}}
+    answer = api.post("sweeps", json=asked, headers={"Idempotency-Key": "large"})
+    assert answer.status_code == 202
+    run = api.get(f"runs/{answer.json()['cases'][0]['runs'][0]}").json()
+    assert run["spec"]["search"]["stop"]["evaluations"] == 10**20
+
+
+@pytest.fixture
+def elite(claimed, services, run_id, report, identity):
+    """The name of a creature that lives in a finished run."""
+    attempt = claimed(run_id)
+    attempt.record(report(1, {0: 1.0}), 1.0)
+    attempt.finish()
+    return creature.name(identity(1000))
+
+
+def test_what_a_sweep_begins_from_stays_as_long_as_its_runs(
+    runs_of, claimed, api, services, post, spec, run_id, elite
+):
+    spec["search"]["origin"] = [elite]
+    sweep = post(seeds=2, grid=VISCOSITIES).json()
+    api.delete(f"runs/{run_id}")
+    with services.sessions.write.begin() as session:
+        session.get_one(Run, run_id).purge_at = session.get_one(Run, run_id).deleted_at
+    reconcile(services)
+    assert api.get(f"runs/{run_id}").status_code == 404
+    assert api.get(f"creatures/{elite}").status_code == 200
+    for run in runs_of(sweep):
+        (file,) = claimed(run).origin()
+        assert file["sha256"] == elite
+
+
+@pytest.mark.parametrize(
+    ("asked", "origin", "field"),
+    [
+        ({}, "ab" * 32, "spec.search.origin"),
+        ({"grid": {"search.origin": [[], ["ab" * 32]]}}, None, "grid.search.origin[1]"),
+        ({"grid": {"control.timer": ["linear"], **VISCOSITIES}}, None, "spec.control: inputs"),
+    ],
+)
+def test_a_sweep_that_could_not_begin_is_refused(api, post, spec, elite, asked, origin, field):
+    spec["search"]["origin"] = [origin or elite]
+    answer = post(**asked)
+    assert (answer.status_code, answer.json()["errors"][0]["field"]) == (422, field)
+    assert len(api.get("runs").json()["items"]) == 1
+
+
+def test_the_name_of_a_run_keeps_its_seed_however_long_the_rest_is(api, post):
+    found = post(name="n" * 200, grid=VISCOSITIES).json()
+    name = api.get(f"runs/{found['cases'][0]['runs'][0]}").json()["name"]
+    assert (len(name), name[-10:]) == (200, "… · seed 0")

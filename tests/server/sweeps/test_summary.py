@@ -1,0 +1,138 @@
+"""The summary of a sweep: bands over its runs, and the figures at their ends."""
+
+from uuid import UUID
+
+import numpy as np
+import pytest
+from sqlalchemy import event, insert, update
+
+from server.sweeps.summary import summary
+from server.tables import Generation, Run, Sweep
+
+VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
+
+
+def test_bands_are_the_quartiles_of_the_runs_that_have_got_so_far(api, services, post):
+    sweep = post(seeds=4, grid=VISCOSITIES).json()
+    rng = np.random.default_rng(0)
+    lengths = [5, 3, 4, 0]
+    told = {}
+    for run, length in zip(sweep["cases"][1]["runs"], lengths, strict=True):
+        told[run] = rng.random((length, 3))
+        record(services, run, told[run])
+    found = api.get(f"sweeps/{sweep['id']}/summary").json()
+    empty, case = found["cases"]
+    assert (empty["generation"], empty["qd_score"]["median"]) == ([], [])
+    assert case["values"] == {"world.viscosity": 0.1}
+    assert case["generation"] == [1, 2, 3, 4, 5]
+    assert case["runs"] == [3, 3, 3, 2, 1]
+    for at, name in enumerate(("qd_score", "coverage", "best")):
+        for generation in case["generation"]:
+            known = [
+                rows[generation - 1, at] for rows in told.values() if len(rows) >= generation
+            ]
+            for word, share in (
+                ("low", 25),
+                ("median", 50),
+                ("high", 75),
+                ("min", 0),
+                ("max", 100),
+            ):
+                value = case[name][word][generation - 1]
+                assert value == pytest.approx(np.percentile(known, share))
+    assert [member["seed"] for member in case["members"]] == [0, 1, 2, 3]
+    assert [member["generation"] for member in case["members"]] == lengths
+    final = case["finals"]["qd_score"]
+    last = [told[run][-1, 0] for run in told if len(told[run])]
+    assert final["values"] == [*last, None]
+    assert final["median"] == pytest.approx(np.median(last))
+    thin = api.get(f"sweeps/{sweep['id']}/summary", params={"points": 3}).json()["cases"][1]
+    assert (thin["generation"], thin["runs"]) == ([1, 3, 5], [3, 3, 1])
+    assert thin["best"]["max"] == [case["best"]["max"][i] for i in (0, 2, 4)]
+    lines = api.get(f"sweeps/{sweep['id']}/curves").json()
+    assert lines["generation"] == [1, 2, 3, 4, 5]
+    (line,) = [one for one in lines["lines"] if one["run"] == sweep["cases"][1]["runs"][1]]
+    assert line["coverage"] == [*told[line["run"]][:, 1], None, None]
+
+
+def test_a_run_that_comes_back_while_a_summary_is_made_is_not_taken_for_another(
+    api, services, post
+):
+    sweep = post(seeds=3).json()
+    runs = sweep["cases"][0]["runs"]
+    for run, value in zip(runs, (1.0, 2.0, 3.0), strict=True):
+        record(services, run, np.full((2, 3), value))
+        api.post(f"runs/{run}/cancel")
+    api.delete(f"runs/{runs[2]}")
+    asked = []
+
+    def restore(*_):
+        asked.append(1)
+        if len(asked) == 2:
+            with services.sessions.write.begin() as session:
+                session.get_one(Run, UUID(runs[2])).deleted_at = None
+
+    with services.sessions.read() as session:
+        found = session.get_one(Sweep, UUID(sweep["id"]))
+        event.listen(session.connection(), "before_cursor_execute", restore)
+        (case,) = summary(session, found, None).cases
+    assert [str(member.run) for member in case.members] == runs[:2]
+    assert (case.best.min, case.best.max) == ([1.0, 1.0], [2.0, 2.0])
+
+
+def test_a_summary_of_very_long_runs_can_be_asked_for(api, services, post):
+    sweep = post(seeds=3).json()
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(generation=900_000))
+    found = api.get(f"sweeps/{sweep['id']}/curves")
+    assert (found.status_code, len(found.json()["generation"])) == (200, 10_000)
+
+
+def record(services, run, rows):
+    """Write down generations of a run, as a worker would have."""
+    columns = ("qd_score", "coverage", "best")
+    others = {"evaluations": 1, "diverged": 0, "seconds": 1.0, "summary": None, "mean": None}
+    with services.sessions.write.begin() as session:
+        row = session.get_one(Run, UUID(run))
+        row.generation = len(rows)
+        for generation, values in enumerate(rows.tolist(), 1):
+            known = dict(zip(columns, values, strict=True))
+            at = {"run_id": row.id, "generation": generation}
+            session.execute(insert(Generation), [{**at, **known, **others}])
+            row.qd_score, row.coverage, row.best = values
+
+
+def test_a_summary_asks_the_database_as_often_for_many_runs_as_for_few(services, post):
+    sizes = []
+    for seeds in (1, 20):
+        sweep_id = UUID(post(seeds=seeds, grid=VISCOSITIES).json()["id"])
+        asked = []
+
+        def note(_connection, _cursor, statement, *_, asked=asked):
+            asked.append(statement)
+
+        with services.sessions.read() as session:
+            sweep = session.get_one(Sweep, sweep_id)
+            event.listen(services.sessions.engine, "before_cursor_execute", note)
+            summary(session, sweep, None)
+            event.remove(services.sessions.engine, "before_cursor_execute", note)
+        sizes.append(len(asked))
+    assert sizes == [2, 2]
+
+
+def test_of_a_table_the_finals_are_the_figures_of_its_summary(
+    claimed, api, services, sweep, table
+):
+    found = api.post("sweeps", json={"spec": sweep, "grid": {"period": [40, 50]}}).json()
+    assert (found["seeds"], found["total"]) == ([], 2)
+    attempt = claimed(found["cases"][0]["runs"][0])
+    attempt.record(table(1, {"number": 1}, summary={"points": 4, "note": "words"}), 1.0)
+    name = api.get(f"runs/{found['cases'][0]['runs'][0]}").json()["name"]
+    assert name == "period=40"
+    told = api.get(f"sweeps/{found['id']}/summary").json()["cases"]
+    assert told[0]["finals"]["points"]["values"] == [4.0]
+    assert set(told[0]["finals"]) == {"evaluations", "points"}
+    assert told[0]["qd_score"]["median"] == [None]
+    assert "points" not in told[1]["finals"]
+    refused = api.post("sweeps", json={"spec": sweep, "seeds": 2}).json()
+    assert "`gaits` has no seed" in refused["detail"]

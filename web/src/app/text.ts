@@ -1,0 +1,26 @@
+/** Texts of the frame around every page. */
+
+export const text = {
+  runs: "Runs",
+  newRun: "New run",
+  compare: "Compare",
+  workers: "Workers",
+  shares: "Shares",
+  commons: "Commons",
+  settings: "Settings",
+  help: "Help",
+  notFound: "Not found",
+  signIn: "Sign in",
+  title: (title: string) => `${title} · Microcosmos`,
+  brand: "Microcosmos",
+  pages: "Pages",
+  noSuchPage: "Page not found",
+  noSuchPageAbout: "No page has this address. ",
+  allRuns: "Show all runs",
+  connecting: "Connecting …",
+  live: "Live",
+  lost: "Connection lost; trying again",
+  dismiss: "Dismiss",
+  notShared: "Not shared",
+  notSharedAbout: "Nothing is shared at this address.",
+};
