@@ -187,7 +187,8 @@ def _origin(state: State, group: file.Tree | None) -> Origin | None:
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
     """Rows of NumPy arrays."""
-    return type(state.elites.genotypes)(**columns)
+    form = state.elites.genotypes
+    return jax.tree.unflatten(jax.tree.structure(form), [columns[name] for name in vars(form)])
 
 
 def _columns(module: eqx.Module) -> dict[str, Any]:
