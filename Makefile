@@ -9,7 +9,7 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print) docs/glossary.md
 
-.PHONY: run install web test test-all test-long check peers bench acceptance validate pictures docs texts \
+.PHONY: run install web test test-all test-long mutants check peers bench acceptance validate pictures docs texts \
 	release-check lock
 
 run: install web
@@ -73,6 +73,10 @@ define part
 	@begun=$$(date +%s); { $(2); } || [ $$? = 5 ] || exit 1; \
 	echo "$(1): $$(( $$(date +%s) - begun )) s" >> $(TIMES)
 endef
+
+# Break the code on purpose and see whether the tests notice: all, or make mutants NAMES=auth
+mutants: install web
+	$(BIN)/python tests/mutants/run.py $(NAMES)
 
 # What benchmarks compare with; not needed for anything else.
 peers: install

@@ -122,15 +122,15 @@ class Supervisor(SpawnWorker):
         return self.lease
 
 
-def own_queues(shared: Services, sources: set[str]) -> list[Queue]:
+def own_queues(shared: Services, plugin_versions: set[str]) -> list[Queue]:
     """The queues of runs that can be carried out with these modules of users' own, those
     first whose runs have waited longest."""
-    if not sources:
+    if not plugin_versions:
         return shared.jobs.evolving
     with shared.sessions.read() as session:
         waiting = in_line(session)
-    able = [one for one in waiting if sources.issuperset(one.sources or ())]
-    queues = [shared.jobs.evolving_with(one.sources, one.of_sweep) for one in able]
+    able = [one for one in waiting if plugin_versions.issuperset(one.plugin_versions or ())]
+    queues = [shared.jobs.evolving_with(one.plugin_versions, one.of_sweep) for one in able]
     return list({queue.name: queue for queue in (*queues, *shared.jobs.evolving)}.values())
 
 
@@ -151,7 +151,7 @@ def supervise(settings: Settings, index: int) -> None:
     journal.info("Worker %s on %s", name, found.name)
     worker.pulse.start()
     shelf.start()
-    loop.serve(worker, lambda: own_queues(shared, shelf.last.sources))
+    loop.serve(worker, lambda: own_queues(shared, shelf.last.plugin_versions))
     shelf.end()
     with suppress(SQLAlchemyError):
         worker.pulse.end()

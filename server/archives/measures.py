@@ -14,7 +14,7 @@ from microcosmos.spec.measures import FEATURES
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..tables import Creature, Elite, Run
-from .schemas import Axis, Feature
+from .schemas import Axis, Measure
 
 
 def searched(run: Run) -> bool:
@@ -36,7 +36,7 @@ def kind(run: Run) -> tuple[Literal["grid", "cvt"], int]:
     return "grid", prod(axis.bins for axis in axes(run))
 
 
-def recorded(session: Session, run: Run) -> list[Feature]:
+def recorded(session: Session, run: Run) -> list[Measure]:
     """What was measured of the run's elites; of a run without any, what will be."""
     one = select(Creature.measured).join(Elite, Elite.creature == Creature.sha256)
     measured = session.scalars(one.where(Elite.run_id == run.id).limit(1)).first()
@@ -54,19 +54,19 @@ def _own_axes(run: Run) -> list[str]:
     return [axis["name"] for axis in run.spec["archive"]["descriptors"] if axis.get("own")]
 
 
-def _told(name: str, own: Own | None, axis: Axis | None) -> Feature:
+def _told(name: str, own: Own | None, axis: Axis | None) -> Measure:
     """A feature under its title; one that is not known any more is told by its name."""
     known = FEATURES.get(name)
     if own is not None:
         low, high = (axis.low, axis.high) if axis else (None, None)
         scale = axis.scale if axis else "linear"
-        return Feature(
+        return Measure(
             name=name, title=own.title, unit=own.unit, low=low, high=high, scale=scale
         )
     if known is None:
         title = name.replace("_", " ").capitalize()
-        return Feature(name=name, title=title, unit="", low=None, high=None, scale="linear")
-    return Feature(name=name, **asdict(known))
+        return Measure(name=name, title=title, unit="", low=None, high=None, scale="linear")
+    return Measure(name=name, **asdict(known))
 
 
 def column(name: str) -> ColumnElement[float | None]:
@@ -74,11 +74,11 @@ def column(name: str) -> ColumnElement[float | None]:
     return Creature.measured["features", name].as_float()
 
 
-def refuse_unknown(names: Sequence[str], known: Sequence[Feature]) -> None:
+def refuse_unknown(names: Sequence[str], known: Sequence[Measure]) -> None:
     """Raise `ProblemError` where a name is of nothing that was recorded."""
     there = [feature.name for feature in known]
     if wrong := [name for name in names if name not in there]:
         needed = f"names among {', '.join(there)}"
-        detail = f"`features` must be {needed}; got {', '.join(map(repr, wrong))}."
-        error = FieldError(field="features", message=detail, needed=needed, got=wrong)
+        detail = f"`measures` must be {needed}; got {', '.join(map(repr, wrong))}."
+        error = FieldError(field="measures", message=detail, needed=needed, got=wrong)
         raise ProblemError(422, "Invalid input", detail, [error])

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
+from ..auth.authorize import MAY_READ
 from ..core.errors import ProblemError
 from ..runs.deps import RunDep
 from ..services.deps import ServicesDep, SessionDep
@@ -18,7 +19,7 @@ from ..storage import ranges
 from ..tables import Artifact, Elite, Run
 from . import elites
 from . import measures as of_elites
-from .schemas import ArchiveRead, CentroidsRead, Feature, HistoryRead
+from .schemas import ArchiveRead, CentroidsRead, HistoryRead, Measure
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
 binary: dict[int | str, dict[str, Any]] = {
@@ -30,24 +31,24 @@ HISTORY_ENTRIES = 400_000
 """About 50 MB."""
 
 
-@router.get("/archive")
+@router.get("/archive", dependencies=[MAY_READ])
 def read_archive(
     run: RunDep,
     session: SessionDep,
     generation: Annotated[int | None, Query(ge=0)] = None,
-    features: str = "",
+    measures: str = "",
     after: Annotated[int | None, Query(ge=0)] = None,
 ) -> ArchiveRead:
     """The elite of each cell, now or as of a generation.
 
-    With `features`, names with commas between them, what was recorded of the elites under
+    With `measures`, names with commas between them, what was recorded of the elites under
     those names too: an archive can be looked at along any of them. With `after`, a generation,
     only the elites that entered later, for who knows the others.
     """
     _refuse_without(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
     recorded = of_elites.recorded(session, run)
-    names = _asked(features, recorded)
+    names = _asked(measures, recorded)
     known = -1 if after is None else min(after, run.generation)
     kind, cells = of_elites.kind(run)
     return ArchiveRead(
@@ -60,18 +61,18 @@ def read_archive(
     )
 
 
-@router.get("/archive/history")
-def read_history(run: RunDep, session: SessionDep, features: str = "") -> HistoryRead:
+@router.get("/archive/history", dependencies=[MAY_READ])
+def read_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
     """Every elite that ever entered: the archive of each generation can be told from it."""
     _refuse_without(run)
-    names = _asked(features, of_elites.recorded(session, run))
+    names = _asked(measures, of_elites.recorded(session, run))
     _refuse_too_long(session, run)
     ordered = elites.ever(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
     return HistoryRead(generation=run.generation, **columns)
 
 
-@router.get("/archive/centroids")
+@router.get("/archive/centroids", dependencies=[MAY_READ])
 def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> CentroidsRead:
     """The cells of a CVT archive; null until its first checkpoint is there."""
     _refuse_without(run)
@@ -98,9 +99,9 @@ def _refuse_too_long(session: Session, run: Run) -> None:
         raise ProblemError(422, "Too long a history", detail)
 
 
-def _asked(features: str, recorded: Sequence[Feature]) -> list[str]:
-    """Names of features with commas between them; `ProblemError` where one was not recorded."""
-    names = list(dict.fromkeys(filter(None, features.split(","))))
+def _asked(measures: str, recorded: Sequence[Measure]) -> list[str]:
+    """Names of measures with commas between them; `ProblemError` where one was not recorded."""
+    names = list(dict.fromkeys(filter(None, measures.split(","))))
     of_elites.refuse_unknown(names, recorded)
     return names
 
@@ -113,7 +114,7 @@ def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
         "descriptors": [elite.descriptors for elite in found],
         "elite_generation": [elite.generation for elite in found],
         "creature": [elite.creature for elite in found],
-        "features": {
+        "measures": {
             name: [elite[first + i] for elite in found] for i, name in enumerate(names)
         },
     }
@@ -128,7 +129,7 @@ def _refuse_without(run: Run) -> None:
         raise ProblemError(404, "No archive", detail)
 
 
-@router.get("/archive.h5", response_class=Response, responses=binary)
+@router.get("/archive.h5", response_class=Response, responses=binary, dependencies=[MAY_READ])
 def download_archive(
     request: Request, run: RunDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -139,7 +140,10 @@ def download_archive(
 
 
 @router.get(
-    "/archive.csv", response_class=Response, responses={200: {"content": {"text/csv": {}}}}
+    "/archive.csv",
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {}}}},
+    dependencies=[MAY_READ],
 )
 def download_table(run: RunDep, session: SessionDep, services: ServicesDep) -> Response:
     """The last checkpoint's archive in the columns of pyribs."""

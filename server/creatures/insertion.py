@@ -52,5 +52,5 @@ def link(session: Session, names: Sequence[str]) -> None:
 
 def links(child: str, parents: Sequence[str]) -> Iterator[dict[str, Any]]:
     """Yield a row for each parent of a creature."""
-    for place, parent in enumerate(parents):
-        yield {"child": child, "place": place, "parent": parent}
+    for position, parent in enumerate(parents):
+        yield {"child": child, "position": position, "parent": parent}

@@ -19,7 +19,7 @@ from ..estimates.position import in_line
 from ..runs.lifecycle import announce, hand_back, lost, release, yield_up
 from ..runs.log import note
 from ..services.services import Services
-from ..tables import CANCEL, QUEUED, RUNNING, Run, Sweep, Worker
+from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker
 
 FORGOTTEN_AFTER = 3600.0
 """Seconds after which a silent worker is no longer remembered."""
@@ -69,8 +69,8 @@ def end_disobedient(services: Services) -> None:
     with services.sessions.read() as session:
         overdue = (
             Run.status == RUNNING,
-            Run.wish == CANCEL,
-            Run.wished_at < ago(session, grace),
+            Run.requested_state == CANCELLED,
+            Run.requested_at < ago(session, grace),
         )
         found = list(session.scalars(select(Run.id).where(*overdue)))
     for run_id in found:
@@ -154,6 +154,6 @@ def _enqueue(services: Services, run: Run) -> None:
     if run.status != QUEUED:
         return
     try:
-        services.jobs.evolve(run.id, run.sweep is not None, run.sources)
+        services.jobs.evolve(run.id, run.sweep is not None, run.plugin_versions)
     except RedisError as error:
         log.warning("run %s stays queued until Redis answers: %s", run.id, error)

@@ -107,7 +107,7 @@ def submit(
     run = Run(
         experiment=spec.experiment,
         spec=document,
-        sources=plugins.needs(document),
+        plugin_versions=plugins.needed_versions(document),
         generations=spec.generations,
         version=VERSION,
         owner=owner,

@@ -102,9 +102,9 @@ def test_it_is_refused_then_evolves_where_it_is_and_waits_where_it_is_not(
     assert spec["task"]["own"]["source"] == sha256(EXAMPLE.read_bytes()).hexdigest()
     assert json.loads(attributes["features"])[-2:] == ["own_task.straight", "own_task.sway"]
     archive = own_place.http.get(
-        f"/api/v1/runs/{run}/archive", params={"features": "own_task.straight"}
+        f"/api/v1/runs/{run}/archive", params={"measures": "own_task.straight"}
     ).json()
-    assert archive["features"]["own_task.straight"] == archive["fitness"]
+    assert archive["measures"]["own_task.straight"] == archive["fitness"]
     assert archive["fitness"] == tree["archive"]["fitness"].tolist()
 
     module.write_text(f"{EXAMPLE.read_text()}# Changed.\n")
@@ -116,8 +116,8 @@ def test_it_is_refused_then_evolves_where_it_is_and_waits_where_it_is_not(
     again = own_place.http.post("/api/v1/runs", json=spec).json()
     waiting = own_place.read(again["id"])
     assert waiting["status"] == "queued"
-    assert "Waits for a worker that has own_task.cross" in waiting["waiting"]
-    assert f"{worker['name']} has another version" in waiting["waiting"]
+    assert "Waits for a worker that has own_task.cross" in waiting["waiting_reason"]
+    assert f"{worker['name']} has another version" in waiting["waiting_reason"]
     shutil.copy(EXAMPLE, module)
     finished = own_place.wait(again["id"], "finished", seconds=240)
     assert finished["attempt"] == 1

@@ -34,7 +34,7 @@ class Archive:
         self.creature: list[str] = document["creature"]
         self.features = {
             name: columns.array(values).astype(np.float32)
-            for name, values in document["features"].items()
+            for name, values in document["measures"].items()
         }
 
     def __len__(self) -> int:

@@ -147,15 +147,15 @@ def test_an_archive_has_the_features_of_its_elites_that_are_asked_for(
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1, {5: 1.0}, features=SLIM), 1.0)
     attempt.record(report(2, {3: 2.0}, features=dict.fromkeys(SLIM, 7.0)), 1.0)
-    found = api.get(f"runs/{run_id}/archive", params={"features": "turning,energy"}).json()
+    found = api.get(f"runs/{run_id}/archive", params={"measures": "turning,energy"}).json()
     assert found["cell"] == [3, 5]
-    assert found["features"] == {"turning": [7.0, -1e-9], "energy": [7.0, 0.1 + 0.2]}
+    assert found["measures"] == {"turning": [7.0, -1e-9], "energy": [7.0, 0.1 + 0.2]}
     names = [feature["name"] for feature in found["recorded"]]
     assert names == ["displacement", "bending_effort", "stretching_effort", *SLIM]
-    assert api.get(f"runs/{run_id}/archive").json()["features"] == {}
-    before = {"features": "energy", "generation": 1}
+    assert api.get(f"runs/{run_id}/archive").json()["measures"] == {}
+    before = {"measures": "energy", "generation": 1}
     then = api.get(f"runs/{run_id}/archive", params=before).json()
-    assert then["features"] == {"energy": [0.1 + 0.2]}
+    assert then["measures"] == {"energy": [0.1 + 0.2]}
 
 
 @pytest.mark.postgresql
@@ -166,8 +166,8 @@ def test_an_archive_tells_only_what_entered_after_a_generation(api, services, ru
     attempt.record(report(3, {5: 3.0}, features=SLIM), 1.0)
 
     def read(**asked):
-        found = api.get(f"runs/{run_id}/archive", params=asked | {"features": "energy"}).json()
-        assert len(found["features"]["energy"]) == len(found["cell"])
+        found = api.get(f"runs/{run_id}/archive", params=asked | {"measures": "energy"}).json()
+        assert len(found["measures"]["energy"]) == len(found["cell"])
         return dict(zip(found["cell"], found["elite_generation"], strict=True))
 
     assert read() == {3: 1, 5: 3, 7: 2}
@@ -182,10 +182,10 @@ def test_features_that_were_not_recorded_are_refused_with_those_that_were(
     api, services, run_id, report
 ):
     claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
-    answer = api.get(f"runs/{run_id}/archive", params={"features": "energy,displacement"})
+    answer = api.get(f"runs/{run_id}/archive", params={"measures": "energy,displacement"})
     assert answer.status_code == 422
     (error,) = answer.json()["errors"]
-    assert (error["field"], error["got"]) == ("features", ["energy"])
+    assert (error["field"], error["got"]) == ("measures", ["energy"])
     assert "displacement" in error["needed"]
 
 
@@ -244,12 +244,12 @@ def test_the_history_tells_the_archive_of_every_generation(api, services, run_id
     attempt.record(report(1, {5: 1.0, 3: 2.0}, features={"turning": 0.5}), 1.0)
     attempt.record(report(2, {5: 1.5}, features={"turning": 0.25}), 1.0)
     attempt.record(report(3, {255: 0.5, 5: 4.0}, features={"turning": 1.0}), 1.0)
-    asked = {"features": "turning"}
+    asked = {"measures": "turning"}
     history = api.get(f"runs/{run_id}/archive/history", params=asked).json()
     assert history["generation"] == 3
     assert history["cell"] == [3, 5, 5, 5, 255]
     assert history["elite_generation"] == [1, 1, 2, 3, 3]
-    assert history["features"] == {"turning": [0.5, 0.5, 0.25, 1.0, 1.0]}
+    assert history["measures"] == {"turning": [0.5, 0.5, 0.25, 1.0, 1.0]}
     columns = ("fitness", "descriptors", "creature")
     for generation in range(4):
         then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
@@ -265,9 +265,9 @@ def test_the_history_tells_the_archive_of_every_generation(api, services, run_id
 
 def test_a_history_with_what_was_not_recorded_is_refused(api, services, run_id, report):
     claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
-    answer = api.get(f"runs/{run_id}/archive/history", params={"features": "beauty"})
+    answer = api.get(f"runs/{run_id}/archive/history", params={"measures": "beauty"})
     assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == "features"
+    assert answer.json()["errors"][0]["field"] == "measures"
 
 
 def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, spec, report):

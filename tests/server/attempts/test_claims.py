@@ -50,7 +50,7 @@ def test_a_silent_workers_run_is_taken_and_the_woken_one_is_fenced(services, run
         lambda: first.record(report(2), 1.0),
         lambda: first.save(1, b"data"),
         lambda: first.warn("text"),
-        first.wish,
+        first.requested,
         first.finish,
         first.pause,
         first.requeue,
@@ -119,7 +119,7 @@ def test_redis_can_be_away_while_a_run_is_recorded(services, run_id, report, row
 def test_whoever_resumes_a_run_that_needs_leave_for_another_device_gives_it(services, run_id):
     first = claim(services, run_id, "first")
     assert not first.other_device
-    first.wait_for_leave("it began elsewhere")
+    first.wait_for_override("it began elsewhere")
     with services.sessions.write.begin() as session:
         run = session.get_one(Run, run_id)
         assert (run.status, run.warning) == ("paused", "it began elsewhere")
@@ -134,7 +134,7 @@ def test_resuming_a_run_that_needs_no_leave_gives_none(services, run_id):
     assert not claim(services, run_id, "second").other_device
 
 
-@pytest.mark.parametrize("end", [Claim.pause, lambda held: held.wait_for_leave("why")])
+@pytest.mark.parametrize("end", [Claim.pause, lambda held: held.wait_for_override("why")])
 def test_a_cancellation_that_comes_while_a_pause_is_carried_out_holds(
     services, run_id, row, end
 ):
@@ -142,7 +142,7 @@ def test_a_cancellation_that_comes_while_a_pause_is_carried_out_holds(
     with services.sessions.write.begin() as session:
         lifecycle.cancel(session, session.get_one(Run, run_id))
     end(attempt)
-    assert (row().status, row().wish) == ("cancelled", None)
+    assert (row().status, row().requested_state) == ("cancelled", None)
     assert row().finished_at is not None
 
 

@@ -28,7 +28,7 @@ def test_the_first_start_beyond_loopback_makes_the_token_of_an_admin(serve, serv
     assert secret in bootstrap.told(open_to_all, secret)
     assert str(file) in bootstrap.told(open_to_all, secret)
     assert bootstrap.begin(exposed) is None  # The second start makes none.
-    assert tokens.holder(services, secret).scope == "admin"
+    assert tokens.principal_of(services, secret).scope == "admin"
 
 
 def with_settings(services, settings):
@@ -57,11 +57,11 @@ def test_tokens_are_made_and_revoked_on_the_command_line(
     monkeypatch.setattr(commands, "Settings", lambda: settings)
     commands.main(["create", "frank", "--scope", "admin", "--days", "1"])
     secret = capsys.readouterr().out.strip()
-    assert tokens.holder(services, secret).name == "frank"
+    assert tokens.principal_of(services, secret).name == "frank"
     commands.main(["list"])
     assert "frank\tadmin\t" + secret[:9] in capsys.readouterr().out
     commands.main(["revoke", "frank"])
     with pytest.raises(ProblemError, match="`frank` was revoked"):
-        tokens.holder(services, secret)
+        tokens.principal_of(services, secret)
     with pytest.raises(SystemExit, match="No live token is named 'frank'"):
         commands.main(["revoke", "frank"])

@@ -41,7 +41,7 @@ def test_a_token_is_shown_once_and_kept_as_a_hash(rows, required, client, admin,
     assert len(secret) == len("mc_") + 43  # 32 bytes in base64.
     listed = client(required, admin).get("/tokens")
     assert [token["name"] for token in listed.json()] == ["alice", "root"]
-    assert listed.json()[0]["beginning"] == secret[:9]
+    assert listed.json()[0]["prefix"] == secret[:9]
     assert secret not in listed.text
     kept = [repr(vars(row)) for row in rows()]
     assert not any(secret[9:] in text for text in kept)
@@ -112,7 +112,7 @@ def test_when_a_token_was_last_used_is_told_coarsely(
     assert first is not None
     erin.get("/runs")
     assert first in [row.last_used_at for row in rows()]
-    monkeypatch.setattr(tokens, "COARSE", timedelta(0))
+    monkeypatch.setattr(tokens, "LAST_USED_INTERVAL", timedelta(0))
     erin.get("/runs")
     assert first not in [row.last_used_at for row in rows()]
 

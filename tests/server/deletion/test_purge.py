@@ -17,9 +17,9 @@ from server.tables import (
     REPLAY,
     Artifact,
     Creature,
-    Discarded,
     Elite,
-    Leftover,
+    GarbageCreature,
+    GarbageFile,
     Parent,
     Run,
 )
@@ -136,11 +136,11 @@ def test_a_file_that_cannot_be_removed_is_removed_later(
 
     monkeypatch.setattr(services.artifacts, "delete_folder", refuse)
     delete_for_good(api, services, run_id)
-    assert len(files(services)) == rows(services)["discarded"] == 1
+    assert len(files(services)) == rows(services)["garbage_files"] == 1
     monkeypatch.setattr(services.artifacts, "delete_folder", whole)
     reconcile(services)
     assert files(services) == []
-    assert rows(services)["discarded"] == 0
+    assert rows(services)["garbage_files"] == 0
 
 
 def test_a_rendering_that_was_made_again_stays(services, run_id, report, identity):
@@ -148,10 +148,10 @@ def test_a_rendering_that_was_made_again_stays(services, run_id, report, identit
     name = creature.name(identity(1000))
     save(services, name, AUDIT, b"audit")
     with services.sessions.write.begin() as session:
-        session.add(Discarded(path=rendering_path(name, AUDIT)))
+        session.add(GarbageFile(path=rendering_path(name, AUDIT)))
     reconcile(services)
     assert files(services) == [rendering_path(name, AUDIT)]
-    assert rows(services)["discarded"] == 0
+    assert rows(services)["garbage_files"] == 0
 
 
 def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
@@ -179,13 +179,13 @@ def test_a_creature_that_comes_into_use_while_it_is_judged_stays(
     let_time_pass(services, run_id)
     while purge.take_apart(services):
         pass
-    assert rows(services)["leftovers"] == 1
+    assert rows(services)["garbage_creatures"] == 1
     claim(services, other, "worker").record(report(1, {0: 1.0}), 1.0)
     reconcile(services)
     with services.sessions.read() as session:
         used = session.scalars(select(Elite.creature)).all()
         kept = session.scalars(select(Creature.sha256)).all()
-        assert session.scalars(select(Leftover.creature)).all() == []
+        assert session.scalars(select(GarbageCreature.creature)).all() == []
         assert (
             session.scalars(select(Artifact.path).where(Artifact.creature.in_(kept))).all()
             == []

@@ -23,15 +23,15 @@ def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, ru
 def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
     paused = api.post(f"runs/{run_id}/pause").json()
-    assert (paused["status"], paused["wish"]) == ("running", "pause")
-    assert attempt.record(report(1), 1.0) == "pause"
+    assert (paused["status"], paused["requested_state"]) == ("running", "pause")
+    assert attempt.record(report(1), 1.0) == "paused"
     attempt.pause()
     run = api.get(f"runs/{run_id}").json()
-    assert (run["status"], run["wish"]) == ("paused", None)
+    assert (run["status"], run["requested_state"]) == ("paused", None)
     api.post(f"runs/{run_id}/resume")
     attempt = claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/cancel")
-    assert attempt.wish() == "cancel"
+    assert attempt.requested() == "cancelled"
     attempt.cancel()
     assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"
 
@@ -39,7 +39,7 @@ def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, repo
 def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run_id):
     claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/pause")
-    assert api.post(f"runs/{run_id}/cancel").json()["wish"] == "cancel"
+    assert api.post(f"runs/{run_id}/cancel").json()["requested_state"] == "cancelled"
     assert api.post(f"runs/{run_id}/pause").status_code == 409
 
 

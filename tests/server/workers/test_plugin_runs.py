@@ -32,8 +32,8 @@ def test_its_job_is_where_only_those_who_have_it_look(api, services, have, mine,
     assert services.jobs.runs_at_hand() == {first, second}
     jobs = [queue.get_job_ids() for queue in own_queues(services, {A})]
     assert jobs == [[first], [second], []], "who came first is taken first, sweeps last"
-    for sources in (set(), {B}):
-        assert [queue.get_job_ids() for queue in own_queues(services, sources)] == [
+    for plugin_versions in (set(), {B}):
+        assert [queue.get_job_ids() for queue in own_queues(services, plugin_versions)] == [
             [second],
             [],
         ]
@@ -42,17 +42,19 @@ def test_its_job_is_where_only_those_who_have_it_look(api, services, have, mine,
 def test_a_run_whose_worker_is_away_waits_and_says_for_what(api, services, have, mine):
     have("with", plugins=declared())
     run = api.post("runs", json=mine).json()["id"]
-    assert api.get(f"runs/{run}").json()["waiting"] == "A worker is free; this run is next."
+    assert (
+        api.get(f"runs/{run}").json()["waiting_reason"] == "A worker is free; this run is next."
+    )
     registry.retire(services.sessions, "with")
     have("without")
-    waiting = api.get(f"runs/{run}").json()["waiting"]
+    waiting = api.get(f"runs/{run}").json()["waiting_reason"]
     assert waiting.startswith(f"Waits for a worker that has mine.cross (version {A[:12]}), ")
     have("other", plugins=declared(B))
-    assert "; other has another version" in api.get(f"runs/{run}").json()["waiting"]
+    assert "; other has another version" in api.get(f"runs/{run}").json()["waiting_reason"]
     late = api.post("runs", json={**mine, "body": {"builder": "mine.cross"}}).json()
     assert late["spec"]["body"]["own"]["source"] == B, "the version that a live worker has"
     have("again", plugins=declared())
-    assert "free" in api.get(f"runs/{run}").json()["waiting"]
+    assert "free" in api.get(f"runs/{run}").json()["waiting_reason"]
 
 
 def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services, run_id, row):
@@ -102,7 +104,9 @@ def test_gaits_encodings_and_folded_bodies_of_ones_own_are_queued(api, have, min
         version = found["mine.wiggler"] if part == "own" else found["own"]
         assert version["source"] == A
         assert (
-            api.get(f"runs/{answer.json()['id']}").json()["waiting"].startswith("A worker is")
+            api.get(f"runs/{answer.json()['id']}")
+            .json()["waiting_reason"]
+            .startswith("A worker is")
         )
     assert "own" not in api.post("runs", json=sweep).json()["spec"]
 

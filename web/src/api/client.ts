@@ -43,7 +43,7 @@ export async function readRuns(query: RunQuery): Promise<RunPage> {
 }
 
 export async function changeRun(id: string, change: RunChange): Promise<Run> {
-  const asked = client.PATCH(`${ROOT}/runs/{run_id}`, { ...run(id), body: change });
+  const asked = client.PATCH(`${ROOT}/runs/{run_id}`, { ...run(id), body: change as never });
   return (await success(asked)) as Run;
 }
 
@@ -92,14 +92,14 @@ export function readArchive(
   features: string[] = [],
   { generation, after }: { generation?: number; after?: number } = {},
 ) {
-  const query = { ...(features.length > 0 && { features: features.join(",") }), generation, after };
+  const query = { ...(features.length > 0 && { measures: features.join(",") }), generation, after };
   const params = { path: { run_id: id }, query };
   return success(client.GET(`${ROOT}/runs/{run_id}/archive`, { params }));
 }
 
 /** Every elite that ever entered, with columns of the features that are named. */
 export function readHistory(id: string, features: string[]) {
-  const query = features.length > 0 ? { features: features.join(",") } : {};
+  const query = features.length > 0 ? { measures: features.join(",") } : {};
   const params = { path: { run_id: id }, query };
   return success(client.GET(`${ROOT}/runs/{run_id}/archive/history`, { params }));
 }

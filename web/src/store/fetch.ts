@@ -119,8 +119,8 @@ function mergeMeasures(known: Measures, added: Measures): Measures {
   return new Map([...added].map(column));
 }
 
-function measuresOf({ creature, features }: Pick<Archive, "creature" | "features">): Measures {
-  const columns = Object.entries(features).map(([name, values]) => {
+function measuresOf({ creature, measures }: Pick<Archive, "creature" | "measures">): Measures {
+  const columns = Object.entries(measures).map(([name, values]) => {
     const known = values.flatMap((value, i): [string, number][] =>
       value === null ? [] : [[creature[i]!, value]],
     );

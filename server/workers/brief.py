@@ -1,13 +1,13 @@
 """The run that a worker carries out, in short."""
 
 from ..tables import FINISHED, Run
-from .schemas import Carried
+from .schemas import RunBrief
 
 
-def carried(run: Run) -> Carried:
+def brief(run: Run) -> RunBrief:
     """Return the summary of a run."""
-    names = (name for name in Carried.model_fields if name != "progress")
-    return Carried(**{name: getattr(run, name) for name in names}, progress=progress(run))
+    names = (name for name in RunBrief.model_fields if name != "progress")
+    return RunBrief(**{name: getattr(run, name) for name in names}, progress=progress(run))
 
 
 def progress(run: Run) -> float:
