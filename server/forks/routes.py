@@ -1,17 +1,14 @@
 """Add generations to a run, and fork it."""
 
-from typing import Annotated, Any
 from uuid import UUID
 
-from fastapi import APIRouter, Depends, Response
+from fastapi import APIRouter, Response
 
 from ..auth.authorize import Writer
-from ..core.openapi import described
-from ..core.schemas import Wire
-from ..core.uploads import json_object
+from ..core.uploads import json_route
 from ..creatures.initial import named
 from ..queue.order import requeue
-from ..runs.commands import CHANGE_BYTES, SPEC_BYTES, IdempotencyKey, changed, submitted
+from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, submitted
 from ..runs.deps import OwnRunId, find_run
 from ..runs.idempotency import earlier
 from ..runs.schemas import Extension, Fork, RunRead
@@ -20,31 +17,11 @@ from ..services.deps import ServicesDep
 from ..specs import parsing
 from . import extending, forking
 
-router = APIRouter(prefix="/runs/{run_id}", tags=["runs"])
+router = APIRouter(prefix="/runs/{run_id}", tags=["runs"], route_class=json_route(SPEC_BYTES))
 
 
-def inlined(model: type[Wire]) -> dict[str, Any]:
-    """A model's schema whose fields are written out: references would lead out of the body."""
-    schema = model.model_json_schema()
-    parts = {f"#/$defs/{name}": part for name, part in schema.pop("$defs", {}).items()}
-    fields = schema["properties"].items()
-    return {**schema, "properties": {n: parts.get(f.get("$ref"), f) for n, f in fields}}
-
-
-def extension_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
-) -> Extension:
-    return Extension.model_validate(document)
-
-
-@router.post(
-    "/extend",
-    status_code=202,
-    openapi_extra=described(Extension.model_json_schema()),
-)
-def extend_run(
-    run_id: OwnRunId, services: ServicesDep, sent: Annotated[Extension, Depends(extension_sent)]
-) -> RunRead:
+@router.post("/extend", status_code=202)
+def extend_run(run_id: OwnRunId, services: ServicesDep, sent: Extension) -> RunRead:
     """Add generations to a finished run; it ends as if it had had them from the start."""
     with services.sessions.read() as session:
         run = find_run(session, run_id)
@@ -55,17 +32,13 @@ def extend_run(
     return longer
 
 
-def fork_sent(document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))]) -> Fork:
-    return Fork.model_validate(document)
-
-
-@router.post("/fork", status_code=202, openapi_extra=described(inlined(Fork)))
+@router.post("/fork", status_code=202)
 def fork_run(
     principal: Writer,
     run_id: UUID,
     services: ServicesDep,
     response: Response,
-    sent: Annotated[Fork, Depends(fork_sent)],
+    sent: Fork,
     idempotency_key: IdempotencyKey = None,
 ) -> RunRead:
     """Create a run that starts from creatures of this one; a merge patch changes its spec.

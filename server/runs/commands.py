@@ -15,8 +15,7 @@ from .overview import read_run
 from .schemas import RunRead
 
 SPEC_BYTES = 1 << 20
-CHANGE_BYTES = 1 << 18
-"""The largest bodies of requests that bring a spec, and of others."""
+"""The largest body of a request that brings a spec."""
 
 IdempotencyKey = Annotated[
     str | None, Header(alias="Idempotency-Key", min_length=1, max_length=255)

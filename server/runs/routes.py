@@ -3,7 +3,7 @@
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
-from fastapi import APIRouter, Depends, Query, Response
+from fastapi import APIRouter, Body, Depends, Query, Response
 from pydantic import StringConstraints
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -12,9 +12,8 @@ from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
 from ..auth.authorize import MAY_READ, Writer
 from ..core.errors import ProblemError
-from ..core.openapi import described
 from ..core.schemas import FieldError
-from ..core.uploads import json_object
+from ..core.uploads import json_route
 from ..estimates import position
 from ..estimates.eta import speed_of
 from ..estimates.schemas import EstimateRead
@@ -24,23 +23,21 @@ from ..specs import parsing
 from ..specs.drawings import drawing_read
 from ..tables import Run, Status
 from . import lifecycle, listing
-from .commands import CHANGE_BYTES, SPEC_BYTES, IdempotencyKey, changed, submitted
+from .commands import SPEC_BYTES, IdempotencyKey, changed, submitted
 from .deps import AnyRunDep, OwnRunId
 from .idempotency import earlier
 from .overview import read_run, read_runs
 from .schemas import NAME, RunChange, RunPage, RunRead
 from .submission import memory_limit, refuse_too_large, submit
 
-router = APIRouter(prefix="/runs", tags=["runs"])
+router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
 
 
-body = described({"type": "object"})
+Document = Annotated[dict[str, Any], Body()]
+"""A spec, which `microcosmos.spec` checks: its messages name fields as people write them."""
 
 
-def spec_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))],
-    services: ServicesDep,
-) -> Spec:
+def spec_sent(document: Document, services: ServicesDep) -> Spec:
     return parsing.parse(services, document)
 
 
@@ -54,7 +51,7 @@ Called = Annotated[
 ]
 
 
-@router.post("", status_code=202, openapi_extra=body)
+@router.post("", status_code=202)
 def create_run(
     principal: Writer,
     spec: SpecDep,
@@ -76,7 +73,7 @@ def create_run(
     return submitted(services, response, run.id, new)
 
 
-@router.post("/estimate", openapi_extra=body, dependencies=[MAY_READ])
+@router.post("/estimate", dependencies=[MAY_READ])
 def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> EstimateRead:
     """What a run will need, and what it is about, without queueing it."""
     needed = estimate(spec)
@@ -138,16 +135,8 @@ def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     return read_run(services, session, run)
 
 
-def change_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
-) -> RunChange:
-    return RunChange.model_validate(document)
-
-
-@router.patch("/{run_id}", openapi_extra=described(RunChange.model_json_schema()))
-def change_run(
-    run_id: OwnRunId, services: ServicesDep, sent: Annotated[RunChange, Depends(change_sent)]
-) -> RunRead:
+@router.patch("/{run_id}")
+def change_run(run_id: OwnRunId, services: ServicesDep, sent: RunChange) -> RunRead:
     """Say what a run is called, its tags or a note; what it computes stays as it is."""
     said = sent.said()
 
