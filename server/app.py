@@ -24,7 +24,7 @@ from .core.security_headers import Discretion
 from .core.shutdown import told_to_stop
 from .creatures import network_routes as networks_api
 from .creatures import routes as creatures_api
-from .creatures.sandbox import quarantine
+from .creatures.sandbox import sandbox
 from .deletion import routes as deletion_api
 from .events import routes as events_api
 from .events.fanout import Hub
@@ -129,7 +129,7 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(task) for task in (hub.run(), watch(services, hub.tokens, hub.end))
     ]
     app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
-    await asyncio.to_thread(quarantine().begin)
+    await asyncio.to_thread(sandbox().start)
     with reconciling(services), told_to_stop(app.state.end_streams):
         yield
     hub.close()
