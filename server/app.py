@@ -25,8 +25,10 @@ from .core.shutdown import told_to_stop
 from .creatures import network_routes as networks_api
 from .creatures import routes as creatures_api
 from .creatures.sandbox import sandbox
+from .deletion import routes as deletion_api
 from .events import routes as events_api
 from .events.fanout import Hub
+from .forks import routes as forks_api
 from .maintenance import health, metrics_routes
 from .maintenance.metrics import Counting, Requests
 from .maintenance.reconcile import reconciling
@@ -78,6 +80,8 @@ def create_app(services: Services) -> FastAPI:
     for noun in (
         experiments_api,
         runs_api,
+        forks_api,
+        deletion_api,
         sweeps_api,
         generations_api,
         journal_api,

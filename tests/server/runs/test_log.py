@@ -4,8 +4,8 @@ from uuid import uuid4
 
 import pytest
 
+from server.attempts import leases
 from server.attempts.begin import claim
-from server.maintenance import reconcile
 from server.runs import lifecycle
 from server.tables import Run
 
@@ -114,7 +114,7 @@ def test_a_worker_that_is_told_to_stop_hands_its_run_back(services, run_id, text
 
 def test_a_job_that_died_is_told(services, run_id, log):
     claim(services, run_id, "worker")
-    reconcile.job_died(services, run_id, "worker", "killed by signal 9")
+    leases.job_died(services, run_id, "worker", "killed by signal 9")
     assert ("error", 1, "Attempt 1 ended badly: killed by signal 9") in log()
 
 
