@@ -509,7 +509,7 @@ export interface paths {
         post?: never;
         /**
          * Delete Run
-         * @description Into the bin, from which it can be restored until `purge_at`.
+         * @description Move a run to the bin, from which it can be restored until `purge_at`.
          */
         delete: operations["delete_run_api_v1_runs__run_id__delete"];
         options?: never;
@@ -653,7 +653,7 @@ export interface paths {
         put?: never;
         /**
          * Extend Run
-         * @description More generations for a finished run, which ends as if it had had them from the start.
+         * @description Add generations to a finished run; it ends as if it had had them from the start.
          */
         post: operations["extend_run_api_v1_runs__run_id__extend_post"];
         delete?: never;
@@ -673,9 +673,9 @@ export interface paths {
         put?: never;
         /**
          * Fork Run
-         * @description A new run that begins from creatures of this one, its spec changed by a merge patch.
+         * @description Create a run that starts from creatures of this one; a merge patch changes its spec.
          *
-         *     The same key with the same request is the same run, though others may live there by then.
+         *     The same key with the same request gives the same run, even if the archive has changed.
          */
         post: operations["fork_run_api_v1_runs__run_id__fork_post"];
         delete?: never;
@@ -756,7 +756,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Run
-         * @description Out of the bin, as it was.
+         * @description Restore a run from the bin.
          */
         post: operations["restore_run_api_v1_runs__run_id__restore_post"];
         delete?: never;
