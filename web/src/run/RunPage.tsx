@@ -54,7 +54,11 @@ export function RunPage({ id, query }: Props) {
   if (!run) {
     return (
       <main>
-        {error ? <NotFound what="No such run" reason={error} /> : <p class="quiet loading">Loading run …</p>}
+        {error ? (
+          <NotFound what="No such run" reason={error} id={id} />
+        ) : (
+          <p class="quiet loading">Loading run …</p>
+        )}
       </main>
     );
   }
@@ -142,7 +146,7 @@ const NO_ELITES: Elites = new Map();
 function CurrentActivity({ run }: { run: Run }) {
   const asked = activityOf(run) !== null;
   const now = useNow(asked);
-  useRunRefresh(run.id, run.status === "queued");
+  useRunRefresh(run.id, run.status === "queued" || run.status === "running");
   return asked ? <RunActivity run={run} now={now} /> : null;
 }
 
