@@ -24,9 +24,11 @@ from .core.security_headers import Discretion
 from .core.shutdown import told_to_stop
 from .creatures import network_routes as networks_api
 from .creatures import routes as creatures_api
-from .creatures.sandbox import quarantine
+from .creatures.sandbox import sandbox
+from .deletion import routes as deletion_api
 from .events import routes as events_api
 from .events.fanout import Hub
+from .forks import routes as forks_api
 from .maintenance import health, metrics_routes
 from .maintenance.metrics import Counting, Requests
 from .maintenance.reconcile import reconciling
@@ -78,6 +80,8 @@ def create_app(services: Services) -> FastAPI:
     for noun in (
         experiments_api,
         runs_api,
+        forks_api,
+        deletion_api,
         sweeps_api,
         generations_api,
         journal_api,
@@ -125,7 +129,7 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(task) for task in (hub.run(), watch(services, hub.tokens, hub.end))
     ]
     app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
-    await asyncio.to_thread(quarantine().begin)
+    await asyncio.to_thread(sandbox().start)
     with reconciling(services), told_to_stop(app.state.end_streams):
         yield
     hub.close()

@@ -26,6 +26,7 @@ def write(app: Sphinx) -> None:
     folder = app.srcdir / "reference"
     folder.mkdir(exist_ok=True)
     packages = [one for one in inner(root) if one.path.split(".")[1] not in COMMANDS]
+    packages.sort(key=name)
     wanted = {f"{name(one)}.md": page(one) for one in packages}
     wanted["index.md"] = index(root, packages)
     for path in folder.glob("*.md"):

@@ -1,12 +1,10 @@
 """Routes of tokens and of the session."""
 
-from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Depends, Request, Response
+from fastapi import APIRouter, Request, Response
 
-from ..core.openapi import described
-from ..core.uploads import sent
+from ..core.uploads import json_route
 from ..services.deps import ServicesDep, SessionDep
 from . import tokens
 from .authenticate import Authenticator, Credentials
@@ -18,7 +16,7 @@ from .schemas import PrincipalRead, SignIn, TokenCreate, TokenCreated, TokenRead
 
 BYTES = 1 << 12
 
-router = APIRouter(tags=["tokens"])
+router = APIRouter(tags=["tokens"], route_class=json_route(BYTES))
 
 
 @router.get("/tokens/current")
@@ -33,15 +31,8 @@ def list_tokens(session: SessionDep) -> list[TokenRead]:
     return [TokenRead.model_validate(token) for token in tokens.known(session)]
 
 
-@router.post(
-    "/tokens",
-    status_code=201,
-    openapi_extra=described(TokenCreate.model_json_schema()),
-    dependencies=[MAY_ADMINISTER],
-)
-def create_token(
-    asked: Annotated[TokenCreate, Depends(sent(TokenCreate, BYTES))], services: ServicesDep
-) -> TokenCreated:
+@router.post("/tokens", status_code=201, dependencies=[MAY_ADMINISTER])
+def create_token(asked: TokenCreate, services: ServicesDep) -> TokenCreated:
     """Create a token. Only this answer contains its secret."""
     created = tokens.create(services, asked.name, asked.scope, asked.expires_at)
     read = TokenRead.model_validate(created.token)
@@ -54,12 +45,8 @@ def revoke_token(token_id: UUID, services: ServicesDep) -> TokenRead:
     return TokenRead.model_validate(tokens.revoke(services, token_id))
 
 
-@router.post(
-    "/session", openapi_extra=described(SignIn.model_json_schema()), dependencies=[PUBLIC]
-)
-def sign_in(
-    asked: Annotated[SignIn, Depends(sent(SignIn, BYTES))], request: Request, response: Response
-) -> PrincipalRead:
+@router.post("/session", dependencies=[PUBLIC])
+def sign_in(asked: SignIn, request: Request, response: Response) -> PrincipalRead:
     """Keep a token in a cookie of this site, which scripts cannot read; 401 if it is wrong."""
     authenticator: Authenticator = request.app.state.authenticator
     credentials = Credentials(asked.token, address(request))

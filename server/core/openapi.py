@@ -30,9 +30,3 @@ def _mark(response: dict[str, Any] | None) -> None:
     if response and MEDIA_TYPE not in response["content"]:
         _, content = response["content"].popitem()
         response["content"][MEDIA_TYPE] = content
-
-
-def described(schema: dict[str, Any]) -> dict[str, Any]:
-    """What OpenAPI says of a body that is read by `json_object`."""
-    content = {"application/json": {"schema": schema}}
-    return {"requestBody": {"required": True, "content": content}}

@@ -15,7 +15,7 @@ from ..tables import Creature
 from . import lineage
 from . import storage as creatures
 from .deps import CreatureDep
-from .sandbox import quarantine
+from .sandbox import sandbox
 from .schemas import Ancestors, Children, CreatureName
 
 FILE_BYTES = 8 << 20
@@ -37,7 +37,7 @@ body: dict[str, Any] = {
 async def file_sent(request: Request) -> dict[str, Any]:
     """A creature file in either form, which its first bytes tell."""
     sent = await limited(request, FILE_BYTES)
-    return await run_in_threadpool(quarantine().creature, sent)
+    return await run_in_threadpool(sandbox().creature, sent)
 
 
 @router.get("/{sha}", responses={200: {"model": dict[str, Any]}}, dependencies=[MAY_READ])

@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from ..auth.authorize import MAY_READ
+from ..core.schemas import MOST_ROWS
 from ..services.deps import SessionDep
 from . import log
 from .deps import RunDep
@@ -17,7 +18,7 @@ router = APIRouter(prefix="/runs/{run_id}/log", tags=["runs"])
 def read_log(
     run: RunDep,
     session: SessionDep,
-    after: Annotated[int | None, Query(ge=0, lt=1 << 63)] = None,
+    after: Annotated[int | None, Query(ge=0, le=MOST_ROWS)] = None,
     limit: Annotated[int, Query(ge=1, le=1000)] = 500,
 ) -> Log:
     """The newest entries, the oldest of them first; `after` the id of one, those that follow.

@@ -14,6 +14,7 @@ from ..creatures import routes as of_creatures
 from ..creatures import storage as creatures
 from ..creatures.deps import Sha
 from ..creatures.deps import creature as named_creature
+from ..creatures.sandbox import sandbox
 from ..creatures.schemas import Ancestors, Rendering
 from ..renderings import routes as of_creature
 from ..services.deps import ServicesDep, SessionDep
@@ -25,9 +26,12 @@ from .schemas import ShareRead
 router = APIRouter(prefix="/shares/{slug}", tags=["shares"])
 
 
+Slug = Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")]
+
+
 def share(
     request: Request,
-    slug: Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")],
+    slug: Slug,
     session: SessionDep,
 ) -> Share:
     found = publishing.opened(session, slug)
@@ -100,22 +104,21 @@ def read_shared_ancestors(
 
 
 @router.get("/creatures/{sha}/network.{form}", response_class=Response, dependencies=[PUBLIC])
-def read_shared_network(row: CreatureDep, form: str) -> Response:
+def read_shared_network(
+    request: Request, slug: Slug, sha: Sha, form: str, services: ServicesDep
+) -> Response:
     if form not in networks.FORMS:
         known = ", ".join(networks.FORMS)
-        raise ProblemError(
-            404, "Not found", f"A network is written as {known}; got {form!r:.20}."
-        )
-    return of_networks(row, form)
-
-
-def of_networks(row: Creature, form: str) -> Response:
-    media_type, _ = networks.FORMS[form]
+        detail = f"A network is written as {known}; got {form!r:.20}."
+        raise ProblemError(404, "Not found", detail)
+    with services.sessions.read() as session:  # Closed before the network is written.
+        row = shared_creature(share(request, slug, session), sha, session)
     headers = {
         "Content-Disposition": f'inline; filename="network-{row.sha256[:12]}.{form}"',
         "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'",
     }
-    return Response(networks.written(row, form), headers=headers, media_type=media_type)
+    data = sandbox().network(row.identity, form)
+    return Response(data, headers=headers, media_type=networks.FORMS[form][0])
 
 
 @router.get("/creatures/{sha}/replay", response_class=Response, dependencies=[PUBLIC])

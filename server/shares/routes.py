@@ -12,8 +12,7 @@ from ..auth.authorize import PUBLIC, Reader, Writer, authorize_owner
 from ..auth.principal import ADMIN
 from ..core.database import clock
 from ..core.errors import ProblemError
-from ..core.openapi import described
-from ..core.uploads import json_object
+from ..core.uploads import json_route
 from ..renderings import storage as renderings
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
@@ -24,22 +23,17 @@ from .schemas import ShareAsked, SharePage, ShareRead
 log = logging.getLogger(__name__)
 ASKED_BYTES = 1 << 16
 
-router = APIRouter(tags=["shares"])
-
-
-def asked(document: Annotated[dict[str, Any], Depends(json_object(ASKED_BYTES))]) -> ShareAsked:
-    return ShareAsked.model_validate(document)
+router = APIRouter(tags=["shares"], route_class=json_route(ASKED_BYTES))
 
 
 @router.post(
     "/shares",
     status_code=201,
     responses={200: {"model": ShareRead}},
-    openapi_extra=described(ShareAsked.model_json_schema()),
 )
 def publish(
     principal: Writer,
-    sent: Annotated[ShareAsked, Depends(asked)],
+    sent: ShareAsked,
     request: Request,
     services: ServicesDep,
     response: Response,

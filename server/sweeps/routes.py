@@ -1,7 +1,7 @@
 """Sweeps: many runs that are asked for, looked at and steered together."""
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Query, Response
@@ -11,13 +11,13 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import estimate
 
 from ..auth.authorize import MAY_READ, Writer
-from ..core.openapi import described
-from ..core.uploads import json_object
+from ..core.uploads import json_route
 from ..deletion import bin
 from ..estimates import position
 from ..estimates.eta import speeds_of
+from ..queue.order import requeue
 from ..runs import lifecycle
-from ..runs.routes import CHANGE_BYTES, SPEC_BYTES, Key
+from ..runs.commands import SPEC_BYTES, IdempotencyKey
 from ..runs.submission import memory_limit
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
@@ -36,19 +36,14 @@ from .schemas import (
     SweepSent,
     SweepSummary,
 )
-from .steering import announce, page, read_sweep, requeue, steer
+from .steering import announce, page, read_sweep, steer
 from .submission import earlier_sweep, submit_sweep
 
-router = APIRouter(prefix="/sweeps", tags=["sweeps"])
-body = described(SweepSent.model_json_schema())
+router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=json_route(SPEC_BYTES))
 Points = Annotated[int | None, Query(ge=2, le=10_000)]
 
 
-def plan_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(SPEC_BYTES))],
-    services: ServicesDep,
-) -> Plan:
-    sent = SweepSent.model_validate(document)
+def plan_sent(sent: SweepSent, services: ServicesDep) -> Plan:
     with parsing.parsing(services) as parse:
         return plan(sent, parse)
 
@@ -56,13 +51,13 @@ def plan_sent(
 PlanDep = Annotated[Plan, Depends(plan_sent)]
 
 
-@router.post("", status_code=202, openapi_extra=body)
+@router.post("", status_code=202)
 def create_sweep(
     principal: Writer,
     plan: PlanDep,
     services: ServicesDep,
     response: Response,
-    idempotency_key: Key = None,
+    idempotency_key: IdempotencyKey = None,
 ) -> SweepRead:
     """Queue all runs of a sweep, or none. The same key with the same request is the same."""
     sweep_id, new = earlier_sweep(services, plan, idempotency_key, principal.token), False
@@ -76,7 +71,7 @@ def create_sweep(
     return _current(services, sweep_id)
 
 
-@router.post("/estimate", openapi_extra=body, dependencies=[MAY_READ])
+@router.post("/estimate", dependencies=[MAY_READ])
 def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) -> SweepEstimate:
     """What all runs of a sweep will need, without queueing them."""
     needs = [estimate(case.spec) for case in plan.cases]
@@ -117,17 +112,11 @@ def read(sweep: SweepDep, session: SessionDep) -> SweepRead:
     return read_sweep(session, sweep)
 
 
-def change_sent(
-    document: Annotated[dict[str, Any], Depends(json_object(CHANGE_BYTES))],
-) -> SweepChange:
-    return SweepChange.model_validate(document)
-
-
-@router.patch("/{sweep_id}", openapi_extra=described(SweepChange.model_json_schema()))
+@router.patch("/{sweep_id}")
 def change_sweep(
     sweep_id: OwnSweepId,
     services: ServicesDep,
-    sent: Annotated[SweepChange, Depends(change_sent)],
+    sent: SweepChange,
 ) -> SweepRead:
     """Say what a sweep is called; its runs keep their names."""
     with services.sessions.write.begin() as session:
@@ -162,7 +151,7 @@ def pause_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
 def resume_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
     """Resume every run that is paused; `skipped` tells of the others."""
     resumed = _steered(services, sweep_id, lifecycle.resume)
-    requeue(services, resumed.changed)
+    requeue(services.sessions, services.jobs, *resumed.changed)
     return resumed
 
 

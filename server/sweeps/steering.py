@@ -8,7 +8,6 @@ from itertools import product
 from typing import Any
 from uuid import UUID
 
-from redis import RedisError
 from sqlalchemy import ColumnElement, and_, or_, select
 from sqlalchemy.orm import Session
 
@@ -132,18 +131,6 @@ def _skipped(session: Session, run: Run, refusal: Conflict) -> SkippedRun:
     return SkippedRun.model_validate(
         {"run": run.id, "status": run.status, "reason": f"{refusal}."}
     )
-
-
-def requeue(services: Services, run_ids: Sequence[UUID]) -> None:
-    """Enqueue runs that wait again; where Redis does not answer, the next pass does it."""
-    with services.sessions.read() as session:
-        rows = session.execute(select(Run.id, Run.plugin_versions).where(Run.id.in_(run_ids)))
-        plugin_versions = {run_id: needed for run_id, needed in rows}
-    try:
-        for run_id in run_ids:
-            services.jobs.evolve(run_id, True, plugin_versions.get(run_id))
-    except RedisError as error:
-        log.warning("runs stay queued until Redis answers: %s", error)
 
 
 def several(ids: Sequence[UUID]) -> list[Sequence[UUID]]:

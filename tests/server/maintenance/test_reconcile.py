@@ -7,8 +7,9 @@ from sqlalchemy import update
 
 from server.attempts.begin import claim
 from server.attempts.claim import Fenced
+from server.attempts.leases import job_died, job_stopped
 from server.core.database import ago
-from server.maintenance.reconcile import job_died, job_stopped, reconcile
+from server.maintenance.reconcile import reconcile
 from server.tables import Run, Worker
 
 pytestmark = pytest.mark.postgresql

@@ -509,7 +509,7 @@ export interface paths {
         post?: never;
         /**
          * Delete Run
-         * @description Into the bin, from which it can be restored until `purge_at`.
+         * @description Move a run to the bin, from which it can be restored until `purge_at`.
          */
         delete: operations["delete_run_api_v1_runs__run_id__delete"];
         options?: never;
@@ -653,7 +653,7 @@ export interface paths {
         put?: never;
         /**
          * Extend Run
-         * @description More generations for a finished run, which ends as if it had had them from the start.
+         * @description Add generations to a finished run; it ends as if it had had them from the start.
          */
         post: operations["extend_run_api_v1_runs__run_id__extend_post"];
         delete?: never;
@@ -673,9 +673,9 @@ export interface paths {
         put?: never;
         /**
          * Fork Run
-         * @description A new run that begins from creatures of this one, its spec changed by a merge patch.
+         * @description Create a run that starts from creatures of this one; a merge patch changes its spec.
          *
-         *     The same key with the same request is the same run, though others may live there by then.
+         *     The same key with the same request gives the same run, even if the archive has changed.
          */
         post: operations["fork_run_api_v1_runs__run_id__fork_post"];
         delete?: never;
@@ -756,7 +756,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Run
-         * @description Out of the bin, as it was.
+         * @description Restore a run from the bin.
          */
         post: operations["restore_run_api_v1_runs__run_id__restore_post"];
         delete?: never;
@@ -1619,6 +1619,25 @@ export interface components {
             scale: "log10" | "linear";
         };
         /**
+         * Beginning
+         * @description The creatures that a fork begins from: one of these.
+         */
+        Beginning: {
+            /** Archive */
+            archive?: true | null;
+            /** Cells */
+            cells?: number[] | null;
+            /** Creatures */
+            creatures?: string[] | null;
+            /** Region */
+            region?: {
+                [key: string]: [
+                    number,
+                    number
+                ];
+            } | null;
+        };
+        /**
          * BodyRead
          * @description A body at rest in its world; of one with many nodes some are left out.
          */
@@ -1762,6 +1781,14 @@ export interface components {
             /** Title */
             title: string;
         };
+        /**
+         * Extension
+         * @description How many generations more.
+         */
+        Extension: {
+            /** Generations */
+            generations: number;
+        };
         /** FieldError */
         FieldError: {
             /** Field */
@@ -1787,6 +1814,24 @@ export interface components {
             min: number | null;
             /** Values */
             values: (number | null)[];
+        };
+        /**
+         * Fork
+         * @description What a new run takes of another, and what is different.
+         */
+        Fork: {
+            from: components["schemas"]["Beginning"];
+            /** Generation */
+            generation?: number | null;
+            /** Name */
+            name?: string | null;
+            /**
+             * Spec
+             * @default {}
+             */
+            spec: {
+                [key: string]: unknown;
+            };
         };
         /**
          * ForkedFrom
@@ -2155,6 +2200,21 @@ export interface components {
             status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
         };
         /**
+         * RunChange
+         * @description What people may say of a run; what is left out stays as it is.
+         */
+        RunChange: {
+            /** Name */
+            name?: string | null;
+            /** Note */
+            note?: string | null;
+            /**
+             * Tags
+             * @default []
+             */
+            tags: string[];
+        };
+        /**
          * RunCurves
          * @description The curves of one run; None beyond the last generation that it has recorded.
          */
@@ -2268,6 +2328,34 @@ export interface components {
             /** Warning */
             warning: string | null;
         };
+        /**
+         * ShareAsked
+         * @description What is to be published; what is left out is taken from the creature's file.
+         */
+        ShareAsked: {
+            /** Creature */
+            creature?: string | null;
+            /**
+             * Credit
+             * @default []
+             */
+            credit: string[];
+            /** Expires At */
+            expires_at?: string | null;
+            /** Generation */
+            generation?: number | null;
+            /** Licence */
+            licence?: string | null;
+            /**
+             * Listed
+             * @default false
+             */
+            listed: boolean;
+            /** Run */
+            run?: string | null;
+            /** Title */
+            title?: string | null;
+        };
         /** SharePage */
         SharePage: {
             /** Items */
@@ -2315,6 +2403,11 @@ export interface components {
             /** Url */
             url: string;
         };
+        /** SignIn */
+        SignIn: {
+            /** Token */
+            token: string;
+        };
         /**
          * SkippedRun
          * @description A run that was left as it is.
@@ -2344,6 +2437,14 @@ export interface components {
             members: number[][];
             /** Number */
             number: number[][];
+        };
+        /**
+         * SweepChange
+         * @description What a sweep is called; without anything in it, it has no name.
+         */
+        SweepChange: {
+            /** Name */
+            name: string | null;
         };
         /** SweepChanged */
         SweepChanged: {
@@ -2486,6 +2587,30 @@ export interface components {
              */
             status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
         };
+        /**
+         * SweepSent
+         * @description One request for many runs: each case of the grid with each seed.
+         */
+        SweepSent: {
+            /**
+             * Grid
+             * @default {}
+             */
+            grid: {
+                [key: string]: unknown[];
+            };
+            /** Name */
+            name?: string | null;
+            /**
+             * Seeds
+             * @default 1
+             */
+            seeds: number | number[];
+            /** Spec */
+            spec: {
+                [key: string]: unknown;
+            };
+        };
         /** SweepSummary */
         SweepSummary: {
             /** Cases */
@@ -2518,6 +2643,21 @@ export interface components {
             size: number;
             /** Width */
             width: number;
+        };
+        /**
+         * TokenCreate
+         * @description Name, scope and end of a new token.
+         */
+        TokenCreate: {
+            /** Expires At */
+            expires_at?: string | null;
+            /** Name */
+            name: string;
+            /**
+             * Scope
+             * @enum {string}
+             */
+            scope: "read" | "write" | "admin";
         };
         /** TokenCreated */
         TokenCreated: {
@@ -3502,7 +3642,9 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": Record<string, never>;
+                "application/json": {
+                    [key: string]: unknown;
+                };
             };
         };
         responses: {
@@ -3535,7 +3677,9 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": Record<string, never>;
+                "application/json": {
+                    [key: string]: unknown;
+                };
             };
         };
         responses: {
@@ -3632,17 +3776,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Name */
-                    name?: string | null;
-                    /** Note */
-                    note?: string | null;
-                    /**
-                     * Tags
-                     * @default []
-                     */
-                    tags?: string[];
-                };
+                "application/json": components["schemas"]["RunChange"];
             };
         };
         responses: {
@@ -3876,10 +4010,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Generations */
-                    generations: number;
-                };
+                "application/json": components["schemas"]["Extension"];
             };
         };
         responses: {
@@ -3916,38 +4047,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /**
-                     * Beginning
-                     * @description The creatures that a fork begins from: one of these.
-                     */
-                    from: {
-                        /** Archive */
-                        archive?: true | null;
-                        /** Cells */
-                        cells?: number[] | null;
-                        /** Creatures */
-                        creatures?: string[] | null;
-                        /** Region */
-                        region?: {
-                            [key: string]: [
-                                number,
-                                number
-                            ];
-                        } | null;
-                    };
-                    /** Generation */
-                    generation?: number | null;
-                    /** Name */
-                    name?: string | null;
-                    /**
-                     * Spec
-                     * @default {}
-                     */
-                    spec?: {
-                        [key: string]: unknown;
-                    };
-                };
+                "application/json": components["schemas"]["Fork"];
             };
         };
         responses: {
@@ -4266,10 +4366,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Token */
-                    token: string;
-                };
+                "application/json": components["schemas"]["SignIn"];
             };
         };
         responses: {
@@ -4361,30 +4458,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Creature */
-                    creature?: string | null;
-                    /**
-                     * Credit
-                     * @default []
-                     */
-                    credit?: string[];
-                    /** Expires At */
-                    expires_at?: string | null;
-                    /** Generation */
-                    generation?: number | null;
-                    /** Licence */
-                    licence?: string | null;
-                    /**
-                     * Listed
-                     * @default false
-                     */
-                    listed?: boolean;
-                    /** Run */
-                    run?: string | null;
-                    /** Title */
-                    title?: string | null;
-                };
+                "application/json": components["schemas"]["ShareAsked"];
             };
         };
         responses: {
@@ -5013,26 +5087,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /**
-                     * Grid
-                     * @default {}
-                     */
-                    grid?: {
-                        [key: string]: unknown[];
-                    };
-                    /** Name */
-                    name?: string | null;
-                    /**
-                     * Seeds
-                     * @default 1
-                     */
-                    seeds?: number | number[];
-                    /** Spec */
-                    spec: {
-                        [key: string]: unknown;
-                    };
-                };
+                "application/json": components["schemas"]["SweepSent"];
             };
         };
         responses: {
@@ -5065,26 +5120,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /**
-                     * Grid
-                     * @default {}
-                     */
-                    grid?: {
-                        [key: string]: unknown[];
-                    };
-                    /** Name */
-                    name?: string | null;
-                    /**
-                     * Seeds
-                     * @default 1
-                     */
-                    seeds?: number | number[];
-                    /** Spec */
-                    spec: {
-                        [key: string]: unknown;
-                    };
-                };
+                "application/json": components["schemas"]["SweepSent"];
             };
         };
         responses: {
@@ -5181,10 +5217,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Name */
-                    name: string | null;
-                };
+                "application/json": components["schemas"]["SweepChange"];
             };
         };
         responses: {
@@ -5465,17 +5498,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Expires At */
-                    expires_at?: string | null;
-                    /** Name */
-                    name: string;
-                    /**
-                     * Scope
-                     * @enum {string}
-                     */
-                    scope: "read" | "write" | "admin";
-                };
+                "application/json": components["schemas"]["TokenCreate"];
             };
         };
         responses: {

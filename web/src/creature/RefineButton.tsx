@@ -1,4 +1,4 @@
-/** Asks for a creature to be made fitter by gradients, in a run of its own. */
+/** The button that starts a refinement run from a creature. */
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
@@ -9,10 +9,11 @@ import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
+import { text } from "./text";
 
 interface Props {
   creature: Creature;
-  /** The run whose cells count, where the creature was reached from one. */
+  /** The run whose cells bound the refinement, if the page was opened from one. */
   run: string | null;
 }
 
@@ -34,11 +35,6 @@ export function RefineButton({ creature, run }: Props) {
     }
   };
   return (
-    <ConfirmButton
-      verb="Refine"
-      what="this creature"
-      queues="Queues a new run: gradient steps towards higher fitness that do not leave the creature’s cell."
-      onConfirm={start}
-    />
+    <ConfirmButton verb={text.refine} what={text.refineWhat} queues={text.refineAbout} onConfirm={start} />
   );
 }
