@@ -51,4 +51,5 @@ export const text = {
   lowerQuartile: (name: string) => `${name}, lower quartile`,
   oneCase: "all runs",
   seed: (seed: number) => `seed ${seed}`,
+  resumes: (paused: number) => `Queues ${paused} paused ${paused === 1 ? "run" : "runs"} again.`,
 };
