@@ -34,6 +34,9 @@ def test_an_elite_is_refined_and_watched_beside_what_it_was(shared, shared_page:
     ).json()
     page.goto(f"{address}/creatures/{found['creature'][0]}")
     page.get_by_role("button", name="Refine").click()
+    expect(page.get_by_text("Queues a new run")).to_be_visible(timeout=FAST)
+    assert "/creatures/" in page.url  # Nothing is queued before it is confirmed.
+    page.get_by_role("button", name="Refine now").click()
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
     expect(page.get_by_text("21 / 21")).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("group", name="Fitness against steps")).to_be_visible()
