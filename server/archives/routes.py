@@ -18,7 +18,7 @@ from ..storage import ranges
 from ..tables import Artifact, Elite, Run
 from . import elites
 from . import measures as of_elites
-from .schemas import ArchiveRead, CentroidsRead, Feature, HistoryRead
+from .schemas import ArchiveRead, CentroidsRead, HistoryRead, Measure
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
 binary: dict[int | str, dict[str, Any]] = {
@@ -35,19 +35,19 @@ def read_archive(
     run: RunDep,
     session: SessionDep,
     generation: Annotated[int | None, Query(ge=0)] = None,
-    features: str = "",
+    measures: str = "",
     after: Annotated[int | None, Query(ge=0)] = None,
 ) -> ArchiveRead:
     """The elite of each cell, now or as of a generation.
 
-    With `features`, names with commas between them, what was recorded of the elites under
+    With `measures`, names with commas between them, what was recorded of the elites under
     those names too: an archive can be looked at along any of them. With `after`, a generation,
     only the elites that entered later, for who knows the others.
     """
     _refuse_without(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
     recorded = of_elites.recorded(session, run)
-    names = _asked(features, recorded)
+    names = _asked(measures, recorded)
     known = -1 if after is None else min(after, run.generation)
     kind, cells = of_elites.kind(run)
     return ArchiveRead(
@@ -61,10 +61,10 @@ def read_archive(
 
 
 @router.get("/archive/history")
-def read_history(run: RunDep, session: SessionDep, features: str = "") -> HistoryRead:
+def read_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
     """Every elite that ever entered: the archive of each generation can be told from it."""
     _refuse_without(run)
-    names = _asked(features, of_elites.recorded(session, run))
+    names = _asked(measures, of_elites.recorded(session, run))
     _refuse_too_long(session, run)
     ordered = elites.ever(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
@@ -98,9 +98,9 @@ def _refuse_too_long(session: Session, run: Run) -> None:
         raise ProblemError(422, "Too long a history", detail)
 
 
-def _asked(features: str, recorded: Sequence[Feature]) -> list[str]:
-    """Names of features with commas between them; `ProblemError` where one was not recorded."""
-    names = list(dict.fromkeys(filter(None, features.split(","))))
+def _asked(measures: str, recorded: Sequence[Measure]) -> list[str]:
+    """Names of measures with commas between them; `ProblemError` where one was not recorded."""
+    names = list(dict.fromkeys(filter(None, measures.split(","))))
     of_elites.refuse_unknown(names, recorded)
     return names
 
@@ -113,7 +113,7 @@ def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
         "descriptors": [elite.descriptors for elite in found],
         "elite_generation": [elite.generation for elite in found],
         "creature": [elite.creature for elite in found],
-        "features": {
+        "measures": {
             name: [elite[first + i] for elite in found] for i, name in enumerate(names)
         },
     }

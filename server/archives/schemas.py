@@ -13,7 +13,7 @@ class Axis(Wire):
     scale: Literal["log10", "linear"]
 
 
-class Feature(Wire):
+class Measure(Wire):
     """What is recorded of every elite, and where an axis of it begins and ends by default."""
 
     name: str
@@ -35,14 +35,14 @@ class ArchiveRead(Wire):
     kind: Literal["grid", "cvt"]
     cells: int
     axes: list[Axis]
-    recorded: list[Feature]
+    recorded: list[Measure]
     cell: list[int]
     fitness: list[float]
     descriptors: list[list[float]]
     elite_generation: list[int]
     creature: list[str]
-    features: dict[str, list[float | None]]
-    """Columns of the features that were asked for."""
+    measures: dict[str, list[float | None]]
+    """Columns of the measures that were asked for."""
 
 
 class HistoryRead(Wire):
@@ -54,8 +54,8 @@ class HistoryRead(Wire):
     descriptors: list[list[float]]
     elite_generation: list[int]
     creature: list[str]
-    features: dict[str, list[float | None]]
-    """Columns of the features that were asked for."""
+    measures: dict[str, list[float | None]]
+    """Columns of the measures that were asked for."""
 
 
 class CentroidsRead(Wire):

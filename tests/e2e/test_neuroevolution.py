@@ -47,7 +47,7 @@ def look_along_other_axes(page: Page) -> None:
     page.get_by_label("Up").select_option(label="Fitness")
     assert "x=path_length&y=fitness" in page.url
     expect(page.get_by_text("Path length (cells)")).to_be_visible(timeout=FAST)
-    with page.expect_response(re.compile("features=path_length")):
+    with page.expect_response(re.compile("measures=path_length")):
         page.reload()
     expect(page.get_by_label("Across")).to_have_value("path_length", timeout=FAST)
 

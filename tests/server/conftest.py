@@ -321,11 +321,11 @@ def report(identity) -> Callable[..., Any]:
         generation: int,
         elites: dict[int, float] | None = None,
         descriptors: tuple[float, ...] = (0.25, 0.5),
-        features: dict[str, float] | None = None,
+        measures: dict[str, float] | None = None,
         summary: dict[str, Any] | None = None,
     ) -> Any:
         found = [
-            elite(generation, *item, descriptors, features or {})
+            elite(generation, *item, descriptors, measures or {})
             for item in (elites or {}).items()
         ]
         return SimpleNamespace(
@@ -346,7 +346,7 @@ def report(identity) -> Callable[..., Any]:
         cell: int,
         fitness: float,
         descriptors: tuple[float, ...],
-        features: dict[str, float],
+        measures: dict[str, float],
     ) -> Any:
         found = identity(1000 * generation + cell)
         return SimpleNamespace(
@@ -359,11 +359,11 @@ def report(identity) -> Callable[..., Any]:
             measured={
                 "fitness": fitness,
                 "descriptors": {"bending_effort": 0.25, "stretching_effort": 0.5},
-                "features": {
+                "measures": {
                     "displacement": fitness,
                     "bending_effort": 0.25,
                     "stretching_effort": 0.5,
-                    **features,
+                    **measures,
                 },
                 "block": 16,
                 "room": [24, 64],

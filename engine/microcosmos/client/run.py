@@ -147,7 +147,7 @@ class Run(Record):
         names = ",".join(one["name"] for one in told["recorded"])
         if names:  # Which there are is not known before.
             at = told["generation"]
-            told = self._connection.read(path, generation=at, features=names)
+            told = self._connection.read(path, generation=at, measures=names)
         return Archive(self._connection, self.id, told)
 
     def results(self) -> Table:

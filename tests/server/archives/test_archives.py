@@ -19,7 +19,7 @@ def h5(spec) -> bytes:
     """The file of an archive with one elite."""
     archive = {
         "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
-        "features": np.array([[0.01, 1.0]]),
+        "measures": np.array([[0.01, 1.0]]),
         "fitness": np.array([2.5]),
         "generation": np.array([3]),
         "creature": np.zeros((1, 32), np.uint8),
@@ -28,7 +28,7 @@ def h5(spec) -> bytes:
     attributes = {
         "format": file.FORMAT,
         "spec": json.dumps(spec),
-        "features": json.dumps(["bending_effort", "stretching_effort"]),
+        "measures": json.dumps(["bending_effort", "stretching_effort"]),
     }
     return file.dump({"archive": archive}, attributes)
 
@@ -141,33 +141,33 @@ def test_the_table_has_the_columns_of_pyribs(api, run_id, saved):
 SLIM = {"energy": 0.1 + 0.2, "turning": -1e-9}
 
 
-def test_an_archive_has_the_features_of_its_elites_that_are_asked_for(
+def test_an_archive_has_the_measures_of_its_elites_that_are_asked_for(
     api, services, run_id, report
 ):
     attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0}, features=SLIM), 1.0)
-    attempt.record(report(2, {3: 2.0}, features=dict.fromkeys(SLIM, 7.0)), 1.0)
-    found = api.get(f"runs/{run_id}/archive", params={"features": "turning,energy"}).json()
+    attempt.record(report(1, {5: 1.0}, measures=SLIM), 1.0)
+    attempt.record(report(2, {3: 2.0}, measures=dict.fromkeys(SLIM, 7.0)), 1.0)
+    found = api.get(f"runs/{run_id}/archive", params={"measures": "turning,energy"}).json()
     assert found["cell"] == [3, 5]
-    assert found["features"] == {"turning": [7.0, -1e-9], "energy": [7.0, 0.1 + 0.2]}
-    names = [feature["name"] for feature in found["recorded"]]
+    assert found["measures"] == {"turning": [7.0, -1e-9], "energy": [7.0, 0.1 + 0.2]}
+    names = [measure["name"] for measure in found["recorded"]]
     assert names == ["displacement", "bending_effort", "stretching_effort", *SLIM]
-    assert api.get(f"runs/{run_id}/archive").json()["features"] == {}
-    before = {"features": "energy", "generation": 1}
+    assert api.get(f"runs/{run_id}/archive").json()["measures"] == {}
+    before = {"measures": "energy", "generation": 1}
     then = api.get(f"runs/{run_id}/archive", params=before).json()
-    assert then["features"] == {"energy": [0.1 + 0.2]}
+    assert then["measures"] == {"energy": [0.1 + 0.2]}
 
 
 @pytest.mark.postgresql
 def test_an_archive_tells_only_what_entered_after_a_generation(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 0.5}, features=SLIM), 1.0)
-    attempt.record(report(2, {5: 2.0, 7: 0.1}, features=SLIM), 1.0)
-    attempt.record(report(3, {5: 3.0}, features=SLIM), 1.0)
+    attempt.record(report(1, {5: 1.0, 3: 0.5}, measures=SLIM), 1.0)
+    attempt.record(report(2, {5: 2.0, 7: 0.1}, measures=SLIM), 1.0)
+    attempt.record(report(3, {5: 3.0}, measures=SLIM), 1.0)
 
     def read(**asked):
-        found = api.get(f"runs/{run_id}/archive", params=asked | {"features": "energy"}).json()
-        assert len(found["features"]["energy"]) == len(found["cell"])
+        found = api.get(f"runs/{run_id}/archive", params=asked | {"measures": "energy"}).json()
+        assert len(found["measures"]["energy"]) == len(found["cell"])
         return dict(zip(found["cell"], found["elite_generation"], strict=True))
 
     assert read() == {3: 1, 5: 3, 7: 2}
@@ -178,14 +178,14 @@ def test_an_archive_tells_only_what_entered_after_a_generation(api, services, ru
     assert api.get(f"runs/{run_id}/archive", params={"after": -1}).status_code == 422
 
 
-def test_features_that_were_not_recorded_are_refused_with_those_that_were(
+def test_measures_that_were_not_recorded_are_refused_with_those_that_were(
     api, services, run_id, report
 ):
     claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
-    answer = api.get(f"runs/{run_id}/archive", params={"features": "energy,displacement"})
+    answer = api.get(f"runs/{run_id}/archive", params={"measures": "energy,displacement"})
     assert answer.status_code == 422
     (error,) = answer.json()["errors"]
-    assert (error["field"], error["got"]) == ("features", ["energy"])
+    assert (error["field"], error["got"]) == ("measures", ["energy"])
     assert "displacement" in error["needed"]
 
 
@@ -223,10 +223,10 @@ def test_an_archive_says_what_its_cells_and_axes_are(
     assert all(axis["low"] < axis["high"] for axis in found["axes"])
 
 
-def test_a_feature_comes_with_title_unit_and_ends(api, services, run_id, report):
-    claim(services, run_id, "worker").record(report(1, {5: 1.0}, features={"old": 1.0}), 1.0)
+def test_a_measure_comes_with_title_unit_and_ends(api, services, run_id, report):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}, measures={"old": 1.0}), 1.0)
     recorded = api.get(f"runs/{run_id}/archive").json()["recorded"]
-    known = {feature.pop("name"): feature for feature in recorded}
+    known = {measure.pop("name"): measure for measure in recorded}
     assert known["bending_effort"]["title"] == "Bending effort"
     assert known["bending_effort"]["unit"] == "rad²"
     assert known["bending_effort"]["low"] < known["bending_effort"]["high"]
@@ -241,15 +241,15 @@ def test_a_feature_comes_with_title_unit_and_ends(api, services, run_id, report)
 
 def test_the_history_tells_the_archive_of_every_generation(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}, features={"turning": 0.5}), 1.0)
-    attempt.record(report(2, {5: 1.5}, features={"turning": 0.25}), 1.0)
-    attempt.record(report(3, {255: 0.5, 5: 4.0}, features={"turning": 1.0}), 1.0)
-    asked = {"features": "turning"}
+    attempt.record(report(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.5}), 1.0)
+    attempt.record(report(2, {5: 1.5}, measures={"turning": 0.25}), 1.0)
+    attempt.record(report(3, {255: 0.5, 5: 4.0}, measures={"turning": 1.0}), 1.0)
+    asked = {"measures": "turning"}
     history = api.get(f"runs/{run_id}/archive/history", params=asked).json()
     assert history["generation"] == 3
     assert history["cell"] == [3, 5, 5, 5, 255]
     assert history["elite_generation"] == [1, 1, 2, 3, 3]
-    assert history["features"] == {"turning": [0.5, 0.5, 0.25, 1.0, 1.0]}
+    assert history["measures"] == {"turning": [0.5, 0.5, 0.25, 1.0, 1.0]}
     columns = ("fitness", "descriptors", "creature")
     for generation in range(4):
         then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
@@ -265,9 +265,9 @@ def test_the_history_tells_the_archive_of_every_generation(api, services, run_id
 
 def test_a_history_with_what_was_not_recorded_is_refused(api, services, run_id, report):
     claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
-    answer = api.get(f"runs/{run_id}/archive/history", params={"features": "beauty"})
+    answer = api.get(f"runs/{run_id}/archive/history", params={"measures": "beauty"})
     assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == "features"
+    assert answer.json()["errors"][0]["field"] == "measures"
 
 
 def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, spec, report):

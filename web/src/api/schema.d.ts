@@ -532,7 +532,7 @@ export interface paths {
          * Read Archive
          * @description The elite of each cell, now or as of a generation.
          *
-         *     With `features`, names with commas between them, what was recorded of the elites under
+         *     With `measures`, names with commas between them, what was recorded of the elites under
          *     those names too: an archive can be looked at along any of them. With `after`, a generation,
          *     only the elites that entered later, for who knows the others.
          */
@@ -1595,8 +1595,8 @@ export interface components {
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
-            /** Features */
-            features: {
+            /** Measures */
+            measures: {
                 [key: string]: (number | null)[];
             };
             /** Fitness */
@@ -1609,7 +1609,7 @@ export interface components {
              */
             kind: "grid" | "cvt";
             /** Recorded */
-            recorded: components["schemas"]["Feature"][];
+            recorded: components["schemas"]["Measure"][];
         };
         /** Axis */
         Axis: {
@@ -1859,10 +1859,10 @@ export interface components {
             title: string;
         };
         /**
-         * Feature
+         * Measure
          * @description What is recorded of every elite, and where an axis of it begins and ends by default.
          */
-        Feature: {
+        Measure: {
             /** High */
             high: number | null;
             /** Low */
@@ -1939,8 +1939,8 @@ export interface components {
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
-            /** Features */
-            features: {
+            /** Measures */
+            measures: {
                 [key: string]: (number | null)[];
             };
             /** Fitness */
@@ -3670,7 +3670,7 @@ export interface operations {
         parameters: {
             query?: {
                 generation?: number | null;
-                features?: string;
+                measures?: string;
                 after?: number | null;
             };
             header?: never;
@@ -3804,7 +3804,7 @@ export interface operations {
     read_history_api_v1_runs__run_id__archive_history_get: {
         parameters: {
             query?: {
-                features?: string;
+                measures?: string;
             };
             header?: never;
             path: {
@@ -4778,7 +4778,7 @@ export interface operations {
         parameters: {
             query?: {
                 generation?: number | null;
-                features?: string;
+                measures?: string;
             };
             header?: never;
             path: {
@@ -4904,7 +4904,7 @@ export interface operations {
     read_shared_history_api_v1_shares__slug__runs__run_id__archive_history_get: {
         parameters: {
             query?: {
-                features?: string;
+                measures?: string;
             };
             header?: never;
             path: {

@@ -9,8 +9,8 @@ const NOT_MEASURED = "not measured";
 
 type Row = [name: string, value: string];
 
-/** Features whose bare name does not say what they are. */
-const FEATURES: Record<string, [name: string, write: (value: number) => string]> = {
+/** Measures whose bare name does not say what they are. */
+const MEASURES: Record<string, [name: string, write: (value: number) => string]> = {
   displacement: ["Displacement", (value) => `${number(value, 6)} cells`],
   cycle: ["In the last cycle", (value) => `${number(value, 6)} cells`],
   direction: ["Direction", (value) => `${number(value)} rad`],
@@ -32,13 +32,13 @@ const FEATURES: Record<string, [name: string, write: (value: number) => string]>
 
 export function measurementsOf({ identity, measured }: Creature): Row[] {
   if (!measured) return [["Fitness", NOT_MEASURED]];
-  const figures = Object.entries({ ...measured.descriptors, ...measured.features });
+  const figures = Object.entries({ ...measured.descriptors, ...measured.measures });
   const gait = identity.genome.encoding === "gait";
   return [
     ...(gait ? [] : [["Fitness", number(measured.fitness, 6)] as Row]),
     ...figures.map(([name, value]): Row => {
       const own = ownOf({ identity, measured })[name];
-      const [title, write] = FEATURES[name] ?? [own?.title ?? words(name), (x: number) => number(x, 6)];
+      const [title, write] = MEASURES[name] ?? [own?.title ?? words(name), (x: number) => number(x, 6)];
       return [title, own?.unit ? `${write(value)} ${own.unit}` : write(value)];
     }),
   ];
@@ -75,7 +75,7 @@ interface Group {
   rows: Row[];
 }
 
-/** Under which heading a feature stands; others are about the swimming as a whole. */
+/** Under which heading a measure stands; others are about the swimming as a whole. */
 const GROUPS: [title: string, names: string[]][] = [
   ["Control", ["bending_effort", "stretching_effort", "power", "efficiency"]],
   ["Shape", ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes"]],
@@ -87,10 +87,10 @@ const GROUPS: [title: string, names: string[]][] = [
 export function groupsOf(creature: Creature): Group[] {
   const { measured, identity } = creature;
   if (!measured) return [{ title: "Result", rows: measurementsOf(creature) }];
-  const figures = { ...measured.descriptors, ...measured.features };
+  const figures = { ...measured.descriptors, ...measured.measures };
   const among = (names: string[], inside: boolean) => {
     const some = Object.entries(figures).filter(([name]) => names.includes(name) === inside);
-    return { ...measured, descriptors: {}, features: Object.fromEntries(some) };
+    return { ...measured, descriptors: {}, measures: Object.fromEntries(some) };
   };
   const named = GROUPS.flatMap(([, names]) => names);
   const first = { title: "Result", rows: measurementsOf({ ...creature, measured: among(named, false) }) };

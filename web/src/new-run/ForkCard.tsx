@@ -42,4 +42,4 @@ export function ForkCard({ name, errors, onName }: Props) {
 }
 
 /** Such complaints are of no field that the form shows. */
-export const isForkField = (field: string): boolean => /^(from|name|generation|search\.origin)\b/.test(field);
+export const isForkField = (field: string): boolean => /^(from|name|generation|search\.initial)\b/.test(field);

@@ -10,7 +10,7 @@ import { isSearch, withInitial } from "./initialCreatures";
 import { type Found, specOf } from "./readDocument";
 import { count, short } from "../ui/format";
 
-/** Creatures that a run can begin from; `search.origin` in the schemas has the same. */
+/** Creatures that a run can begin from; `search.initial` in the schemas has the same. */
 export const MAX_CREATURES = 4096;
 
 export function addressed(query: URLSearchParams): Address | null {

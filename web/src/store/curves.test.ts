@@ -20,7 +20,7 @@ const ARCHIVE: Archive = {
   cells: 16,
   axes: [],
   recorded: [],
-  features: {},
+  measures: {},
   cell: [0, 5],
   fitness: [1, 2],
   descriptors: [

@@ -8,7 +8,7 @@ describe("the past of an archive", () => {
     generation: 4,
     elite_generation: [1, 1, 4],
     creature: ["a", "b", "c"],
-    features: {},
+    measures: {},
   };
 
   it.each([
