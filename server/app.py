@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 from functools import partial
 
 from fastapi import APIRouter, FastAPI
+from fastapi.responses import JSONResponse
 
 from microcosmos.version import VERSION
 
@@ -13,19 +14,21 @@ from .archives import result_routes as results_api
 from .archives import routes as archives_api
 from .auth import bootstrap
 from .auth import routes as tokens_api
-from .auth import session_routes as session_api
-from .auth.authorize import Door
-from .auth.expiry import watch
-from .auth.middleware import Guard
-from .core import errors, page, request_log
+from .auth.authenticate import Authenticator
+from .auth.authorize import MAY_READ, PUBLIC
+from .auth.middleware import PrincipalMiddleware
+from .auth.tokens import watch
+from .core import errors, nowhere, page, request_log
 from .core.openapi import PROBLEMS, describe
 from .core.security_headers import Discretion
 from .core.shutdown import told_to_stop
 from .creatures import network_routes as networks_api
 from .creatures import routes as creatures_api
-from .creatures.sandbox import quarantine
+from .creatures.sandbox import sandbox
+from .deletion import routes as deletion_api
 from .events import routes as events_api
 from .events.fanout import Hub
+from .forks import routes as forks_api
 from .maintenance import health, metrics_routes
 from .maintenance.metrics import Counting, Requests
 from .maintenance.reconcile import reconciling
@@ -59,7 +62,7 @@ def create_app(services: Services) -> FastAPI:
     app = FastAPI(
         title="Microcosmos",
         version=VERSION,
-        openapi_url="/api/v1/openapi.json",
+        openapi_url=None,
         docs_url=None,
         redoc_url=None,
         lifespan=_life,
@@ -68,8 +71,8 @@ def create_app(services: Services) -> FastAPI:
     errors.install(app)
     request_log.discreet()
     describe(app)
-    app.state.door = door = Door(services)
-    app.add_middleware(Guard, door=door)
+    app.state.authenticator = authenticator = Authenticator(services)
+    app.add_middleware(PrincipalMiddleware, authenticator=authenticator)
     app.add_middleware(Discretion)
     app.state.requests = requests = Requests()
     app.add_middleware(Counting, requests=requests)
@@ -77,6 +80,8 @@ def create_app(services: Services) -> FastAPI:
     for noun in (
         experiments_api,
         runs_api,
+        forks_api,
+        deletion_api,
         sweeps_api,
         generations_api,
         journal_api,
@@ -95,12 +100,22 @@ def create_app(services: Services) -> FastAPI:
         queue_api,
         tags_api,
         tokens_api,
-        session_api,
     ):
         api.include_router(noun.router)
-    for router in (api, health.router, metrics_routes.router, share_page.router, page.router):
-        app.include_router(router)
+    api.include_router(_description(app))
+    api.include_router(nowhere.router, dependencies=[MAY_READ])
+    app.include_router(api)
+    app.include_router(metrics_routes.router)
+    for public in (health.router, share_page.router, page.router):
+        app.include_router(public, dependencies=[PUBLIC])
     return app
+
+
+def _description(app: FastAPI) -> APIRouter:
+    """Return the route of the OpenAPI document, which needs a token as the others do."""
+    router = APIRouter(include_in_schema=False, dependencies=[MAY_READ])
+    router.add_api_route("/openapi.json", lambda: JSONResponse(app.openapi()))
+    return router
 
 
 @asynccontextmanager
@@ -114,7 +129,7 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(task) for task in (hub.run(), watch(services, hub.tokens, hub.end))
     ]
     app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
-    await asyncio.to_thread(quarantine().begin)
+    await asyncio.to_thread(sandbox().start)
     with reconciling(services), told_to_stop(app.state.end_streams):
         yield
     hub.close()

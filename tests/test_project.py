@@ -42,3 +42,15 @@ def test_lock_files_have_hashes_and_no_address(path):
 )
 def test_templates_are_valid_yaml(path):
     assert isinstance(yaml.safe_load(path.read_text()), dict)
+
+
+def test_the_glossary_has_one_paragraph_for_each_term_in_order():
+    """The page reads it as text: see web/src/ui/glossary.ts."""
+    text = (ROOT / "docs/glossary.md").read_text()
+    terms = []
+    for entry in text.split("\n## ")[1:]:
+        term, *paragraphs = entry.strip().split("\n\n")
+        assert len(paragraphs) == 1, term
+        terms.append(term.lower())
+    assert terms == sorted(set(terms))
+    assert {"archive", "descriptor", "elite", "feasible", "measure", "stroke"} <= set(terms)

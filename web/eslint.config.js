@@ -33,19 +33,26 @@ const zones = LAYERS.slice(0, -1).flatMap((layer, i) =>
   })),
 );
 
-export default tseslint.config({
-  files: ["src/**/*.{ts,tsx}"],
-  ignores: ["src/api/schema.d.ts"],
-  languageOptions: { parser: tseslint.parser },
-  plugins: { "import-x": importX },
-  settings: {
-    "import-x/resolver-next": [createNodeResolver({ extensions: [".ts", ".tsx", ".d.ts", ".js", ".css"] })],
-    "import-x/parsers": { "@typescript-eslint/parser": [".ts", ".tsx"] },
+export default tseslint.config(
+  {
+    files: ["src/**/*.{ts,tsx}"],
+    ignores: ["src/api/schema.d.ts"],
+    languageOptions: { parser: tseslint.parser },
+    plugins: { "import-x": importX },
+    settings: {
+      "import-x/resolver-next": [createNodeResolver({ extensions: [".ts", ".tsx", ".d.ts", ".js", ".css"] })],
+      "import-x/parsers": { "@typescript-eslint/parser": [".ts", ".tsx"] },
+    },
+    rules: {
+      "import-x/no-restricted-paths": ["error", { zones }],
+      "import-x/no-unresolved": ["error", { ignore: ["^uplot/dist/"] }],
+      "import-x/no-cycle": "error",
+      "max-lines": ["error", 300],
+    },
   },
-  rules: {
-    "import-x/no-restricted-paths": ["error", { zones }],
-    "import-x/no-unresolved": ["error", { ignore: ["^uplot/dist/"] }],
-    "import-x/no-cycle": "error",
-    "max-lines": ["error", 300],
+  {
+    files: ["src/**/*.{ts,tsx}"],
+    ignores: ["src/**/*.test.ts", "src/api/schema.d.ts"],
+    rules: { "max-lines-per-function": ["error", 50] },
   },
-});
+);

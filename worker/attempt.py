@@ -16,7 +16,7 @@ from server.attempts.claim import CheckpointUnavailable, Claim, Fenced
 from server.attempts.report import Report
 from server.services.services import Services
 from server.settings import Settings
-from server.tables import CANCEL, PAUSE
+from server.tables import CANCELLED, PAUSED
 
 from . import stop
 
@@ -57,7 +57,7 @@ class Attempt:
 
     def __init__(self, held: Claim):
         self._claim = held
-        self._wish: str | None = None
+        self._requested_state: str | None = None
         self._looked = time.monotonic()
         # The first generation is saved at once: its file says where the cells of a CVT are.
         self._saved = time.monotonic() if held.generation else -math.inf
@@ -85,10 +85,10 @@ class Attempt:
     def other_device(self) -> bool:
         return self._claim.other_device
 
-    def wait_for_leave(self, reason: str) -> None:
+    def wait_for_override(self, reason: str) -> None:
         """Pause: on this kind of device bits may differ, which is for people to allow."""
         text = f"{reason} To go on here, resume the run; its archive will say so."
-        persist(lambda: self._claim.wait_for_leave(text))
+        persist(lambda: self._claim.wait_for_override(text))
 
     def set_aside(self, reason: str) -> None:
         """Pause: this worker lacks a plug-in or a file that people can bring back."""
@@ -102,14 +102,14 @@ class Attempt:
     def interrupted(self) -> bool:
         """Whether to stop here; asked between blocks."""
         now = time.monotonic()
-        if self._wish is None and now - self._looked >= LOOK_SECONDS:
+        if self._requested_state is None and now - self._looked >= LOOK_SECONDS:
             self._looked = now
-            self._wish = persist(self._claim.wish)
-        return self._wish is not None or stop.requested()
+            self._requested_state = persist(self._claim.requested)
+        return self._requested_state is not None or stop.requested()
 
     def record(self, report: Report, seconds: float, save: Callable[[], bytes]) -> None:
         """Write down a generation that took so many seconds; checkpoint when it is due."""
-        self._wish = persist(lambda: self._claim.record(report, seconds))
+        self._requested_state = persist(lambda: self._claim.record(report, seconds))
         if time.monotonic() - self._saved >= self._claim.services.settings.checkpoint_interval:
             self._checkpoint(report.generation, save)
 
@@ -122,9 +122,9 @@ class Attempt:
         saved = generation == self._claim.generation or self._checkpoint(generation, save)
         if done and saved:
             persist(self._claim.finish)
-        elif self._wish == CANCEL:
+        elif self._requested_state == CANCELLED:
             persist(self._claim.cancel)
-        elif done or self._wish == PAUSE:
+        elif done or self._requested_state == PAUSED:
             persist(self._claim.pause)
         else:
             persist(self._claim.requeue)

@@ -52,7 +52,7 @@ def compute(attempt: Attempt) -> None:
             else experiment.init()
         )
     except OtherDevice as error:
-        attempt.wait_for_leave(str(error))
+        attempt.wait_for_override(str(error))
         return
     with suppress(Stopped):
         while not (experiment.done(state) or attempt.interrupted()):

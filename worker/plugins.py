@@ -49,7 +49,7 @@ class Told:
     unloaded: tuple[dict[str, Any], ...] = ()
 
     @property
-    def sources(self) -> set[str]:
+    def plugin_versions(self) -> set[str]:
         return {one["source"] for one in self.plugins}
 
 

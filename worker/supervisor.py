@@ -17,8 +17,8 @@ from rq.serializers import JSONSerializer
 from rq.worker import SpawnWorker
 from sqlalchemy.exc import SQLAlchemyError
 
-from server.estimates.position import in_line
-from server.maintenance.reconcile import job_died, job_stopped
+from server.attempts.leases import job_died, job_stopped
+from server.queue.order import in_order
 from server.services import services
 from server.services.services import Services
 from server.settings import Settings
@@ -122,15 +122,17 @@ class Supervisor(SpawnWorker):
         return self.lease
 
 
-def own_queues(shared: Services, sources: set[str]) -> list[Queue]:
+def own_queues(shared: Services, plugin_versions: set[str]) -> list[Queue]:
     """The queues of runs that can be carried out with these modules of users' own, those
     first whose runs have waited longest."""
-    if not sources:
+    if not plugin_versions:
         return shared.jobs.evolving
     with shared.sessions.read() as session:
-        waiting = in_line(session)
-    able = [one for one in waiting if sources.issuperset(one.sources or ())]
-    queues = [shared.jobs.evolving_with(one.sources, one.of_sweep) for one in able]
+        queued = in_order(session)
+    able = [run for run in queued if plugin_versions.issuperset(run.plugin_versions or ())]
+    queues = [
+        shared.jobs.evolving_with(run.plugin_versions, run.sweep is not None) for run in able
+    ]
     return list({queue.name: queue for queue in (*queues, *shared.jobs.evolving)}.values())
 
 
@@ -151,7 +153,7 @@ def supervise(settings: Settings, index: int) -> None:
     journal.info("Worker %s on %s", name, found.name)
     worker.pulse.start()
     shelf.start()
-    loop.serve(worker, lambda: own_queues(shared, shelf.last.sources))
+    loop.serve(worker, lambda: own_queues(shared, shelf.last.plugin_versions))
     shelf.end()
     with suppress(SQLAlchemyError):
         worker.pulse.end()

@@ -39,14 +39,15 @@ def endpoint(method: str, path: str, operation: Json, document: Json) -> str:
     parts = [f"## `{method.upper()} {path}`", scope(operation, document)]
     parts.append(operation.get("description", operation.get("summary", "") + "."))
     if parameters := operation.get("parameters"):
-        parts.append("| parameter | in | type | default | |\n|---|---|---|---|---|")
+        parts.append("| parameter | in | type | default |\n|---|---|---|---|")
         parts[-1] += "".join("\n" + parameter(one) for one in parameters)
     if body := operation.get("requestBody"):
         parts.append("**Body:** " + content(body))
     parts.append("| status | answer |\n|---|---|")
     for status, answer in operation["responses"].items():
         status = "error" if status == "default" else status
-        parts[-1] += f"\n| {status} | {cell(answer.get('description', ''))} {content(answer)} |"
+        words = cell(answer.get("description", "")).replace("Successful Response", "")
+        parts[-1] += f"\n| {status} | {words} {content(answer)} |"
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -63,7 +64,8 @@ def parameter(one: Json) -> str:
     schema = one["schema"]
     given = "required" if one.get("required") else literal(schema.get("default"))
     words = cell(one.get("description", schema.get("description", "")))
-    return f"| `{one['name']}` | {one['in']} | {kind(schema)} | {given} | {words} |"
+    named = f"`{one['name']}`" + (f": {words}" if words else "")
+    return f"| {named} | {one['in']} | {kind(schema)} | {given} |"
 
 
 def content(part: Json) -> str:

@@ -25,15 +25,25 @@ def write(app: Sphinx) -> None:
     root = griffe.load("microcosmos", search_paths=[app.srcdir.parent / "engine"])
     folder = app.srcdir / "reference"
     folder.mkdir(exist_ok=True)
-    packages = [one for one in root.modules.values() if one.is_init_module]
-    packages = [one for one in packages if one.name not in COMMANDS]
-    wanted = {f"{one.name}.md": page(one) for one in packages}
+    packages = [one for one in inner(root) if one.path.split(".")[1] not in COMMANDS]
+    packages.sort(key=name)
+    wanted = {f"{name(one)}.md": page(one) for one in packages}
     wanted["index.md"] = index(root, packages)
     for path in folder.glob("*.md"):
         if path.name not in wanted:
             path.unlink()
-    for name, text in wanted.items():
-        update(folder / name, text)
+    for file, text in wanted.items():
+        update(folder / file, text)
+
+
+def inner(package: griffe.Module) -> list[griffe.Module]:
+    """The packages inside a package, each before its own."""
+    found = [one for one in package.modules.values() if one.is_init_module]
+    return [each for one in found for each in (one, *inner(one))]
+
+
+def name(package: griffe.Module) -> str:
+    return package.path.removeprefix("microcosmos.")
 
 
 def update(path: Path, text: str) -> None:
@@ -43,8 +53,8 @@ def update(path: Path, text: str) -> None:
 
 
 def index(root: griffe.Module, packages: list[griffe.Module]) -> str:
-    rows = "\n".join(f"| [`{one.path}`]({one.name}.md) | {first(one)} |" for one in packages)
-    pages = "\n".join(one.name for one in packages)
+    rows = "\n".join(f"| [`{one.path}`]({name(one)}.md) | {first(one)} |" for one in packages)
+    pages = "\n".join(name(one) for one in packages)
     return f"""# Python API
 
 These packages are public, by the names that they export. Shapes stand in the annotations:
@@ -68,7 +78,7 @@ These packages are public, by the names that they export. Shapes stand in the an
 def lazy(root: griffe.Module) -> str:
     """The table of the names that the library itself offers, with their packages."""
     pairs = re.findall(r"'(\w+)': '([\w.]+)'", str(root["_HOME"].value))
-    rows = [f"| `microcosmos.{name}` | `microcosmos.{home}` |" for name, home in pairs]
+    rows = [f"| `microcosmos.{key}` | `microcosmos.{home}` |" for key, home in pairs]
     return "\n".join(["| name | package |", "|---|---|", *rows])
 
 

@@ -10,9 +10,9 @@ from .suite import Section
 
 HEAD = """# Validation
 
-Written by `make validate`; `tests/engine/validation` runs the same checks, the longest of them
-reduced. Lattice units; float32 unless it says otherwise. A line passes where *here* is within
-its bar.
+`make validate` writes this page; `tests/engine/validation` runs the same checks, the longest of
+them reduced. All values are in lattice units, and in float32 unless stated. A line passes if
+*here* is within its bar.
 """
 
 

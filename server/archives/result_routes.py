@@ -9,6 +9,7 @@ from fastapi.responses import Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from ..auth.authorize import MAY_READ
 from ..core.errors import ProblemError
 from ..runs.deps import RunDep
 from ..services.deps import SessionDep
@@ -19,14 +20,17 @@ from .schemas import ResultsRead
 router = APIRouter(prefix="/runs/{run_id}", tags=["results"])
 
 
-@router.get("/results")
+@router.get("/results", dependencies=[MAY_READ])
 def read_results(run: RunDep, session: SessionDep) -> ResultsRead:
     """All rows so far, in the order in which they were measured."""
     return ResultsRead(generation=run.generation, summary=run.summary, rows=_rows(session, run))
 
 
 @router.get(
-    "/results.csv", response_class=Response, responses={200: {"content": {"text/csv": {}}}}
+    "/results.csv",
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {}}}},
+    dependencies=[MAY_READ],
 )
 def download_results(run: RunDep, session: SessionDep) -> Response:
     """The same as a table."""

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
+from ..auth.authorize import MAY_READ
 from ..core.errors import ProblemError
 from ..runs.deps import RunDep
 from ..services.deps import ServicesDep, SessionDep
@@ -30,7 +31,7 @@ HISTORY_ENTRIES = 400_000
 """About 50 MB."""
 
 
-@router.get("/archive")
+@router.get("/archive", dependencies=[MAY_READ])
 def read_archive(
     run: RunDep,
     session: SessionDep,
@@ -60,7 +61,7 @@ def read_archive(
     )
 
 
-@router.get("/archive/history")
+@router.get("/archive/history", dependencies=[MAY_READ])
 def read_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
     """Every elite that ever entered: the archive of each generation can be told from it."""
     _refuse_without(run)
@@ -71,7 +72,7 @@ def read_history(run: RunDep, session: SessionDep, measures: str = "") -> Histor
     return HistoryRead(generation=run.generation, **columns)
 
 
-@router.get("/archive/centroids")
+@router.get("/archive/centroids", dependencies=[MAY_READ])
 def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> CentroidsRead:
     """The cells of a CVT archive; null until its first checkpoint is there."""
     _refuse_without(run)
@@ -128,7 +129,7 @@ def _refuse_without(run: Run) -> None:
         raise ProblemError(404, "No archive", detail)
 
 
-@router.get("/archive.h5", response_class=Response, responses=binary)
+@router.get("/archive.h5", response_class=Response, responses=binary, dependencies=[MAY_READ])
 def download_archive(
     request: Request, run: RunDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -139,7 +140,10 @@ def download_archive(
 
 
 @router.get(
-    "/archive.csv", response_class=Response, responses={200: {"content": {"text/csv": {}}}}
+    "/archive.csv",
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {}}}},
+    dependencies=[MAY_READ],
 )
 def download_table(run: RunDep, session: SessionDep, services: ServicesDep) -> Response:
     """The last checkpoint's archive in the columns of pyribs."""

@@ -10,7 +10,7 @@ from ..core.database import clock
 from ..runs import log
 from ..runs.lifecycle import announce, change, lost, release
 from ..services.services import Services
-from ..tables import GIVEN, QUEUED, RUNNING, Run, Worker
+from ..tables import OVERRIDE_ALLOWED, QUEUED, RUNNING, Run, Worker
 from ..workers import plugins
 from .checkpoints import rewind
 from .claim import Claim, tell_rewind
@@ -42,7 +42,7 @@ def claim(services: Services, run_id: UUID, worker: str) -> Claim | None:
 def _fit(session: Session, run_id: UUID, worker: str) -> bool:
     """Whether a worker has what a run needs of users' own."""
     run = session.get(Run, run_id)
-    return run is None or plugins.fit(session.get(Worker, worker), run.sources)
+    return run is None or plugins.fit(session.get(Worker, worker), run.plugin_versions)
 
 
 def _begun(worker: str) -> dict[str, Any]:
@@ -64,5 +64,5 @@ def _begin(services: Services, run: Run) -> Claim:
         spec=run.spec,
         generation=run.checkpoint_generation,
         seconds=run.seconds,
-        other_device=run.device_leave == GIVEN,
+        other_device=run.device_override == OVERRIDE_ALLOWED,
     )

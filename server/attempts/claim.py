@@ -7,7 +7,7 @@ from time import monotonic
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import case
+from sqlalchemy import case, func
 from sqlalchemy.orm import Session
 
 from ..core.database import clock
@@ -17,7 +17,16 @@ from ..runs.lifecycle import announce, change, hand_back, release
 from ..runs.log import UNSAVED, Level, note
 from ..services.services import Services
 from ..storage.artifacts import Stored, checkpoint_path
-from ..tables import CANCEL, CANCELLED, FAILED, FINISHED, NEEDED, PAUSED, RUNNING, Artifact, Run
+from ..tables import (
+    CANCELLED,
+    FAILED,
+    FINISHED,
+    OVERRIDE_NEEDED,
+    PAUSED,
+    RUNNING,
+    Artifact,
+    Run,
+)
 from . import recording
 from .checkpoints import checkpoints, fall_back, point_at
 from .report import Report
@@ -112,24 +121,24 @@ class Claim:
         announce(self.services, self.run_id)
 
     def record(self, report: Report, seconds: float) -> str | None:
-        """Write down a generation that took so many seconds: the wish, `pause` or `cancel`."""
+        """Record a generation that took so many seconds; return the requested state."""
         total = self.seconds + seconds
         rows = recording.rows_of(report, total)
         with self.services.sessions.write.begin() as session:
             # After an outage nobody knows whether the same write was committed before it.
             new = self._prove(session).generation != rows.curve["generation"]
             standing = {**recording.standing(report), "seconds": total}
-            wish = self._prove(session, **standing).wish
+            requested = self._prove(session, **standing).requested_state
             if new:
                 recording.write(session, self.run_id, rows)
         self.seconds = total
         self._tell(rows)
-        return wish
+        return requested
 
-    def wish(self) -> str | None:
-        """What people want of the run, `pause` or `cancel`, between two records."""
+    def requested(self) -> str | None:
+        """Return the state that a person requests, `paused` or `cancelled`, if any."""
         with self.services.sessions.write.begin() as session:
-            return self._prove(session).wish
+            return self._prove(session).requested_state
 
     def save(self, generation: int, data: bytes) -> None:
         """Write the file of a recorded generation and make it the checkpoint.
@@ -170,14 +179,14 @@ class Claim:
 
     def finish(self) -> None:
         ended = {"status": FINISHED, "finished_at": clock(), "error": None}
-        self._end(None, **ended, wish=None, wished_at=None)
+        self._end(None, **ended, requested_state=None, requested_at=None)
 
     def pause(self) -> None:
         self._end(f"Stopped after generation {self.generation}.", **_paused())
 
-    def wait_for_leave(self, text: str) -> None:
+    def wait_for_override(self, text: str) -> None:
         """Pause until people say that another kind of device will do, by resuming it."""
-        self._end(text, "warning", **_paused(), warning=text, device_leave=NEEDED)
+        self._end(text, "warning", **_paused(), warning=text, device_override=OVERRIDE_NEEDED)
 
     def set_aside(self, text: str) -> None:
         """Pause until people have mended what this worker lacks, and resume it."""
@@ -186,11 +195,11 @@ class Claim:
     def refuse(self, text: str) -> None:
         """Fail at once: what is wrong with it would be wrong in every attempt."""
         ended = {"status": FAILED, "finished_at": clock(), "error": text}
-        self._end(text, "error", **ended, wish=None, wished_at=None)
+        self._end(text, "error", **ended, requested_state=None, requested_at=None)
 
     def cancel(self) -> None:
         ended = {"status": CANCELLED, "finished_at": clock()}
-        self._end(None, **ended, wish=None, wished_at=None)
+        self._end(None, **ended, requested_state=None, requested_at=None)
 
     def requeue(self) -> None:
         """Hand the run back in good order, as on SIGTERM: not one of the three chances."""
@@ -237,11 +246,11 @@ class Claim:
 def _paused() -> dict[str, Any]:
     """Unless people have meanwhile asked to cancel."""
     return {
-        "status": case((Run.wish == CANCEL, CANCELLED), else_=PAUSED),
-        "finished_at": case((Run.wish == CANCEL, clock()), else_=None),
+        "status": func.coalesce(Run.requested_state, PAUSED),
+        "finished_at": case((Run.requested_state == CANCELLED, clock()), else_=None),
         "worker": None,
-        "wish": None,
-        "wished_at": None,
+        "requested_state": None,
+        "requested_at": None,
     }
 
 

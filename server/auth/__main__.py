@@ -52,7 +52,7 @@ def _list(services: Services, asked: argparse.Namespace) -> None:
         for token in tokens.known(session):
             ended = f"revoked {token.revoked_at:%Y-%m-%d}" if token.revoked_at else "live"
             until = f", until {token.expires_at:%Y-%m-%d %H:%M}" if token.expires_at else ""
-            print(f"{token.name}\t{token.scope}\t{token.beginning}…\t{ended}{until}")
+            print(f"{token.name}\t{token.scope}\t{token.prefix}…\t{ended}{until}")
 
 
 def _revoke(services: Services, asked: argparse.Namespace) -> None:

@@ -1,5 +1,6 @@
-"""Who may speak to the server: this machine's pages, or whoever has a token."""
+"""Identify the principal of each request, and refuse requests from pages of other sites."""
 
+from collections.abc import Callable
 from urllib.parse import SplitResult, urlsplit
 
 from fastapi.concurrency import run_in_threadpool
@@ -11,103 +12,97 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from ..core.errors import ProblemError, answer, unavailable
 from ..settings import LOOPBACK
-from .authorize import Door, Shown
+from .authenticate import Authenticator, Credentials
 from .cookies import remember, remembered
-from .principal import ANONYMOUS, Principal
-from .scopes import METRICS, Unnamed, need_of
 
 SAFE = ("GET", "HEAD")
+METRICS = "/metrics"
+"""A route outside `/api` that needs a token."""
+SESSION = "/api/v1/session"
+"""Signing in and out is the only change that needs no token."""
 
 
-class Guard:
-    """Where tokens are needed, `/api` needs them. Else Host and Origin must be our own.
+class PrincipalMiddleware:
+    """Sets `request.state.principal`, or None with `request.state.refuse` for the reason.
 
-    The latter keeps out pages of other sites, also those that have their name resolve to us.
+    Without tokens, Host and Origin must be the server's own. That keeps out pages of other
+    sites, also those whose name resolves to this machine.
     """
 
-    def __init__(self, app: ASGIApp, door: Door):
-        self.app, self.door = app, door
-        self.needs_token = door.services.settings.needs_token
+    def __init__(self, app: ASGIApp, authenticator: Authenticator):
+        self.app, self.authenticator = app, authenticator
+        self.needs_token = authenticator.services.settings.needs_token
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] != "http":
-            await self.app(scope, receive, send)
-            return None
-        request = HTTPConnection(scope)
-        try:
-            caller = await self._admitted(request)
-        except ProblemError as error:
-            return await answer(error.problem, error.headers)(scope, receive, send)
-        except SQLAlchemyError as error:
-            return await unavailable(error)(scope, receive, send)
-        if isinstance(caller, Response):
-            return await caller(scope, receive, send)
-        request.state.principal = caller
-        return await self.app(scope, receive, send)
+        app = self.app
+        if scope["type"] == "http":
+            try:
+                app = await self._identified(HTTPConnection(scope)) or self.app
+            except ProblemError as error:
+                app = answer(error.problem, error.headers)
+            except SQLAlchemyError as error:
+                app = unavailable(error)
+        await app(scope, receive, send)
 
-    async def _admitted(self, request: HTTPConnection) -> Principal | Response:
-        """Whoever asks, or what is answered in place of the application."""
+    async def _identified(self, request: HTTPConnection) -> Response | None:
+        """Find the principal; return an answer where the application is not to answer."""
         if not self.needs_token:
             _refuse_foreign_host(request.headers)
             _refuse_foreign_origin(request.headers)
-        path = request.scope["path"]
+        path, method = request.scope["path"], request.scope["method"]
+        request.state.principal = None
         if not path.startswith("/api/") and path != METRICS:
             return await self._page(request)
         bearer = _bearer(request.headers)
-        if self.needs_token and bearer is None and request.scope["method"] not in SAFE:
-            # A browser sends cookies by itself, whoever's page has it ask.
+        if self.needs_token and bearer is None and method not in SAFE:
+            # A browser sends cookies by itself, also for a page of another site.
             _refuse_foreign_origin(request.headers)
         cookie = remembered(request) if self.needs_token else None
-        shown = Shown(cookie if bearer is None else bearer, address(request))
-        return await self._api(request.scope["method"], path, shown)
-
-    async def _api(self, method: str, path: str, shown: Shown) -> Principal:
+        credentials = Credentials(cookie if bearer is None else bearer, address(request))
         try:
-            need = need_of(method, path)
-        except Unnamed as error:
-            await run_in_threadpool(self.door.identify, shown)
-            raise _nothing(method, path, error.methods) from None
-        return await run_in_threadpool(self.door.admit, shown, need)
+            identify = self.authenticator.identify
+            request.state.principal = await run_in_threadpool(identify, credentials)
+        except ProblemError as error:
+            request.state.refuse = self._refusal(error, credentials.address)
+            if method not in SAFE and path != SESSION:  # Before the body is read.
+                raise request.state.refuse() from None
+        return None
 
-    async def _page(self, request: HTTPConnection) -> Principal | Response:
-        """The page itself is for everybody; a token in its address is taken into a cookie."""
+    def _refusal(self, error: ProblemError, address: str) -> Callable[[], ProblemError]:
+        """Return the function that counts a wrong token: public routes do not call it."""
+        return lambda: self.authenticator.count(error, address)
+
+    async def _page(self, request: HTTPConnection) -> Response | None:
+        """Move a token in the address of a page into a cookie. The page itself is public."""
         given = request.query_params.get("token")
-        everybody = ANONYMOUS
         if given is None or not self.needs_token:
-            return everybody
+            return None
         clean = request.url.remove_query_params("token")
         # The log of requests is written at the end: it must not name the secret.
         request.scope["query_string"] = clean.query.encode()
+        credentials = Credentials(given, address(request))
         try:
-            shown = Shown(given, address(request))
-            caller = await run_in_threadpool(self.door.identify, shown)
-        except ProblemError:
-            return everybody  # Its page asks for a token.
+            principal = await run_in_threadpool(self.authenticator.identify, credentials)
+        except ProblemError as error:
+            self.authenticator.count(error, credentials.address)
+            return None  # The page asks for a token.
         redirect = RedirectResponse(clean, 303)
-        remember(redirect, request, given, caller.expires_at)
+        remember(redirect, request, given, principal.expires_at)
         return redirect
 
 
 def address(request: HTTPConnection) -> str:
-    """Where a request comes from, as far as that is known."""
+    """Return the address that a request comes from, if it is known."""
     return request.client.host if request.client else ""
 
 
 def _bearer(headers: Headers) -> str | None:
-    """The token in a header, empty where it is malformed; None without the header."""
+    """Return the token of the header, empty if it is malformed, None without the header."""
     sent = headers.get("authorization")
     if sent is None:
         return None
     scheme, _, token = sent.partition(" ")
     return token.strip() if scheme.lower() == "bearer" else ""
-
-
-def _nothing(method: str, path: str, methods: list[str]) -> ProblemError:
-    if not methods:
-        return ProblemError(404, "Not found", f"There is nothing at {path:.200}.")
-    allowed = ", ".join(methods)
-    detail = f"{path:.200} takes {allowed}; got {method}."
-    return ProblemError(405, "Method not allowed", detail, headers={"Allow": allowed})
 
 
 def _refuse_foreign_host(headers: Headers) -> None:
@@ -125,7 +120,7 @@ def _refuse_foreign_origin(headers: Headers) -> None:
 
 
 def _split(address: str) -> SplitResult:
-    """The parts of an address; none where it is malformed."""
+    """Return the parts of an address, all empty if it is malformed."""
     try:
         return urlsplit(address)
     except ValueError:

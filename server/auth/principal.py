@@ -2,15 +2,15 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Literal
 from uuid import UUID
-
-from fastapi import Depends, Request
 
 from ..tables.tokens import SCOPES
 
 Scope = Literal["read", "write", "admin"]
-READ, WRITE, ADMIN = SCOPES
+READ: Scope = "read"
+WRITE: Scope = "write"
+ADMIN: Scope = "admin"
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Principal:
     """The holder of a token, or the user of this machine, who has no token of the table."""
 
     name: str
-    scope: str
+    scope: Scope
     token: UUID | None = None
     expires_at: datetime | None = None
 
@@ -30,13 +30,3 @@ LOCAL = Principal("local", ADMIN)
 """The user of this machine, where no token is needed."""
 ENVIRONMENT = Principal("MICROCOSMOS_TOKEN", ADMIN)
 """The holder of the token that the environment sets."""
-ANONYMOUS = Principal("nobody", READ)
-"""A stranger on a public route."""
-
-
-def principal(request: Request) -> Principal:
-    """Return who sends the request. Outside HTTP there is no principal."""
-    return request.state.principal
-
-
-PrincipalDep = Annotated[Principal, Depends(principal)]

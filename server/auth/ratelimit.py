@@ -1,4 +1,4 @@
-"""Wrong tokens, counted by where they come from: whoever guesses is told to wait."""
+"""Rate limit: count wrong tokens by address."""
 
 import time
 from collections import OrderedDict
@@ -7,44 +7,44 @@ from ipaddress import IPv6Address, ip_address, ip_network
 from math import ceil
 from threading import Lock
 
-AT_ONCE = 10
+BURST = 10
 """Wrong tokens that an address may send in a row."""
-EVERY = 6.0
+INTERVAL = 6.0
 """Seconds after which it may send one more."""
 ADDRESSES = 4096
-"""So many are remembered, those that were heard of last."""
+"""Addresses that are remembered, those of the latest requests."""
 
 
-class Guesses:
-    """When each address has made up for its wrong tokens: each costs it `EVERY` seconds."""
+class RateLimit:
+    """Remembers when each address may send the next wrong token."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic):
         self._clock, self._lock = clock, Lock()
         self._paid = OrderedDict[str, float]()
 
     def add(self, address: str) -> int:
-        """Count one; seconds to wait before the next, 0 while there were few."""
-        whose = household(address)
+        """Count a wrong token; return the seconds to wait before the next one."""
+        network = network_of(address)
         with self._lock:
             now = self._clock()
-            paid = max(now, self._paid.pop(whose, now))
-            wait = max(0, ceil(paid + EVERY - now - AT_ONCE * EVERY))
-            # Whoever does not wait is refused again, but waits no longer for it.
-            self._paid[whose] = paid if wait else paid + EVERY
+            paid = max(now, self._paid.pop(network, now))
+            wait = max(0, ceil(paid + INTERVAL - now - BURST * INTERVAL))
+            # An impatient address is refused again, but its wait does not grow.
+            self._paid[network] = paid if wait else paid + INTERVAL
             if len(self._paid) > ADDRESSES:
                 self._paid.popitem(last=False)
         return wait
 
 
-def household(address: str) -> str:
-    """An address, of IPv6 the network in which one may have as many as one likes.
+def network_of(address: str) -> str:
+    """Return the IPv4 address, or the IPv6 network, since one host may use all of a network.
 
-    Whatever else a proxy may call itself counts as one.
+    Everything else counts as one address.
     """
     try:
         found = ip_address(address.partition("%")[0])
     except ValueError:
-        return "somebody"
+        return "unknown"
     if isinstance(found, IPv6Address) and not found.ipv4_mapped:
         return str(ip_network((found, 64), strict=False))
     return str(getattr(found, "ipv4_mapped", None) or found)

@@ -1,51 +1,74 @@
-"""Tokens: who asks; make, list and revoke them. Only admins come to the latter."""
+"""Routes of tokens and of the session."""
 
-from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Depends
+from fastapi import APIRouter, Request, Response
 
-from ..core.openapi import described
-from ..core.uploads import sent
+from ..core.uploads import json_route
 from ..services.deps import ServicesDep, SessionDep
 from . import tokens
-from .principal import PrincipalDep
-from .schemas import CallerRead, TokenCreate, TokenMade, TokenRead
+from .authenticate import Authenticator, Credentials
+from .authorize import MAY_ADMINISTER, PUBLIC, Reader
+from .cookies import forget, remember
+from .middleware import address
+from .principal import Principal
+from .schemas import PrincipalRead, SignIn, TokenCreate, TokenCreated, TokenRead
 
 BYTES = 1 << 12
 
-router = APIRouter(prefix="/tokens", tags=["tokens"])
+router = APIRouter(tags=["tokens"], route_class=json_route(BYTES))
 
 
-@router.get("/current")
-async def read_current(services: ServicesDep, caller: PrincipalDep) -> CallerRead:
-    """Who asks, as the server has it."""
-    return CallerRead(
-        name=caller.name,
-        scope=caller.scope,
-        token=caller.token,
-        expires_at=caller.expires_at,
-        needed=services.settings.needs_token,
-    )
+@router.get("/tokens/current")
+async def read_current(services: ServicesDep, principal: Reader) -> PrincipalRead:
+    """Return the principal of the request."""
+    return _read(principal, services.settings.needs_token)
 
 
-@router.get("")
+@router.get("/tokens", dependencies=[MAY_ADMINISTER])
 def list_tokens(session: SessionDep) -> list[TokenRead]:
-    """All of them, those that were revoked too, newest first; never a secret."""
+    """Return all tokens, revoked ones too, newest first, without their secrets."""
     return [TokenRead.model_validate(token) for token in tokens.known(session)]
 
 
-@router.post("", status_code=201, openapi_extra=described(TokenCreate.model_json_schema()))
-def create_token(
-    asked: Annotated[TokenCreate, Depends(sent(TokenCreate, BYTES))], services: ServicesDep
-) -> TokenMade:
-    """Make a token. Its secret is in this answer and nowhere else."""
-    made = tokens.create(services, asked.name, asked.scope, asked.expires_at)
-    read = TokenRead.model_validate(made.token)
-    return TokenMade(**read.model_dump(), secret=made.secret)
+@router.post("/tokens", status_code=201, dependencies=[MAY_ADMINISTER])
+def create_token(asked: TokenCreate, services: ServicesDep) -> TokenCreated:
+    """Create a token. Only this answer contains its secret."""
+    created = tokens.create(services, asked.name, asked.scope, asked.expires_at)
+    read = TokenRead.model_validate(created.token)
+    return TokenCreated(**read.model_dump(), secret=created.secret)
 
 
-@router.delete("/{token_id}")
+@router.delete("/tokens/{token_id}", dependencies=[MAY_ADMINISTER])
 def revoke_token(token_id: UUID, services: ServicesDep) -> TokenRead:
     """End a token now, and the event streams that were opened with it."""
     return TokenRead.model_validate(tokens.revoke(services, token_id))
+
+
+@router.post("/session", dependencies=[PUBLIC])
+def sign_in(asked: SignIn, request: Request, response: Response) -> PrincipalRead:
+    """Keep a token in a cookie of this site, which scripts cannot read; 401 if it is wrong."""
+    authenticator: Authenticator = request.app.state.authenticator
+    credentials = Credentials(asked.token, address(request))
+    try:
+        principal = authenticator.identify(credentials)
+    except tokens.UnknownToken as error:
+        raise authenticator.count(error, credentials.address) from None
+    remember(response, request, asked.token, principal.expires_at)
+    return _read(principal, authenticator.services.settings.needs_token)
+
+
+@router.delete("/session", status_code=204, dependencies=[PUBLIC])
+async def sign_out(request: Request, response: Response) -> None:
+    """Forget the cookie. The token stays valid."""
+    forget(response, request)
+
+
+def _read(principal: Principal, needed: bool) -> PrincipalRead:
+    return PrincipalRead(
+        name=principal.name,
+        scope=principal.scope,
+        token=principal.token,
+        expires_at=principal.expires_at,
+        needed=needed,
+    )

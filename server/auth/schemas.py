@@ -1,18 +1,17 @@
-"""Tokens, and who asks."""
+"""Wire types of tokens and principals."""
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated
 from uuid import UUID
 
 from pydantic import AwareDatetime, StringConstraints
 
 from ..core.schemas import Wire
-
-Scope = Literal["read", "write", "admin"]
+from .principal import Scope
 
 
 class TokenCreate(Wire):
-    """What a token is to be called, what it may, and until when."""
+    """Name, scope and end of a new token."""
 
     name: Annotated[
         str,
@@ -22,39 +21,39 @@ class TokenCreate(Wire):
     ]
     scope: Scope
     expires_at: AwareDatetime | None = None
-    """Never, if left out."""
+    """Without it the token never expires."""
 
 
 class TokenRead(Wire):
-    """A token without its secret, which nobody has but its holder."""
+    """A token without its secret."""
 
     id: UUID
     name: str
-    beginning: str
-    """The first characters of the secret, to tell which one it is."""
+    prefix: str
+    """The first characters of the secret, by which its holder recognises it."""
     scope: Scope
     created_at: datetime
     expires_at: datetime | None
     revoked_at: datetime | None
     last_used_at: datetime | None
-    """About, within five minutes."""
+    """Accurate to five minutes."""
 
 
-class TokenMade(TokenRead):
+class TokenCreated(TokenRead):
     secret: str
-    """Shown here and never again."""
+    """Only the answer to the request that creates the token contains it."""
 
 
-class CallerRead(Wire):
-    """Who asks, and what they may."""
+class PrincipalRead(Wire):
+    """Who sends the request, and with which scope."""
 
     name: str
     scope: Scope
     token: UUID | None
-    """None where it is this machine's own user, or the token that the environment names."""
+    """None for the user of this machine and for the token that the environment sets."""
     expires_at: datetime | None
     needed: bool
-    """Whether this server asks for a token at all."""
+    """This server needs a token."""
 
 
 class SignIn(Wire):

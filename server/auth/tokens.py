@@ -1,7 +1,12 @@
-"""The table of tokens. Of a secret only its hash is kept, which nobody can turn back."""
+"""The table of tokens: create, look up, revoke, and watch for their end.
 
+The table holds the hash of a secret, never the secret.
+"""
+
+import asyncio
+import logging
 import secrets
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -10,7 +15,7 @@ from typing import cast
 from uuid import UUID
 
 from sqlalchemy import ColumnElement, func, or_, select, update
-from sqlalchemy.exc import IntegrityError, OperationalError
+from sqlalchemy.exc import IntegrityError, OperationalError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from ..core.database import clock
@@ -21,61 +26,65 @@ from ..tables import Token
 from .principal import ADMIN, Principal, Scope
 
 PREFIX = "mc_"
-"""Begins every secret, so that people and scanners of leaks know it for what it is."""
+"""Prefix of every secret, by which people and scanners of leaks recognise it."""
 BYTES = 32
-SHOWN = len(PREFIX) + 6
-"""Characters of a secret that are kept, by which its holder can tell which one it is."""
-COARSE = timedelta(minutes=5)
-"""When a token was last used is written down no more often."""
+PREVIEW_LENGTH = len(PREFIX) + 6
+"""Characters of a secret that the table keeps, so that its holder can recognise it."""
+LAST_USED_INTERVAL = timedelta(minutes=5)
+"""Shortest time between two updates of `last_used_at`."""
+CHECK_SECONDS = 1.0
+"""Longest time that an event stream outlives its token."""
 CHALLENGE = {"WWW-Authenticate": "Bearer"}
 
+log = logging.getLogger(__name__)
 
-class Wrong(ProblemError):
-    """What was sent is no token of this server's, and never was: somebody may be guessing."""
+
+class UnknownToken(ProblemError):
+    """This server never had the token: somebody may be guessing."""
 
     def __init__(self) -> None:
-        detail = "The token that was sent is none of this server's."
+        detail = "This server does not know the token."
         super().__init__(401, "Unauthorized", detail, headers=CHALLENGE)
 
 
 @dataclass(frozen=True)
-class Made:
-    """A new token and its secret, which is known now and never again."""
+class NewToken:
+    """A new token and its secret, which nobody can read later."""
 
     token: Token
     secret: str
 
 
 def hashed(secret: str) -> str:
-    """What is kept of a secret. Its 256 random bits need no salt and no slow hash."""
+    """Return the hash of a secret. Its 256 random bits need no salt and no slow hash."""
     return sha256(secret.encode(errors="surrogatepass")).hexdigest()
 
 
 def create(
     services: Services, name: str, scope: Scope, expires_at: datetime | None = None
-) -> Made:
-    """Make a token; `ProblemError` where a live one has the name."""
+) -> NewToken:
+    """Create a token; raise `ProblemError` if a live token has the name."""
     secret = PREFIX + secrets.token_urlsafe(BYTES)
     try:
         with services.sessions.write.begin() as session:
             now = _now(session)
             _refuse_past(expires_at, now)
-            # One that has expired gives up its name.
-            over = (Token.name == name, Token.revoked_at.is_(None), Token.expires_at <= now)
-            session.execute(update(Token).where(*over).values(revoked_at=Token.expires_at))
+            # An expired token frees its name.
+            expired = (Token.name == name, Token.revoked_at.is_(None), Token.expires_at <= now)
+            session.execute(update(Token).where(*expired).values(revoked_at=Token.expires_at))
             token = Token(
                 name=name,
                 secret_sha256=hashed(secret),
-                beginning=secret[:SHOWN],
+                prefix=secret[:PREVIEW_LENGTH],
                 scope=scope,
                 expires_at=expires_at,
             )
             session.add(token)
             session.flush()
     except IntegrityError:
-        detail = f"A token named {name!r} is there already; revoke it, or take another name."
+        detail = f"A token named {name!r} is there already. Revoke it, or choose another name."
         raise ProblemError(409, "Name taken", detail) from None
-    return Made(token, secret)
+    return NewToken(token, secret)
 
 
 def _refuse_past(expires_at: datetime | None, now: datetime) -> None:
@@ -88,54 +97,54 @@ def _refuse_past(expires_at: datetime | None, now: datetime) -> None:
         raise ProblemError(422, "Invalid input", f"expires_at: {message}", [error])
 
 
-def holder(services: Services, secret: str) -> Principal:
-    """Return the principal of a secret; raise `Wrong` or `ProblemError` where there is none."""
+def principal_of(services: Services, secret: str) -> Principal:
+    """Return the holder of a token; raise `UnknownToken`, or `ProblemError` if it has ended."""
     with services.sessions.read() as session:
         now = _now(session)
         mine = select(Token).where(Token.secret_sha256 == hashed(secret))
         token = session.scalars(mine).one_or_none()
     if token is None:
-        raise Wrong()
+        raise UnknownToken()
     if token.revoked_at is not None:
-        raise _over(f"The token `{token.name}` was revoked.")
+        raise _ended(f"The token `{token.name}` was revoked.")
     if token.expires_at is not None and token.expires_at <= now:
-        raise _over(
+        raise _ended(
             f"The token `{token.name}` expired at {token.expires_at:%Y-%m-%d %H:%M} UTC."
         )
-    if token.last_used_at is None or now - token.last_used_at > COARSE:
+    if token.last_used_at is None or now - token.last_used_at > LAST_USED_INTERVAL:
         _note_use(services, token.id)
     return Principal(token.name, cast(Scope, token.scope), token.id, token.expires_at)
 
 
 def _note_use(services: Services, token: UUID) -> None:
-    """Nobody is refused because a busy database had no time for this."""
+    """Write when the token was used, unless the database is busy."""
     used = update(Token).where(Token.id == token).values(last_used_at=clock())
     with suppress(OperationalError), services.sessions.write.begin() as session:
         session.execute(used)
 
 
-def _over(detail: str) -> ProblemError:
+def _ended(detail: str) -> ProblemError:
     return ProblemError(401, "Unauthorized", detail, headers=CHALLENGE)
 
 
 def known(session: Session) -> Sequence[Token]:
-    """All tokens, those that were revoked too, newest first."""
+    """Return all tokens, revoked ones too, newest first."""
     return session.scalars(select(Token).order_by(Token.created_at.desc(), Token.id)).all()
 
 
 def live(session: Session, tokens: Collection[UUID]) -> set[UUID]:
-    """Those of some tokens that are neither revoked nor expired."""
+    """Return those tokens that are neither revoked nor expired."""
     return set(session.scalars(select(Token.id).where(Token.id.in_(tokens), *_live())))
 
 
-def has_admin(session: Session, but: UUID | None = None) -> bool:
-    """Whether anybody holds a live token of an admin, one token left aside."""
-    others = select(func.count()).where(Token.scope == ADMIN, Token.id != but, *_live())
+def has_admin(session: Session, except_for: UUID | None = None) -> bool:
+    """Return whether a live admin token exists, other than `except_for`."""
+    others = select(func.count()).where(Token.scope == ADMIN, Token.id != except_for, *_live())
     return session.execute(others).scalar_one() > 0
 
 
 def revoke(services: Services, token: UUID, last: bool = False) -> Token:
-    """End a token now. `ProblemError` for the `last` of an admin, unless that may go too."""
+    """End a token now; raise `ProblemError` for the last admin token, unless `last`."""
     with services.sessions.write.begin() as session:
         found = session.get(Token, token)
         if found is None:
@@ -155,8 +164,8 @@ def _refuse_last(services: Services, session: Session, token: Token) -> None:
         return
     if not has_admin(session, token.id):
         detail = (
-            f"`{token.name}` is the only token of an admin, without which nobody could make "
-            "others: make another one first."
+            f"`{token.name}` is the only token of an admin. Create another admin token first, "
+            "or nobody can create tokens."
         )
         raise ProblemError(409, "The last admin", detail)
 
@@ -169,3 +178,37 @@ def _live() -> tuple[ColumnElement[bool], ...]:
 
 def _now(session: Session) -> datetime:
     return session.execute(select(clock())).scalar_one()
+
+
+def names(session: Session, owners: Iterable[UUID | None]) -> dict[UUID | None, str]:
+    """Return the names of owners, by id."""
+    wanted = {owner for owner in owners if owner is not None}
+    if not wanted:
+        return {}
+    rows = session.execute(select(Token.id, Token.name).where(Token.id.in_(wanted)))
+    return {identifier: name for identifier, name in rows}
+
+
+async def watch(
+    services: Services,
+    tokens: Callable[[], set[UUID]],
+    end: Callable[[Collection[UUID]], None],
+) -> None:
+    """Call `end` with those of the `tokens` in use that have ended, until cancelled.
+
+    One query each second serves all streams; without a stream there is none.
+    """
+    while True:
+        await asyncio.sleep(CHECK_SECONDS)
+        if used := tokens():
+            try:
+                valid = await asyncio.to_thread(_still_live, services, used)
+            except SQLAlchemyError as error:
+                log.warning("The tokens of event streams cannot be looked up: %s", error)
+            else:
+                end(used - valid)
+
+
+def _still_live(services: Services, tokens: Collection[UUID]) -> set[UUID]:
+    with services.sessions.read() as session:
+        return live(session, tokens)

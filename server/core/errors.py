@@ -19,8 +19,8 @@ from microcosmos.spec import field_path
 from .schemas import FieldError, Problem
 
 log = logging.getLogger(__name__)
-TOLD = 50
-"""So many errors are told at most: a document may have as many as it has values."""
+MOST_ERRORS = 50
+"""Most errors in one answer: a document may have as many as it has values."""
 RETRY = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
 NAMED = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
@@ -65,11 +65,9 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     def invalid_request(_: Request, error: RequestValidationError) -> JSONResponse:
-        told = error.errors()[:TOLD]
-        found = [(e, e["loc"][1:]) for e in told]  # Without "query", "path".
-        return answer(
-            invalid_input([_field_error(e, ".".join(map(str, place))) for e, place in found])
-        )
+        # The first part of a location is "query", "path" or "body".
+        found = [{**one, "loc": one["loc"][1:]} for one in error.errors()]
+        return answer(invalid_input(_fields(found)))
 
     @app.exception_handler(CreatureError)
     def no_creature(_: Request, error: CreatureError) -> JSONResponse:
@@ -117,9 +115,13 @@ def invalid_input(errors: list[FieldError]) -> Problem:
 
 
 def field_errors(error: ValidationError) -> list[FieldError]:
-    """What is wrong with which field, as people read it."""
-    found = _without_echoes(error.errors(include_url=False)[:TOLD])
-    return [_field_error(e, field_path(e["loc"])) for e in found]
+    """Return the errors of a document by field, in plain words."""
+    return _fields(error.errors(include_url=False))
+
+
+def _fields(errors: Sequence[Mapping[str, Any]]) -> list[FieldError]:
+    found = _without_echoes(errors[:MOST_ERRORS])
+    return [_field_error(one, field_path(one["loc"])) for one in found]
 
 
 def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -143,6 +145,8 @@ def _field_error(error: Mapping[str, Any], path: str) -> FieldError:
     if error["type"] == "extra_forbidden":
         needed = "no field of this name"
     got = brief(error["input"])
+    if error["type"] in ("uuid_parsing", "uuid_type"):
+        needed = "an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427"
     if error["type"] == "missing":
         needed, got = "a value", "nothing"
     return FieldError(

@@ -12,17 +12,12 @@ PROBLEMS: dict[int | str, dict[str, Any]] = {
 }
 
 
-TOKEN = {"type": "http", "scheme": "bearer", "description": "Where the server needs one."}
-
-
 def describe(app: FastAPI) -> None:
     """FastAPI describes errors as plain JSON; have it say which kind of JSON they are."""
     generate = app.openapi
 
     def openapi() -> dict[str, Any]:
         document = generate()
-        document["components"]["securitySchemes"] = {"token": TOKEN}
-        document["security"] = [{"token": []}, {}]
         for operations in document["paths"].values():
             for operation in operations.values():
                 _mark(operation["responses"].get("default"))
@@ -35,9 +30,3 @@ def _mark(response: dict[str, Any] | None) -> None:
     if response and MEDIA_TYPE not in response["content"]:
         _, content = response["content"].popitem()
         response["content"][MEDIA_TYPE] = content
-
-
-def described(schema: dict[str, Any]) -> dict[str, Any]:
-    """What OpenAPI says of a body that is read by `json_object`."""
-    content = {"application/json": {"schema": schema}}
-    return {"requestBody": {"required": True, "content": content}}

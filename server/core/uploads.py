@@ -1,19 +1,18 @@
-"""JSON that people send: limited while it streams, and refused where it is not plain JSON."""
+"""Read JSON bodies: limit their size while they stream, and refuse what is not plain JSON."""
 
 import json
 import math
 import re
 from collections import Counter
-from collections.abc import Awaitable, Callable
-from typing import Any, TypeVar
+from collections.abc import Callable, Coroutine
+from typing import Any
 
-from fastapi import Request
+from fastapi import Request, Response
 from fastapi.concurrency import run_in_threadpool
-from pydantic import BaseModel
+from fastapi.routing import APIRoute
 
 from .errors import ProblemError
 
-Sent = TypeVar("Sent", bound=BaseModel)
 DEPTH = 32
 VALUES = 100_000
 """More than the largest creature has: each may become an error with words to it."""
@@ -21,27 +20,39 @@ NUL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
 """As JSON is written: escaped, and the escape itself not escaped."""
 
 
-def json_object(limit: int) -> Callable[[Request], Awaitable[dict[str, Any]]]:
-    """A dependency that reads the body as a JSON object of at most so many bytes."""
+def json_route(limit: int) -> type[APIRoute]:
+    """Return a class of routes that take JSON objects of at most so many bytes.
 
-    async def read(request: Request) -> dict[str, Any]:
-        return mapping(await run_in_threadpool(parse, await limited(request, limit)))
+    FastAPI would read a body of any length, and JSON that other readers refuse.
+    """
 
-    return read
+    class JSONRoute(APIRoute):
+        def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+            handle = super().get_route_handler()
+            if self.body_field is None:
+                return handle
+
+            async def read(request: Request) -> Response:
+                body = await limited(request, limit)
+                document = mapping(await run_in_threadpool(parse, body))
+                return await handle(_parsed(request, body, document))
+
+            return read
+
+    return JSONRoute
 
 
-def sent(model: type[Sent], limit: int) -> Callable[[Request], Awaitable[Sent]]:
-    """A dependency that reads the body as a model, of at most so many bytes of JSON."""
-    read_object = json_object(limit)
-
-    async def read(request: Request) -> Sent:
-        return model.model_validate(await read_object(request))
-
-    return read
+def _parsed(request: Request, body: bytes, document: dict[str, Any]) -> Request:
+    """Return the request with its body as JSON, whatever content type it names."""
+    headers = [one for one in request.scope["headers"] if one[0] != b"content-type"]
+    headers.append((b"content-type", b"application/json"))
+    parsed = Request({**request.scope, "headers": headers}, request.receive)
+    parsed._body, parsed._json = body or b"{}", document
+    return parsed
 
 
 def mapping(document: Any) -> dict[str, Any]:
-    """The document, if it is a JSON object."""
+    """Return the document; raise `ProblemError` unless it is a JSON object."""
     if not isinstance(document, dict):
         raise ProblemError(
             422, "Not an object", f"A JSON object is needed; got {document!r:.80}."
@@ -50,7 +61,7 @@ def mapping(document: Any) -> dict[str, Any]:
 
 
 async def limited(request: Request, limit: int) -> bytes:
-    """The body, if it is not longer than that; nothing more of it is read."""
+    """Return the body; raise `ProblemError` as soon as it is longer than the limit."""
     body = bytearray()
     async for chunk in request.stream():
         body += chunk
@@ -62,9 +73,9 @@ async def limited(request: Request, limit: int) -> bytes:
 
 
 def parse(body: bytes) -> Any:
-    """The document in some JSON; what cannot be kept or sent on is refused.
+    """Return the document of a JSON text, or raise `ProblemError`.
 
-    That is NaN, infinities, a name twice, deep nesting, and text with lone surrogates or NUL.
+    Refused are NaN, infinities, repeated names, deep nesting, lone surrogates and NUL.
     """
     if body.count(b",") > VALUES:
         raise ProblemError(413, "Too large", f"At most {VALUES:,} values are taken; more came.")
@@ -77,22 +88,29 @@ def parse(body: bytes) -> Any:
         )
     except RecursionError:
         raise _too_deep() from None
-    except ValueError as error:  # Among them bytes that are no UTF-8.
-        raise ProblemError(
-            422, "Not JSON", f"JSON is needed; got something else: {error}."
-        ) from error
+    except ValueError as error:  # Also bytes that are not UTF-8.
+        raise ProblemError(422, "Not JSON", f"JSON is needed; {_place(error)}.") from error
     refuse_unkeepable(document)
     return document
 
 
+def _place(error: ValueError) -> str:
+    """Return where a body stops to be JSON, without the parser's words."""
+    if isinstance(error, json.JSONDecodeError):
+        return f"the body is not JSON at line {error.lineno}, column {error.colno}"
+    if isinstance(error, UnicodeDecodeError):
+        return f"the body is not UTF-8 at byte {error.start}"
+    return "the body has a number of too many digits"
+
+
 def refuse_unkeepable(document: Any) -> None:
-    """Raise `ProblemError` for what databases and other readers of JSON may stumble over."""
+    """Raise `ProblemError` for what databases and other readers of JSON cannot hold."""
     _refuse_depth(document)
     _refuse_text(document)
 
 
 def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Readers of JSON do not agree on which one counts of two."""
+    """Readers of JSON disagree on which of two equal names counts."""
     found = dict(pairs)
     if len(found) < len(pairs):
         ((twice, _),) = Counter(name for name, _ in pairs).most_common(1)

@@ -1,21 +1,41 @@
 """FastAPI dependencies: the creature that a path names."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import Depends, Path
+from sqlalchemy.orm import Session
 
 from ..core.errors import ProblemError
-from ..services.deps import SessionDep
+from ..services.deps import ServicesDep, SessionDep
 from ..tables import Creature
 
 Sha = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
 
 
-def creature(sha: Sha, session: SessionDep) -> Creature:
+def find_creature(session: Session, sha: str) -> Creature:
     found = session.get(Creature, sha)
     if found is None:
         raise ProblemError(404, "Not found", f"No creature has the name {sha}.")
     return found
 
 
+def creature(sha: Sha, session: SessionDep) -> Creature:
+    return find_creature(session, sha)
+
+
+@dataclass(frozen=True)
+class Identity:
+    """The identity of a creature, read with a connection that is closed again."""
+
+    sha256: str
+    json: bytes
+
+
+def identity(sha: Sha, services: ServicesDep) -> Identity:
+    with services.sessions.read() as session:
+        return Identity(sha, find_creature(session, sha).identity)
+
+
 CreatureDep = Annotated[Creature, Depends(creature)]
+IdentityDep = Annotated[Identity, Depends(identity)]

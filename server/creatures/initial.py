@@ -12,7 +12,7 @@ from microcosmos.archive.initial import genes_of
 from microcosmos.spec import Evolution, Refinement, Spec
 
 from ..core.database import insert_missing
-from ..tables import Creature, Origin
+from ..tables import Creature, InitialCreature
 from .storage import document
 
 DECISIVE: Any = {"control": True, "genome": True, "body": True, "search": {"initial"}}
@@ -40,7 +40,7 @@ def keep(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> None:
         _refuse_lacking(spec, held)
         names = [name for name in named(spec) if name in held]
         rows = [{"run_id": run, "creature": name} for run in run_ids for name in names]
-        insert_missing(session, Origin, rows)
+        insert_missing(session, InitialCreature, rows)
 
 
 def named(spec: Spec) -> Sequence[str]:

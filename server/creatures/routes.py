@@ -8,13 +8,14 @@ from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
 
+from ..auth.authorize import MAY_READ, MAY_WRITE
 from ..core.uploads import limited
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Creature
 from . import lineage
 from . import storage as creatures
 from .deps import CreatureDep
-from .sandbox import quarantine
+from .sandbox import sandbox
 from .schemas import Ancestors, Children, CreatureName
 
 FILE_BYTES = 8 << 20
@@ -36,10 +37,10 @@ body: dict[str, Any] = {
 async def file_sent(request: Request) -> dict[str, Any]:
     """A creature file in either form, which its first bytes tell."""
     sent = await limited(request, FILE_BYTES)
-    return await run_in_threadpool(quarantine().creature, sent)
+    return await run_in_threadpool(sandbox().creature, sent)
 
 
-@router.get("/{sha}", responses={200: {"model": dict[str, Any]}})
+@router.get("/{sha}", responses={200: {"model": dict[str, Any]}}, dependencies=[MAY_READ])
 def read_creature(
     request: Request,
     row: CreatureDep,
@@ -71,6 +72,7 @@ def named(row: Creature) -> dict[str, str]:
     "/{sha}/creature.h5",
     response_class=Response,
     responses={200: {"content": {H5: {}}}},
+    dependencies=[MAY_READ],
 )
 def read_creature_h5(row: CreatureDep) -> Response:
     """The creature file as HDF5, with its body and genes as arrays."""
@@ -83,7 +85,7 @@ def read_creature_h5(row: CreatureDep) -> Response:
     return Response(data, headers=headers, media_type=H5)
 
 
-@router.get("/{sha}/ancestors")
+@router.get("/{sha}/ancestors", dependencies=[MAY_READ])
 def read_ancestors(
     row: CreatureDep, session: SessionDep, depth: Annotated[int, Query(ge=1, le=32)] = 3
 ) -> Ancestors:
@@ -91,7 +93,7 @@ def read_ancestors(
     return lineage.ancestors(session, row, depth)
 
 
-@router.get("/{sha}/children")
+@router.get("/{sha}/children", dependencies=[MAY_READ])
 def read_children(
     row: CreatureDep,
     session: SessionDep,
@@ -101,7 +103,13 @@ def read_children(
     return lineage.children(session, row, limit)
 
 
-@router.post("", status_code=201, responses={200: {"model": CreatureName}}, openapi_extra=body)
+@router.post(
+    "",
+    status_code=201,
+    responses={200: {"model": CreatureName}},
+    openapi_extra=body,
+    dependencies=[MAY_WRITE],
+)
 def import_creature(
     file: Annotated[dict[str, Any], Depends(file_sent)],
     services: ServicesDep,

@@ -1,20 +1,18 @@
 """Creatures of runs that are gone: which anything still uses, and the end of the others."""
 
 from collections.abc import Collection, Sequence
-from typing import cast
-from uuid import UUID
 
-from sqlalchemy import Select, delete, select, union
-from sqlalchemy.orm import InstrumentedAttribute, Session
+from sqlalchemy import delete, select, union
+from sqlalchemy.orm import Session
 
 from ..core.database import insert_missing
 from ..tables import (
     Artifact,
     Creature,
-    Discarded,
     Elite,
-    Leftover,
-    Origin,
+    GarbageCreature,
+    GarbageFile,
+    InitialCreature,
     Parent,
     Result,
     Run,
@@ -33,7 +31,7 @@ def in_use(session: Session, names: Collection[str]) -> set[str]:
     uses = (
         select(Elite.creature).where(Elite.creature.in_(names)),
         select(Result.creature).where(Result.creature.in_(names)),
-        select(Origin.creature).where(Origin.creature.in_(names)),
+        select(InitialCreature.creature).where(InitialCreature.creature.in_(names)),
         select(Share.creature).where(Share.creature.in_(names)),
         select(Share.cover).where(Share.cover.in_(names)),
         select(Parent.parent).where(Parent.parent.in_(names)),
@@ -42,29 +40,12 @@ def in_use(session: Session, names: Collection[str]) -> set[str]:
     return {name for name in session.scalars(union(*uses)) if name is not None}
 
 
-def named(run_id: UUID, table: type[Elite | Result], after: int = 0) -> Select[str]:
-    """The creatures of a run's rows after a generation."""
-    mine = (table.run_id == run_id) & (table.generation > after)
-    return creatures_of(table).where(mine)
-
-
-def creatures_of(table: type[Elite | Result]) -> Select[str]:
-    """Each creature that rows have, once."""
-    creature = cast(InstrumentedAttribute[str], table.creature)
-    return select(creature).where(creature.is_not(None)).distinct()
-
-
-def leave_behind(session: Session, run_id: UUID, *creatures: Select[str]) -> None:
-    """Remember what goes with a run, once that is gone."""
-    names = sorted({name for some in creatures for name in session.scalars(some)})
-    rows = [{"run_id": run_id, "creature": name} for name in names]
-    insert_missing(session, Leftover, rows)
-
-
 def collect(session: Session) -> bool:
     """Delete the next few that nothing uses; whether there were any to judge."""
-    there = select(Run.id).where(Run.id == Leftover.run_id).exists()
-    rows = select(Leftover).where(~there).order_by(Leftover.creature).limit(AT_ONCE)
+    there = select(Run.id).where(Run.id == GarbageCreature.run_id).exists()
+    rows = (
+        select(GarbageCreature).where(~there).order_by(GarbageCreature.creature).limit(AT_ONCE)
+    )
     judged = {row.creature: row.run_id for row in session.scalars(rows)}
     if not judged:
         return False
@@ -73,15 +54,15 @@ def collect(session: Session) -> bool:
     found = {row.sha256: row.parents for row in session.scalars(locked.with_for_update())}
     gone = sorted(found.keys() - in_use(session, found))
     session.execute(
-        delete(Leftover).where(
-            Leftover.creature.in_(judged), Leftover.run_id.in_(judged.values())
+        delete(GarbageCreature).where(
+            GarbageCreature.creature.in_(judged), GarbageCreature.run_id.in_(judged.values())
         )
     )
     _delete(session, gone)
     # A parent may have stayed for the sake of its child alone.
     parents = {(judged[name], parent) for name in gone for parent in found[name]}
     rows = [{"run_id": run_id, "creature": parent} for run_id, parent in sorted(parents)]
-    insert_missing(session, Leftover, rows)
+    insert_missing(session, GarbageCreature, rows)
     return True
 
 
@@ -95,4 +76,4 @@ def _delete(session: Session, names: Sequence[str]) -> None:
 
 def discard(session: Session, paths: Sequence[str]) -> None:
     """Have files removed, once this transaction has happened."""
-    insert_missing(session, Discarded, [{"path": path} for path in paths])
+    insert_missing(session, GarbageFile, [{"path": path} for path in paths])

@@ -13,22 +13,23 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from ..core.database import clock
+from ..creatures.insertion import creatures_of, mark_garbage
 from ..runs.lifecycle import change
 from ..services.services import Services
 from ..storage.artifacts import run_folder
 from ..tables import (
     Artifact,
-    Discarded,
     Elite,
-    Entry,
+    GarbageFile,
     Generation,
     Idempotency,
-    Origin,
+    InitialCreature,
+    LogEntry,
     Result,
     Run,
     Share,
 )
-from .garbage import collect, creatures_of, discard, leave_behind
+from .garbage import collect, discard
 
 STEPS = 200
 """Transactions in one pass: other things have to be mended too."""
@@ -63,7 +64,7 @@ def take_apart(services: Services) -> bool:
             return run_id is not None
         gone = not any(_some(session, run.id, table) for table in (Elite, Result))
         gone = gone and not any(
-            _others(session, run.id, table) for table in (Generation, Entry)
+            _others(session, run.id, table) for table in (Generation, LogEntry)
         )
         if gone:
             _end(session, run.id)
@@ -87,12 +88,12 @@ def collect_some(services: Services) -> bool:
 def remove_files(services: Services) -> bool:
     """A few files that nothing names any more; whether any were removed."""
     with services.sessions.read() as session:
-        paths = list(session.scalars(select(Discarded.path).limit(AT_ONCE)))
+        paths = list(session.scalars(select(GarbageFile.path).limit(AT_ONCE)))
         known = select(Artifact.path).where(Artifact.path.in_(paths))
         made_again = set(session.scalars(known))
     removed = [path for path in paths if path in made_again or _removed(services, path)]
     with services.sessions.write.begin() as session:
-        session.execute(delete(Discarded).where(Discarded.path.in_(removed)))
+        session.execute(delete(GarbageFile).where(GarbageFile.path.in_(removed)))
     return bool(removed)
 
 
@@ -113,12 +114,12 @@ def _some(session: Session, run_id: UUID, table: type[Elite | Result]) -> bool:
     mine = _few(session, run_id, table)
     if mine is None:
         return False
-    leave_behind(session, run_id, creatures_of(table).where(mine))
+    mark_garbage(session, run_id, creatures_of(table).where(mine))
     session.execute(delete(table).where(mine))
     return True
 
 
-def _others(session: Session, run_id: UUID, table: type[Generation | Entry]) -> bool:
+def _others(session: Session, run_id: UUID, table: type[Generation | LogEntry]) -> bool:
     """Delete a few rows of which nothing has to be remembered; whether there were any."""
     mine = _few(session, run_id, table)
     if mine is not None:
@@ -127,7 +128,7 @@ def _others(session: Session, run_id: UUID, table: type[Generation | Entry]) -> 
 
 
 def _few(
-    session: Session, run_id: UUID, table: type[Elite | Result | Generation | Entry]
+    session: Session, run_id: UUID, table: type[Elite | Result | Generation | LogEntry]
 ) -> ColumnElement[bool] | None:
     """The condition that is true of a few rows of a run; None where it has none."""
     keys = inspect(table).primary_key
@@ -138,12 +139,16 @@ def _few(
 
 def _end(session: Session, run_id: UUID) -> None:
     """The run itself, and what there are few of."""
-    leave_behind(session, run_id, select(Origin.creature).where(Origin.run_id == run_id))
+    mark_garbage(
+        session,
+        run_id,
+        select(InitialCreature.creature).where(InitialCreature.run_id == run_id),
+    )
     files = delete(Artifact).where(Artifact.run_id == run_id).returning(Artifact.path)
     folder = run_folder(run_id)
     elsewhere = [path for path in session.scalars(files) if not path.startswith(folder)]
     discard(session, [folder, *elsewhere])
-    for table in (Origin, Idempotency, Share):
+    for table in (InitialCreature, Idempotency, Share):
         session.execute(delete(table).where(table.run_id == run_id))
     session.execute(update(Run).where(Run.forked_from == run_id).values(forked_from=None))
     session.execute(delete(Run).where(Run.id == run_id))

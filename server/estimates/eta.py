@@ -13,7 +13,7 @@ from microcosmos.spec import Folding, Scaling, Spec, estimate
 
 from ..specs.stored import known
 from ..tables import Generation, Run, Worker
-from .schemas import PaceRead
+from .schemas import MeasuredSpeed
 
 RECENT = 40
 """Runs of an experiment that are looked at, the newest."""
@@ -35,7 +35,7 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Pace:
+class Speed:
     """How fast some earlier runs were."""
 
     device: str
@@ -45,8 +45,8 @@ class Pace:
     def seconds(self, cell_steps: int) -> float:
         return self.start + cell_steps / median(self.rates)
 
-    def read(self, cell_steps: int) -> PaceRead:
-        return PaceRead(
+    def read(self, cell_steps: int) -> MeasuredSpeed:
+        return MeasuredSpeed(
             device=self.device,
             runs=len(self.rates),
             cell_steps_per_second=median(self.rates),
@@ -55,17 +55,17 @@ class Pace:
         )
 
 
-def pace_of(session: Session, spec: Spec, live: Sequence[Worker]) -> Pace | None:
-    """The pace of the runs most like a spec; None where there are none to judge by.
+def speed_of(session: Session, spec: Spec, live: Sequence[Worker]) -> Speed | None:
+    """The speed of the runs most like a spec; None where there are none to judge by.
 
     Without live workers any device counts: one such may come back.
     """
-    return paces_of(session, [spec], live)[0]
+    return speeds_of(session, [spec], live)[0]
 
 
-def paces_of(
+def speeds_of(
     session: Session, specs: Sequence[Spec], live: Sequence[Worker]
-) -> list[Pace | None]:
+) -> list[Speed | None]:
     """The same of several specs of one experiment, asked of the database once."""
     models = {model_of(worker.device) for worker in live}
     recent = _recent(session, specs[0].experiment)
@@ -73,7 +73,7 @@ def paces_of(
     return [_judged(measured[_kind(spec)], spec, models) for spec in specs]
 
 
-def _judged(measured: Sequence[Measured], spec: Spec, models: Collection[str]) -> Pace | None:
+def _judged(measured: Sequence[Measured], spec: Spec, models: Collection[str]) -> Speed | None:
     found = [
         one for one in measured if not models or any(model in one.device for model in models)
     ]
@@ -82,7 +82,7 @@ def _judged(measured: Sequence[Measured], spec: Spec, models: Collection[str]) -
         return None
     own = estimate(spec).cell_steps / spec.generations
     judges = sorted(same, key=lambda one: abs(log(one.cell_steps / own)))[:JUDGES]
-    return Pace(
+    return Speed(
         device=_name(judges[0].device, models),
         rates=tuple(one.rate for one in judges),
         start=median(one.start for one in judges),

@@ -2,18 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 from uuid import UUID
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from ..core.sizes import size
+from ..queue.order import in_order
 from ..services.services import Services
 from ..specs.stored import known
 from ..tables import QUEUED, Run, Worker
 from ..workers import plugins, registry
-from .schemas import AheadRead
+from .schemas import QueueAhead
 
 NOBODY = "No worker is alive: start one with `make run` or `python -m worker.supervisor`."
 
@@ -35,7 +35,7 @@ class Line:
         return [worker.name for worker in self.alive if worker.status == "busy"]
 
     @property
-    def free(self) -> int:
+    def idle(self) -> int:
         """Workers that have nothing to do."""
         return len(self.alive) - len(self.busy)
 
@@ -46,40 +46,21 @@ class Line:
         """
         return place - sum(name not in self.at_work for name in self.busy)
 
-    def ahead(self, sweep: bool = False) -> AheadRead:
+    def ahead(self, sweep: bool = False) -> QueueAhead:
         """What a run, or a sweep, that is submitted now will have to wait for."""
         before = max(0, self.before(len(self.runs) if sweep else self.singles))
-        return AheadRead(waiting=before, workers=len(self.alive), free=self.free)
+        return QueueAhead(runs_ahead=before, workers=len(self.alive), idle_workers=self.idle)
 
 
 def line(services: Services, session: Session) -> Line:
     alive = registry.live(session, services.settings.lease)
     single = select(func.count()).where(Run.status == QUEUED, Run.sweep.is_(None))
     return Line(
-        runs=[one.run for one in in_line(session)],
+        runs=[run.id for run in in_order(session)],
         alive=alive,
         at_work=registry.at_work(session, alive),
         singles=session.scalars(single).one(),
     )
-
-
-class InLine(NamedTuple):
-    """A run that waits, and which workers may take it."""
-
-    run: UUID
-    of_sweep: bool
-    sources: list[str] | None
-    """Versions of users' own modules that it needs."""
-
-
-def in_line(session: Session) -> list[InLine]:
-    """Runs that wait, in the order in which they are taken: those of sweeps last."""
-    of_sweep = Run.sweep.is_not(None)
-    waiting = select(Run.id, of_sweep, Run.sources).where(Run.status == QUEUED)
-    # SQLite's clock counts milliseconds: what was resumed together waits in its old order.
-    ordered = waiting.order_by(of_sweep, Run.queued_at, Run.created_at, Run.id)
-    found = session.execute(ordered)
-    return [InLine(run, bool(swept), sources) for run, swept, sources in found]
 
 
 def reasons(services: Services, session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
@@ -98,7 +79,7 @@ def reason(run: Run, place: int, line: Line) -> str:
     """A sentence about a run at this place in the line, from 0."""
     if not line.alive:
         return NOBODY
-    fit = [worker for worker in line.alive if plugins.fit(worker, run.sources)]
+    fit = [worker for worker in line.alive if plugins.fit(worker, run.plugin_versions)]
     if not fit:
         return plugins.missing(line.alive, run.spec)
     line = replace(line, alive=fit)
@@ -108,7 +89,7 @@ def reason(run: Run, place: int, line: Line) -> str:
     needed, largest = needed_bytes(run), max(worker.memory_bytes for worker in line.alive)
     if needed is not None and needed > largest:
         return f"Needs {size(needed)}; the largest live worker has {size(largest)}."
-    held = "A worker is free" if line.free else f"Waits for a worker: {_busy(line)}"
+    held = "A worker is free" if line.idle else f"Waits for a worker: {_busy(line)}"
     return f"{held}; {_ahead(before)}."
 
 

@@ -4,23 +4,23 @@ from ..core.schemas import Wire
 from ..specs.schemas import DrawingRead
 
 
-class PaceRead(Wire):
+class MeasuredSpeed(Wire):
     """How fast earlier runs of the same kind were, on a device that there is."""
 
     device: str
     runs: int
     cell_steps_per_second: float
     low: float
-    """Seconds at the pace of the fastest of those runs."""
+    """Seconds at the speed of the fastest of those runs."""
     high: float
-    """Seconds at the pace of the slowest."""
+    """Seconds at the speed of the slowest."""
 
 
-class AheadRead(Wire):
-    waiting: int
+class QueueAhead(Wire):
+    runs_ahead: int
     """Runs that go before it: those in the queue that no worker is about to begin."""
     workers: int
-    free: int
+    idle_workers: int
     """Workers that have nothing to do."""
 
 
@@ -31,7 +31,7 @@ class EstimateRead(Wire):
     cell_steps: int
     seconds: float | None
     """None where no run of the kind was measured on a device that there is."""
-    pace: PaceRead | None
+    speed: MeasuredSpeed | None
     """What the seconds rest on."""
-    queue: AheadRead
+    queue: QueueAhead
     drawing: DrawingRead

@@ -7,7 +7,7 @@ from uuid import UUID
 from fastapi import APIRouter, Depends, Header, Request
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
-from ..auth.principal import PrincipalDep
+from ..auth.authorize import Reader
 from .fanout import Hub, Listener
 
 router = APIRouter(prefix="/events", tags=["events"])
@@ -20,7 +20,7 @@ def hub(request: Request) -> Hub:
 HubDep = Annotated[Hub, Depends(hub)]
 
 
-async def listener(hub: HubDep, principal: PrincipalDep) -> AsyncIterator[Listener]:
+async def listener(hub: HubDep, principal: Reader) -> AsyncIterator[Listener]:
     """Listens before the answer begins: who then reads a state misses nothing after it."""
     with hub.listening(principal.token) as listener:
         yield listener

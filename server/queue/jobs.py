@@ -1,5 +1,6 @@
 """The queues: messages that a run or a rendering is to be made. The truth is in SQL."""
 
+import logging
 import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -7,7 +8,7 @@ from hashlib import sha256
 from typing import Any
 from uuid import UUID
 
-from redis import Redis
+from redis import Redis, RedisError
 from redis.backoff import ExponentialBackoff
 from redis.retry import Retry
 from rq import Queue
@@ -19,6 +20,8 @@ from rq.serializers import JSONSerializer
 from rq.utils import as_text
 
 from ..tables import AUDIT, MEASUREMENT, REPLAY, Run
+
+log = logging.getLogger(__name__)
 
 EVOLVE = "worker.jobs.evolve"
 RENDER = "worker.jobs.render"
@@ -59,18 +62,29 @@ class Jobs:
         return [self.runs, self.sweeps]
 
     def evolve(
-        self, run_id: UUID, of_sweep: bool = False, sources: Sequence[str] | None = None
+        self, run_id: UUID, of_sweep: bool = False, plugin_versions: Sequence[str] | None = None
     ) -> None:
         """Ask for a run to be computed, in place of any earlier request."""
         self.forget(str(run_id))
-        queue = self.evolving_with(sources, of_sweep)
+        queue = self.evolving_with(plugin_versions, of_sweep)
         queue.enqueue(EVOLVE, str(run_id), job_id=str(run_id), job_timeout=-1, **KEPT)
+
+    def enqueue(self, runs: Iterable[Any]) -> None:
+        """Enqueue runs by `id`, `sweep` and `plugin_versions`.
+
+        Where Redis does not answer they stay queued in SQL, and the reconciler enqueues them.
+        """
+        try:
+            for run in runs:
+                self.evolve(run.id, run.sweep is not None, run.plugin_versions)
+        except RedisError as error:
+            log.warning("runs stay queued until Redis answers: %s", error)
 
     def evolve_new(self, runs: Iterable[Run]) -> None:
         """Ask for runs of a sweep that were never asked for, in their order."""
         jobs: dict[Queue, list[Any]] = {}
         for run in runs:
-            queue, name = self.evolving_with(run.sources, of_sweep=True), str(run.id)
+            queue, name = self.evolving_with(run.plugin_versions, of_sweep=True), str(run.id)
             job = Queue.prepare_data(EVOLVE, (name,), job_id=name, timeout=-1, **KEPT)
             jobs.setdefault(queue, []).append(job)
         for queue, some in jobs.items():
@@ -137,13 +151,13 @@ class Jobs:
             with suppress(InvalidJobOperation):
                 job.delete()
 
-    def evolving_with(self, sources: Sequence[str] | None, of_sweep: bool) -> Queue:
+    def evolving_with(self, plugin_versions: Sequence[str] | None, of_sweep: bool) -> Queue:
         """Where runs wait that need these versions of users' own modules: only workers that
         have them listen."""
         queue = self.sweeps if of_sweep else self.runs
-        if not sources:
+        if not plugin_versions:
             return queue
-        name = sha256("".join(sorted(sources)).encode()).hexdigest()[:16]
+        name = sha256("".join(sorted(plugin_versions)).encode()).hexdigest()[:16]
         return self._queue(f"{queue.name}{OWN}{name}")
 
     def evolving_anywhere(self) -> list[Queue]:

@@ -5,6 +5,7 @@ from typing import Any
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
+from ..auth.authorize import MAY_READ, MAY_WRITE
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
 from ..creatures.schemas import Measurement, Rendering
@@ -19,7 +20,7 @@ UNDERWAY: Answers = {202: {"model": Rendering}}
 NEVER: Answers = {204: {"description": "Nobody has had it measured here"}}
 
 
-@router.post("/measure", status_code=202)
+@router.post("/measure", status_code=202, dependencies=[MAY_WRITE])
 def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
     """Have it evaluated again, by the program that measured it; then read `measurement`."""
     if not row.measured:
@@ -31,7 +32,11 @@ def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
     return Rendering()
 
 
-@router.get("/measurement", responses={200: {"model": Measurement}, **UNDERWAY, **NEVER})
+@router.get(
+    "/measurement",
+    responses={200: {"model": Measurement}, **UNDERWAY, **NEVER},
+    dependencies=[MAY_READ],
+)
 def read_measurement(
     request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
 ) -> Response:

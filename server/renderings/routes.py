@@ -7,6 +7,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.orm import Session
 
+from ..auth.authorize import MAY_READ
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
 from ..creatures.schemas import Rendering
@@ -87,13 +88,17 @@ for kind in ON_SIGHT:
         200: {"content": {MEDIA_TYPES[kind]: {}}},
         202: {"model": Rendering},
     }
-    router.get(f"/{kind}", response_class=Response, responses=answers)(_reader(kind))
+    route = router.get(
+        f"/{kind}", response_class=Response, responses=answers, dependencies=[MAY_READ]
+    )
+    route(_reader(kind))
 
 
 @router.get(
     "/motion",
     response_class=Response,
     responses={200: {"content": {"application/octet-stream": {}}}, 202: {"model": Rendering}},
+    dependencies=[MAY_READ],
 )
 def read_motion(
     request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep

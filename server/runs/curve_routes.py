@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from sqlalchemy import select
 
+from ..auth.authorize import MAY_READ
 from ..services.deps import SessionDep
 from ..tables import Generation
 from .curves import told
@@ -16,7 +17,7 @@ from .species import history
 router = APIRouter(prefix="/runs/{run_id}", tags=["runs"])
 
 
-@router.get("/generations")
+@router.get("/generations", dependencies=[MAY_READ])
 def read_generations(
     run: RunDep,
     session: SessionDep,
@@ -38,7 +39,7 @@ def read_generations(
     return Curves(**columns, summary=told(session, run.id, columns["generation"]))
 
 
-@router.get("/species")
+@router.get("/species", dependencies=[MAY_READ])
 def read_species(
     run: RunDep,
     session: SessionDep,

@@ -7,8 +7,9 @@ from uuid import UUID
 from fastapi import Depends
 from sqlalchemy.orm import Session
 
+from ..auth.authorize import Writer, authorize_owner
 from ..core.errors import ProblemError
-from ..services.deps import SessionDep
+from ..services.deps import ServicesDep, SessionDep
 from ..tables import Run
 
 
@@ -38,3 +39,12 @@ def any_run(run_id: UUID, session: SessionDep) -> Run:
 RunDep = Annotated[Run, Depends(run)]
 AnyRunDep = Annotated[Run, Depends(any_run)]
 """A run that may be in the bin."""
+
+
+def own_run(run_id: UUID, principal: Writer, services: ServicesDep) -> UUID:
+    """Return the id of a path; raise `ProblemError` if somebody else owns the run."""
+    authorize_owner(services, principal, Run, run_id)
+    return run_id
+
+
+OwnRunId = Annotated[UUID, Depends(own_run)]

@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from typing import Any, NoReturn
 from uuid import UUID
 
-from sqlalchemy import case, or_, select, update
+from sqlalchemy import case, func, or_, select, update
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
@@ -16,12 +16,10 @@ from ..core.database import ago, clock
 from ..core.errors import ProblemError
 from ..services.services import Services
 from ..tables import (
-    CANCEL,
     CANCELLED,
     FAILED,
-    GIVEN,
-    NEEDED,
-    PAUSE,
+    OVERRIDE_ALLOWED,
+    OVERRIDE_NEEDED,
     PAUSED,
     QUEUED,
     RUNNING,
@@ -38,7 +36,7 @@ KEPT = Run.deleted_at.is_(None)
 
 FIGURES = {
     *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "diverged"),
-    *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting"),
+    *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting_reason"),
 }
 """What may be another each time that a run is read; events of generations tell it too."""
 
@@ -50,9 +48,9 @@ class Conflict(ProblemError):
     """The state of a run does not allow an action."""
 
     def __init__(self, action: str, run: Run, needed: str):
-        wish = f", asked to {run.wish}" if run.wish else ""
+        requested = f", to be {run.requested_state}" if run.requested_state else ""
         place = " and in the bin" if run.deleted_at else ""
-        standing = f"{run.status}{wish}{place}"
+        standing = f"{run.status}{requested}{place}"
         detail = f"to {action} a run it must be {needed}; it is {standing}"
         super().__init__(409, "Conflict", detail)
 
@@ -72,9 +70,9 @@ def pause(session: Session, run: Run) -> Run:
             session,
             run.id,
             Run.status == RUNNING,
-            or_(Run.wish.is_(None), Run.wish == PAUSE),
-            wish=PAUSE,
-            wished_at=clock(),
+            or_(Run.requested_state.is_(None), Run.requested_state == PAUSED),
+            requested_state=PAUSED,
+            requested_at=clock(),
         )
         or refuse(session, "pause", run, "queued or running, not asked to cancel")
     )
@@ -97,8 +95,10 @@ def cancel(session: Session, run: Run) -> Run:
             session,
             run.id,
             Run.status == RUNNING,
-            wish=CANCEL,
-            wished_at=case((Run.wish == CANCEL, Run.wished_at), else_=clock()),
+            requested_state=CANCELLED,
+            requested_at=case(
+                (Run.requested_state == CANCELLED, Run.requested_at), else_=clock()
+            ),
         )
         or refuse(session, "cancel", run, "queued, running or paused")
     )
@@ -109,10 +109,12 @@ def cancel(session: Session, run: Run) -> Run:
 def resume(session: Session, run: Run) -> Run:
     """Back into the queue, its attempts counted anew."""
     # Whoever resumes a run that waits for leave to change its kind of device gives it.
-    leave = case((Run.device_leave == NEEDED, GIVEN), else_=Run.device_leave)
-    values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_leave": leave}
+    leave = case(
+        (Run.device_override == OVERRIDE_NEEDED, OVERRIDE_ALLOWED), else_=Run.device_override
+    )
+    values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_override": leave}
     values |= {"queued_at": clock()}
-    waited = run.device_leave == NEEDED
+    waited = run.device_override == OVERRIDE_NEEDED
     changed = change(session, run.id, KEPT, Run.status == PAUSED, **values) or refuse(
         session, "resume", run, "paused"
     )
@@ -149,10 +151,10 @@ def release(session: Session, run_id: UUID, *where: Any, error: str) -> Run | No
 
 def yield_up(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | None:
     """A running run without its worker: queued again, unless paused or cancelled meanwhile."""
-    status = case((Run.wish == CANCEL, CANCELLED), (Run.wish == PAUSE, PAUSED), else_=QUEUED)
-    values |= {"wish": None, "wished_at": None, "worker": None, "status": status}
+    status = func.coalesce(Run.requested_state, QUEUED)
+    values |= {"requested_state": None, "requested_at": None, "worker": None, "status": status}
     values |= {"queued_at": clock()}
-    over = case((Run.wish == CANCEL, clock()), else_=None)
+    over = case((Run.requested_state == CANCELLED, clock()), else_=None)
     return change(session, run_id, Run.status == RUNNING, *where, finished_at=over, **values)
 
 

@@ -7,7 +7,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from ..core.sizes import size
-from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, QUEUED, RUNNING, Entry, Run
+from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, QUEUED, RUNNING, LogEntry, Run
 
 Level = Literal["info", "warning", "error"]
 
@@ -28,15 +28,17 @@ def note(
     session: Session, run: Run, text: str, level: Level = "info", kind: str | None = None
 ) -> None:
     """Write an entry; of a `kind`, those between the first and this one of an attempt go."""
-    entry = Entry(run_id=run.id, attempt=run.attempt, level=level, kind=kind, text=text)
+    entry = LogEntry(run_id=run.id, attempt=run.attempt, level=level, kind=kind, text=text)
     session.add(entry)
     session.flush()
     if kind is None:
         return
-    alike = (Entry.run_id == run.id, Entry.attempt == run.attempt, Entry.kind == kind)
-    first = session.scalars(select(Entry.id).where(*alike).order_by(Entry.id).limit(1)).one()
+    alike = (LogEntry.run_id == run.id, LogEntry.attempt == run.attempt, LogEntry.kind == kind)
+    first = session.scalars(
+        select(LogEntry.id).where(*alike).order_by(LogEntry.id).limit(1)
+    ).one()
     # The new one was written before: its number is higher than any that was ever read.
-    session.execute(delete(Entry).where(*alike, Entry.id.not_in((first, entry.id))))
+    session.execute(delete(LogEntry).where(*alike, LogEntry.id.not_in((first, entry.id))))
 
 
 def note_standing(session: Session, run: Run) -> None:
@@ -64,9 +66,9 @@ def note_checkpoint(session: Session, run: Run, generation: int, count: int) -> 
     note(session, run, text, kind=SAVED)
 
 
-def read(session: Session, run_id: UUID, after: int | None, limit: int) -> list[Entry]:
+def read(session: Session, run_id: UUID, after: int | None, limit: int) -> list[LogEntry]:
     """In the order in which they were written: those after one, else the last ones."""
-    mine = select(Entry).where(Entry.run_id == run_id).limit(limit)
+    mine = select(LogEntry).where(LogEntry.run_id == run_id).limit(limit)
     if after is not None:
-        return list(session.scalars(mine.where(Entry.id > after).order_by(Entry.id)))
-    return list(session.scalars(mine.order_by(Entry.id.desc())))[::-1]
+        return list(session.scalars(mine.where(LogEntry.id > after).order_by(LogEntry.id)))
+    return list(session.scalars(mine.order_by(LogEntry.id.desc())))[::-1]

@@ -4,19 +4,21 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from ..auth.authorize import MAY_READ
+from ..core.schemas import MOST_ROWS
 from ..services.deps import SessionDep
 from . import log
 from .deps import RunDep
-from .schemas import EntryRead, Log
+from .schemas import Log, LogEntryRead
 
 router = APIRouter(prefix="/runs/{run_id}/log", tags=["runs"])
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def read_log(
     run: RunDep,
     session: SessionDep,
-    after: Annotated[int | None, Query(ge=0, lt=1 << 63)] = None,
+    after: Annotated[int | None, Query(ge=0, le=MOST_ROWS)] = None,
     limit: Annotated[int, Query(ge=1, le=1000)] = 500,
 ) -> Log:
     """The newest entries, the oldest of them first; `after` the id of one, those that follow.
@@ -24,4 +26,4 @@ def read_log(
     Of the checkpoints of an attempt only the first and the last are told.
     """
     found = log.read(session, run.id, after, limit)
-    return Log(entries=[EntryRead.model_validate(entry) for entry in found])
+    return Log(entries=[LogEntryRead.model_validate(entry) for entry in found])

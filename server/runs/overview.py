@@ -7,12 +7,12 @@ from uuid import UUID
 from sqlalchemy import and_, or_, select
 from sqlalchemy.orm import Session
 
-from ..auth import owners
+from ..auth import tokens
 from ..estimates import position
 from ..services.services import Services
 from ..tables import FAILED, RUNNING, Generation, Run
-from ..workers.carried import progress
-from .schemas import Forked, RunRead
+from ..workers.brief import progress
+from .schemas import ForkedFrom, RunRead
 
 POINTS = 32
 
@@ -27,7 +27,7 @@ def evenly(last: int, points: int) -> list[int]:
 def read_runs(services: Services, session: Session, runs: Sequence[Run]) -> list[RunRead]:
     curves = _curves(session, runs)
     reasons = position.reasons(services, session, runs)
-    named = owners.names(session, (run.owner for run in runs))
+    named = tokens.names(session, (run.owner for run in runs))
     return [
         _read(run, curves[run.id], reasons.get(run.id), named.get(run.owner)) for run in runs
     ]
@@ -63,7 +63,7 @@ def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | No
     columns["forked_from"] = forked(run)
     return RunRead(
         **{name: columns[name] for name in RunRead.model_fields if name in columns},
-        waiting=reason,
+        waiting_reason=reason,
         progress=progress(run),
         eta_seconds=left / generations if generations and run.status == RUNNING else None,
         evaluations_per_second=evaluations,
@@ -71,9 +71,13 @@ def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | No
     )
 
 
-def forked(run: Run) -> Forked | None:
+def forked(run: Run) -> ForkedFrom | None:
     """Where it began, if it is a fork."""
-    return None if run.forked is None else Forked(run=run.forked_from, creatures=run.forked)
+    return (
+        None
+        if run.n_initial is None
+        else ForkedFrom(run=run.forked_from, creatures=run.n_initial)
+    )
 
 
 def _rates(run: Run, curve: list[Generation]) -> tuple[float | None, float | None]:

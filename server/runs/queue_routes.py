@@ -5,16 +5,17 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from sqlalchemy import select
 
+from ..auth.authorize import MAY_READ
 from ..estimates import position
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
-from ..workers.carried import carried
-from .schemas import QueueRead, Waiting
+from ..workers.brief import brief
+from .schemas import QueuedRun, QueueRead
 
 router = APIRouter(prefix="/queue", tags=["workers"])
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def read_queue(
     services: ServicesDep,
     session: SessionDep,
@@ -28,9 +29,9 @@ def read_queue(
     runs = [found[run_id] for run_id in first if run_id in found]
     reasons = position.reasons_in(line, runs)
     items = [
-        Waiting(
-            **carried(run).model_dump(),
-            waiting=reasons[run.id],
+        QueuedRun(
+            **brief(run).model_dump(),
+            waiting_reason=reasons[run.id],
             queued_at=run.queued_at,
             memory_bytes=position.needed_bytes(run),
         )

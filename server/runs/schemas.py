@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from ..core.schemas import Wire
 from ..tables import Status
-from ..workers.schemas import Carried
+from ..workers.schemas import RunBrief
 
 NAME = 200
 
@@ -86,7 +86,7 @@ class Fork(Wire):
     name: Name | None = None
 
 
-class Forked(Wire):
+class ForkedFrom(Wire):
     """Where a fork began."""
 
     run: UUID | None
@@ -102,8 +102,9 @@ class RunRead(Wire):
     tags: list[str]
     note: str | None
     status: Status
-    wish: Literal["pause", "cancel"] | None
-    waiting: str | None
+    requested_state: Literal["paused", "cancelled"] | None
+    """What a person asked of a running run that its worker has not done yet."""
+    waiting_reason: str | None
     """Why nobody carries it out yet, in words; None unless it is queued."""
     spec: dict[str, Any]
     created_at: datetime
@@ -139,7 +140,7 @@ class RunRead(Wire):
     """Since when it lies in the bin."""
     purge_at: datetime | None
     """When it goes for good."""
-    forked_from: Forked | None
+    forked_from: ForkedFrom | None
 
 
 class RunPage(Wire):
@@ -184,7 +185,7 @@ class Target(Wire):
     """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
 
 
-class EntryRead(Wire):
+class LogEntryRead(Wire):
     """What happened to a run."""
 
     id: int
@@ -196,7 +197,7 @@ class EntryRead(Wire):
 
 
 class Log(Wire):
-    entries: list[EntryRead]
+    entries: list[LogEntryRead]
 
 
 class TagRead(Wire):
@@ -205,8 +206,8 @@ class TagRead(Wire):
     """How many have it."""
 
 
-class Waiting(Carried):
-    waiting: str
+class QueuedRun(RunBrief):
+    waiting_reason: str
     """Why it waits, in words."""
     queued_at: datetime
     memory_bytes: int | None
@@ -216,5 +217,5 @@ class Waiting(Carried):
 class QueueRead(Wire):
     total: int
     """Among them those that a worker is about to begin."""
-    items: list[Waiting]
+    items: list[QueuedRun]
     """The first ones, in the order in which they will be taken."""

@@ -13,7 +13,6 @@ from microcosmos.version import VERSION
 
 from ..core.errors import FieldError, ProblemError
 from ..creatures import initial
-from ..maintenance.reconcile import requeue
 from ..services.services import Services
 from ..tables import Idempotency, Run
 from ..workers import plugins, registry
@@ -107,7 +106,7 @@ def submit(
     run = Run(
         experiment=spec.experiment,
         spec=document,
-        sources=plugins.needs(document),
+        plugin_versions=plugins.needed_versions(document),
         generations=spec.generations,
         version=VERSION,
         owner=owner,
@@ -128,7 +127,7 @@ def submit(
             raise
         return _made(services, known), False
     # Committed before it is enqueued: the worker must find the row.
-    requeue(services, run.id)
+    services.jobs.enqueue([run])
     announce(services, run.id)
     return run, True
 

@@ -4,6 +4,7 @@ from fastapi import APIRouter
 
 from microcosmos.spec import Folding, parse, targets
 
+from ..auth.authorize import MAY_READ
 from ..core.errors import ProblemError
 from .deps import RunDep
 from .schemas import Target
@@ -11,7 +12,7 @@ from .schemas import Target
 router = APIRouter(prefix="/runs/{run_id}/targets", tags=["results"])
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def read_targets(run: RunDep) -> list[Target]:
     """In the order of the spec; at most 256 pixels along a side."""
     if run.experiment != "folding":

@@ -9,6 +9,7 @@ from microcosmos.archive import export
 
 from ..archives import routes as archives
 from ..archives.schemas import ArchiveRead, CentroidsRead, HistoryRead
+from ..auth.authorize import PUBLIC
 from ..core.errors import ProblemError
 from ..runs import curve_routes
 from ..runs.overview import read_run
@@ -31,13 +32,13 @@ def shared_run(share: ShareDep, run_id: str, session: SessionDep) -> Run:
 RunDep = Annotated[Run, Depends(shared_run)]
 
 
-@router.get("/runs/{run_id}")
+@router.get("/runs/{run_id}", dependencies=[PUBLIC])
 def read_shared_run(run: RunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     """The run as it was, without its owner's notes."""
     return read_run(services, session, run)
 
 
-@router.get("/runs/{run_id}/generations")
+@router.get("/runs/{run_id}/generations", dependencies=[PUBLIC])
 def read_shared_generations(
     run: RunDep,
     session: SessionDep,
@@ -46,7 +47,7 @@ def read_shared_generations(
     return curve_routes.read_generations(run, session, points)
 
 
-@router.get("/runs/{run_id}/archive")
+@router.get("/runs/{run_id}/archive", dependencies=[PUBLIC])
 def read_shared_archive(
     run: RunDep,
     session: SessionDep,
@@ -56,19 +57,19 @@ def read_shared_archive(
     return archives.read_archive(run, session, generation, measures)
 
 
-@router.get("/runs/{run_id}/archive/history")
+@router.get("/runs/{run_id}/archive/history", dependencies=[PUBLIC])
 def read_shared_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
     return archives.read_history(run, session, measures)
 
 
-@router.get("/runs/{run_id}/archive/centroids")
+@router.get("/runs/{run_id}/archive/centroids", dependencies=[PUBLIC])
 def read_shared_centroids(
     run: RunDep, session: SessionDep, services: ServicesDep
 ) -> CentroidsRead:
     return archives.read_centroids(run, session, services)
 
 
-@router.get("/runs/{run_id}/archive.h5", response_class=Response)
+@router.get("/runs/{run_id}/archive.h5", response_class=Response, dependencies=[PUBLIC])
 def download_shared_archive(
     request: Request, share: ShareDep, run: RunDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -77,7 +78,7 @@ def download_shared_archive(
     return ranges.file(request, services.artifacts, _file(session, share), headers)
 
 
-@router.get("/runs/{run_id}/archive.csv", response_class=Response)
+@router.get("/runs/{run_id}/archive.csv", response_class=Response, dependencies=[PUBLIC])
 def download_shared_table(
     share: ShareDep, run: RunDep, session: SessionDep, services: ServicesDep
 ) -> Response:

@@ -7,12 +7,14 @@ from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5, pedigree
 
+from ..auth.authorize import PUBLIC
 from ..core.errors import ProblemError
 from ..creatures import networks
 from ..creatures import routes as of_creatures
 from ..creatures import storage as creatures
 from ..creatures.deps import Sha
 from ..creatures.deps import creature as named_creature
+from ..creatures.sandbox import sandbox
 from ..creatures.schemas import Ancestors, Rendering
 from ..renderings import routes as of_creature
 from ..services.deps import ServicesDep, SessionDep
@@ -24,9 +26,12 @@ from .schemas import ShareRead
 router = APIRouter(prefix="/shares/{slug}", tags=["shares"])
 
 
+Slug = Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")]
+
+
 def share(
     request: Request,
-    slug: Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")],
+    slug: Slug,
     session: SessionDep,
 ) -> Share:
     found = publishing.opened(session, slug)
@@ -50,12 +55,12 @@ PNG: dict[int | str, dict[str, Any]] = {
 }
 
 
-@router.get("")
+@router.get("", dependencies=[PUBLIC])
 def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareRead:
     return told(request, session, share)
 
 
-@router.get("/preview.png", response_class=Response, responses=PNG)
+@router.get("/preview.png", response_class=Response, responses=PNG, dependencies=[PUBLIC])
 def read_preview(
     request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -65,7 +70,9 @@ def read_preview(
     return there or of_creature.ordered(services, share.cover, PREVIEW, patient=True)
 
 
-@router.get("/creatures/{sha}", responses={200: {"model": dict[str, Any]}})
+@router.get(
+    "/creatures/{sha}", responses={200: {"model": dict[str, Any]}}, dependencies=[PUBLIC]
+)
 def read_shared_creature(
     share: ShareDep,
     row: CreatureDep,
@@ -80,7 +87,7 @@ def read_shared_creature(
     return JSONResponse(file, headers=of_creatures.named(row) if download else None)
 
 
-@router.get("/creatures/{sha}/creature.h5", response_class=Response)
+@router.get("/creatures/{sha}/creature.h5", response_class=Response, dependencies=[PUBLIC])
 def read_shared_h5(share: ShareDep, row: CreatureDep) -> Response:
     file = creature.parse(publishing.licensed(share, creatures.document(row)))
     name = f'attachment; filename="creature-{row.sha256[:12]}.h5"'
@@ -88,7 +95,7 @@ def read_shared_h5(share: ShareDep, row: CreatureDep) -> Response:
     return Response(creature_h5.dump(file), headers=headers, media_type=of_creatures.H5)
 
 
-@router.get("/creatures/{sha}/ancestors")
+@router.get("/creatures/{sha}/ancestors", dependencies=[PUBLIC])
 def read_shared_ancestors(
     row: CreatureDep, session: SessionDep, depth: Annotated[int, Query(ge=1, le=32)] = 3
 ) -> Ancestors:
@@ -96,26 +103,25 @@ def read_shared_ancestors(
     return of_creatures.read_ancestors(row, session, depth)
 
 
-@router.get("/creatures/{sha}/network.{form}", response_class=Response)
-def read_shared_network(row: CreatureDep, form: str) -> Response:
+@router.get("/creatures/{sha}/network.{form}", response_class=Response, dependencies=[PUBLIC])
+def read_shared_network(
+    request: Request, slug: Slug, sha: Sha, form: str, services: ServicesDep
+) -> Response:
     if form not in networks.FORMS:
         known = ", ".join(networks.FORMS)
-        raise ProblemError(
-            404, "Not found", f"A network is written as {known}; got {form!r:.20}."
-        )
-    return of_networks(row, form)
-
-
-def of_networks(row: Creature, form: str) -> Response:
-    media_type, _ = networks.FORMS[form]
+        detail = f"A network is written as {known}; got {form!r:.20}."
+        raise ProblemError(404, "Not found", detail)
+    with services.sessions.read() as session:  # Closed before the network is written.
+        row = shared_creature(share(request, slug, session), sha, session)
     headers = {
         "Content-Disposition": f'inline; filename="network-{row.sha256[:12]}.{form}"',
         "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'",
     }
-    return Response(networks.written(row, form), headers=headers, media_type=media_type)
+    data = sandbox().network(row.identity, form)
+    return Response(data, headers=headers, media_type=networks.FORMS[form][0])
 
 
-@router.get("/creatures/{sha}/replay", response_class=Response)
+@router.get("/creatures/{sha}/replay", response_class=Response, dependencies=[PUBLIC])
 def read_shared_replay(
     request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -124,7 +130,7 @@ def read_shared_replay(
     return there or of_creature.ordered(services, row.sha256, REPLAY, patient=True)
 
 
-@router.get("/creatures/{sha}/motion", response_class=Response)
+@router.get("/creatures/{sha}/motion", response_class=Response, dependencies=[PUBLIC])
 def read_shared_motion(
     request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -136,7 +142,7 @@ KEPT = (STRIP, GIF, MP4, MEASUREMENT)
 """What strangers see where it was made, and cannot have made."""
 
 
-@router.get("/creatures/{sha}/{kind}", response_class=Response)
+@router.get("/creatures/{sha}/{kind}", response_class=Response, dependencies=[PUBLIC])
 def read_shared_rendering(
     request: Request, row: CreatureDep, kind: str, session: SessionDep, services: ServicesDep
 ) -> Response:

@@ -8,11 +8,11 @@ from redis import RedisError
 from sqlalchemy import Select, and_, or_, select
 from sqlalchemy.orm import Session
 
-from ..auth.principal import ADMIN, PrincipalDep
+from ..auth.authorize import PUBLIC, Reader, Writer, authorize_owner
+from ..auth.principal import ADMIN
 from ..core.database import clock
 from ..core.errors import ProblemError
-from ..core.openapi import described
-from ..core.uploads import json_object
+from ..core.uploads import json_route
 from ..renderings import storage as renderings
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
@@ -23,24 +23,19 @@ from .schemas import ShareAsked, SharePage, ShareRead
 log = logging.getLogger(__name__)
 ASKED_BYTES = 1 << 16
 
-router = APIRouter(tags=["shares"])
-
-
-def asked(document: Annotated[dict[str, Any], Depends(json_object(ASKED_BYTES))]) -> ShareAsked:
-    return ShareAsked.model_validate(document)
+router = APIRouter(tags=["shares"], route_class=json_route(ASKED_BYTES))
 
 
 @router.post(
     "/shares",
     status_code=201,
     responses={200: {"model": ShareRead}},
-    openapi_extra=described(ShareAsked.model_json_schema()),
 )
 def publish(
-    sent: Annotated[ShareAsked, Depends(asked)],
+    principal: Writer,
+    sent: ShareAsked,
     request: Request,
     services: ServicesDep,
-    principal: PrincipalDep,
     response: Response,
 ) -> ShareRead:
     """Publish a creature or an archive. What is live already is answered again, with 200."""
@@ -72,7 +67,7 @@ Limit = Annotated[int, Query(ge=1, le=200)]
 def list_shares(
     request: Request,
     session: SessionDep,
-    principal: PrincipalDep,
+    principal: Reader,
     cursor: str | None = None,
     limit: Limit = 50,
 ) -> SharePage:
@@ -85,7 +80,7 @@ def list_shares(
     return _page(request, session, select(Share) if everybody else mine, cursor, limit)
 
 
-@router.get("/commons")
+@router.get("/commons", dependencies=[PUBLIC])
 def read_commons(
     request: Request, session: SessionDep, cursor: str | None = None, limit: Limit = 50
 ) -> SharePage:
@@ -93,8 +88,18 @@ def read_commons(
     return _page(request, session, publishing.live().where(Share.listed), cursor, limit)
 
 
+def own_share(slug: str, principal: Writer, services: ServicesDep) -> str:
+    """Return the slug of a path; raise `ProblemError` if somebody else owns the share."""
+    if publishing.SLUG.fullmatch(slug):
+        authorize_owner(services, principal, Share, slug)
+    return slug
+
+
+OwnSlug = Annotated[str, Depends(own_share)]
+
+
 @router.delete("/shares/{slug}")
-def revoke(slug: str, request: Request, services: ServicesDep) -> ShareRead:
+def revoke(slug: OwnSlug, request: Request, services: ServicesDep) -> ShareRead:
     """Take it back: from now on its address shows nothing."""
     with services.sessions.write.begin() as session:
         share = publishing.find(session, slug)

@@ -6,6 +6,7 @@ from fastapi import APIRouter
 
 from microcosmos.spec import EXPERIMENTS, Experiment
 
+from ..auth.authorize import MAY_READ
 from ..services.deps import ServicesDep, SessionDep
 from ..workers import plugins
 from .plugin_schemas import with_own
@@ -14,7 +15,7 @@ from .schemas import ExperimentRead, PresetRead
 router = APIRouter(prefix="/experiments", tags=["experiments"])
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def list_experiments(services: ServicesDep, session: SessionDep) -> list[ExperimentRead]:
     """With what live workers have of users' own among the choices."""
     known = plugins.reported(services, session)

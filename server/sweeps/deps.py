@@ -6,8 +6,9 @@ from uuid import UUID
 from fastapi import Depends
 from sqlalchemy.orm import Session
 
+from ..auth.authorize import Writer, authorize_owner
 from ..core.errors import ProblemError
-from ..services.deps import SessionDep
+from ..services.deps import ServicesDep, SessionDep
 from ..tables import Sweep
 
 
@@ -23,3 +24,12 @@ def sweep(sweep_id: UUID, session: SessionDep) -> Sweep:
 
 
 SweepDep = Annotated[Sweep, Depends(sweep)]
+
+
+def own_sweep(sweep_id: UUID, principal: Writer, services: ServicesDep) -> UUID:
+    """Return the id of a path; raise `ProblemError` if somebody else owns the sweep."""
+    authorize_owner(services, principal, Sweep, sweep_id)
+    return sweep_id
+
+
+OwnSweepId = Annotated[UUID, Depends(own_sweep)]

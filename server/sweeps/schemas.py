@@ -7,7 +7,7 @@ from uuid import UUID
 from pydantic import BeforeValidator, Field, StringConstraints
 
 from ..core.schemas import Wire
-from ..estimates.schemas import AheadRead, PaceRead
+from ..estimates.schemas import MeasuredSpeed, QueueAhead
 from ..runs.schemas import Name
 from ..tables import Status
 
@@ -85,7 +85,7 @@ class SweepRead(Wire):
     total: int
     deleted: int
     """Its runs in the bin, which are not counted anywhere else."""
-    standing: dict[Status, int]
+    status_counts: dict[Status, int]
     """How many runs are in each state that any is in."""
     progress: float
 
@@ -95,7 +95,7 @@ class SweepPage(Wire):
     next: str | None
 
 
-class Left(Wire):
+class SkippedRun(Wire):
     """A run that was left as it is."""
 
     run: UUID
@@ -106,7 +106,7 @@ class Left(Wire):
 class SweepChanged(SweepRead):
     changed: list[UUID]
     """The runs that did what was asked, or will."""
-    left: list[Left]
+    skipped: list[SkippedRun]
 
 
 class SweepEstimate(Wire):
@@ -120,9 +120,9 @@ class SweepEstimate(Wire):
     cell_steps: int
     seconds: float | None
     """One run after the other; None where any kind of them was not measured yet."""
-    pace: PaceRead | None
+    speed: MeasuredSpeed | None
     """What the seconds of the first case rest on."""
-    queue: AheadRead
+    queue: QueueAhead
 
 
 class Spread(Wire):
@@ -142,7 +142,7 @@ class Final(Spread):
     """One for each of the case's runs, in their order."""
 
 
-class Band(Wire):
+class Quantiles(Wire):
     """A spread at each generation, as columns."""
 
     median: list[float | None]
@@ -152,7 +152,7 @@ class Band(Wire):
     max: list[float | None]
 
 
-class Member(Wire):
+class SweepRun(Wire):
     """A run as its sweep tells of it."""
 
     run: UUID
@@ -166,13 +166,13 @@ class CaseSummary(Wire):
     """What the runs of one case say together; columns have one entry per generation."""
 
     values: dict[str, Any]
-    members: list[Member]
+    members: list[SweepRun]
     generation: list[int]
     runs: list[int]
     """How many have got so far."""
-    qd_score: Band
-    coverage: Band
-    best: Band
+    qd_score: Quantiles
+    coverage: Quantiles
+    best: Quantiles
     finals: dict[str, Final]
     """The newest value of each figure."""
 
@@ -182,7 +182,7 @@ class SweepSummary(Wire):
     cases: list[CaseSummary]
 
 
-class Line(Wire):
+class RunCurves(Wire):
     """The curves of one run; None beyond the last generation that it has recorded."""
 
     run: UUID
@@ -193,4 +193,4 @@ class Line(Wire):
 
 class SweepCurves(Wire):
     generation: list[int]
-    lines: list[Line]
+    runs: list[RunCurves]

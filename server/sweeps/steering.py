@@ -8,11 +8,10 @@ from itertools import product
 from typing import Any
 from uuid import UUID
 
-from redis import RedisError
 from sqlalchemy import ColumnElement, and_, or_, select
 from sqlalchemy.orm import Session
 
-from ..auth import owners
+from ..auth import tokens
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..runs import lifecycle
@@ -20,7 +19,7 @@ from ..runs.lifecycle import KEPT, Conflict
 from ..runs.overview import progress
 from ..services.services import Services
 from ..tables import STATUSES, Run, Sweep
-from .schemas import CaseRead, Left, SweepPage, SweepRead
+from .schemas import CaseRead, SkippedRun, SweepPage, SweepRead
 
 AT_ONCE = 50
 """Runs that are changed in one transaction: nobody is held up for long."""
@@ -31,12 +30,14 @@ log = logging.getLogger(__name__)
 def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
     """With their runs, all in one query."""
     of_sweeps: dict[UUID, list[Any]] = defaultdict(list)
-    names = ("id", "sweep", "place", "status", "generation", "generations", "deleted_at")
+    names = ("id", "sweep", "sweep_index", "status", "generation", "generations", "deleted_at")
     columns = [getattr(Run, name) for name in names]
     mine = Run.sweep.in_([sweep.id for sweep in sweeps])
-    for row in session.execute(select(*columns).where(mine).order_by(Run.sweep, Run.place)):
+    for row in session.execute(
+        select(*columns).where(mine).order_by(Run.sweep, Run.sweep_index)
+    ):
         of_sweeps[row.sweep].append(row)
-    named = owners.names(session, (sweep.owner for sweep in sweeps))
+    named = tokens.names(session, (sweep.owner for sweep in sweeps))
     return [_read(one, of_sweeps[one.id], named.get(one.owner)) for one in sweeps]
 
 
@@ -79,7 +80,7 @@ def _read(sweep: Sweep, all_runs: Sequence[Any], owner: str | None) -> SweepRead
     runs = [run for run in all_runs if run.deleted_at is None]
     cases = [CaseRead(values=values, runs=[]) for values in combinations(sweep.grid)]
     for run in runs:
-        cases[run.place % len(cases)].runs.append(run.id)
+        cases[run.sweep_index % len(cases)].runs.append(run.id)
     counted = Counter(run.status for run in runs)
     shares = [progress(run) for run in runs]
     names = ("id", "name", "experiment", "spec", "seeds", "grid", "created_at")
@@ -89,7 +90,7 @@ def _read(sweep: Sweep, all_runs: Sequence[Any], owner: str | None) -> SweepRead
         cases=cases,
         total=len(runs),
         deleted=len(all_runs) - len(runs),
-        standing={status: counted[status] for status in STATUSES if counted[status]},
+        status_counts={status: counted[status] for status in STATUSES if counted[status]},
         progress=sum(shares) / len(shares) if shares else 1.0,
     )
 
@@ -104,42 +105,32 @@ def steer(
     sweep_id: UUID,
     change: Callable[[Session, Run], Run],
     among: ColumnElement[bool] = KEPT,
-) -> tuple[list[UUID], list[Left]]:
+) -> tuple[list[UUID], list[SkippedRun]]:
     """Change each run by itself: those that did, and those that could not."""
     with services.sessions.read() as session:
-        mine = select(Run.id).where(Run.sweep == sweep_id, among).order_by(Run.place)
+        mine = select(Run.id).where(Run.sweep == sweep_id, among).order_by(Run.sweep_index)
         ids = list(session.scalars(mine))
     changed: list[UUID] = []
-    left: list[Left] = []
+    skipped: list[SkippedRun] = []
     for some in several(ids):
         with services.sessions.write.begin() as session:
             # In one order, so that two who ask cannot wait for each other.
-            runs = select(Run).where(Run.id.in_(some)).order_by(Run.place)
+            runs = select(Run).where(Run.id.in_(some)).order_by(Run.sweep_index)
             for run in session.scalars(runs).all():
                 try:
                     changed.append(change(session, run).id)
                 except Conflict as refusal:
-                    left.append(_left(session, run, refusal))
+                    skipped.append(_skipped(session, run, refusal))
         lifecycle.announce(services, *(run_id for run_id in some if run_id in changed))
     announce(services, sweep_id)
-    return changed, left
+    return changed, skipped
 
 
-def _left(session: Session, run: Run, refusal: Conflict) -> Left:
+def _skipped(session: Session, run: Run, refusal: Conflict) -> SkippedRun:
     session.refresh(run)
-    return Left.model_validate({"run": run.id, "status": run.status, "reason": f"{refusal}."})
-
-
-def requeue(services: Services, run_ids: Sequence[UUID]) -> None:
-    """Enqueue runs that wait again; where Redis does not answer, the next pass does it."""
-    with services.sessions.read() as session:
-        rows = session.execute(select(Run.id, Run.sources).where(Run.id.in_(run_ids)))
-        sources = {run_id: needed for run_id, needed in rows}
-    try:
-        for run_id in run_ids:
-            services.jobs.evolve(run_id, True, sources.get(run_id))
-    except RedisError as error:
-        log.warning("runs stay queued until Redis answers: %s", error)
+    return SkippedRun.model_validate(
+        {"run": run.id, "status": run.status, "reason": f"{refusal}."}
+    )
 
 
 def several(ids: Sequence[UUID]) -> list[Sequence[UUID]]:

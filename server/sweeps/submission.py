@@ -15,7 +15,7 @@ from ..core.database import clock
 from ..creatures import initial
 from ..runs import idempotency
 from ..services.services import Services
-from ..tables import Entry, Run, Sweep
+from ..tables import LogEntry, Run, Sweep
 from ..workers import plugins
 from .planning import Plan, refuse_origins
 from .steering import announce
@@ -78,13 +78,13 @@ def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[Run]:
         Run(
             experiment=sweep.experiment,
             spec=spec,
-            sources=plugins.needs(spec),
+            plugin_versions=plugins.needed_versions(spec),
             generations=generations[place % len(generations)],
             version=VERSION,
             name=name,
             sweep=sweep.id,
             owner=sweep.owner,
-            place=place,
+            sweep_index=place,
             created_at=now + timedelta(microseconds=place),
             queued_at=now + timedelta(microseconds=place),
         )
@@ -99,10 +99,10 @@ def _write_runs(session: Session, plan: Plan, sweep: Sweep) -> list[Run]:
     return runs
 
 
-def _first_entry(run: Run, total: int) -> Entry:
+def _first_entry(run: Run, total: int) -> LogEntry:
     text = f"Submitted: {run.experiment}, {run.generations} generations; run "
-    text += f"{(run.place or 0) + 1} of a sweep of {total}."
-    return Entry(run_id=run.id, attempt=0, level="info", text=text)
+    text += f"{(run.sweep_index or 0) + 1} of a sweep of {total}."
+    return LogEntry(run_id=run.id, attempt=0, level="info", text=text)
 
 
 def _request(plan: Plan) -> dict[str, object]:

@@ -12,7 +12,15 @@ from ..runs.curves import numbers
 from ..runs.lifecycle import KEPT
 from ..runs.overview import evenly
 from ..tables import Generation, Run, Sweep
-from .schemas import Band, CaseSummary, Final, Line, Member, SweepCurves, SweepSummary
+from .schemas import (
+    CaseSummary,
+    Final,
+    Quantiles,
+    RunCurves,
+    SweepCurves,
+    SweepRun,
+    SweepSummary,
+)
 from .steering import combinations
 
 FIGURES = ("qd_score", "coverage", "best")
@@ -21,7 +29,7 @@ POINTS = 400_000
 """Values of each figure that are looked at for one answer."""
 NAMED = 10_000
 """Generations that one question to the database names."""
-OF_RUNS = ("id", "place", "status", "generation", "generations", "evaluations")
+OF_RUNS = ("id", "sweep_index", "status", "generation", "generations", "evaluations")
 
 Told = Any
 """A row of the columns that were asked for."""
@@ -44,7 +52,7 @@ class Recorded:
 def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
     """All generations, or about so many, and fewer where all would be too much."""
     columns = [getattr(Run, name) for name in (*OF_RUNS, *FIGURES, "summary")]
-    mine = select(*columns).where(Run.sweep == sweep.id, KEPT).order_by(Run.place)
+    mine = select(*columns).where(Run.sweep == sweep.id, KEPT).order_by(Run.sweep_index)
     runs = session.execute(mine).all()
     last = max((run.generation for run in runs), default=0)
     most = max(2, POINTS // max(1, len(runs)))
@@ -62,11 +70,13 @@ def _table(
 ) -> tuple[Any, dict[str, Values]]:
     """The rows of all runs in one question, put where they belong."""
     columns = [getattr(Generation, name) for name in FIGURES]
-    asked = select(Run.place, Generation.generation, *columns).join(
+    asked = select(Run.sweep_index, Generation.generation, *columns).join(
         Run, Run.id == Generation.run_id
     )
     # Runs may have gone on since they were read, or have come back from the bin.
-    asked = asked.where(Run.sweep == sweep.id, Run.place.in_([run.place for run in runs]))
+    asked = asked.where(
+        Run.sweep == sweep.id, Run.sweep_index.in_([run.sweep_index for run in runs])
+    )
     asked = asked.where(Generation.generation <= last)
     if len(generation) < last:
         asked = asked.where(Generation.generation.in_(generation))
@@ -76,7 +86,7 @@ def _table(
     values = np.full((len(FIGURES), *shape), np.nan)
     if found:
         place, at, *told = zip(*found, strict=True)
-        row = np.searchsorted([run.place for run in runs], place)
+        row = np.searchsorted([run.sweep_index for run in runs], place)
         column = np.searchsorted(generation, at)
         reached[row, column] = True
         values[:, row, column] = np.array(told, float)  # None becomes NaN.
@@ -87,9 +97,9 @@ def summary(session: Session, sweep: Sweep, points: int | None) -> SweepSummary:
     """Each case by itself."""
     found = recorded(session, sweep, points)
     values = combinations(sweep.grid)
-    of_case = np.array([run.place for run in found.runs], int) % len(values)
+    of_case = np.array([run.sweep_index for run in found.runs], int) % len(values)
     seeds = [seed for seed in sweep.seeds or [None] for _ in values]
-    members = [_member(run, seeds[run.place]) for run in found.runs]
+    members = [_member(run, seeds[run.sweep_index]) for run in found.runs]
     searched = "search" in sweep.spec
     cases = [
         _case(found, np.flatnonzero(of_case == number), members, searched, told)
@@ -101,7 +111,7 @@ def summary(session: Session, sweep: Sweep, points: int | None) -> SweepSummary:
 def _case(
     found: Recorded,
     mine: Any,
-    members: Sequence[Member],
+    members: Sequence[SweepRun],
     searched: bool,
     values: dict[str, Any],
 ) -> CaseSummary:
@@ -123,8 +133,8 @@ def _case(
     )
 
 
-def _member(run: Told, seed: int | None) -> Member:
-    return Member(
+def _member(run: Told, seed: int | None) -> SweepRun:
+    return SweepRun(
         run=run.id,
         seed=seed,
         status=run.status,
@@ -133,8 +143,8 @@ def _member(run: Told, seed: int | None) -> Member:
     )
 
 
-def _band(values: Values) -> Band:
-    return Band(**{name: told(column) for name, column in spread(values).items()})
+def _band(values: Values) -> Quantiles:
+    return Quantiles(**{name: told(column) for name, column in spread(values).items()})
 
 
 def spread(values: Values) -> dict[str, Values]:
@@ -182,7 +192,7 @@ def curves(session: Session, sweep: Sweep, points: int | None) -> SweepCurves:
     """Each run by itself, over the same generations."""
     found = recorded(session, sweep, points)
     lines = [
-        Line(run=run.id, **{name: told(table[i]) for name, table in found.values.items()})
+        RunCurves(run=run.id, **{name: told(table[i]) for name, table in found.values.items()})
         for i, run in enumerate(found.runs)
     ]
-    return SweepCurves(generation=found.generation, lines=lines)
+    return SweepCurves(generation=found.generation, runs=lines)

@@ -13,19 +13,17 @@ from .artifacts import (
     Artifact,
 )
 from .base import Base, Owned, Sha256
-from .creatures import Creature, Origin, Parent
-from .garbage import Discarded, Leftover
+from .creatures import Creature, InitialCreature, Parent
+from .garbage import GarbageCreature, GarbageFile
 from .idempotency import Idempotency
-from .log import Entry
+from .log import LogEntry
 from .results import Elite, Generation, Result
 from .runs import (
-    CANCEL,
     CANCELLED,
     FAILED,
     FINISHED,
-    GIVEN,
-    NEEDED,
-    PAUSE,
+    OVERRIDE_ALLOWED,
+    OVERRIDE_NEEDED,
     PAUSED,
     QUEUED,
     RUNNING,
@@ -41,17 +39,15 @@ from .workers import Plugin, Worker
 
 __all__ = [
     "AUDIT",
-    "CANCEL",
     "CANCELLED",
     "CHECKPOINT",
     "FAILED",
     "FINISHED",
     "GIF",
-    "GIVEN",
     "MEASUREMENT",
     "MP4",
-    "NEEDED",
-    "PAUSE",
+    "OVERRIDE_ALLOWED",
+    "OVERRIDE_NEEDED",
     "PAUSED",
     "PREVIEW",
     "PUBLISHED",
@@ -64,12 +60,13 @@ __all__ = [
     "Artifact",
     "Base",
     "Creature",
-    "Discarded",
     "Elite",
-    "Entry",
+    "GarbageCreature",
+    "GarbageFile",
     "Generation",
     "Idempotency",
-    "Leftover",
+    "InitialCreature",
+    "LogEntry",
     "Origin",
     "Owned",
     "Parent",

@@ -39,15 +39,15 @@ class Parent(Base):
     __table_args__ = (Index(None, "parent"),)
 
     child: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), primary_key=True)
-    place: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    position: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     parent: Mapped[str] = mapped_column(Sha256)
     """Its name; only who became an elite is kept as a creature."""
 
 
-class Origin(Base):
+class InitialCreature(Base):
     """A creature that a run begins from, as its spec says."""
 
-    __tablename__ = "origins"
+    __tablename__ = "initial_creatures"
 
     run_id: Mapped[UUID] = mapped_column(
         ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True

@@ -10,10 +10,10 @@ from ..core.database import clock
 from .base import Base
 
 
-class Entry(Base):
+class LogEntry(Base):
     """A line of a run's journal; append-only but for entries that come again and again."""
 
-    __tablename__ = "journal"
+    __tablename__ = "log_entries"
     __table_args__ = (Index(None, "run_id", "id"),)
 
     id: Mapped[int] = mapped_column(primary_key=True)

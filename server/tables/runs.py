@@ -15,8 +15,7 @@ QUEUED, RUNNING, PAUSED = "queued", "running", "paused"
 FINISHED, FAILED, CANCELLED = "finished", "failed", "cancelled"
 STATUSES = (QUEUED, RUNNING, PAUSED, FINISHED, FAILED, CANCELLED)
 TERMINAL = (FINISHED, FAILED, CANCELLED)
-PAUSE, CANCEL = "pause", "cancel"
-NEEDED, GIVEN = "needed", "given"
+OVERRIDE_NEEDED, OVERRIDE_ALLOWED = "needed", "allowed"
 
 
 class Run(Owned, Base):
@@ -25,17 +24,17 @@ class Run(Owned, Base):
     __tablename__ = "runs"
     __table_args__ = (
         CheckConstraint(f"status IN {STATUSES}", name="status"),
-        CheckConstraint(f"wish IN {(PAUSE, CANCEL)}", name="wish"),
+        CheckConstraint(f"requested_state IN {(PAUSED, CANCELLED)}", name="requested_state"),
         Index(None, "created_at", "id"),
         Index(None, "status", "heartbeat_at"),
-        Index(None, "sweep", "place"),
+        Index(None, "sweep", "sweep_index"),
         Index(None, "purge_at"),
     )
 
     id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
     experiment: Mapped[str] = mapped_column(String(64))
     spec: Mapped[dict[str, Any]]
-    sources: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
+    plugin_versions: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
     """Versions of modules of users' own that a worker must have to carry it out."""
     version: Mapped[str] = mapped_column(String(64))
     demonstration: Mapped[bool] = mapped_column(default=False)
@@ -44,8 +43,8 @@ class Run(Owned, Base):
     tags: Mapped[list[str]] = mapped_column(default=list)
     note: Mapped[str | None] = mapped_column(Text)
     status: Mapped[str] = mapped_column(String(16), default=QUEUED)
-    wish: Mapped[str | None] = mapped_column(String(16))
-    wished_at: Mapped[datetime | None]
+    requested_state: Mapped[str | None] = mapped_column(String(16))
+    requested_at: Mapped[datetime | None]
     created_at: Mapped[datetime] = mapped_column(default=clock())
     queued_at: Mapped[datetime] = mapped_column(default=clock())
     """Since when it waits, or when it last began to: its place in the queue."""
@@ -56,7 +55,7 @@ class Run(Owned, Base):
     attempts_without_checkpoint: Mapped[int] = mapped_column(default=0)
     worker: Mapped[str | None] = mapped_column(String(255))
     device: Mapped[str | None] = mapped_column(Text)
-    device_leave: Mapped[str | None] = mapped_column(String(16))
+    device_override: Mapped[str | None] = mapped_column(String(16))
     """Leave to go on on another kind of device than began it: None until it is `needed`."""
     heartbeat_at: Mapped[datetime | None]
     generations: Mapped[int]
@@ -77,13 +76,13 @@ class Run(Owned, Base):
     error: Mapped[str | None] = mapped_column(Text)
     warning: Mapped[str | None] = mapped_column(Text)
     sweep: Mapped[UUID | None]
-    place: Mapped[int | None]
+    sweep_index: Mapped[int | None]
     """Its place in the sweep, from 0: every case with the first seed, then with the next."""
     deleted_at: Mapped[datetime | None]
     """Since when it lies in the bin."""
     purge_at: Mapped[datetime | None]
     """When it goes for good: until then it can be restored, from then on it cannot."""
-    forked: Mapped[int | None]
+    n_initial: Mapped[int | None]
     """How many creatures of another run it began from, where it is a fork."""
     forked_from: Mapped[UUID | None]
     """That run, while it is there."""

@@ -31,7 +31,7 @@ class Token(Base):
     id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
     name: Mapped[str] = mapped_column(String(64))
     secret_sha256: Mapped[str] = mapped_column(Sha256, unique=True)
-    beginning: Mapped[str] = mapped_column(String(16))
+    prefix: Mapped[str] = mapped_column(String(16))
     """The first characters of the secret, to tell which one it is."""
     scope: Mapped[str] = mapped_column(String(16))
     created_at: Mapped[datetime] = mapped_column(default=clock())

@@ -39,7 +39,7 @@ class Reported:
 
     def having(self, source: str) -> list[str]:
         """Names of the live workers that have a version."""
-        return [one.name for one in self.alive if source in sources_of(one)]
+        return [one.name for one in self.alive if source in versions_of(one)]
 
     def offered(self) -> list[Declaration]:
         """Of each name the version that is taken where nobody says otherwise, if one lives."""
@@ -82,18 +82,18 @@ def reported(services: Services, session: Session) -> Reported:
     return Reported(session, services.settings.lease)
 
 
-def needs(document: Any) -> list[str] | None:
+def needed_versions(document: Any) -> list[str] | None:
     """Versions that a worker must have for a spec; None where there are none."""
     return sorted({one.own.source for one in used(document)}) or None
 
 
-def sources_of(worker: Worker) -> set[str]:
+def versions_of(worker: Worker) -> set[str]:
     return {one["source"] for one in worker.plugins}
 
 
-def fit(worker: Worker | None, sources: Sequence[str] | None) -> bool:
+def fit(worker: Worker | None, needed: Sequence[str] | None) -> bool:
     """Whether a worker has all versions that a run needs."""
-    return not sources or (worker is not None and set(sources) <= sources_of(worker))
+    return not needed or (worker is not None and set(needed) <= versions_of(worker))
 
 
 def missing(alive: Sequence[Worker], document: Any) -> str:
@@ -101,7 +101,7 @@ def missing(alive: Sequence[Worker], document: Any) -> str:
     gone = {
         one.name: one.own.source
         for one in used(document)
-        if not any(one.own.source in sources_of(worker) for worker in alive)
+        if not any(one.own.source in versions_of(worker) for worker in alive)
     }
     if not gone:
         return "Waits for a worker that has all of its own modules; none has them together."

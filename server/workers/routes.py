@@ -2,16 +2,17 @@
 
 from fastapi import APIRouter
 
+from ..auth.authorize import MAY_READ
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Run, Worker
 from . import registry
-from .carried import carried
+from .brief import brief
 from .schemas import PluginRead, WorkerRead
 
 router = APIRouter(prefix="/workers", tags=["workers"])
 
 
-@router.get("")
+@router.get("", dependencies=[MAY_READ])
 def list_workers(services: ServicesDep, session: SessionDep) -> list[WorkerRead]:
     """By name, each with how busy its device is and the run that it carries out."""
     alive = registry.live(session, services.settings.lease)
@@ -25,5 +26,5 @@ def _read(worker: Worker, run: Run | None) -> WorkerRead:
     names = list(PluginRead.model_fields)
     columns["plugins"] = [{name: one[name] for name in names} for one in worker.plugins]
     return WorkerRead(
-        **columns, run=run.id if run else told, carries=carried(run) if run else None
+        **columns, run=run.id if run else told, current_run=brief(run) if run else None
     )

@@ -8,7 +8,7 @@ from ..core.schemas import Wire
 from ..tables import Status
 
 
-class Carried(Wire):
+class RunBrief(Wire):
     """A run as it is named beside a worker or in the queue."""
 
     id: UUID
@@ -53,7 +53,7 @@ class WorkerRead(Wire):
     since: datetime
     """When its status or its run last changed."""
     run: UUID | None
-    carries: Carried | None
+    current_run: RunBrief | None
     """The run that it is at."""
     heartbeat_at: datetime
     plugins: list[PluginRead]

@@ -11,7 +11,7 @@ NOWHERE = "Page not found"
 UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
 """What stands for something that is still on its way."""
 CALM_S = 0.3
-SCRUBBER = "input[aria-label='Moment of the replay']"
+SCRUBBER = "input[aria-label='Time in the replay']"
 
 
 GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
@@ -73,7 +73,7 @@ def searched(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
     if run:
         archive = http.get(f"/runs/{run['id']}/archive").raise_for_status().json()
         best = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
-        yield Place("guide", f"/runs/{run['id']}", "What is this?")
+        yield Place("guide", f"/runs/{run['id']}", "Explain")
         yield Place("gallery", f"/runs/{run['id']}?view=gallery")
         yield Place("creature", f"/creatures/{archive['creature'][best]}?run={run['id']}")
 

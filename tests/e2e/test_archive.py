@@ -77,7 +77,7 @@ def test_a_creature_swims_beside_the_pointer(shared_page: Page, searched: str):
 def test_the_slider_shows_the_archive_of_every_generation(shared_page: Page, searched: str):
     page = shared_page
     page.goto(searched)
-    slider = page.get_by_role("slider", name=re.compile("Generation that the map shows"))
+    slider = page.get_by_role("slider", name=re.compile("Generation shown"))
     elites = page.get_by_text(re.compile(r"^\d+ elites$"))
     for generation in (1, 7, 20):
         slider.fill(str(generation))
@@ -99,7 +99,7 @@ def test_the_history_plays_to_its_end(shared_page: Page, searched: str):
     expect(elites).to_have_text(f"{now} elites", timeout=FAST)
     page.get_by_role("button", name="Play the history").click()
     expect(elites).not_to_have_text(f"{now} elites", timeout=FAST)
-    slider = page.get_by_role("slider", name=re.compile("Generation that the map shows"))
+    slider = page.get_by_role("slider", name=re.compile("Generation shown"))
     slider.fill("26")  # So near to its end that nobody waits for long.
     page.get_by_role("button", name="Play the history").click()
     expect(page.get_by_role("button", name="Pause the history")).to_be_visible(timeout=FAST)
@@ -114,7 +114,7 @@ def test_colours_and_axes_are_whatever_was_recorded(shared_page: Page, searched:
     legend = page.get_by_role("img", name=re.compile("^Age"))
     expect(legend).to_be_visible(timeout=FAST)
     page.get_by_label("Palette").select_option("cividis")
-    page.get_by_label("Across").select_option("path_length")
+    page.get_by_label("Horizontal axis").select_option("path_length")
     page.wait_for_url(re.compile("x=path_length"), timeout=FAST)
     fewer = page.get_by_label("Bending effort, from")
     fewer.fill("8")
@@ -209,7 +209,7 @@ def test_a_first_visit_is_guided_once(shared, shared_page: Page):
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
     guide = page.get_by_role("complementary", name="Tour")
     expect(guide).to_contain_text("of 256 kinds have one", timeout=FAST)
-    for title in ("What a kind is", "How good they are", "How it came to be", "Look closer"):
+    for title in ("Cells are kinds", "Colour is fitness", "The history", "Open a creature"):
         guide.get_by_role("button", name="Next").press("Enter")
         expect(guide.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
     expect(page.locator("#map-reading")).to_contain_text("Fitness")
@@ -218,7 +218,7 @@ def test_a_first_visit_is_guided_once(shared, shared_page: Page):
     page.reload()
     expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
     expect(guide).not_to_be_visible()
-    page.get_by_role("button", name="What is this?").click()
+    page.get_by_role("button", name="Explain").click()
     expect(guide).to_be_visible(timeout=FAST)
     page.keyboard.press("Escape")
     expect(guide).not_to_be_visible()

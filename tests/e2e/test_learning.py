@@ -49,7 +49,7 @@ def see_it_move(page: Page, films: int) -> None:
     canvas = page.get_by_role("img", name=re.compile("The creature swimming"))
     expect(canvas).to_have_count(films, timeout=SLOW)
     before = pixels(page)
-    page.get_by_label("Moment of the replay").focus()
+    page.get_by_label("Time in the replay").focus()
     page.keyboard.press("End")
     page.wait_for_timeout(300)
     assert all(one != other for one, other in zip(before, pixels(page), strict=True))

@@ -34,7 +34,7 @@ def submit_a_small_population(page: Page, address: str) -> None:
 
 
 def watch_it_end(page: Page) -> None:
-    ended = page.get_by_text("It ended after generation 8: its budget of 128 evaluations")
+    ended = page.get_by_text("Ended after generation 8: it used its budget of 128 evaluations")
     expect(ended).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("heading", name="Neuroevolution")).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("Into empty cells over"))).to_be_visible()
@@ -43,13 +43,13 @@ def watch_it_end(page: Page) -> None:
 
 
 def look_along_other_axes(page: Page) -> None:
-    page.get_by_label("Across").select_option("path_length")
-    page.get_by_label("Up").select_option(label="Fitness")
+    page.get_by_label("Horizontal axis").select_option("path_length")
+    page.get_by_label("Vertical axis").select_option(label="Fitness")
     assert "x=path_length&y=fitness" in page.url
     expect(page.get_by_text("Path length (cells)")).to_be_visible(timeout=FAST)
     with page.expect_response(re.compile("measures=path_length")):
         page.reload()
-    expect(page.get_by_label("Across")).to_have_value("path_length", timeout=FAST)
+    expect(page.get_by_label("Horizontal axis")).to_have_value("path_length", timeout=FAST)
 
 
 def open_the_best(page: Page) -> None:

@@ -125,7 +125,7 @@ def lay_another_run_beside(page: Page, other: Written) -> None:
     alone = pixels(page)
     curves.get_by_role("button", name="Compare with a run").click()
     curves.get_by_label("Compare with a run").select_option(str(other.id))
-    curves.get_by_role("button", name="Choose").click()
+    curves.get_by_role("button", name="Compare", exact=True).click()
     expect(curves.get_by_role("link", name=re.compile(str(other.id)[:8]))).to_be_visible()
     page.wait_for_function(CHANGED, arg=alone)
     score = curves.get_by_role("img", name=re.compile(f"^QD score .*{str(other.id)[:8]}"))
@@ -138,7 +138,7 @@ def see_what_differs_in_the_spec(page: Page, other: Written) -> None:
     expect(card).to_contain_text("One field differs from the preset Demo")
     card.get_by_role("button", name="Difference to a run").click()
     card.get_by_label("Difference to a run").select_option(str(other.id))
-    card.get_by_role("button", name="Choose").click()
+    card.get_by_role("button", name="Compare", exact=True).click()
     found = card.get_by_role("table", name=re.compile("1 field"))
     expect(found.get_by_role("row", name=re.compile("Seed"))).to_have_text("Seed87")
     assert f"against={other.id}" in page.url
@@ -157,7 +157,7 @@ def come_back_by_the_address(page: Page, other: Written) -> None:
 
 
 def walk_by_keyboard(page: Page) -> None:
-    parts = page.get_by_role("navigation", name="Parts of this page")
+    parts = page.get_by_role("navigation", name="Sections of this page")
     parts.get_by_role("link", name="Log").focus()
     page.keyboard.press("Enter")
     page.keyboard.press("Tab")

@@ -88,7 +88,7 @@ def publish(page: Page, title: str, *, listed: bool) -> str:
     if listed:
         dialog.get_by_label("List it in the commons").check()
     dialog.get_by_role("button", name="Publish").click()
-    found = dialog.get_by_label("Its address")
+    found = dialog.get_by_label("Link")
     expect(found).to_be_visible(timeout=FAST)
     return found.input_value()
 
@@ -157,4 +157,4 @@ def take_back(page: Page, address: str, title: str) -> None:
     expect(page.get_by_role("button", name=f"Revoke {title}")).to_be_focused()
     page.keyboard.press("Enter")
     page.get_by_role("button", name=f"Revoke now: {title}").click()
-    expect(page.get_by_text(f"{title} is not shared any more.")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text(f"{title} is no longer shared.")).to_be_visible(timeout=FAST)

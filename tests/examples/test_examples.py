@@ -67,16 +67,19 @@ def test_pyribs_draws_our_archive(tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 def test_a_stiffness_is_recovered_within_a_hundredth_from_how_a_filament_straightens():
     module = example("stiffness")
     assert abs(module.main() / module.TRUE - 1) < 0.01
 
 
+@pytest.mark.long
 def test_a_gait_is_designed_for_a_path():
     found = example("path").main(steps=40, updates=6)
     assert found[-1] < found[0]
 
 
+@pytest.mark.long
 def test_a_rest_shape_is_designed_for_a_viscosity():
     ((before, after),) = example("rest_shape").main((0.5,), steps=60, updates=2).values()
     assert after > before

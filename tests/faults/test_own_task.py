@@ -116,8 +116,8 @@ def test_it_is_refused_then_evolves_where_it_is_and_waits_where_it_is_not(
     again = own_place.http.post("/api/v1/runs", json=spec).json()
     waiting = own_place.read(again["id"])
     assert waiting["status"] == "queued"
-    assert "Waits for a worker that has own_task.cross" in waiting["waiting"]
-    assert f"{worker['name']} has another version" in waiting["waiting"]
+    assert "Waits for a worker that has own_task.cross" in waiting["waiting_reason"]
+    assert f"{worker['name']} has another version" in waiting["waiting_reason"]
     shutil.copy(EXAMPLE, module)
     finished = own_place.wait(again["id"], "finished", seconds=240)
     assert finished["attempt"] == 1

@@ -1,58 +1,23 @@
 """A real server on a free port, over each database, with a real Redis under its own prefix."""
 
-import base64
-import os
-import shutil
 import socket
-import struct
-import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
-from functools import cache, cached_property
-from types import SimpleNamespace
+from contextlib import ExitStack
+from functools import cache
 from typing import Any
 from uuid import UUID, uuid4
 
 import httpx
-import psycopg
 import pytest
-import uvicorn
-from psycopg import sql
-from sqlalchemy import make_url, select
+import reports
+from installation import Installation, empty_redis, own_postgresql, own_redis, running
 
-from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
-from server.app import create_app
-from server.local.redis_embedded import prepare
 from server.runs.submission import submit
-from server.services.services import Services, connect
+from server.services.services import Services
 from server.settings import Settings
-from server.tables import Base, Run, migrations
-
-POSTGRESQL = "postgresql://127.0.0.1:5432/postgres"
-
-
-@contextmanager
-def own_postgresql() -> Iterator[str]:
-    """A database of PostgreSQL for this process alone, dropped at the end."""
-    if given := os.environ.get("MICROCOSMOS_TEST_DATABASE_URL"):
-        yield given
-        return
-    name = f"microcosmos_test_{uuid4().hex[:12]}"
-    try:
-        connection = psycopg.connect(POSTGRESQL, autocommit=True, connect_timeout=2)
-        connection.execute(sql.SQL("CREATE DATABASE {}").format(sql.Identifier(name)))
-    except psycopg.Error:
-        pytest.skip("no PostgreSQL on 127.0.0.1:5432 where we may create a database")
-    database = sql.Identifier(name)
-    with connection:
-        # What a test wrote need not outlive the machine: nothing waits for the disk.
-        connection.execute(
-            sql.SQL("ALTER DATABASE {} SET synchronous_commit = off").format(database)
-        )
-        yield str(make_url(POSTGRESQL).set(database=name))
-        connection.execute(sql.SQL("DROP DATABASE {} WITH (FORCE)").format(database))
+from server.tables import Run
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
@@ -69,37 +34,8 @@ def redis_url(tmp_path_factory) -> Iterator[str]:
     if found:
         yield "redis://127.0.0.1:6379/0"
         return
-    folder = tmp_path_factory.mktemp("redis")
-    redis = prepare(folder / "files")
-    process = redis.start(folder / "log")
-    redis.wait(process, folder / "log")
-    yield redis.url
-    process.terminate()
-    process.wait()
-
-
-class Installation:
-    """An installation for all tests on one database; its server starts when one is needed."""
-
-    def __init__(self, settings: Settings, stack: ExitStack):
-        self.services = connect(settings)
-        migrations.upgrade(self.services.sessions)
-        self._stack = stack
-        stack.callback(self.services.close)
-
-    @cached_property
-    def address(self) -> str:
-        return self._stack.enter_context(running(self.services.settings))
-
-    def clean(self) -> None:
-        """Leave nothing to the next test: no row, no key, no file."""
-        with self.services.sessions.write.begin() as session:
-            for left in session.scalars(select(Run.id)):
-                self.services.jobs.forget(str(left))
-            for table in reversed(Base.metadata.sorted_tables):
-                session.execute(table.delete())
-        empty_redis(self.services)
-        shutil.rmtree(self.services.settings.artifacts, ignore_errors=True)
+    with own_redis(tmp_path_factory.mktemp("redis")) as url:
+        yield url
 
 
 @pytest.fixture(scope="session")
@@ -144,15 +80,6 @@ def services(installation) -> Services:
     return installation.services
 
 
-def empty_redis(services: Services) -> None:
-    """Remove everything that is ours, as FLUSHALL would."""
-    for queue in (*services.jobs.evolving, services.jobs.renderings, services.jobs.audits):
-        queue.delete(delete_jobs=True)
-    pattern = f"*{services.settings.redis_prefix[:-1]}*"
-    if keys := list(services.redis.scan_iter(pattern, count=1000)):
-        services.redis.delete(*keys)
-
-
 @pytest.fixture
 def flush(services) -> Callable[[], None]:
     return lambda: empty_redis(services)
@@ -169,26 +96,6 @@ def eventually() -> Callable[[Callable[[], Any]], None]:
             time.sleep(0.01)
 
     return wait
-
-
-@contextmanager
-def running(settings: Settings) -> Iterator[str]:
-    """A server in a thread: its address."""
-    app = create_app(connect(settings))
-    config = uvicorn.Config(app, port=0, log_level="warning", timeout_graceful_shutdown=5)
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    while not server.started:
-        assert thread.is_alive(), "the server did not start"
-        time.sleep(0.01)
-    port = server.servers[0].sockets[0].getsockname()[1]
-    try:
-        yield f"http://127.0.0.1:{port}"
-    finally:
-        app.state.end_streams()  # As a signal would in the main thread.
-        server.should_exit = True
-        thread.join()
 
 
 @pytest.fixture
@@ -233,43 +140,9 @@ def row(services, run_id) -> Callable[[], Run]:
     return read
 
 
-def little_endian(*values: float) -> str:
-    return base64.b64encode(struct.pack(f"<{len(values)}f", *values)).decode()
-
-
 @pytest.fixture
 def identity() -> Callable[[int], dict[str, Any]]:
-    """The identity of a swimmer whose one weight is a number."""
-    demo = EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump(mode="json")
-
-    def make(number: int = 1) -> dict[str, Any]:
-        genome = {
-            "encoding": "cppn",
-            "inputs": ["position", "sine", "cosine"],
-            "outputs": ["rest_angle", "rest_length"],
-            "control": demo["control"],
-            "nodes": {
-                "id": [0, 1, 2, 3, 4],
-                "activation": ["identity"] * 5,
-                "bias": little_endian(0, 0, 0, 0, 0),
-            },
-            "connections": {
-                "innovation": [0],
-                "source": [1],
-                "target": [3],
-                "enabled": [True],
-                "weight": little_endian(number),
-            },
-        }
-        return {
-            "format": "microcosmos-creature/1",
-            "genome": genome,
-            "world": {**demo["world"], "coupling": demo["coupling"]},
-            "body": demo["body"],
-            "task": demo["task"],
-        }
-
-    return make
+    return reports.identity
 
 
 @pytest.fixture
@@ -286,96 +159,10 @@ def sweep_id(services, sweep) -> UUID:
 
 
 @pytest.fixture
-def table(identity) -> Callable[..., Any]:
-    """What an experiment without an archive reports of a generation: rows of values."""
-
-    def make(generation: int, *rows: dict[str, Any], summary: Any = None) -> Any:
-        return SimpleNamespace(
-            generation=generation,
-            evaluations=generation,
-            diverged=0,
-            elites=(),
-            rows=tuple(row(values) for values in rows),
-            summary=summary,
-            **dict.fromkeys(("qd_score", "coverage", "best", "mean")),
-        )
-
-    def row(values: dict[str, Any]) -> Any:
-        found = identity(values["number"]) if "number" in values else None
-        return SimpleNamespace(
-            values=values,
-            creature=creature.name(found) if found else None,
-            identity=creature.canonical(found) if found else None,
-            measured=None,
-            provenance=None,
-        )
-
-    return make
+def table() -> Callable[..., Any]:
+    return reports.table
 
 
 @pytest.fixture
-def report(identity) -> Callable[..., Any]:
-    """What an experiment reports of a generation: new elites by cell, with their fitness."""
-
-    def make(
-        generation: int,
-        elites: dict[int, float] | None = None,
-        descriptors: tuple[float, ...] = (0.25, 0.5),
-        measures: dict[str, float] | None = None,
-        summary: dict[str, Any] | None = None,
-    ) -> Any:
-        found = [
-            elite(generation, *item, descriptors, measures or {})
-            for item in (elites or {}).items()
-        ]
-        return SimpleNamespace(
-            generation=generation,
-            qd_score=10.0 * generation,
-            coverage=generation / 256,
-            best=float(generation),
-            mean=0.5 * generation,
-            evaluations=16 * generation,
-            diverged=generation,
-            elites=tuple(found),
-            rows=(),
-            summary=summary,
-        )
-
-    def elite(
-        generation: int,
-        cell: int,
-        fitness: float,
-        descriptors: tuple[float, ...],
-        measures: dict[str, float],
-    ) -> Any:
-        found = identity(1000 * generation + cell)
-        return SimpleNamespace(
-            cell=cell,
-            fitness=fitness,
-            descriptors=descriptors,
-            creature=creature.name(found),
-            identity=creature.canonical(found),
-            generation=generation,
-            measured={
-                "fitness": fitness,
-                "descriptors": {"bending_effort": 0.25, "stretching_effort": 0.5},
-                "measures": {
-                    "displacement": fitness,
-                    "bending_effort": 0.25,
-                    "stretching_effort": 0.5,
-                    **measures,
-                },
-                "block": 16,
-                "room": [24, 64],
-                "device": "a device",
-            },
-            provenance={
-                "parents": ["ab" * 32],
-                "operator": "neat",
-                "generation": generation,
-                "seed": 0,
-                "version": "0.1.0",
-            },
-        )
-
-    return make
+def report() -> Callable[..., Any]:
+    return reports.report

@@ -1,47 +1,43 @@
 """A worker's surroundings: a database, an own Redis, a queued run, reports to record."""
 
-from types import SimpleNamespace
+from contextlib import ExitStack
 
 import pytest
+import reports
+from installation import Installation, own_redis
 
 from microcosmos.spec import EXPERIMENTS
-from server.local import redis_embedded
 from server.runs.submission import submit
-from server.services.services import connect
 from server.settings import Settings
-from server.tables import Run, migrations
+from server.tables import Run
 
 
 @pytest.fixture(scope="session")
-def redis_url(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("redis")
-    redis = redis_embedded.prepare(folder / "files")
-    process = redis.start(folder / "log")
-    redis.wait(process, folder / "log")
-    yield redis.url
-    process.terminate()
-    process.wait()
+def installation(tmp_path_factory):
+    """One for all tests, with a Redis of its own."""
+    data = tmp_path_factory.mktemp("data")
+    with ExitStack() as stack:
+        settings = Settings(
+            data=data,
+            database_url="",
+            artifacts_url="",
+            redis_url=stack.enter_context(own_redis(tmp_path_factory.mktemp("redis"))),
+            redis_prefix="test:",
+            checkpoint_interval=0,
+        )
+        yield Installation(settings, stack)
 
 
 @pytest.fixture
-def settings(tmp_path, redis_url):
-    return Settings(
-        data=tmp_path,
-        database_url="",
-        artifacts_url="",
-        redis_url=redis_url,
-        redis_prefix="test:",
-        checkpoint_interval=0,
-    )
+def services(installation):
+    yield installation.services
+    installation.clean()
+    installation.services.redis.flushdb()
 
 
 @pytest.fixture
-def services(settings):
-    services = connect(settings)
-    migrations.upgrade(services.sessions)
-    yield services
-    services.redis.flushdb()
-    services.close()
+def settings(services):
+    return services.settings
 
 
 @pytest.fixture
@@ -63,20 +59,4 @@ def row(services, run_id):
 
 @pytest.fixture
 def report():
-    """What an experiment tells about a generation in which no cell changed."""
-
-    def make(generation):
-        return SimpleNamespace(
-            generation=generation,
-            qd_score=1.0,
-            coverage=0.5,
-            best=1.0,
-            mean=1.0,
-            evaluations=16 * generation,
-            diverged=0,
-            elites=(),
-            rows=(),
-            summary=None,
-        )
-
-    return make
+    return reports.report

@@ -39,7 +39,7 @@ def settings(tmp_path, monkeypatch):
 def test_a_worker_tells_what_it_has_and_what_it_could_not_load(settings):
     told = plugins.ask(settings(mine=GOOD, broken="nothing", gone="raise SystemExit"))
     assert [one["name"] for one in told.plugins] == ["mine.stick"]
-    assert len(told.sources) == 1
+    assert len(told.plugin_versions) == 1
     reasons = {Path(one["module"]).stem: one["reason"] for one in told.unloaded}
     assert "NameError" in reasons["broken"]
     assert "SystemExit" in reasons["gone"]

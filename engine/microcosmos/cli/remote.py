@@ -92,11 +92,12 @@ def about(thing: "Run | Sweep") -> str:
     """Name a run or a sweep with its status."""
     record = thing.record
     if "cases" in record:
-        standing = ", ".join(f"{n} {status}" for status, n in record["standing"].items() if n)
+        counts = record["status_counts"].items()
+        status = ", ".join(f"{count} {name}" for name, count in counts if count)
     else:
-        wish = f", asked to {record['wish']}" if record.get("wish") else ""
-        standing = f"{record['status']}{wish}"
-    return f"{title(thing)}: {standing}"
+        requested = record.get("requested_state")
+        status = record["status"] + (f", to be {requested}" if requested else "")
+    return f"{title(thing)}: {status}"
 
 
 def title(thing: "Run | Sweep") -> str:

@@ -52,9 +52,10 @@ def titled(record: Mapping[str, Any]) -> str:
 
 def standing(record: Mapping[str, Any]) -> str:
     """How a run is, with whatever keeps it from going on."""
-    wish = f", asked to {record['wish']}" if record.get("wish") else ""
-    reason = record.get("waiting") or record.get("error")
-    return record["status"] + wish + (f": {reason}" if reason else "")
+    requested = record.get("requested_state")
+    status = record["status"] + (f", to be {requested}" if requested else "")
+    reason = record.get("waiting_reason") or record.get("error")
+    return status + (f": {reason}" if reason else "")
 
 
 def pace(record: Mapping[str, Any]) -> str:

@@ -89,7 +89,7 @@ def _asked(connection: Connection, sweep: str, standing: Standing) -> Iterator[S
 
 def as_run(sweep: Mapping[str, Any]) -> dict[str, Any]:
     """A sweep as the views know runs: what is counted are runs that have ended."""
-    standing = {status: count for status, count in sweep["standing"].items() if count}
+    standing = {status: count for status, count in sweep["status_counts"].items() if count}
     over = sum(count for status, count in standing.items() if status in ENDED)
     return {
         "id": sweep["id"],

@@ -20,9 +20,8 @@ class Sweep(Record):
 
     def __repr__(self) -> str:
         name = f" {self.name!r}" if self.name else ""
-        return (
-            f"<Sweep {self.id[:8]}{name}: {self.total} runs, {counts_as_text(self.standing)}>"
-        )
+        counts = counts_as_text(self.status_counts)
+        return f"<Sweep {self.id[:8]}{name}: {self.total} runs, {counts}>"
 
     @property
     def cases(self) -> list[dict[str, Any]]:
@@ -34,13 +33,13 @@ class Sweep(Record):
         return self.record["total"]
 
     @property
-    def standing(self) -> dict[str, int]:
+    def status_counts(self) -> dict[str, int]:
         """How many runs are in each state."""
-        return self.record["standing"]
+        return self.record["status_counts"]
 
     @property
     def ended(self) -> bool:
-        return all(status in ENDED for status, count in self.standing.items() if count)
+        return all(status in ENDED for status, count in self.status_counts.items() if count)
 
     def runs(self) -> Iterator[Run]:
         found = items(self._connection, "runs", sweep=self.id, limit=200, sort="created")
@@ -49,10 +48,10 @@ class Sweep(Record):
     def watch(self) -> dict[str, int]:
         """Show how its runs go until all have ended; Ctrl-C leaves them going."""
         watching.watch_sweep(self._connection, self.id)
-        return self.refresh().standing
+        return self.refresh().status_counts
 
     def delete(self) -> Self:
-        """Its runs into the bin, but for those that wait or are at work: see `standing`."""
+        """Move its runs to the bin, except queued and running ones: see `status_counts`."""
         self._connection.send("DELETE", self._path)
         return self.refresh()
 

@@ -5,7 +5,8 @@ same run gives the same bytes, however often it was interrupted.
 """
 
 import json
-from typing import Any
+from dataclasses import replace
+from typing import Any, TypeVar
 
 import equinox as eqx
 import jax
@@ -32,6 +33,8 @@ from .state import (
 )
 
 __all__ = ["OtherDevice", "restore", "save"]
+
+Module = TypeVar("Module", bound=eqx.Module)
 
 ROWS = ("fitness", "measures", "generation", "slot")
 """Columns of elites that are written as they are."""
@@ -90,24 +93,20 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
 def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
     state, archive, loop = start(plan), tree["archive"], tree["loop"]
     cells = archive["cell"]
-    rows = search.Elites(
-        occupied=jnp.ones(len(cells), bool),
-        genotypes=_genotypes(state, archive["genomes"]),
-        **{name: jnp.asarray(archive[name]) for name in ROWS},
-    )
+    rows = {"occupied": np.ones(len(cells), bool), "genotypes": archive["genomes"], **archive}
     creatures, operators, device_of = state.creatures, state.operators, state.device_of
     creatures[cells], operators[cells] = archive["creature"], archive["operator"]
     device_of[cells] = archive["device"]
     repeats = _placed(state.repeats, cells, archive["repeats"])
     before = "unrepeated" in loop and _placed(state.repeats, cells, loop["unrepeated"])
     diverged = tree["diverged"]
-    genotypes = jax.device_get(_genotypes(state, diverged.pop("genotypes")))
+    genotypes = _genotypes(state, diverged.pop("genotypes"))
     taken = State(
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
         diverged=int(loop["diverged"]),
         cells=_cells_of(plan, archive),
-        elites=jax.tree.map(lambda none, x: none.at[cells].set(x), state.elites, rows),
+        elites=_placed(state.elites, cells, rows),
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         emitters=filled(state.emitters, loop["emitters"]),
         nearest_ancestors=loop["nearest_ancestors"],
@@ -175,22 +174,32 @@ def _end(plan: Plan, state: State) -> dict[str, Any] | None:
     return {"reason": reason, "generation": state.generation}
 
 
-def _placed(module: eqx.Module, cells: np.ndarray, columns: dict[str, np.ndarray]):
-    """The module with the rows of some cells as columns have them."""
-    new = type(module)(**{name: jnp.asarray(x) for name, x in columns.items()})
-    return jax.tree.map(lambda none, x: none.at[cells].set(x), module, new)
+def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Module:
+    """Return the module with the rows of some cells as columns have them.
+
+    NumPy places them: JAX would compile each column anew for each number of cells.
+    """
+
+    def placed(before: Any, rows: Any) -> Any:
+        if isinstance(before, eqx.Module):
+            return _placed(before, cells, rows)
+        after = np.array(before)
+        after[cells] = rows
+        return jnp.asarray(after)
+
+    return replace(module, **{n: placed(x, columns[n]) for n, x in vars(module).items()})
 
 
 def _initial(state: State, group: file.Tree | None) -> InitialCreatures | None:
     if group is None:
         return None
-    genotypes = jax.device_get(_genotypes(state, group["genomes"]))
-    return InitialCreatures(group["creature"], genotypes)
+    return InitialCreatures(group["creature"], _genotypes(state, group["genomes"]))
 
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
-    kind = type(state.elites.genotypes)
-    return kind(**{name: jnp.asarray(values) for name, values in columns.items()})
+    """Rows of NumPy arrays."""
+    form = state.elites.genotypes
+    return jax.tree.unflatten(jax.tree.structure(form), [columns[name] for name in vars(form)])
 
 
 def _columns(module: eqx.Module) -> dict[str, Any]:

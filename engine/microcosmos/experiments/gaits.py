@@ -9,7 +9,6 @@ import numpy as np
 
 from .. import naming, search, units
 from ..archive.report import Report, Row
-from ..version import VERSION
 from . import table_file
 from .table_file import Table
 
@@ -115,15 +114,8 @@ class Gaits:
             "room": None,
             "device": self.device,
         }
-        provenance = {
-            "parents": [],
-            "operator": "hand-made",
-            "generation": 0,
-            "seed": 0,
-            "version": VERSION,
-        }
-        canonical = naming.canonical(identity)
-        return Row(row, naming.name(identity), canonical, measured, provenance)
+        name, canonical = naming.name(identity), naming.canonical(identity)
+        return Row(row, name, canonical, measured, naming.provenance("hand-made"))
 
 
 def stack(points: list[search.Conditions]) -> search.Conditions:

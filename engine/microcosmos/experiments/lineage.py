@@ -11,7 +11,6 @@ import numpy as np
 from .. import naming, search
 from ..archive.report import Elite
 from ..genomes import Encoding, Genotype, take
-from ..version import VERSION
 from .state import Lineage, Plan, State
 
 NOBODY = np.zeros(32, np.uint8)
@@ -100,13 +99,7 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
         parents=state.lineage.parents[entry],
         device=state.devices[state.device_of[cell]],
     )
-    return {
-        "identity": json.loads(elite.identity),
-        "sha256": elite.creature,
-        "measured": elite.measured,
-        "provenance": elite.provenance,
-        "licence": naming.LICENCE,
-    }
+    return naming.document(json.loads(elite.identity), elite.measured, elite.provenance)
 
 
 def identity(
@@ -162,13 +155,9 @@ def _elite(
         "device": device,
         **({"own": dict(plan.own)} if plan.own else {}),
     }
-    provenance = {
-        "parents": list(named),
-        "operator": search.OPERATORS[operator],
-        "generation": generation,
-        "seed": plan.seed,
-        "version": VERSION,
-    }
+    provenance = naming.provenance(
+        search.OPERATORS[operator], generation=generation, parents=named, seed=plan.seed
+    )
     return Elite(
         cell=cell,
         fitness=fitness,

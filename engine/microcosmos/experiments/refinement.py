@@ -18,7 +18,6 @@ from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Encoding, Genotype, Vector, take
 from ..search.gradients import genes_of, with_genes
-from ..version import VERSION
 from . import table_file, trials
 from .lineage import identity
 from .table_file import Table
@@ -125,14 +124,7 @@ class Refinement:
         if not state.table.rows:
             return None
         row = state.table.rows[-1]
-        assert row.measured is not None
-        return {
-            "identity": self._identity(state.genes),
-            "sha256": row.creature,
-            "measured": dict(row.measured),
-            "provenance": row.provenance and dict(row.provenance),
-            "licence": naming.LICENCE,
-        }
+        return naming.document(self._identity(state.genes), row.measured, row.provenance)
 
     def _trials(self, state: State, stop: Callable[[], bool]) -> trials.Trials:
         """The creature as it is, or steps from it."""
@@ -188,13 +180,12 @@ class Refinement:
             "device": self.device,
             **({"own": dict(self.own)} if self.own else {}),
         }
-        refined = {
-            "parents": [self.parent],
-            "operator": "refinement",
-            "generation": state.table.generation,
-            "seed": (self.provenance or {}).get("seed", 0),
-            "version": VERSION,
-        }
+        refined = naming.provenance(
+            "refinement",
+            generation=state.table.generation,
+            parents=[self.parent],
+            seed=(self.provenance or {}).get("seed", 0),
+        )
         provenance = self.provenance if first else refined
         whole = self._identity(genes)
         return Row(values, naming.name(whole), naming.canonical(whole), measured, provenance)

@@ -40,7 +40,7 @@ def first_species(population: CPPN, settings: Settings) -> Species:
         no_species(population, rows, settings.threshold),
         settings.coefficients,
         nearest=settings.representative == "nearest",
-        generation=jnp.asarray(0),
+        generation=jnp.zeros((), int),
     )
 
 

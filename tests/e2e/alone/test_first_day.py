@@ -101,7 +101,7 @@ def sweep(client: Client, laptop: Laptop) -> list[Run]:
     """Three seeds in one request, watched from a terminal to their end."""
     made = client.submit(TINY, seeds=SEEDS, name="first day")
     laptop.run("watch", made.id)
-    assert made.refresh().standing == {"finished": SEEDS}
+    assert made.refresh().status_counts == {"finished": SEEDS}
     (case,) = made.summary().cases
     assert case["generation"][-1] == GENERATIONS
     assert case["runs"][-1] == SEEDS
@@ -175,8 +175,8 @@ def delete_for_good(client: Client, laptop: Laptop, product: Installation, run: 
         database.execute("UPDATE runs SET purge_at = deleted_at WHERE deleted_at IS NOT NULL")
     wait_until(
         lambda: (
-            not rows(product, "leftovers")
-            and not rows(product, "discarded")
+            not rows(product, "garbage_creatures")
+            and not rows(product, "garbage_files")
             and not any(one.id == run.id for one in client.runs(deleted=True))
         ),
         60,
@@ -195,7 +195,14 @@ def nothing_is_lost(client: Client, sha: str) -> None:
 def nothing_is_left_behind(product: Installation, run: Run) -> None:
     """No row of the run, no file without a row, and no creature that nobody knows."""
     own = bytes.fromhex(run.id.replace("-", ""))
-    for table in ("generations", "elites", "results", "artifacts", "journal", "origins"):
+    for table in (
+        "generations",
+        "elites",
+        "results",
+        "artifacts",
+        "log_entries",
+        "initial_creatures",
+    ):
         assert not rows(product, f"{table} WHERE run_id = ?", run.id.replace("-", "")), own
     folder = product.folder / "artifacts"
     files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}

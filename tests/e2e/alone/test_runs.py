@@ -61,7 +61,7 @@ def tag_and_filter_by_mouse(page: Page, tagged: str, other: str) -> None:
     expect(row(page, tagged)).to_be_visible()
     assert "tag=keep+me" in page.url
     row(page, tagged).get_by_role("button", name=re.compile("^Remove the tag")).click()
-    expect(page.get_by_role("heading", name="No run is like that")).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("heading", name="No matching runs")).to_be_visible(timeout=FAST)
     page.get_by_role("button", name="Undo").click()
     expect(row(page, tagged)).to_be_visible(timeout=FAST)
     page.get_by_role("button", name="Show all").click()
@@ -164,8 +164,8 @@ def read_the_comparison(page: Page) -> None:
     expect(fields).to_have_text(
         [re.compile("^Field"), "seed12", "search.generations39"], timeout=FAST
     )
-    page.get_by_role("button", name="Leave Long one out").click()
-    expect(page.get_by_text("Nowhere: all of them are the same.")).to_be_visible(timeout=FAST)
+    page.get_by_role("button", name="Remove Long one").click()
+    expect(page.get_by_text("All specs are the same.")).to_be_visible(timeout=FAST)
 
 
 def see_the_worker(page: Page) -> None:
@@ -173,5 +173,5 @@ def see_the_worker(page: Page) -> None:
     worker = page.get_by_role("list", name="Workers").get_by_role("listitem")
     expect(worker).to_have_count(1, timeout=FAST)
     expect(worker.get_by_role("meter", name="Memory")).to_be_visible(timeout=FAST)
-    expect(worker).to_contain_text("Waits for a run.", timeout=FAST)
-    expect(page.get_by_text("No run waits.")).to_be_visible()
+    expect(worker).to_contain_text("Waiting for a run.", timeout=FAST)
+    expect(page.get_by_text("The queue is empty.")).to_be_visible()

@@ -82,7 +82,7 @@ def sign_in(page: Page, address: str, secret: str) -> None:
 def make_a_token(page: Page, address: str) -> str:
     page.get_by_role("link", name="Settings").click()
     expect(page.get_by_role("heading", name="admin")).to_be_visible()
-    page.get_by_label("Whose it is").fill("alice")
+    page.get_by_label("Owner").fill("alice")
     page.keyboard.press("Enter")
     shown = page.locator(".secret code")
     expect(shown).to_be_visible()

@@ -114,3 +114,15 @@ def test_a_file_that_was_tampered_with_is_refused(file):
     changed = {**file, "sha256": "0" * 64}
     with pytest.raises(creature.CreatureError, match="sha256"):
         creature_h5.load(creature_h5.dump(changed))
+
+
+@pytest.mark.parametrize(
+    "link", [h5py.ExternalLink("other.h5", "/"), h5py.SoftLink("/identity")]
+)
+def test_what_lies_elsewhere_is_refused(file, link):
+    stored = BytesIO(creature_h5.dump(file))
+    with h5py.File(stored, "r+") as found:
+        del found["body/positions"]
+        found["body/positions"] = link
+    with pytest.raises(ValueError, match="`/body/positions` must lie in the file itself"):
+        creature_h5.load(stored.getvalue())

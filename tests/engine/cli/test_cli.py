@@ -25,7 +25,8 @@ SPEC = {
 @pytest.fixture
 def run(tmp_path):
     """A function that starts the command in a folder of its own."""
-    environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": str(tmp_path / "cache")}
+    cache = os.environ["MICROCOSMOS_TEST_COMPILED"]
+    environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": cache}
 
     def start(*arguments, **options):
         command = [sys.executable, "-m", "microcosmos.cli", *arguments]
@@ -88,6 +89,7 @@ def test_a_creature_that_is_not_sound_is_refused(run, tmp_path):
     assert "identity" in finished(run("replay", "creature.json", "--check"), code=2)
 
 
+@pytest.mark.long
 def test_a_sweep_is_carried_out_drawn_and_its_table_read(run, tmp_path):
     spec = {
         "experiment": "gaits",
@@ -111,6 +113,7 @@ def test_a_picture_of_an_unknown_kind_is_refused(run, tmp_path):
     assert ".mp4" in text
 
 
+@pytest.mark.long
 def test_a_filament_folds_into_a_packed_picture_and_is_drawn(run, tmp_path):
     packed = json.loads(finished(run("picture", "--text", "o", "--name", "a ring")))
     assert packed["name"] == "a ring"

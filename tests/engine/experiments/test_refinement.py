@@ -49,6 +49,7 @@ def test_it_does_not_leave_its_cell(spec, course):
     assert len(set(cells.of(jnp.asarray(places)).tolist())) == 1
 
 
+@pytest.mark.long
 @pytest.mark.optimised
 def test_what_it_has_become_repeats_bit_for_bit_and_has_a_parent(spec, course):
     best = course.experiment.best(course[0][-1])

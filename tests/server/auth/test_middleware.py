@@ -9,7 +9,7 @@ import pytest
 from pydantic import SecretStr
 from sqlalchemy.exc import OperationalError
 
-from server.auth import authorize
+from server.auth import authenticate
 from server.auth.cookies import COOKIE
 from server.settings import SHORTEST, Settings
 
@@ -135,7 +135,7 @@ def test_while_the_database_is_away_a_token_is_not_wrong(serve, monkeypatch):
     def away(*_):
         raise OperationalError("SELECT", {}, ConnectionError("gone"))
 
-    monkeypatch.setattr(authorize.tokens, "holder", away)
+    monkeypatch.setattr(authenticate.tokens, "principal_of", away)
     with serve(token=SecretStr("secret")) as address:
         sent = {"Authorization": "Bearer mc_other"}
         answer = httpx.get(f"{address}/api/v1/runs", headers=sent)

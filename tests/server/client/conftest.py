@@ -4,8 +4,14 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from relay import Relay
 
-from microcosmos.client import Client
+from microcosmos.client import (
+    Client,
+    connection,
+    files,
+    streaming,
+)
 
 
 @pytest.fixture
@@ -23,3 +29,19 @@ def client(address: str) -> Iterator[Client]:
 def run(client: Client, run_id: Any) -> Any:
     """The queued run, as the client has it."""
     return client.run(str(run_id))
+
+
+@pytest.fixture
+def relay(address: str) -> Iterator[Relay]:
+    relay = Relay(address)
+    yield relay
+    relay.close()
+
+
+@pytest.fixture
+def hasty(monkeypatch) -> list[float]:
+    """Pauses are noted instead of made."""
+    pauses: list[float] = []
+    for module in (connection, files, streaming):
+        monkeypatch.setattr(module.time, "sleep", pauses.append)
+    return pauses

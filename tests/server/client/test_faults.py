@@ -1,17 +1,10 @@
 """What the client does where the network, or what is at the other end, fails."""
 
-import errno
-import hashlib
-import os
 import socket
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from urllib.parse import urlsplit
 
 import httpx
 import pytest
+from relay import other
 
 from microcosmos.client import (
     Client,
@@ -20,158 +13,9 @@ from microcosmos.client import (
     NotMicrocosmos,
     ServerError,
     connection,
-    files,
     streaming,
 )
 from server.attempts.begin import claim
-
-
-class Relay:
-    """Hands bytes on between a client and a server, and breaks off as it is told."""
-
-    def __init__(self, address: str):
-        parts = urlsplit(address)
-        self.to = (parts.hostname, parts.port)
-        self.allowance: list[int] = []
-        """Bytes of an answer after which a connection breaks, for one after another."""
-        self.asked: list[bytes] = []
-        self.open: list[socket.socket] = []
-        self.door = socket.create_server(("127.0.0.1", 0))
-        self.url = f"http://127.0.0.1:{self.door.getsockname()[1]}"
-        threading.Thread(target=self.serve, daemon=True).start()
-
-    def serve(self) -> None:
-        with suppress(OSError):
-            while True:
-                client, _ = self.door.accept()
-                server = socket.create_connection(self.to)
-                self.open += [client, server]
-                left = self.allowance.pop(0) if self.allowance else None
-                for work in (
-                    (self.requests, client, server),
-                    (self.answers, server, client, left),
-                ):
-                    threading.Thread(target=work[0], args=work[1:], daemon=True).start()
-
-    def requests(self, client: socket.socket, server: socket.socket) -> None:
-        with suppress(OSError):
-            while sent := client.recv(65536):
-                self.asked.append(sent)
-                server.sendall(sent)
-
-    def answers(self, server: socket.socket, client: socket.socket, left: int | None) -> None:
-        with suppress(OSError):
-            while came := server.recv(65536):
-                client.sendall(came if left is None else came[:left])
-                left = left if left is None else left - len(came)
-                if left is not None and left <= 0:
-                    break
-        hang_up(client)
-        hang_up(server)
-
-    def cut(self) -> None:
-        """Break off whatever is going on."""
-        for each in self.open:
-            hang_up(each)
-
-    def close(self) -> None:
-        self.door.close()
-        self.cut()
-        for each in self.open:
-            each.close()
-
-
-def hang_up(end: socket.socket) -> None:
-    with suppress(OSError):
-        end.shutdown(socket.SHUT_RDWR)
-
-
-@pytest.fixture
-def relay(address: str) -> Iterator[Relay]:
-    relay = Relay(address)
-    yield relay
-    relay.close()
-
-
-@pytest.fixture
-def hasty(monkeypatch) -> list[float]:
-    """Pauses are noted instead of made."""
-    pauses: list[float] = []
-    for module in (connection, files, streaming):
-        monkeypatch.setattr(module.time, "sleep", pauses.append)
-    return pauses
-
-
-@pytest.fixture
-def archive(services, run_id, report) -> bytes:
-    """What the run's checkpoint holds, larger than a relay hands on at once."""
-    content = os.urandom(3_000_000)
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
-    attempt.save(1, content)
-    return content
-
-
-def test_a_download_goes_on_where_it_broke_off(relay, run_id, archive, tmp_path, hasty):
-    told: list[tuple[int, int]] = []
-    relay.allowance = [1 << 40, 1_000_000, 1_000_000]
-    run = Client(relay.url).run(str(run_id))
-    relay.cut()
-    relay.asked.clear()
-    to = tmp_path / "run.h5"
-    found = files.fetch(
-        run._connection, f"runs/{run_id}/archive.h5", to, lambda *now: told.append(now)
-    )
-    assert found.read_bytes() == archive
-    ranges = [ask for ask in relay.asked if b"range: bytes=" in ask.lower()]
-    assert len(ranges) == 2
-    assert all(b"if-range" in ask.lower() for ask in ranges)
-    assert {whole for _, whole in told} == {len(archive)}
-    assert [path.name for path in tmp_path.iterdir() if "part" in path.name] == []
-    relay.asked.clear()
-    assert run.pull(to).read_bytes() == archive
-    assert b"If-None-Match" in relay.asked[-1]  # Nothing is fetched twice.
-
-
-def test_a_download_that_is_given_up_is_taken_up_later(relay, run_id, archive, tmp_path, hasty):
-    run = Client(relay.url).run(str(run_id))
-    relay.cut()
-    relay.allowance = [1_000_000] + [50] * 20
-    to = tmp_path / "run.h5"
-    with pytest.raises(NoAnswer, match="broke off"):
-        run.pull(to)
-    (part,) = tmp_path.glob(".run.h5.*.part")
-    had = part.stat().st_size
-    assert 0 < had < len(archive)
-    relay.allowance = []
-    relay.asked.clear()
-    assert run.pull(to).read_bytes() == archive
-    assert f"bytes={had}-".encode() in b"".join(relay.asked)
-
-
-def test_a_file_that_changed_meanwhile_is_fetched_anew(
-    client, services, run_id, archive, report, tmp_path
-):
-    old = hashlib.sha256(b"an older checkpoint").hexdigest()
-    (tmp_path / f".run.h5.{old}.part").write_bytes(b"an older")
-    run = client.run(str(run_id))
-    assert run.pull(tmp_path / "run.h5").read_bytes() == archive
-    assert list(tmp_path.glob("*.part")) + list(tmp_path.glob(".*.part")) == []
-
-
-def test_a_part_that_was_whole_already_is_put_in_place(client, run_id, archive, tmp_path):
-    name = hashlib.sha256(archive).hexdigest()
-    (tmp_path / f".run.h5.{name}.part").write_bytes(archive)
-    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
-
-
-def test_a_damaged_part_is_not_kept(client, run_id, archive, tmp_path):
-    name = hashlib.sha256(archive).hexdigest()
-    (tmp_path / f".run.h5.{name}.part").write_bytes(b"x" * 100)
-    with pytest.raises(ServerError, match="damaged on its way"):
-        client.run(str(run_id)).pull(tmp_path / "run.h5")
-    assert not (tmp_path / "run.h5").exists()
-    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
 
 
 def test_a_request_whose_answer_is_lost_is_made_again_and_counts_once(
@@ -224,37 +68,6 @@ def test_where_nobody_listens_it_is_said_what_to_do(hasty):
     assert sum(hasty) < 2  # A person waits.
 
 
-@contextmanager
-def other(*answers: tuple[int, dict[str, str], bytes]) -> Iterator[tuple[str, list[str]]]:
-    """Something that is no server of ours; its answers in order, the last again and again."""
-    left, asked = list(answers), []
-
-    class Handler(BaseHTTPRequestHandler):
-        def answer(self) -> None:
-            asked.append(self.command)
-            self.rfile.read(int(self.headers.get("content-length") or 0))
-            status, headers, body = left.pop(0) if len(left) > 1 else left[0]
-            self.send_response(status)
-            for name, value in {**headers, "Content-Length": str(len(body))}.items():
-                self.send_header(name, value)
-            self.end_headers()
-            self.wfile.write(body)
-
-        do_GET = do_POST = do_DELETE = answer
-
-        def log_message(self, *_: object) -> None: ...
-
-    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-    thread = threading.Thread(target=server.serve_forever)
-    thread.start()
-    try:
-        yield f"http://127.0.0.1:{server.server_port}", asked
-    finally:
-        server.shutdown()
-        server.server_close()
-        thread.join()
-
-
 HTML = {"Content-Type": "text/html"}
 
 
@@ -298,30 +111,6 @@ def test_patience_counts_how_long_a_silence_was(hasty, monkeypatch):
     with pytest.raises(NoAnswer, match="did not answer in time"):
         list(client.runs())
     assert len(asked) == 2
-
-
-def test_a_file_comes_through_a_proxy_that_does_not_say_how_long_it_is(hasty, tmp_path):
-    name = hashlib.sha256(b"whole").hexdigest()
-
-    def chunked(request: httpx.Request) -> httpx.Response:
-        return httpx.Response(200, headers={"etag": f'"{name}"'}, content=iter([b"wh", b"ole"]))
-
-    client, told = Client("http://box", transport=httpx.MockTransport(chunked)), []
-    files.fetch(client.connection, "x", tmp_path / "x", lambda *so_far: told.append(so_far))
-    assert (tmp_path / "x").read_bytes() == b"whole"
-    assert told == [(0, 0), (5, 5)]
-
-
-def test_a_full_disk_is_told_with_the_file(hasty, tmp_path, monkeypatch):
-    def full(descriptor: int) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(files.os, "fsync", full)
-    name = hashlib.sha256(b"whole").hexdigest()
-    answer = httpx.Response(200, headers={"etag": f'"{name}"'}, content=iter([b"whole"]))
-    client = Client("http://box", transport=httpx.MockTransport(lambda _: answer))
-    with pytest.raises(OSError, match=rf"No space left on device: '.*\.x\.{name}\.part'"):
-        files.fetch(client.connection, "x", tmp_path / "x")
 
 
 def test_patience_ends_with_the_servers_own_words(hasty):

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from microcosmos.client import Client, Conflict, NotFound, ProblemError
+from microcosmos.client import Client, Conflict, NotFound, Refused
 from server.attempts.begin import claim
 
 
@@ -27,7 +27,7 @@ def test_a_key_names_one_run(client, spec):
 
 
 def test_a_run_whose_name_is_refused_is_not_queued(client, spec):
-    with pytest.raises(ProblemError, match="at most 200"):
+    with pytest.raises(Refused, match="at most 200"):
         client.submit(spec, name="a" * 201)
     assert list(client.runs()) == []
     named = client.submit(spec, name=" one ", key="the same")
@@ -41,7 +41,7 @@ def test_an_unknown_preset_is_refused_with_those_there_are(client):
 
 def test_the_fields_at_fault_arrive_as_a_sentence(client, spec):
     wrong = spec | {"seed": -1, "world": {"viscosity": -2}}
-    with pytest.raises(ProblemError) as caught:
+    with pytest.raises(Refused) as caught:
         client.submit(wrong)
     said = str(caught.value)
     assert "seed: needs greater than or equal to 0; got -1" in said
@@ -56,13 +56,13 @@ def test_a_run_is_found_by_the_beginning_of_its_id(client, run, spec):
     assert client.run(run.id.upper()) == run
     with pytest.raises(NotFound, match="begins with 00000000"):
         client.run("00000000")
-    with pytest.raises(ProblemError, match="got 'a name'"):
+    with pytest.raises(Refused, match="got 'a name'"):
         client.run("a name")
     for _ in range(20):  # Of so many, two begin alike.
         client.submit(spec)
     ids = [one.id for one in client.runs()]
     twice = next(i[0] for i in ids if sum(j[0] == i[0] for j in ids) > 1)
-    with pytest.raises(ProblemError, match="Write more of it"):
+    with pytest.raises(Refused, match="Write more of it"):
         client.run(twice)
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from microcosmos.client import Client, NoAnswer, polling
-from microcosmos.client.errors import ProblemError
+from microcosmos.client.errors import Refused
 from server.attempts.begin import claim
 
 
@@ -57,7 +57,7 @@ def test_a_run_is_followed_by_events(client, run, worked):
 
 def test_where_no_stream_comes_through_it_is_asked_for(client, run, worked, monkeypatch):
     def none(*_: object):
-        raise ProblemError("no streams here")
+        raise Refused("no streams here")
         yield
 
     monkeypatch.setattr(polling, "events", none)

@@ -34,7 +34,7 @@ def ask(api, document):
 
 
 def test_nothing_is_said_of_time_before_a_run_was_measured(api, spec, measured):
-    assert (ask(api, spec)["seconds"], ask(api, spec)["pace"]) == (None, None)
+    assert (ask(api, spec)["seconds"], ask(api, spec)["speed"]) == (None, None)
     measured(spec, 1.0, generations=1)  # Which may have compiled all the time.
     assert ask(api, spec)["seconds"] is None
 
@@ -44,8 +44,8 @@ def test_a_run_like_one_before_takes_as_long(api, spec, measured):
     found = ask(api, spec)
     generations = spec["search"]["generations"]
     assert found["seconds"] == pytest.approx(10.0 + 0.5 * (generations - 1))
-    assert found["pace"]["runs"] == 1
-    rate = found["pace"]["cell_steps_per_second"]
+    assert found["speed"]["runs"] == 1
+    rate = found["speed"]["cell_steps_per_second"]
     assert rate == pytest.approx(estimate(parse(spec)).cell_steps / generations / 0.5)
 
 
@@ -61,8 +61,8 @@ def test_several_runs_give_a_middle_and_a_range(api, spec, measured):
         measured(spec, seconds, first=seconds)
     found = ask(api, spec)
     generations = spec["search"]["generations"]
-    assert found["pace"]["runs"] == 3
-    told = found["pace"]["low"], found["seconds"], found["pace"]["high"]
+    assert found["speed"]["runs"] == 3
+    told = found["speed"]["low"], found["seconds"], found["speed"]["high"]
     assert told == pytest.approx([0.5 * generations, generations, 4.0 * generations])
 
 
@@ -71,8 +71,8 @@ def test_runs_most_alike_are_the_judges(api, spec, measured):
     for _ in range(5):
         measured(large, 1.0)
         measured(spec, 1.0)
-    cells = ask(api, spec)["pace"]["cell_steps_per_second"]
-    assert ask(api, large)["pace"]["cell_steps_per_second"] == pytest.approx(16 * cells)
+    cells = ask(api, spec)["speed"]["cell_steps_per_second"]
+    assert ask(api, large)["speed"]["cell_steps_per_second"] == pytest.approx(16 * cells)
 
 
 def test_only_runs_of_the_same_experiment_and_of_a_device_that_is_there_count(
@@ -83,7 +83,7 @@ def test_only_runs_of_the_same_experiment_and_of_a_device_that_is_there_count(
     registry.report(services.sessions, "fast", "NVIDIA H100", 1 << 40, "idle")
     assert ask(api, spec)["seconds"] is None
     registry.report(services.sessions, "slow", "AMD EPYC (2 threads)", 1 << 40, "busy")
-    assert ask(api, spec)["pace"]["device"] == "AMD EPYC"
+    assert ask(api, spec)["speed"]["device"] == "AMD EPYC"
 
 
 def test_filaments_in_a_fluid_are_not_judged_by_those_without(api, measured):
@@ -103,12 +103,12 @@ def test_a_spec_of_another_version_judges_nothing(api, services, spec, measured)
 
 
 def test_the_queue_is_told(api, services, spec, run_id):
-    assert ask(api, spec)["queue"] == {"waiting": 1, "workers": 0, "free": 0}
+    assert ask(api, spec)["queue"] == {"runs_ahead": 1, "workers": 0, "idle_workers": 0}
     registry.report(services.sessions, "one", "cpu", 1 << 40, "idle")
-    assert ask(api, spec)["queue"] == {"waiting": 1, "workers": 1, "free": 1}
+    assert ask(api, spec)["queue"] == {"runs_ahead": 1, "workers": 1, "idle_workers": 1}
     claim(services, run_id, "two")
     registry.report(services.sessions, "two", "cpu", 1 << 40, "busy", run_id)
-    assert ask(api, spec)["queue"] == {"waiting": 0, "workers": 2, "free": 1}
+    assert ask(api, spec)["queue"] == {"runs_ahead": 0, "workers": 2, "idle_workers": 1}
 
 
 def test_the_body_is_drawn_in_its_world(api, spec):

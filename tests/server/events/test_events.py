@@ -200,7 +200,7 @@ def test_a_slow_listener_is_told_to_fetch_anew():
 
 
 def test_the_stream_is_trimmed(services, monkeypatch):
-    monkeypatch.setattr(events, "KEPT", 100)
+    monkeypatch.setattr(events, "STREAM_LENGTH", 100)
     for _ in range(500):
         services.events.publish("run", uuid4(), {})
     assert services.redis.xlen(services.events.stream) <= 200

@@ -10,7 +10,7 @@ from microcosmos.spec import parse
 from server.attempts.begin import claim
 from server.deletion.purge import purge
 from server.forks import forking
-from server.tables import Origin, Run
+from server.tables import InitialCreature, Run
 
 
 @pytest.fixture
@@ -161,7 +161,7 @@ def test_what_a_fork_begins_from_outlives_the_run_that_it_was_in(
     for_good(api, services, UUID(forked))
     assert api.get(f"creatures/{kept}").status_code == 404
     with services.sessions.read() as session:
-        assert session.scalars(select(Origin.creature)).all() == []
+        assert session.scalars(select(InitialCreature.creature)).all() == []
 
 
 def for_good(api, services, run_id):

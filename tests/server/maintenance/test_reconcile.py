@@ -7,8 +7,9 @@ from sqlalchemy import update
 
 from server.attempts.begin import claim
 from server.attempts.claim import Fenced
+from server.attempts.leases import job_died, job_stopped
 from server.core.database import ago
-from server.maintenance.reconcile import job_died, job_stopped, reconcile
+from server.maintenance.reconcile import reconcile
 from server.tables import Run, Worker
 
 pytestmark = pytest.mark.postgresql
@@ -93,7 +94,7 @@ def test_a_wish_to_a_dead_worker_is_granted(services, api, run_id, row, action, 
     api.post(f"runs/{run_id}/{action}")
     silence(services)
     reconcile(services)
-    assert (row().status, row().wish) == (status, None)
+    assert (row().status, row().requested_state) == (status, None)
     assert (row().finished_at is None) == (status == "paused")
 
 
@@ -102,11 +103,11 @@ def test_who_does_not_obey_a_cancellation_loses_the_run(services, api, run_id, r
     api.post(f"runs/{run_id}/cancel")
     reconcile(services)
     assert row().status == "running"
-    put(services, Run, wished_at=row().created_at.replace(year=2000))
+    put(services, Run, requested_at=row().created_at.replace(year=2000))
     reconcile(services)
     assert row().status == "cancelled"
     with pytest.raises(Fenced):
-        attempt.wish()
+        attempt.requested()
 
 
 def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
@@ -127,7 +128,7 @@ def test_a_job_killed_because_its_worker_stops_is_no_lost_chance(services, run_i
         job_stopped(services, run_id, "worker")
         assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
         with pytest.raises(Fenced):
-            attempt.wish()
+            attempt.requested()
     assert enqueued(services) == [str(run_id)]
 
 

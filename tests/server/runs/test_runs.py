@@ -1,16 +1,16 @@
 """Submitting, listing, reading and steering runs, over HTTP."""
 
+import re
 from concurrent.futures import ThreadPoolExecutor
-from uuid import uuid4
 
 import pytest
 from sqlalchemy.exc import TimeoutError
 
-from server.attempts.begin import claim
 from server.runs import routes
 from server.workers import registry
 
 PROBLEM = "application/problem+json"
+
 
 FINE = [{"name": name, "bins": 1024} for name in ("bending_effort", "stretching_effort")]
 
@@ -127,6 +127,21 @@ def test_what_is_not_a_plain_json_object_is_refused(api, body, status, words):
     assert words in answer.json()["detail"]
 
 
+@pytest.mark.parametrize("body", [b"{", b"\xff\xfe", b"1" * 5000])
+def test_a_body_that_is_not_json_is_refused_in_our_words(api, body):
+    detail = api.post("creatures", content=body).json()["detail"]
+    assert not re.search("codec|delimiter|Expecting|digits \\(", detail)
+    assert detail.startswith("JSON is needed; the body ") or "object is needed" in detail
+
+
+def test_an_id_that_is_none_is_answered_with_what_one_looks_like(api):
+    answer = api.get("runs/abc")
+    assert answer.status_code == 422
+    assert answer.json()["detail"] == (
+        "run_id: needs an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427; got 'abc'"
+    )
+
+
 def test_a_run_must_fit_the_largest_live_worker(api, services, spec):
     needed = api.post("runs/estimate", json=spec).json()
     assert needed["memory_limit_bytes"] == services.settings.max_bytes
@@ -213,104 +228,6 @@ def test_what_is_not_there_is_a_problem(api, path):
     assert answer.headers["content-type"] == PROBLEM
 
 
-def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, run_id, flush):
-    assert api.post(f"runs/{run_id}/pause").json()["status"] == "paused"
-    assert claim(services, run_id, "worker") is None
-    flush()
-    assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
-    assert services.jobs.runs.get_job_ids() == [str(run_id)]
-    cancelled = api.post(f"runs/{run_id}/cancel").json()
-    assert cancelled["status"] == "cancelled"
-    assert cancelled["finished_at"]
-    assert claim(services, run_id, "worker") is None
-
-
-def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    paused = api.post(f"runs/{run_id}/pause").json()
-    assert (paused["status"], paused["wish"]) == ("running", "pause")
-    assert attempt.record(report(1), 1.0) == "pause"
-    attempt.pause()
-    run = api.get(f"runs/{run_id}").json()
-    assert (run["status"], run["wish"]) == ("paused", None)
-    api.post(f"runs/{run_id}/resume")
-    attempt = claim(services, run_id, "worker")
-    api.post(f"runs/{run_id}/cancel")
-    assert attempt.wish() == "cancel"
-    attempt.cancel()
-    assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"
-
-
-def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run_id):
-    claim(services, run_id, "worker")
-    api.post(f"runs/{run_id}/pause")
-    assert api.post(f"runs/{run_id}/cancel").json()["wish"] == "cancel"
-    assert api.post(f"runs/{run_id}/pause").status_code == 409
-
-
-def test_what_the_state_forbids_is_a_conflict_that_says_why(api, services, run_id):
-    answer = api.post(f"runs/{run_id}/resume")
-    assert answer.status_code == 409
-    assert answer.json()["detail"] == "to resume a run it must be paused; it is queued"
-    claim(services, run_id, "worker").finish()
-    for action in ("pause", "resume", "cancel"):
-        answer = api.post(f"runs/{run_id}/{action}")
-        assert answer.status_code == 409
-        assert "it is finished" in answer.json()["detail"]
-
-
-def test_progress_is_what_was_recorded(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.use("a device")
-    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
-        attempt.record(report(generation), seconds)
-    run = api.get(f"runs/{run_id}").json()
-    assert run["generation"] == 3
-    assert run["progress"] == 3 / run["generations"]
-    assert run["evaluations"] == 48
-    assert run["evaluations_per_second"] == 8.0
-    assert run["eta_seconds"] == (run["generations"] - 3) * 16 / 8
-    assert run["sparkline"] == [10, 20, 30]
-    assert run["device"] == "a device"
-
-
-def test_of_a_run_that_is_done_the_rate_is_that_of_all_but_the_first_generation(
-    api, services, run_id, report
-):
-    attempt = claim(services, run_id, "worker")
-    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
-        attempt.record(report(generation), seconds)
-    attempt.finish()
-    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 32 / 8
-
-
-def test_a_single_generation_has_a_rate_with_its_compilation(api, services, run_id, report):
-    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
-    claim(services, run_id, "worker").record(report(1), 20.0)
-    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 16 / 20
-
-
-def test_curves_are_columns_of_all_or_some_generations(api, services, run_id, report):
-    empty = api.get(f"runs/{run_id}/generations").json()
-    assert empty["generation"] == []
-    attempt = claim(services, run_id, "worker")
-    for generation in range(1, 41):
-        attempt.record(report(generation), 0.5)
-    curves = api.get(f"runs/{run_id}/generations").json()
-    assert curves["generation"] == list(range(1, 41))
-    assert curves["seconds"][-1] == 20.0
-    assert curves["mean"][3] == 2.0
-    some = api.get(f"runs/{run_id}/generations", params={"points": 5}).json()
-    assert some["generation"] == [1, 11, 21, 30, 40]
-
-
-@pytest.mark.postgresql
-def test_many_that_steer_at_once_do_not_wait_for_each_other(api, run_id):
-    with ThreadPoolExecutor(24) as pool:
-        answers = list(pool.map(lambda _: api.post(f"runs/{run_id}/cancel"), range(24)))
-    assert sorted(answer.status_code for answer in answers) == [202] + 23 * [409]
-
-
 def test_a_database_without_a_free_connection_is_unavailable(api, run_id, monkeypatch):
     def exhausted(*_):
         raise TimeoutError("QueuePool limit reached")
@@ -318,9 +235,3 @@ def test_a_database_without_a_free_connection_is_unavailable(api, run_id, monkey
     monkeypatch.setattr(routes, "read_run", exhausted)
     answer = api.get(f"runs/{run_id}")
     assert (answer.status_code, answer.headers["content-type"]) == (503, PROBLEM)
-
-
-def test_an_unknown_run_cannot_be_steered(api):
-    for action in ("pause", "resume", "cancel"):
-        assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
-        assert api.post(f"runs/nonsense/{action}").status_code == 422

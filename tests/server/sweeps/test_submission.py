@@ -14,7 +14,7 @@ VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
 
 def test_a_sweep_is_each_case_with_each_seed_the_first_seed_first(api, services, six):
-    assert (six["total"], six["standing"], six["progress"]) == (6, {"queued": 6}, 0)
+    assert (six["total"], six["status_counts"], six["progress"]) == (6, {"queued": 6}, 0)
     assert [case["values"] for case in six["cases"]] == [
         {"world.viscosity": 0.05},
         {"world.viscosity": 0.1},

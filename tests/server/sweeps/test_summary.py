@@ -51,7 +51,7 @@ def test_bands_are_the_quartiles_of_the_runs_that_have_got_so_far(api, services,
     assert thin["best"]["max"] == [case["best"]["max"][i] for i in (0, 2, 4)]
     lines = api.get(f"sweeps/{sweep['id']}/curves").json()
     assert lines["generation"] == [1, 2, 3, 4, 5]
-    (line,) = [one for one in lines["lines"] if one["run"] == sweep["cases"][1]["runs"][1]]
+    (line,) = [one for one in lines["runs"] if one["run"] == sweep["cases"][1]["runs"][1]]
     assert line["coverage"] == [*told[line["run"]][:, 1], None, None]
 
 

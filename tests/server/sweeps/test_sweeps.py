@@ -8,8 +8,8 @@ import httpx
 import pytest
 from sqlalchemy import delete, update
 
-from server.estimates.position import in_line
 from server.maintenance.reconcile import forget_empty_sweeps, reconcile
+from server.queue.order import in_order
 from server.tables import Run
 
 
@@ -17,10 +17,10 @@ def test_single_runs_are_taken_before_those_of_a_sweep(runs_of, api, services, s
     single = api.post("runs", json=spec).json()["id"]
     ids = runs_of(six)
     with services.sessions.read() as session:
-        assert [str(one.run) for one in in_line(session)] == [single, *ids]
+        assert [str(one.id) for one in in_order(session)] == [single, *ids]
     assert [queue.get_job_ids() for queue in services.jobs.evolving] == [[single], ids]
-    assert api.post("runs/estimate", json=spec).json()["queue"]["waiting"] == 1
-    both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["waiting"]
+    assert api.post("runs/estimate", json=spec).json()["queue"]["runs_ahead"] == 1
+    both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["runs_ahead"]
     assert both == 7
 
 
@@ -29,7 +29,7 @@ def test_runs_that_are_resumed_together_wait_in_their_old_order(runs_of, service
     with services.sessions.write.begin() as session:
         session.execute(update(Run).values(queued_at=datetime(2026, 1, 1, tzinfo=UTC)))
     with services.sessions.read() as session:
-        waiting = [str(one.run) for one in in_line(session)]
+        waiting = [str(one.id) for one in in_order(session)]
     assert waiting == runs_of(sweep)
 
 
@@ -51,7 +51,7 @@ def test_an_estimate_is_of_all_runs_together(api, spec):
     larger = {**spec, "search": {**spec["search"], "batch": 32}}
     needed = api.post("runs/estimate", json=larger).json()
     assert found["memory_bytes"] == needed["memory_bytes"] > one["memory_bytes"]
-    assert (found["seconds"], found["pace"]) == (None, None)
+    assert (found["seconds"], found["speed"]) == (None, None)
     assert api.get("runs").json()["items"] == []
 
 
@@ -100,21 +100,21 @@ def test_who_steers_a_sweep_is_told_which_runs_were_left_alone(
     answer = api.post(f"sweeps/{six['id']}/pause")
     paused = answer.json()
     assert answer.status_code == 202
-    assert paused["standing"] == {"running": 1, "paused": 4, "finished": 1}
+    assert paused["status_counts"] == {"running": 1, "paused": 4, "finished": 1}
     assert paused["changed"] == [str(run) for run in (second, *waiting)]
-    (left,) = paused["left"]
+    (left,) = paused["skipped"]
     assert (left["run"], left["status"]) == (str(first), "finished")
     assert "it is finished" in left["reason"]
-    assert api.get(f"runs/{second}").json()["wish"] == "pause"
+    assert api.get(f"runs/{second}").json()["requested_state"] == "paused"
     busy.pause()
     resumed = api.post(f"sweeps/{six['id']}/resume").json()
-    assert resumed["standing"] == {"queued": 5, "finished": 1}
+    assert resumed["status_counts"] == {"queued": 5, "finished": 1}
     assert set(map(str, (second, *waiting))) <= set(services.jobs.sweeps.get_job_ids())
     cancelled = api.post(f"sweeps/{six['id']}/cancel").json()
-    assert cancelled["standing"] == {"finished": 1, "cancelled": 5}
+    assert cancelled["status_counts"] == {"finished": 1, "cancelled": 5}
     assert cancelled["progress"] == pytest.approx(1 / 6)
     again = api.post(f"sweeps/{six['id']}/cancel").json()
-    assert (again["changed"], len(again["left"])) == ([], 6)
+    assert (again["changed"], len(again["skipped"])) == ([], 6)
 
 
 def test_a_sweep_has_a_name_that_can_be_changed(api, six):
@@ -136,13 +136,13 @@ def test_a_deleted_sweep_is_out_of_sight_and_comes_back_as_it_was(
     first, *others = runs_of(six)
     attempt = claimed(first)
     refused = api.delete(path).json()
-    assert (refused["changed"], len(refused["left"])) == ([], 6)
-    assert "cancel it first" in refused["left"][0]["reason"]
+    assert (refused["changed"], len(refused["skipped"])) == ([], 6)
+    assert "cancel it first" in refused["skipped"][0]["reason"]
     api.post(f"{path}/cancel")
     before = api.get(path).json()
     deleted = api.delete(path)
     assert deleted.status_code == 200
-    assert (deleted.json()["changed"], deleted.json()["left"][0]["run"]) == (others, first)
+    assert (deleted.json()["changed"], deleted.json()["skipped"][0]["run"]) == (others, first)
     assert (deleted.json()["total"], deleted.json()["deleted"]) == (1, 5)
     assert len(api.get("sweeps").json()["items"]) == 1
     attempt.cancel()
@@ -158,7 +158,7 @@ def test_a_deleted_sweep_is_out_of_sight_and_comes_back_as_it_was(
     reconcile(services)
     restored = api.post(f"{path}/restore").json()
     assert set(restored["changed"]) == {first, *others}
-    assert api.get(path).json() == {**before, "standing": {"cancelled": 6}}
+    assert api.get(path).json() == {**before, "status_counts": {"cancelled": 6}}
     assert api.get("sweeps", params={"deleted": True}).json()["items"] == []
     assert api.post(f"{path}/restore").json()["changed"] == []
 

@@ -6,7 +6,7 @@ import pytest
 from sqlalchemy import event
 
 from server.attempts.begin import claim
-from server.estimates.position import in_line
+from server.queue.order import in_order
 from server.runs.overview import read_runs
 from server.tables import Run
 from server.workers import registry
@@ -24,7 +24,7 @@ def alive(services):
 
 @pytest.fixture
 def waiting(api):
-    return lambda run: api.get(f"runs/{run}").json()["waiting"]
+    return lambda run: api.get(f"runs/{run}").json()["waiting_reason"]
 
 
 def test_a_worker_tells_its_device_its_load_and_its_run(
@@ -37,7 +37,7 @@ def test_a_worker_tells_its_device_its_load_and_its_run(
     assert (found["status"], found["run"]) == ("busy", str(run_id))
     assert (found["kind"], found["load"]) == ("gpu", 0.75)
     assert (found["memory_used_bytes"], found["memory_bytes"]) == (1 << 30, 1 << 40)
-    carried = found["carries"]
+    carried = found["current_run"]
     assert (carried["id"], carried["name"], carried["attempt"]) == (str(run_id), "Wide", 1)
     assert carried["generation"] == 5
     assert carried["generations"] == spec["search"]["generations"]
@@ -62,7 +62,7 @@ def test_since_when_changes_with_what_a_worker_is_at(api, services, run_id, aliv
 def test_an_idle_worker_carries_nothing_out(api, alive):
     alive()
     (found,) = api.get("workers").json()
-    assert (found["status"], found["run"], found["carries"]) == ("idle", None, None)
+    assert (found["status"], found["run"], found["current_run"]) == ("idle", None, None)
     assert (found["memory_used_bytes"], found["load"]) == (None, None)
 
 
@@ -78,7 +78,10 @@ def test_the_queue_has_the_runs_that_wait_in_their_order(api, services, spec, al
     assert {run["memory_bytes"] for run in queue["items"]} == {needed}
     first = api.get("queue", params={"limit": 1}).json()
     assert (first["total"], [run["id"] for run in first["items"]]) == (3, [ids[2]])
-    assert first["items"][0]["waiting"] == api.get(f"runs/{ids[2]}").json()["waiting"]
+    assert (
+        first["items"][0]["waiting_reason"]
+        == api.get(f"runs/{ids[2]}").json()["waiting_reason"]
+    )
 
 
 def test_a_run_tells_since_when_it_waits(api, services, run_id):
@@ -116,19 +119,19 @@ def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, alive, waiti
     alive("worker", "busy")
     assert waiting(ids[0]) == "A worker is about to begin."
     assert waiting(ids[1]) == "Waits for a worker: the only one is busy; this run is next."
-    ahead = {"waiting": 1, "workers": 1, "free": 0}
+    ahead = {"runs_ahead": 1, "workers": 1, "idle_workers": 0}
     assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
     third = api.post("runs", json={**spec, "seed": 2}).json()["id"]
     busy = "Waits for a worker: the only one is busy; "
     assert waiting(third) == busy + "1 run is before it."
-    told = {run["id"]: run["waiting"] for run in api.get("queue").json()["items"]}
+    told = {run["id"]: run["waiting_reason"] for run in api.get("queue").json()["items"]}
     assert told == {run: waiting(run) for run in (*ids, third)}
 
 
 def test_more_workers_that_begin_than_runs_leave_none_before_a_new_one(api, spec, alive):
     alive("one", "busy"), alive("two", "busy")
     api.post("runs", json=spec)
-    ahead = {"waiting": 0, "workers": 2, "free": 0}
+    ahead = {"runs_ahead": 0, "workers": 2, "idle_workers": 0}
     assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
 
 
@@ -165,7 +168,7 @@ def test_a_list_asks_the_queue_once_however_many_runs_wait(api, services, spec, 
 
     def count(limit):
         with services.sessions.read() as session:
-            runs = [session.get(Run, run_id) for run_id, *_ in in_line(session)[:limit]]
+            runs = [session.get(Run, run_id) for run_id, *_ in in_order(session)[:limit]]
             asked.clear()
             event.listen(services.sessions.engine, "before_cursor_execute", note)
             read_runs(services, session, runs)

@@ -1,13 +1,14 @@
-/** Errors of the server: problem details (RFC 9457), and what a person can read of them. */
+/** Errors of the server: problem details (RFC 9457) and readable messages. */
 
 import type { FieldError, ProblemDocument } from "./types";
+import { text } from "./text";
 
 export class Problem extends Error {
   readonly status: number;
   readonly errors: FieldError[];
 
   constructor(status: number, document: ProblemDocument) {
-    super(document.detail || document.title || `The server answered ${status}.`);
+    super(document.detail || document.title || text.status(status));
     this.name = "Problem";
     this.status = status;
     this.errors = document.errors ?? [];
@@ -20,13 +21,13 @@ export function problemOf(status: number, body: unknown): Problem {
 }
 
 export function messageOf(error: unknown): string {
-  if (error instanceof TypeError) return "The server could not be reached.";
+  if (error instanceof TypeError) return text.unreachable;
   return error instanceof Error ? error.message : String(error);
 }
 
 const BUSY = [429, 502, 503, 504];
 
-/** Whether the same request may succeed later: the server was away or busy, not unwilling. */
+/** True if the same request may succeed later: the server was unreachable or busy. */
 export function isTransient(error: unknown): boolean {
   return error instanceof TypeError || (error instanceof Problem && BUSY.includes(error.status));
 }

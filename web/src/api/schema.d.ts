@@ -509,7 +509,7 @@ export interface paths {
         post?: never;
         /**
          * Delete Run
-         * @description Into the bin, from which it can be restored until `purge_at`.
+         * @description Move a run to the bin, from which it can be restored until `purge_at`.
          */
         delete: operations["delete_run_api_v1_runs__run_id__delete"];
         options?: never;
@@ -653,7 +653,7 @@ export interface paths {
         put?: never;
         /**
          * Extend Run
-         * @description More generations for a finished run, which ends as if it had had them from the start.
+         * @description Add generations to a finished run; it ends as if it had had them from the start.
          */
         post: operations["extend_run_api_v1_runs__run_id__extend_post"];
         delete?: never;
@@ -673,9 +673,9 @@ export interface paths {
         put?: never;
         /**
          * Fork Run
-         * @description A new run that begins from creatures of this one, its spec changed by a merge patch.
+         * @description Create a run that starts from creatures of this one; a merge patch changes its spec.
          *
-         *     The same key with the same request is the same run, though others may live there by then.
+         *     The same key with the same request gives the same run, even if the archive has changed.
          */
         post: operations["fork_run_api_v1_runs__run_id__fork_post"];
         delete?: never;
@@ -756,7 +756,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Run
-         * @description Out of the bin, as it was.
+         * @description Restore a run from the bin.
          */
         post: operations["restore_run_api_v1_runs__run_id__restore_post"];
         delete?: never;
@@ -875,12 +875,12 @@ export interface paths {
         put?: never;
         /**
          * Sign In
-         * @description Keep a token in a cookie of this site; 401 where it is wrong.
+         * @description Keep a token in a cookie of this site, which scripts cannot read; 401 if it is wrong.
          */
         post: operations["sign_in_api_v1_session_post"];
         /**
          * Sign Out
-         * @description Forget the cookie; the token stays good.
+         * @description Forget the cookie. The token stays valid.
          */
         delete: operations["sign_out_api_v1_session_delete"];
         options?: never;
@@ -1268,7 +1268,7 @@ export interface paths {
         post?: never;
         /**
          * Delete Sweep
-         * @description Every run into the bin; `left` tells of those that wait or are at work.
+         * @description Every run into the bin; `skipped` tells of those that wait or are at work.
          */
         delete: operations["delete_sweep_api_v1_sweeps__sweep_id__delete"];
         options?: never;
@@ -1291,7 +1291,7 @@ export interface paths {
         put?: never;
         /**
          * Cancel Sweep
-         * @description Cancel every run that has not ended; `left` tells of those that have.
+         * @description Cancel every run that has not ended; `skipped` tells of those that have.
          */
         post: operations["cancel_sweep_api_v1_sweeps__sweep_id__cancel_post"];
         delete?: never;
@@ -1331,7 +1331,7 @@ export interface paths {
         put?: never;
         /**
          * Pause Sweep
-         * @description Pause every run that can be paused; `left` tells of those that cannot.
+         * @description Pause every run that can be paused; `skipped` tells of those that cannot.
          */
         post: operations["pause_sweep_api_v1_sweeps__sweep_id__pause_post"];
         delete?: never;
@@ -1371,7 +1371,7 @@ export interface paths {
         put?: never;
         /**
          * Resume Sweep
-         * @description Resume every run that is paused; `left` tells of the others.
+         * @description Resume every run that is paused; `skipped` tells of the others.
          */
         post: operations["resume_sweep_api_v1_sweeps__sweep_id__resume_post"];
         delete?: never;
@@ -1432,13 +1432,13 @@ export interface paths {
         };
         /**
          * List Tokens
-         * @description All of them, those that were revoked too, newest first; never a secret.
+         * @description Return all tokens, revoked ones too, newest first, without their secrets.
          */
         get: operations["list_tokens_api_v1_tokens_get"];
         put?: never;
         /**
          * Create Token
-         * @description Make a token. Its secret is in this answer and nowhere else.
+         * @description Create a token. Only this answer contains its secret.
          */
         post: operations["create_token_api_v1_tokens_post"];
         delete?: never;
@@ -1456,7 +1456,7 @@ export interface paths {
         };
         /**
          * Read Current
-         * @description Who asks, as the server has it.
+         * @description Return the principal of the request.
          */
         get: operations["read_current_api_v1_tokens_current_get"];
         put?: never;
@@ -1557,15 +1557,6 @@ export interface components {
             /** Recorded */
             recorded: number;
         };
-        /** AheadRead */
-        AheadRead: {
-            /** Free */
-            free: number;
-            /** Waiting */
-            waiting: number;
-            /** Workers */
-            workers: number;
-        };
         /** Ancestors */
         Ancestors: {
             /** Items */
@@ -1595,10 +1586,6 @@ export interface components {
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
-            /** Measures */
-            measures: {
-                [key: string]: (number | null)[];
-            };
             /** Fitness */
             fitness: number[];
             /** Generation */
@@ -1608,6 +1595,10 @@ export interface components {
              * @enum {string}
              */
             kind: "grid" | "cvt";
+            /** Measures */
+            measures: {
+                [key: string]: (number | null)[];
+            };
             /** Recorded */
             recorded: components["schemas"]["Measure"][];
         };
@@ -1628,20 +1619,23 @@ export interface components {
             scale: "log10" | "linear";
         };
         /**
-         * Band
-         * @description A spread at each generation, as columns.
+         * Beginning
+         * @description The creatures that a fork begins from: one of these.
          */
-        Band: {
-            /** High */
-            high: (number | null)[];
-            /** Low */
-            low: (number | null)[];
-            /** Max */
-            max: (number | null)[];
-            /** Median */
-            median: (number | null)[];
-            /** Min */
-            min: (number | null)[];
+        Beginning: {
+            /** Archive */
+            archive?: true | null;
+            /** Cells */
+            cells?: number[] | null;
+            /** Creatures */
+            creatures?: string[] | null;
+            /** Region */
+            region?: {
+                [key: string]: [
+                    number,
+                    number
+                ];
+            } | null;
         };
         /**
          * BodyRead
@@ -1660,55 +1654,6 @@ export interface components {
             whole: boolean;
         };
         /**
-         * CallerRead
-         * @description Who asks, and what they may.
-         */
-        CallerRead: {
-            /** Expires At */
-            expires_at: string | null;
-            /** Name */
-            name: string;
-            /** Needed */
-            needed: boolean;
-            /**
-             * Scope
-             * @enum {string}
-             */
-            scope: "read" | "write" | "admin";
-            /** Token */
-            token: string | null;
-        };
-        /**
-         * Carried
-         * @description A run as it is named beside a worker or in the queue.
-         */
-        Carried: {
-            /** Attempt */
-            attempt: number;
-            /** Demonstration */
-            demonstration: boolean;
-            /** Experiment */
-            experiment: string;
-            /** Generation */
-            generation: number;
-            /** Generations */
-            generations: number;
-            /**
-             * Id
-             * Format: uuid
-             */
-            id: string;
-            /** Name */
-            name: string | null;
-            /** Progress */
-            progress: number;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-        };
-        /**
          * CaseRead
          * @description One combination of the grid's values.
          */
@@ -1725,8 +1670,8 @@ export interface components {
          * @description What the runs of one case say together; columns have one entry per generation.
          */
         CaseSummary: {
-            best: components["schemas"]["Band"];
-            coverage: components["schemas"]["Band"];
+            best: components["schemas"]["Quantiles"];
+            coverage: components["schemas"]["Quantiles"];
             /** Finals */
             finals: {
                 [key: string]: components["schemas"]["Final"];
@@ -1734,8 +1679,8 @@ export interface components {
             /** Generation */
             generation: number[];
             /** Members */
-            members: components["schemas"]["Member"][];
-            qd_score: components["schemas"]["Band"];
+            members: components["schemas"]["SweepRun"][];
+            qd_score: components["schemas"]["Quantiles"];
             /** Runs */
             runs: number[];
             /** Values */
@@ -1807,28 +1752,6 @@ export interface components {
             /** Width */
             width: number;
         };
-        /**
-         * EntryRead
-         * @description What happened to a run.
-         */
-        EntryRead: {
-            /**
-             * At
-             * Format: date-time
-             */
-            at: string;
-            /** Attempt */
-            attempt: number;
-            /** Id */
-            id: number;
-            /**
-             * Level
-             * @enum {string}
-             */
-            level: "info" | "warning" | "error";
-            /** Text */
-            text: string;
-        };
         /** EstimateRead */
         EstimateRead: {
             /** Cell Steps */
@@ -1840,10 +1763,10 @@ export interface components {
             memory_bytes: number;
             /** Memory Limit Bytes */
             memory_limit_bytes: number;
-            pace: components["schemas"]["PaceRead"] | null;
-            queue: components["schemas"]["AheadRead"];
+            queue: components["schemas"]["QueueAhead"];
             /** Seconds */
             seconds: number | null;
+            speed: components["schemas"]["MeasuredSpeed"] | null;
         };
         /** ExperimentRead */
         ExperimentRead: {
@@ -1859,25 +1782,12 @@ export interface components {
             title: string;
         };
         /**
-         * Measure
-         * @description What is recorded of every elite, and where an axis of it begins and ends by default.
+         * Extension
+         * @description How many generations more.
          */
-        Measure: {
-            /** High */
-            high: number | null;
-            /** Low */
-            low: number | null;
-            /** Name */
-            name: string;
-            /**
-             * Scale
-             * @enum {string}
-             */
-            scale: "log10" | "linear";
-            /** Title */
-            title: string;
-            /** Unit */
-            unit: string;
+        Extension: {
+            /** Generations */
+            generations: number;
         };
         /** FieldError */
         FieldError: {
@@ -1906,10 +1816,28 @@ export interface components {
             values: (number | null)[];
         };
         /**
-         * Forked
+         * Fork
+         * @description What a new run takes of another, and what is different.
+         */
+        Fork: {
+            from: components["schemas"]["Beginning"];
+            /** Generation */
+            generation?: number | null;
+            /** Name */
+            name?: string | null;
+            /**
+             * Spec
+             * @default {}
+             */
+            spec: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * ForkedFrom
          * @description Where a fork began.
          */
-        Forked: {
+        ForkedFrom: {
             /** Creatures */
             creatures: number;
             /** Run */
@@ -1939,54 +1867,78 @@ export interface components {
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
-            /** Measures */
-            measures: {
-                [key: string]: (number | null)[];
-            };
             /** Fitness */
             fitness: number[];
             /** Generation */
             generation: number;
-        };
-        /**
-         * Left
-         * @description A run that was left as it is.
-         */
-        Left: {
-            /** Reason */
-            reason: string;
-            /**
-             * Run
-             * Format: uuid
-             */
-            run: string;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-        };
-        /**
-         * Line
-         * @description The curves of one run; None beyond the last generation that it has recorded.
-         */
-        Line: {
-            /** Best */
-            best: (number | null)[];
-            /** Coverage */
-            coverage: (number | null)[];
-            /** Qd Score */
-            qd_score: (number | null)[];
-            /**
-             * Run
-             * Format: uuid
-             */
-            run: string;
+            /** Measures */
+            measures: {
+                [key: string]: (number | null)[];
+            };
         };
         /** Log */
         Log: {
             /** Entries */
-            entries: components["schemas"]["EntryRead"][];
+            entries: components["schemas"]["LogEntryRead"][];
+        };
+        /**
+         * LogEntryRead
+         * @description What happened to a run.
+         */
+        LogEntryRead: {
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /** Attempt */
+            attempt: number;
+            /** Id */
+            id: number;
+            /**
+             * Level
+             * @enum {string}
+             */
+            level: "info" | "warning" | "error";
+            /** Text */
+            text: string;
+        };
+        /**
+         * Measure
+         * @description What is recorded of every elite, and where an axis of it begins and ends by default.
+         */
+        Measure: {
+            /** High */
+            high: number | null;
+            /** Low */
+            low: number | null;
+            /** Name */
+            name: string;
+            /**
+             * Scale
+             * @enum {string}
+             */
+            scale: "log10" | "linear";
+            /** Title */
+            title: string;
+            /** Unit */
+            unit: string;
+        };
+        /**
+         * MeasuredSpeed
+         * @description How fast earlier runs of the same kind were, on a device that there is.
+         */
+        MeasuredSpeed: {
+            /** Cell Steps Per Second */
+            cell_steps_per_second: number;
+            /** Device */
+            device: string;
+            /** High */
+            high: number;
+            /** Low */
+            low: number;
+            /** Runs */
+            runs: number;
         };
         /**
          * Measurement
@@ -2004,44 +1956,6 @@ export interface components {
             fitness: components["schemas"]["Again"];
             /** Recorded Device */
             recorded_device: string;
-        };
-        /**
-         * Member
-         * @description A run as its sweep tells of it.
-         */
-        Member: {
-            /** Generation */
-            generation: number;
-            /** Generations */
-            generations: number;
-            /**
-             * Run
-             * Format: uuid
-             */
-            run: string;
-            /** Seed */
-            seed: number | null;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-        };
-        /**
-         * PaceRead
-         * @description How fast earlier runs of the same kind were, on a device that there is.
-         */
-        PaceRead: {
-            /** Cell Steps Per Second */
-            cell_steps_per_second: number;
-            /** Device */
-            device: string;
-            /** High */
-            high: number;
-            /** Low */
-            low: number;
-            /** Runs */
-            runs: number;
         };
         /** PictureRead */
         PictureRead: {
@@ -2085,6 +1999,25 @@ export interface components {
             title: string;
         };
         /**
+         * PrincipalRead
+         * @description Who sends the request, and with which scope.
+         */
+        PrincipalRead: {
+            /** Expires At */
+            expires_at: string | null;
+            /** Name */
+            name: string;
+            /** Needed */
+            needed: boolean;
+            /**
+             * Scope
+             * @enum {string}
+             */
+            scope: "read" | "write" | "admin";
+            /** Token */
+            token: string | null;
+        };
+        /**
          * Problem
          * @description RFC 9457.
          */
@@ -2103,12 +2036,73 @@ export interface components {
              */
             type: string;
         };
+        /**
+         * Quantiles
+         * @description A spread at each generation, as columns.
+         */
+        Quantiles: {
+            /** High */
+            high: (number | null)[];
+            /** Low */
+            low: (number | null)[];
+            /** Max */
+            max: (number | null)[];
+            /** Median */
+            median: (number | null)[];
+            /** Min */
+            min: (number | null)[];
+        };
+        /** QueueAhead */
+        QueueAhead: {
+            /** Idle Workers */
+            idle_workers: number;
+            /** Runs Ahead */
+            runs_ahead: number;
+            /** Workers */
+            workers: number;
+        };
         /** QueueRead */
         QueueRead: {
             /** Items */
-            items: components["schemas"]["Waiting"][];
+            items: components["schemas"]["QueuedRun"][];
             /** Total */
             total: number;
+        };
+        /** QueuedRun */
+        QueuedRun: {
+            /** Attempt */
+            attempt: number;
+            /** Demonstration */
+            demonstration: boolean;
+            /** Experiment */
+            experiment: string;
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Memory Bytes */
+            memory_bytes: number | null;
+            /** Name */
+            name: string | null;
+            /** Progress */
+            progress: number;
+            /**
+             * Queued At
+             * Format: date-time
+             */
+            queued_at: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+            /** Waiting Reason */
+            waiting_reason: string;
         };
         /** Readiness */
         Readiness: {
@@ -2175,6 +2169,68 @@ export interface components {
                 [key: string]: unknown;
             } | null;
         };
+        /**
+         * RunBrief
+         * @description A run as it is named beside a worker or in the queue.
+         */
+        RunBrief: {
+            /** Attempt */
+            attempt: number;
+            /** Demonstration */
+            demonstration: boolean;
+            /** Experiment */
+            experiment: string;
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Name */
+            name: string | null;
+            /** Progress */
+            progress: number;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /**
+         * RunChange
+         * @description What people may say of a run; what is left out stays as it is.
+         */
+        RunChange: {
+            /** Name */
+            name?: string | null;
+            /** Note */
+            note?: string | null;
+            /**
+             * Tags
+             * @default []
+             */
+            tags: string[];
+        };
+        /**
+         * RunCurves
+         * @description The curves of one run; None beyond the last generation that it has recorded.
+         */
+        RunCurves: {
+            /** Best */
+            best: (number | null)[];
+            /** Coverage */
+            coverage: (number | null)[];
+            /** Qd Score */
+            qd_score: (number | null)[];
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+        };
         /** RunPage */
         RunPage: {
             /** Items */
@@ -2215,7 +2271,7 @@ export interface components {
             experiment: string;
             /** Finished At */
             finished_at: string | null;
-            forked_from: components["schemas"]["Forked"] | null;
+            forked_from: components["schemas"]["ForkedFrom"] | null;
             /** Generation */
             generation: number;
             /** Generations */
@@ -2242,6 +2298,8 @@ export interface components {
              * Format: date-time
              */
             queued_at: string;
+            /** Requested State */
+            requested_state: ("paused" | "cancelled") | null;
             /** Sparkline */
             sparkline: number[];
             /** Spec */
@@ -2265,12 +2323,38 @@ export interface components {
             tags: string[];
             /** Version */
             version: string;
-            /** Waiting */
-            waiting: string | null;
+            /** Waiting Reason */
+            waiting_reason: string | null;
             /** Warning */
             warning: string | null;
-            /** Wish */
-            wish: ("pause" | "cancel") | null;
+        };
+        /**
+         * ShareAsked
+         * @description What is to be published; what is left out is taken from the creature's file.
+         */
+        ShareAsked: {
+            /** Creature */
+            creature?: string | null;
+            /**
+             * Credit
+             * @default []
+             */
+            credit: string[];
+            /** Expires At */
+            expires_at?: string | null;
+            /** Generation */
+            generation?: number | null;
+            /** Licence */
+            licence?: string | null;
+            /**
+             * Listed
+             * @default false
+             */
+            listed: boolean;
+            /** Run */
+            run?: string | null;
+            /** Title */
+            title?: string | null;
         };
         /** SharePage */
         SharePage: {
@@ -2319,6 +2403,29 @@ export interface components {
             /** Url */
             url: string;
         };
+        /** SignIn */
+        SignIn: {
+            /** Token */
+            token: string;
+        };
+        /**
+         * SkippedRun
+         * @description A run that was left as it is.
+         */
+        SkippedRun: {
+            /** Reason */
+            reason: string;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
         /**
          * Species
          * @description Columns, one entry for each generation that tells its species, those that live.
@@ -2330,6 +2437,14 @@ export interface components {
             members: number[][];
             /** Number */
             number: number[][];
+        };
+        /**
+         * SweepChange
+         * @description What a sweep is called; without anything in it, it has no name.
+         */
+        SweepChange: {
+            /** Name */
+            name: string | null;
         };
         /** SweepChanged */
         SweepChanged: {
@@ -2355,8 +2470,6 @@ export interface components {
              * Format: uuid
              */
             id: string;
-            /** Left */
-            left: components["schemas"]["Left"][];
             /** Name */
             name: string | null;
             /** Owner */
@@ -2365,12 +2478,14 @@ export interface components {
             progress: number;
             /** Seeds */
             seeds: number[];
+            /** Skipped */
+            skipped: components["schemas"]["SkippedRun"][];
             /** Spec */
             spec: {
                 [key: string]: unknown;
             };
-            /** Standing */
-            standing: {
+            /** Status Counts */
+            status_counts: {
                 [key: string]: number;
             };
             /** Total */
@@ -2380,8 +2495,8 @@ export interface components {
         SweepCurves: {
             /** Generation */
             generation: number[];
-            /** Lines */
-            lines: components["schemas"]["Line"][];
+            /** Runs */
+            runs: components["schemas"]["RunCurves"][];
         };
         /** SweepEstimate */
         SweepEstimate: {
@@ -2395,12 +2510,12 @@ export interface components {
             memory_bytes: number;
             /** Memory Limit Bytes */
             memory_limit_bytes: number;
-            pace: components["schemas"]["PaceRead"] | null;
-            queue: components["schemas"]["AheadRead"];
+            queue: components["schemas"]["QueueAhead"];
             /** Runs */
             runs: number;
             /** Seconds */
             seconds: number | null;
+            speed: components["schemas"]["MeasuredSpeed"] | null;
         };
         /** SweepPage */
         SweepPage: {
@@ -2443,12 +2558,58 @@ export interface components {
             spec: {
                 [key: string]: unknown;
             };
-            /** Standing */
-            standing: {
+            /** Status Counts */
+            status_counts: {
                 [key: string]: number;
             };
             /** Total */
             total: number;
+        };
+        /**
+         * SweepRun
+         * @description A run as its sweep tells of it.
+         */
+        SweepRun: {
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /** Seed */
+            seed: number | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /**
+         * SweepSent
+         * @description One request for many runs: each case of the grid with each seed.
+         */
+        SweepSent: {
+            /**
+             * Grid
+             * @default {}
+             */
+            grid: {
+                [key: string]: unknown[];
+            };
+            /** Name */
+            name?: string | null;
+            /**
+             * Seeds
+             * @default 1
+             */
+            seeds: number | number[];
+            /** Spec */
+            spec: {
+                [key: string]: unknown;
+            };
         };
         /** SweepSummary */
         SweepSummary: {
@@ -2483,10 +2644,23 @@ export interface components {
             /** Width */
             width: number;
         };
-        /** TokenMade */
-        TokenMade: {
-            /** Beginning */
-            beginning: string;
+        /**
+         * TokenCreate
+         * @description Name, scope and end of a new token.
+         */
+        TokenCreate: {
+            /** Expires At */
+            expires_at?: string | null;
+            /** Name */
+            name: string;
+            /**
+             * Scope
+             * @enum {string}
+             */
+            scope: "read" | "write" | "admin";
+        };
+        /** TokenCreated */
+        TokenCreated: {
             /**
              * Created At
              * Format: date-time
@@ -2503,6 +2677,8 @@ export interface components {
             last_used_at: string | null;
             /** Name */
             name: string;
+            /** Prefix */
+            prefix: string;
             /** Revoked At */
             revoked_at: string | null;
             /**
@@ -2515,11 +2691,9 @@ export interface components {
         };
         /**
          * TokenRead
-         * @description A token without its secret, which nobody has but its holder.
+         * @description A token without its secret.
          */
         TokenRead: {
-            /** Beginning */
-            beginning: string;
             /**
              * Created At
              * Format: date-time
@@ -2536,6 +2710,8 @@ export interface components {
             last_used_at: string | null;
             /** Name */
             name: string;
+            /** Prefix */
+            prefix: string;
             /** Revoked At */
             revoked_at: string | null;
             /**
@@ -2554,45 +2730,9 @@ export interface components {
             /** Reason */
             reason: string;
         };
-        /** Waiting */
-        Waiting: {
-            /** Attempt */
-            attempt: number;
-            /** Demonstration */
-            demonstration: boolean;
-            /** Experiment */
-            experiment: string;
-            /** Generation */
-            generation: number;
-            /** Generations */
-            generations: number;
-            /**
-             * Id
-             * Format: uuid
-             */
-            id: string;
-            /** Memory Bytes */
-            memory_bytes: number | null;
-            /** Name */
-            name: string | null;
-            /** Progress */
-            progress: number;
-            /**
-             * Queued At
-             * Format: date-time
-             */
-            queued_at: string;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-            /** Waiting */
-            waiting: string;
-        };
         /** WorkerRead */
         WorkerRead: {
-            carries: components["schemas"]["Carried"] | null;
+            current_run: components["schemas"]["RunBrief"] | null;
             /** Device */
             device: string;
             /**
@@ -3502,7 +3642,9 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": Record<string, never>;
+                "application/json": {
+                    [key: string]: unknown;
+                };
             };
         };
         responses: {
@@ -3535,7 +3677,9 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": Record<string, never>;
+                "application/json": {
+                    [key: string]: unknown;
+                };
             };
         };
         responses: {
@@ -3632,17 +3776,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Name */
-                    name?: string | null;
-                    /** Note */
-                    note?: string | null;
-                    /**
-                     * Tags
-                     * @default []
-                     */
-                    tags?: string[];
-                };
+                "application/json": components["schemas"]["RunChange"];
             };
         };
         responses: {
@@ -3876,10 +4010,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Generations */
-                    generations: number;
-                };
+                "application/json": components["schemas"]["Extension"];
             };
         };
         responses: {
@@ -3916,38 +4047,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /**
-                     * Beginning
-                     * @description The creatures that a fork begins from: one of these.
-                     */
-                    from: {
-                        /** Archive */
-                        archive?: true | null;
-                        /** Cells */
-                        cells?: number[] | null;
-                        /** Creatures */
-                        creatures?: string[] | null;
-                        /** Region */
-                        region?: {
-                            [key: string]: [
-                                number,
-                                number
-                            ];
-                        } | null;
-                    };
-                    /** Generation */
-                    generation?: number | null;
-                    /** Name */
-                    name?: string | null;
-                    /**
-                     * Spec
-                     * @default {}
-                     */
-                    spec?: {
-                        [key: string]: unknown;
-                    };
-                };
+                "application/json": components["schemas"]["Fork"];
             };
         };
         responses: {
@@ -4266,10 +4366,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Token */
-                    token: string;
-                };
+                "application/json": components["schemas"]["SignIn"];
             };
         };
         responses: {
@@ -4279,7 +4376,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CallerRead"];
+                    "application/json": components["schemas"]["PrincipalRead"];
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -4361,30 +4458,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Creature */
-                    creature?: string | null;
-                    /**
-                     * Credit
-                     * @default []
-                     */
-                    credit?: string[];
-                    /** Expires At */
-                    expires_at?: string | null;
-                    /** Generation */
-                    generation?: number | null;
-                    /** Licence */
-                    licence?: string | null;
-                    /**
-                     * Listed
-                     * @default false
-                     */
-                    listed?: boolean;
-                    /** Run */
-                    run?: string | null;
-                    /** Title */
-                    title?: string | null;
-                };
+                "application/json": components["schemas"]["ShareAsked"];
             };
         };
         responses: {
@@ -5013,26 +5087,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /**
-                     * Grid
-                     * @default {}
-                     */
-                    grid?: {
-                        [key: string]: unknown[];
-                    };
-                    /** Name */
-                    name?: string | null;
-                    /**
-                     * Seeds
-                     * @default 1
-                     */
-                    seeds?: number | number[];
-                    /** Spec */
-                    spec: {
-                        [key: string]: unknown;
-                    };
-                };
+                "application/json": components["schemas"]["SweepSent"];
             };
         };
         responses: {
@@ -5065,26 +5120,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /**
-                     * Grid
-                     * @default {}
-                     */
-                    grid?: {
-                        [key: string]: unknown[];
-                    };
-                    /** Name */
-                    name?: string | null;
-                    /**
-                     * Seeds
-                     * @default 1
-                     */
-                    seeds?: number | number[];
-                    /** Spec */
-                    spec: {
-                        [key: string]: unknown;
-                    };
-                };
+                "application/json": components["schemas"]["SweepSent"];
             };
         };
         responses: {
@@ -5181,10 +5217,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Name */
-                    name: string | null;
-                };
+                "application/json": components["schemas"]["SweepChange"];
             };
         };
         responses: {
@@ -5465,17 +5498,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": {
-                    /** Expires At */
-                    expires_at?: string | null;
-                    /** Name */
-                    name: string;
-                    /**
-                     * Scope
-                     * @enum {string}
-                     */
-                    scope: "read" | "write" | "admin";
-                };
+                "application/json": components["schemas"]["TokenCreate"];
             };
         };
         responses: {
@@ -5485,7 +5508,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["TokenMade"];
+                    "application/json": components["schemas"]["TokenCreated"];
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -5514,7 +5537,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CallerRead"];
+                    "application/json": components["schemas"]["PrincipalRead"];
                 };
             };
             /** @description A problem (RFC 9457) */

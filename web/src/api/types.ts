@@ -21,13 +21,13 @@ export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: Swe
 /** With the name of the token it was made with, null without one. */
 export type Owned = { owner: string | null };
 export type SweepPage = With<Wire["SweepPage"], { items: Sweep[] }>;
-export type SweepChanged = Sweep & Pick<Wire["SweepChanged"], "changed" | "left">;
+export type SweepChanged = Sweep & Pick<Wire["SweepChanged"], "changed" | "skipped">;
 export type SweepCase = { values: CaseValues; runs: string[] };
 export type SweepSummary = With<Wire["SweepSummary"], { cases: CaseSummary[] }>;
 export type CaseSummary = With<Wire["CaseSummary"], { values: CaseValues }>;
 export type SweepCurves = Wire["SweepCurves"];
 export type SweepEstimate = Wire["SweepEstimate"];
-export type Member = Wire["Member"];
+export type Member = Wire["SweepRun"];
 export type Spread = Omit<Wire["Final"], "values">;
 /** What a case has at the fields of the grid, by their paths. */
 export type CaseValues = { [path: string]: Json };
@@ -64,11 +64,11 @@ export type ArchiveColumns = Pick<
   "cell" | "fitness" | "descriptors" | "elite_generation" | "creature"
 >;
 export type Generations = Wire["Curves"];
-export type LogEntry = Wire["EntryRead"];
+export type LogEntry = Wire["LogEntryRead"];
 export type SpeciesHistory = Wire["Species"];
-export type Principal = Wire["CallerRead"];
+export type Principal = Wire["PrincipalRead"];
 export type Token = Wire["TokenRead"];
-export type CreatedToken = Wire["TokenMade"];
+export type CreatedToken = Wire["TokenCreated"];
 export type TokenCreate =
   operations["create_token_api_v1_tokens_post"]["requestBody"]["content"]["application/json"];
 export type TokenScope = Token["scope"];

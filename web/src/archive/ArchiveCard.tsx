@@ -3,7 +3,7 @@
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import { pageUrl } from "../api/address";
 import type { Archive, Run } from "../api/types";
-import type { Elite, Elites } from "../store/elites";
+import type { Elites } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
 import { ArchiveMap, type HoveredElite } from "./ArchiveMap";
 import { AxisSelect } from "./AxisSelect";
@@ -11,13 +11,18 @@ import { ColourSelect } from "./ColourSelect";
 import { Slices } from "./Slices";
 import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
+import { Segments } from "../ui/Select";
 import { Guide } from "../ui/Guide";
 import { ForkLink } from "../ui/ForkLink";
 import { SelectToggle, SelectionBar, useSelection } from "./SelectionBar";
 import { bestOf, stepsOf, useGuide } from "./guide";
 import { ElitePreview } from "./ElitePreview";
-import { setSlice, useArchiveView } from "./archiveView";
+import { type ArchiveView, setSlice, useArchiveView } from "./archiveView";
+import type { ArchiveViewProps } from "./binFocus";
+import type { Projection } from "./projection";
+import type { Selection } from "./selection";
 import { ArchiveGallery } from "./ArchiveGallery";
+import { text } from "./text";
 import "./map.css";
 import "./archive.css";
 
@@ -35,56 +40,20 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const guide = useGuide();
   const [about, setAbout] = useState<string | null>(null);
   const gallery = query.get("view") === "gallery";
-  const cell = query.get("cell");
-  const choosing = useSelection(query, view.elites);
-  const projection = gallery ? view.grid : view.map;
-  const common = {
-    axes: view.axes,
-    colouring: view.colouring,
-    marked: cell === null ? null : Number(cell),
-    onMark: useCallback((marked: number) => setQuery({ cell: String(marked) }), []),
-    ...choosing,
-    projection,
-    actions: ({ creature }: Elite, cell: number) => (
-      <>
-        <ForkLink run={run.id} creature={creature} title="A new run that begins from this creature" inline />
-        <SelectToggle {...{ cell, projection }} {...choosing} />
-      </>
-    ),
-    onOpen: (chosen: number) => {
-      setQuery({ cell: String(chosen) });
-      navigate(pageUrl(`/creatures/${view.elites.get(chosen)!.creature}?run=${run.id}`));
-    },
-  };
-  const names: [string, string] = [view.axes[0].name, view.axes[1].name];
+  const selection = useSelection(query, view.elites);
+  const props = useViewProps(run, view, gallery ? view.grid : view.map, selection, query);
+  const names = `${view.axes[0].name} ${view.axes[1].name}`;
   return (
     <div data-guide={about}>
-      <div class="card-head archive-head">
-        <h2 id="archive-title">Archive</h2>
-        <span class="quiet">{count(view.elites.size)} elites</span>
-        <span class="spring" />
-        <button class="plain small-button" onClick={guide.begin}>
-          What is this?
-        </button>
-        <ViewSwitch gallery={gallery} />
-      </div>
-      <div class="archive-choices">
-        <AxisSelect archive={archive} names={names} onChoose={([x, y]) => setQuery({ x, y })} />
-        <ColourSelect
-          archive={archive}
-          colour={view.colour}
-          palette={view.palette}
-          onColour={(colour) => setQuery({ colour: colour === "fitness" ? null : colour })}
-          onPalette={(palette) => setQuery({ palette: palette === "viridis" ? null : palette })}
-        />
-      </div>
+      <Head count={view.elites.size} gallery={gallery} onGuide={guide.begin} />
+      <Choices archive={archive} view={view} />
       <Slices slices={view.slices} onChange={setSlice} />
       {gallery ? (
-        <ArchiveGallery key={names.join(" ")} {...common} query={query} />
+        <ArchiveGallery key={names} {...props} query={query} />
       ) : (
         <ArchiveMap
-          key={names.join(" ")}
-          {...common}
+          key={names}
+          {...props}
           elites={view.elites}
           onLook={setLooking}
           inset={looking && <ElitePreview sha={looking.elite.creature} />}
@@ -92,7 +61,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       )}
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
-      <SelectionBar {...{ run, at }} elites={view.elites} {...choosing} />
+      <SelectionBar {...{ run, at }} elites={view.elites} {...selection} />
       {guide.open && (
         <Guide
           steps={stepsOf(run, archive, view)}
@@ -100,7 +69,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
           onStep={({ about }) => {
             setAbout(about);
             const best = bestOf(view);
-            if (about === "legend" && best && cell === null) common.onMark(best.cell);
+            if (about === "legend" && best && props.marked === null) props.onMark(best.cell);
           }}
           onEnd={() => {
             setAbout(null);
@@ -112,12 +81,83 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   );
 }
 
+/** What the map and the gallery are given alike. */
+function useViewProps(
+  run: Run,
+  view: ArchiveView,
+  projection: Projection,
+  selection: Selection,
+  query: URLSearchParams,
+): ArchiveViewProps {
+  const cell = query.get("cell");
+  const onMark = useCallback((marked: number) => setQuery({ cell: String(marked) }), []);
+  return {
+    axes: view.axes,
+    colouring: view.colouring,
+    marked: cell === null ? null : Number(cell),
+    onMark,
+    ...selection,
+    projection,
+    actions: ({ creature }, cell) => (
+      <>
+        <ForkLink run={run.id} creature={creature} title={text.forkCreature} inline />
+        <SelectToggle {...{ cell, projection }} {...selection} />
+      </>
+    ),
+    onOpen: (chosen) => {
+      setQuery({ cell: String(chosen) });
+      navigate(pageUrl(`/creatures/${view.elites.get(chosen)!.creature}?run=${run.id}`));
+    },
+  };
+}
+
+function Head({ count: elites, gallery, onGuide }: { count: number; gallery: boolean; onGuide: () => void }) {
+  return (
+    <div class="card-head archive-head">
+      <h2 id="archive-title">{text.archive}</h2>
+      <span class="quiet">{text.elites(count(elites))}</span>
+      <span class="spring" />
+      <button class="plain small-button" onClick={onGuide}>
+        {text.explain}
+      </button>
+      <Segments
+        label={text.view}
+        choices={VIEWS}
+        value={gallery ? "gallery" : "map"}
+        onChoose={(view) => setQuery({ view: view === "map" ? null : view })}
+      />
+    </div>
+  );
+}
+
+const VIEWS = [
+  ["map", text.map],
+  ["gallery", text.gallery],
+] as const;
+
+function Choices({ archive, view: { axes, colour, palette } }: { archive: Archive; view: ArchiveView }) {
+  return (
+    <div class="archive-choices">
+      <AxisSelect
+        archive={archive}
+        names={[axes[0].name, axes[1].name]}
+        onChoose={([x, y]) => setQuery({ x, y })}
+      />
+      <ColourSelect
+        {...{ archive, colour, palette }}
+        onColour={(colour) => setQuery({ colour: colour === "fitness" ? null : colour })}
+        onPalette={(palette) => setQuery({ palette: palette === "viridis" ? null : palette })}
+      />
+    </div>
+  );
+}
+
 const SETTLED_MS = 300;
 
 /** The generation that is shown, null for the newest; the address follows once it rests. */
 function useMoment(query: URLSearchParams, last: number) {
-  const text = query.get("at");
-  const asked = text !== null && /^\d+$/.test(text) ? Number(text) : null;
+  const given = query.get("at");
+  const asked = given !== null && /^\d+$/.test(given) ? Number(given) : null;
   const [at, setAt] = useState(asked);
   const written = useRef(asked);
   useEffect(() => {
@@ -135,25 +175,4 @@ function useMoment(query: URLSearchParams, last: number) {
   }, [at]);
   // After a rewind there are fewer generations than were asked for.
   return [at !== null && at >= last ? null : at, setAt] as const;
-}
-
-function ViewSwitch({ gallery }: { gallery: boolean }) {
-  const views = [
-    ["Map", null],
-    ["Gallery", "gallery"],
-  ] as const;
-  return (
-    <div class="choices" role="group" aria-label="How the archive is shown">
-      {views.map(([title, view]) => (
-        <button
-          key={title}
-          type="button"
-          aria-pressed={gallery === (view !== null)}
-          onClick={() => setQuery({ view })}
-        >
-          {title}
-        </button>
-      ))}
-    </div>
-  );
 }

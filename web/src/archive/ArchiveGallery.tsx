@@ -1,28 +1,12 @@
 /** The gallery, with the motions of what it shows. */
 
-import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
-import type { Elite } from "../store/elites";
 import { useMotions } from "../store/motions";
 import { setQuery } from "../store/router";
-import type { MapAxis } from "./axes";
-import type { Selection } from "./selection";
-import type { Colouring } from "./colouring";
-import type { Projection } from "./projection";
+import type { ArchiveViewProps } from "./binFocus";
 import { Gallery } from "./Gallery";
 
-interface Props extends Selection {
-  axes: readonly [MapAxis, MapAxis];
-  projection: Projection;
-  colouring: Colouring;
-  marked: number | null;
-  onMark: (cell: number) => void;
-  onOpen: (cell: number) => void;
-  actions: (elite: Elite, cell: number) => ComponentChildren;
-  query: URLSearchParams;
-}
-
-export function ArchiveGallery({ query, ...props }: Props) {
+export function ArchiveGallery({ query, ...props }: ArchiveViewProps & { query: URLSearchParams }) {
   const [seen, setSeen] = useState<string[]>([]);
   const [side, setSide] = useState(() => Number(query.get("tile")) || null);
   const motions = useMotions(seen);

@@ -1,45 +1,26 @@
 /** The archive as a map: one cell an elite, to be looked at, pointed at and opened. */
 
 import type { ComponentChildren } from "preact";
-import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
 import type { Elite, Elites } from "../store/elites";
 import { HorizontalLabels, VerticalLabels } from "./AxisLabels";
-import type { MapAxis } from "./axes";
-import {
-  type Box,
-  type Selection,
-  isAdditive,
-  binsOf,
-  binsWithin,
-  union,
-  cellsIn,
-  selectByKey,
-  keyHelp,
-  toggle,
-} from "./selection";
-import type { Colouring } from "./colouring";
+import { type ArchiveViewProps, useBinFocus } from "./binFocus";
 import { useBoxSelect } from "./boxSelect";
-import { useMapCanvas } from "./mapCanvas";
 import { ColourLegend } from "./ColourLegend";
-import { type Direction, type Layout, isDirection, nextBin } from "./layout";
-import type { Projection, Tiles } from "./projection";
 import { EliteReading } from "./EliteReading";
+import type { Layout } from "./layout";
+import { useMapCanvas } from "./mapCanvas";
+import type { Tiles } from "./projection";
+import { type Box, binsOf, binsWithin, cellsIn, isAdditive, keyHelp, toggle, union } from "./selection";
+import { text } from "./text";
 
 export interface HoveredElite {
   cell: number;
   elite: Elite;
 }
 
-interface Props extends Selection {
-  axes: readonly [MapAxis, MapAxis];
-  projection: Projection;
+interface Props extends ArchiveViewProps {
   elites: Elites;
-  colouring: Colouring;
-  marked: number | null;
-  onMark: (cell: number) => void;
-  onOpen: (cell: number) => void;
-  /** What else can be done with an elite. */
-  actions: (elite: Elite, cell: number) => ComponentChildren;
   /** The elite that is pointed at, else the marked one. */
   onLook: (looking: HoveredElite | null) => void;
   /** What stands beside the cell that is looked at. */
@@ -48,13 +29,32 @@ interface Props extends Selection {
 
 /** Cells are the archive's; bins are the map's, and each shows the best elite in it. */
 export function ArchiveMap(props: Props) {
-  const { axes, projection, elites, colouring, marked, onMark, onOpen, onLook, onChoose, inset } = props;
-  const { layout, tiles, bins } = projection;
+  const { axes, colouring, onOpen, onChoose, onLook } = props;
+  const focus = useBinFocus(props);
+  const { tile } = focus;
+  useLayoutEffect(() => onLook(tile ? { cell: tile.cell, elite: tile.elite } : null), [tile?.elite]);
+  return (
+    <div class="map">
+      <VerticalLabels axis={axes[1]} />
+      <MapPlot {...props} focus={focus} />
+      <HorizontalLabels axis={axes[0]} />
+      <ColourLegend colouring={colouring} />
+      <EliteReading
+        {...{ tile, axes, onOpen }}
+        colour={colouring.measure}
+        hint={text.mapHint(onChoose !== null)}
+        actions={props.actions}
+      />
+    </div>
+  );
+}
+
+/** The canvas, with the outline, the selection box and the inset above it. */
+function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinFocus> }) {
+  const { projection, elites, colouring, onMark, onOpen, onChoose } = props;
+  const { layout, tiles } = projection;
+  const { hovered, setHovered, from, focused } = focus;
   const plot = useRef<HTMLDivElement>(null);
-  const [hovered, setHovered] = useState<number | null>(null);
-  const from = marked === null ? null : (bins.get(marked) ?? null);
-  const looked = hovered !== null && tiles.has(hovered) ? hovered : from;
-  const tile = looked === null ? undefined : tiles.get(looked);
   const drag = useBoxSelect(onChoose !== null, (box, event) => {
     const inside = cellsIn(binsWithin(box, layout, tiles), projection);
     onChoose!(isAdditive(event) ? union(props.chosen, inside) : inside);
@@ -64,19 +64,6 @@ export function ArchiveMap(props: Props) {
     [drag.box, props.chosen, projection],
   );
   const canvas = useMapCanvas(plot, { layout, tiles, colouring, chosen }, elites);
-  useLayoutEffect(() => onLook(tile ? { cell: tile.cell, elite: tile.elite } : null), [tile?.elite]);
-
-  const press = (event: KeyboardEvent) => {
-    if (drag.box) return;
-    if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
-    const next = isDirection(event.key) ? binByKey(event.key, from, tiles, layout) : null;
-    const changed = onChoose && selectByKey(event, props.chosen, projection, from, next);
-    if (changed) onChoose(changed);
-    if (!changed && !isDirection(event.key)) return;
-    event.preventDefault();
-    setHovered(null);
-    if (next !== null) onMark(tiles.get(next)!.cell);
-  };
   const click = (event: MouseEvent) => {
     const bin = tileUnder(event, layout, tiles);
     if (bin === null || drag.wasDrag()) return;
@@ -86,61 +73,39 @@ export function ArchiveMap(props: Props) {
     if ((event as PointerEvent).pointerType === "touch" && bin !== from) onMark(cell);
     else onOpen(cell);
   };
-
   return (
-    <div class="map">
-      <VerticalLabels axis={axes[1]} />
-      <div
-        ref={plot}
-        class={`map-plot ${hovered === null ? "" : "over"}`}
-        tabIndex={0}
-        role="application"
-        aria-label={`Archive map. Arrow keys move between elites, ${keyHelp(props)}`}
-        aria-describedby="map-reading"
-        {...drag.handlers}
-        onPointerMove={(event) => {
-          if (drag.onMove(event)) setHovered(null);
-          else if (event.pointerType !== "touch") setHovered(tileUnder(event, layout, tiles));
-        }}
-        onPointerLeave={() => setHovered(null)}
-        onClick={click}
-        onKeyDown={press}
-      >
-        <canvas ref={canvas} />
-        {looked !== null && tile && <BinOutline layout={layout} bin={looked} />}
-        {drag.box && <SelectionBox {...drag.box} />}
-        {looked !== null && tile && !drag.box && (
-          <PlacedBeside layout={layout} bin={looked} children={inset} />
-        )}
-      </div>
-      <HorizontalLabels axis={axes[0]} />
-      <ColourLegend colouring={colouring} />
-      <EliteReading
-        {...{ tile, axes, onOpen }}
-        colour={colouring.measure}
-        hint={`Point at a cell to see its creature swim; click it to open it${onChoose ? "; drag over several to choose them" : ""}.`}
-        actions={props.actions}
-      />
+    <div
+      ref={plot}
+      class={`map-plot ${hovered === null ? "" : "over"}`}
+      tabIndex={0}
+      role="application"
+      aria-label={text.mapLabel(keyHelp(props))}
+      aria-describedby="map-reading"
+      {...drag.handlers}
+      onPointerMove={(event) => {
+        if (drag.onMove(event)) setHovered(null);
+        else if (event.pointerType !== "touch") setHovered(tileUnder(event, layout, tiles));
+      }}
+      onPointerLeave={() => setHovered(null)}
+      onClick={click}
+      onKeyDown={(event) => !drag.box && focus.press(event)}
+    >
+      <canvas ref={canvas} />
+      {focused !== null && focus.tile && <BinOutline layout={layout} bin={focused} />}
+      {drag.box && <SelectionBox {...drag.box} />}
+      {focused !== null && focus.tile && !drag.box && (
+        <PlacedBeside layout={layout} bin={focused} children={props.inset} />
+      )}
     </div>
   );
 }
 
 /** The bin under the pointer, where it holds an elite. */
-export function tileUnder(event: MouseEvent, layout: Layout, tiles: Tiles): number | null {
+function tileUnder(event: MouseEvent, layout: Layout, tiles: Tiles): number | null {
   const box = (event.currentTarget as Element).getBoundingClientRect();
   const [x, y] = [event.clientX - box.left, event.clientY - box.top];
   const bin = layout.at(x / box.width, y / box.height);
   return bin !== null && tiles.has(bin) ? bin : null;
-}
-
-/** Where an arrow key leads; from nowhere, to the best elite. */
-export function binByKey(key: Direction, from: number | null, tiles: Tiles, layout: Layout) {
-  if (from !== null) return nextBin(from, key, tiles.keys(), layout);
-  let best: number | null = null;
-  for (const [bin, { elite }] of tiles) {
-    if (best === null || elite.fitness > tiles.get(best)!.elite.fitness) best = bin;
-  }
-  return best;
 }
 
 /** The outline of the bin that is looked at, above the picture. */

@@ -1,9 +1,10 @@
-/** Which two of all that was recorded the map is drawn over. */
+/** The choice of the two axes of the map. */
 
 import type { Archive } from "../api/types";
 import { Select } from "../ui/Select";
 import { count } from "../ui/format";
 import { choicesOf } from "./axes";
+import { text } from "./text";
 
 type Names = [x: string, y: string];
 
@@ -18,12 +19,12 @@ export function AxisSelect({ archive, names: [x, y], onChoose }: Props) {
   return (
     <p class="axis-choice">
       <Select
-        title="Across"
+        title={text.across}
         {...{ choices, value: x }}
         onChange={(name) => onChoose(name === y ? [y, x] : [name, y])}
       />
       <Select
-        title="Up"
+        title={text.up}
         {...{ choices, value: y }}
         onChange={(name) => onChoose(name === x ? [y, x] : [x, name])}
       />
@@ -32,10 +33,9 @@ export function AxisSelect({ archive, names: [x, y], onChoose }: Props) {
   );
 }
 
-/** What the cells are, where the map alone does not show it. */
+/** A description of the cells, unless the map shows it. */
 function kindOf({ kind, cells, axes }: Archive): string {
-  if (kind === "cvt") return `${count(cells)} Voronoi cells over ${axes.length} descriptors`;
+  if (kind === "cvt") return text.voronoi(count(cells), axes.length);
   if (axes.length === 2) return "";
-  const measures = axes.length === 1 ? "1 descriptor" : `${axes.length} descriptors`;
-  return `${count(cells)} cells over ${measures}`;
+  return text.grid(count(cells), axes.length);
 }

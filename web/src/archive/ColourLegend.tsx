@@ -1,9 +1,10 @@
-/** What the colours of the map mean, in numbers. */
+/** The colour legend of the map. */
 
 import { ColourBar } from "../ui/ColourBar";
 import { css, sequential } from "../ui/colours";
 import { count, number } from "../ui/format";
 import { type Colouring, AGE, valueAlong } from "./colouring";
+import { text } from "./text";
 
 export function ColourLegend({ colouring }: { colouring: Colouring }) {
   const { measure, palette } = colouring;
@@ -13,7 +14,7 @@ export function ColourLegend({ colouring }: { colouring: Colouring }) {
   return (
     <ColourBar
       name={label}
-      label={`${label} from ${numbers[0]} to ${numbers[2]}`}
+      label={text.legend(label, numbers[0], numbers[2])}
       colourAt={(share) => css(sequential(share, palette))}
       numbers={numbers}
     />

@@ -1,10 +1,11 @@
-/** What the map is coloured by, and in which colours. */
+/** The choice of the coloured measure and of the palette. */
 
 import type { Archive } from "../api/types";
 import { Select } from "../ui/Select";
 import { PALETTES, type Palette } from "../ui/colours";
 import { words } from "../ui/format";
 import { coloursOf } from "./colouring";
+import { text } from "./text";
 
 interface Props {
   archive: Archive;
@@ -18,8 +19,8 @@ export function ColourSelect({ archive, colour, palette, onColour, onPalette }: 
   const palettes = PALETTES.map((name): [string, string] => [name, words(name)]);
   return (
     <p class="axis-choice">
-      <Select title="Colour" choices={coloursOf(archive)} value={colour} onChange={onColour} />
-      <Select title="Palette" choices={palettes} value={palette} onChange={onPalette} />
+      <Select title={text.colour} choices={coloursOf(archive)} value={colour} onChange={onColour} />
+      <Select title={text.palette} choices={palettes} value={palette} onChange={onPalette} />
     </p>
   );
 }

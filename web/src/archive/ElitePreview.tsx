@@ -1,10 +1,11 @@
-/** The replay of the elite that is looked at, once the pointer rests on it. */
+/** The replay of an elite, shown once the pointer rests on it. */
 
 import { useLayoutEffect, useState } from "preact/hooks";
 import { ReplayInset } from "../replay/Inset";
 import { useReplays } from "../replay/recordings";
+import { text } from "./text";
 
-/** A pointer on its way across the map asks for nothing. */
+/** A moving pointer requests no replays. */
 const HOVER_MS = 12;
 
 export function ElitePreview({ sha }: { sha: string }) {
@@ -16,5 +17,5 @@ export function ElitePreview({ sha }: { sha: string }) {
   }, [sha]);
   const { replays, error } = useReplays(wanted === sha ? [sha] : []);
   const replay = replays?.[0] ?? null;
-  return <ReplayInset replay={replay} note={error ?? "Simulating …"} />;
+  return <ReplayInset replay={replay} note={error ?? text.simulating} />;
 }

@@ -1,4 +1,4 @@
-/** The elite that is looked at, in words and numbers. */
+/** Measures of the elite under the pointer. */
 
 import type { ComponentChildren } from "preact";
 import type { Elite } from "../store/elites";
@@ -6,12 +6,13 @@ import { count, number, short } from "../ui/format";
 import { FITNESS, type MapAxis, type Measure } from "./axes";
 import { AGE } from "./colouring";
 import type { Tile } from "./projection";
+import { text } from "./text";
 
 interface Props {
   tile: Tile | undefined;
   axes: readonly MapAxis[];
   colour: Measure;
-  /** What is said where nobody is looked at. */
+  /** Shown if no elite is pointed at. */
   hint: string;
   onOpen: (cell: number) => void;
   /** What else can be done with an elite. */
@@ -43,7 +44,7 @@ function Words({ tile: { elite, cell, behind }, measures, onOpen, actions }: Wor
   return (
     <>
       <span>
-        Fitness <b>{number(elite.fitness)}</b>
+        {text.fitness} <b>{number(elite.fitness)}</b>
       </span>
       {[...told.values()].map(({ name, title, valueOf }) => (
         <span key={name}>
@@ -51,15 +52,15 @@ function Words({ tile: { elite, cell, behind }, measures, onOpen, actions }: Wor
         </span>
       ))}
       <span>
-        Generation <b>{elite.generation}</b>
+        {text.generation} <b>{elite.generation}</b>
       </span>
       {behind > 0 && (
         <span>
-          best of <b>{count(behind + 1)}</b> here
+          {text.bestOf} <b>{count(behind + 1)}</b> {text.here}
         </span>
       )}
       <button class="link" onClick={() => onOpen(cell)}>
-        Open <code>{short(elite.creature)}</code>
+        {text.open} <code>{short(elite.creature)}</code>
       </button>
       {actions(elite, cell)}
     </>

@@ -3,28 +3,21 @@
 import type { ComponentChildren, RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Motion } from "../decode/motion";
-import type { Elite } from "../store/elites";
-import { HorizontalLabels, VerticalLabels } from "./AxisLabels";
-import { binByKey } from "./ArchiveMap";
-import type { MapAxis } from "./axes";
-import { type Selection, isAdditive, binsOf, cellsIn, selectByKey, keyHelp, toggle } from "./selection";
-import type { Colouring } from "./colouring";
-import type { Shape } from "./geometry";
-import { ColourLegend } from "./ColourLegend";
-import { isDirection } from "./layout";
-import type { Projection } from "./projection";
-import { EliteReading } from "./EliteReading";
-import { type Size, useSize } from "../ui/canvas";
 import { useClock } from "../replay/clock";
+import { type Size, useSize } from "../ui/canvas";
 import { prefersStillness, useTheme } from "../ui/theme";
+import { HorizontalLabels, VerticalLabels } from "./AxisLabels";
+import { type ArchiveViewProps, useBinFocus } from "./binFocus";
+import { ColourLegend } from "./ColourLegend";
 import { type GalleryPicture, drawGallery } from "./drawGallery";
+import { EliteReading } from "./EliteReading";
 import { cornerOf, visibleBins } from "./galleryTiles";
+import type { Shape } from "./geometry";
+import type { Projection } from "./projection";
+import { binsOf, cellsIn, isAdditive, keyHelp, toggle } from "./selection";
+import { text } from "./text";
 
-interface Props extends Selection {
-  axes: readonly [MapAxis, MapAxis];
-  projection: Projection;
-  colouring: Colouring;
-  marked: number | null;
+interface Props extends ArchiveViewProps {
   /** Pixels of a tile's side; null: as large as fits. */
   side: number | null;
   motions: ReadonlyMap<string, Motion>;
@@ -33,10 +26,6 @@ interface Props extends Selection {
   onSide: (side: number) => void;
   /** The size that was chosen, once the finger is off. */
   onSettle: (side: number) => void;
-  onMark: (cell: number) => void;
-  onOpen: (cell: number) => void;
-  /** What else can be done with an elite. */
-  actions: (elite: Elite, cell: number) => ComponentChildren;
 }
 
 const [SMALLEST, LARGEST] = [36, 180];
@@ -48,103 +37,144 @@ const SECONDS = 5;
 const bounded = (side: number) => Math.min(LARGEST, Math.max(SMALLEST, side));
 
 export function Gallery(props: Props) {
-  const { axes, projection, colouring, marked, motions, onSee, onMark, onOpen, onChoose } = props;
-  const { tiles, bins, layout } = projection;
+  const { axes, projection, colouring, onOpen } = props;
   const shape: Shape = [axes[0].bins, axes[1].bins];
   const port = useRef<HTMLDivElement>(null);
-  const canvas = useRef<HTMLCanvasElement>(null);
   const size = useSize(port);
-  const theme = useTheme();
-  const [hovered, setHovered] = useState<number | null>(null);
-  const [scroll, setScroll] = useState<readonly [number, number]>([0, 0]);
+  const [scroll, setScroll] = useState<Offset>([0, 0]);
   const side = bounded(props.side ?? Math.max(READABLE, Math.floor(size.width / shape[0])));
   const wall = [side * shape[0], side * shape[1]] as const;
   const shown = { width: Math.min(size.width, wall[0]), height: Math.min(size.height, wall[1]) };
-  const from = marked === null ? null : (bins.get(marked) ?? null);
-  const looked = hovered !== null && tiles.has(hovered) ? hovered : from;
-  const seen = useMemo(() => {
-    const window = { left: scroll[0], top: scroll[1], ...size };
-    return visibleBins(tiles.keys(), shape, side, window);
-  }, [tiles, side, scroll, size]);
-  useEffect(() => onSee(seen.map((bin) => tiles.get(bin)!.elite.creature)), [seen]);
-  const chosen = useMemo(() => binsOf(props.chosen, projection), [props.chosen, projection]);
-  const common = { shape, side, tiles, colouring, motions, theme, chosen };
-  const picture: GalleryPicture = { ...common, bins: seen, marked: looked };
-  useAnimation(canvas, shown, picture, scroll);
-
+  const focus = useBinFocus(props, (bin) => reveal(port.current!, cornerOf(bin, shape, side), side));
+  const seen = useSeen({ projection, shape, side, scroll, size }, props.onSee);
+  const picture = { shape, side, seen, focused: focus.focused, size: shown, scroll };
   const binUnder = (event: MouseEvent): number | null => {
     const box = port.current!.getBoundingClientRect();
     const x = (event.clientX - box.left + scroll[0]) / wall[0];
     const y = (event.clientY - box.top + scroll[1]) / wall[1];
-    const bin = layout.at(x, y);
-    return bin !== null && tiles.has(bin) ? bin : null;
+    const bin = projection.layout.at(x, y);
+    return bin !== null && projection.tiles.has(bin) ? bin : null;
   };
-  const press = (event: KeyboardEvent) => {
-    if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
-    const next = isDirection(event.key) ? binByKey(event.key, from, tiles, layout) : null;
-    const changed = onChoose && selectByKey(event, props.chosen, projection, from, next);
-    if (changed) onChoose(changed);
-    if (!changed && !isDirection(event.key)) return;
-    event.preventDefault();
-    setHovered(null);
-    if (next === null) return;
-    onMark(tiles.get(next)!.cell);
-    reveal(port.current!, cornerOf(next, shape, side), side);
-  };
-
   return (
     <div class="gallery" data-gallery>
-      <label class="compact gallery-size">
-        Size of the tiles
-        <input
-          type="range"
-          min={SMALLEST}
-          max={LARGEST}
-          value={side}
-          onInput={(event) => props.onSide(event.currentTarget.valueAsNumber)}
-          onChange={(event) => props.onSettle(event.currentTarget.valueAsNumber)}
-        />
-      </label>
+      <TileSize side={side} onSide={props.onSide} onSettle={props.onSettle} />
       <div class="gallery-frame">
         <AxisRail class="gallery-y" by={-scroll[1]} length={wall[1]} shown={shown.height} upright>
           <VerticalLabels axis={axes[1]} />
         </AxisRail>
-        <div
-          ref={port}
-          class={`gallery-port ${hovered === null ? "" : "over"}`}
-          tabIndex={0}
-          role="application"
-          aria-label={`Gallery. Arrow keys move between creatures, ${keyHelp(props)}`}
-          aria-describedby="map-reading"
-          onScroll={({ currentTarget: { scrollLeft, scrollTop } }) => setScroll([scrollLeft, scrollTop])}
-          onPointerMove={(event) => setHovered(binUnder(event))}
-          onPointerLeave={() => setHovered(null)}
-          onClick={(event) => {
-            const bin = binUnder(event);
-            if (bin === null) return;
-            if (onChoose && isAdditive(event)) onChoose(toggle(props.chosen, cellsIn([bin], projection)));
-            else onOpen(tiles.get(bin)!.cell);
-          }}
-          onKeyDown={press}
-        >
-          <canvas ref={canvas} style={{ width: `${shown.width}px`, height: `${shown.height}px` }} />
+        <Port {...props} {...{ port, focus, binUnder }} onScroll={setScroll}>
+          <Tiles {...props} {...picture} />
           <div style={{ width: `${wall[0]}px`, height: `${wall[1]}px` }} />
-        </div>
+        </Port>
         <AxisRail class="gallery-x" by={-scroll[0]} length={wall[0]} shown={shown.width}>
           <HorizontalLabels axis={axes[0]} />
         </AxisRail>
       </div>
       <ColourLegend colouring={colouring} />
       <EliteReading
-        tile={looked === null ? undefined : tiles.get(looked)}
-        axes={axes}
+        {...{ axes, onOpen }}
+        tile={focus.tile}
         colour={colouring.measure}
-        hint="Point at a creature to read of it; click it to open it."
-        onOpen={onOpen}
+        hint={text.galleryHint}
         actions={props.actions}
       />
     </div>
   );
+}
+
+type Offset = readonly [left: number, top: number];
+
+interface Seen {
+  projection: Projection;
+  shape: Shape;
+  side: number;
+  scroll: Offset;
+  size: Size;
+}
+
+/** The filled bins in the window; `onSee` is told of their creatures. */
+function useSeen({ projection: { tiles }, shape, side, scroll, size }: Seen, onSee: Props["onSee"]) {
+  const seen = useMemo(() => {
+    const window = { left: scroll[0], top: scroll[1], ...size };
+    return visibleBins(tiles.keys(), shape, side, window);
+  }, [tiles, side, scroll, size]);
+  useEffect(() => onSee(seen.map((bin) => tiles.get(bin)!.elite.creature)), [seen]);
+  return seen;
+}
+
+interface SizeProps extends Pick<Props, "onSide" | "onSettle"> {
+  side: number;
+}
+
+function TileSize({ side, onSide, onSettle }: SizeProps) {
+  return (
+    <label class="compact gallery-size">
+      {text.tileSize}
+      <input
+        type="range"
+        min={SMALLEST}
+        max={LARGEST}
+        value={side}
+        onInput={(event) => onSide(event.currentTarget.valueAsNumber)}
+        onChange={(event) => onSettle(event.currentTarget.valueAsNumber)}
+      />
+    </label>
+  );
+}
+
+interface PortProps extends Props {
+  port: RefObject<HTMLDivElement | null>;
+  focus: ReturnType<typeof useBinFocus>;
+  binUnder: (event: MouseEvent) => number | null;
+  onScroll: (scroll: Offset) => void;
+  children: ComponentChildren;
+}
+
+/** The window that the wall scrolls in, with its pointer and keys. */
+function Port({ port, focus, binUnder, onScroll, children, ...props }: PortProps) {
+  const { projection, chosen, onChoose, onOpen } = props;
+  return (
+    <div
+      ref={port}
+      class={`gallery-port ${focus.hovered === null ? "" : "over"}`}
+      tabIndex={0}
+      role="application"
+      aria-label={text.galleryLabel(keyHelp(props))}
+      aria-describedby="map-reading"
+      onScroll={({ currentTarget: { scrollLeft, scrollTop } }) => onScroll([scrollLeft, scrollTop])}
+      onPointerMove={(event) => focus.setHovered(binUnder(event))}
+      onPointerLeave={() => focus.setHovered(null)}
+      onClick={(event) => {
+        const bin = binUnder(event);
+        if (bin === null) return;
+        if (onChoose && isAdditive(event)) onChoose(toggle(chosen, cellsIn([bin], projection)));
+        else onOpen(projection.tiles.get(bin)!.cell);
+      }}
+      onKeyDown={focus.press}
+    >
+      {children}
+    </div>
+  );
+}
+
+interface TilesProps extends Props {
+  shape: Shape;
+  side: number;
+  seen: number[];
+  focused: number | null;
+  size: Size;
+  scroll: Offset;
+}
+
+/** The canvas that shows the tiles that are seen. */
+function Tiles({ projection, colouring, motions, shape, side, seen, focused, size, ...props }: TilesProps) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const theme = useTheme();
+  const chosen = useMemo(() => binsOf(props.chosen, projection), [props.chosen, projection]);
+  const { tiles } = projection;
+  const content = { shape, side, tiles, colouring, motions, theme, chosen };
+  useAnimation(canvas, size, { ...content, bins: seen, marked: focused }, props.scroll);
+  return <canvas ref={canvas} style={{ width: `${size.width}px`, height: `${size.height}px` }} />;
 }
 
 interface RailProps {

@@ -1,4 +1,4 @@
-/** Whom a new run could begin from: those who were chosen, or a generation of the past. */
+/** The creatures a new run can start from: the selected ones, or a past generation. */
 
 import { useMemo } from "preact/hooks";
 import { sharedSlug } from "../api/address";
@@ -11,17 +11,18 @@ import { type Selection, type CellSet, cellsIn, toggle } from "./selection";
 import type { Projection } from "./projection";
 import { count } from "../ui/format";
 import { ForkLink } from "../ui/ForkLink";
+import { text } from "./text";
 
 const setSelection = (chosen: CellSet) => setQuery({ cells: chosen.size > 0 ? formatCells(chosen) : null });
 
-/** The cells that the address names, as far as somebody lives in them. */
+/** The cells of the address that hold an elite. */
 export function useSelection(query: URLSearchParams, elites: Elites): Selection {
-  const text = query.get("cells") ?? "";
+  const cells = query.get("cells") ?? "";
   const refusal = useRefusal();
   const chosen = useMemo(() => {
-    const named = parseCells(text);
-    return new Set(text ? [...elites.keys()].filter(named) : []);
-  }, [text, elites]);
+    const named = parseCells(cells);
+    return new Set(cells ? [...elites.keys()].filter(named) : []);
+  }, [cells, elites]);
   return { chosen, onChoose: sharedSlug || refusal ? null : setSelection };
 }
 
@@ -30,7 +31,7 @@ interface OneProps extends Selection {
   projection: Projection;
 }
 
-/** Where there is neither mouse nor key: chooses what is looked at, with all that stand there. */
+/** Select or deselect the elite that is looked at, for touch screens. */
 export function SelectToggle({ cell, projection, chosen, onChoose }: OneProps) {
   const bin = projection.bins.get(cell);
   if (!onChoose || bin === undefined) return null;
@@ -40,7 +41,7 @@ export function SelectToggle({ cell, projection, chosen, onChoose }: OneProps) {
       aria-pressed={chosen.has(cell)}
       onClick={() => onChoose(toggle(chosen, cellsIn([bin], projection)))}
     >
-      Choose
+      {text.select}
     </button>
   );
 }
@@ -54,24 +55,23 @@ interface Props extends Selection {
 
 export function SelectionBar({ run, elites, at, chosen, onChoose }: Props) {
   if (!onChoose) return null;
-  const then = at === null ? "" : ` of generation ${count(at)}`;
   const cells = chosen.size > 0 ? [...chosen] : at === null ? [] : [...elites.keys()];
   const creatures = new Set(cells.map((cell) => elites.get(cell)!.creature)).size;
-  const text = `${count(creatures)} ${creatures === 1 ? "creature" : "creatures"}${then}`;
+  const which = text.creatures(count(creatures), at === null ? null : count(at));
   return (
     <div class="chosen-bar">
-      <span role="status">{chosen.size > 0 && `${text} chosen`}</span>
-      {/* Not said with every step of the slider. */}
-      {chosen.size === 0 && creatures > 0 && <span>{text}</span>}
+      <span role="status">{chosen.size > 0 && text.selected(which)}</span>
+      {/* Outside the live region: it would be read at every step of the slider. */}
+      {chosen.size === 0 && creatures > 0 && <span>{which}</span>}
       {creatures > 0 && (
         <ForkLink
           run={run.id}
           cells={chosen.size > 0 ? formatCells(chosen) : null}
           at={at}
-          title={`A new run that begins from ${creatures === 1 ? "this creature" : "these creatures"}`}
+          title={text.fork(creatures)}
         />
       )}
-      {chosen.size > 0 && <button onClick={() => setSelection(new Set())}>Choose none</button>}
+      {chosen.size > 0 && <button onClick={() => setSelection(new Set())}>{text.clearSelection}</button>}
     </div>
   );
 }

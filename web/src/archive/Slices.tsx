@@ -1,8 +1,9 @@
-/** Descriptors that the map does not show: folded, or only a part of them let through. */
+/** Ranges of the descriptors that are not axes of the map. */
 
 import { number } from "../ui/format";
 import type { MapAxis } from "./axes";
 import type { Slice } from "./projection";
+import { text } from "./text";
 
 interface Props {
   slices: Slice[];
@@ -30,7 +31,7 @@ function One({ slice, onChange }: { slice: Slice; onChange: Props["onChange"] })
       <legend>{axis.title}</legend>
       <input
         {...common}
-        aria-label={`${axis.title}, from`}
+        aria-label={text.sliceFrom(axis.title)}
         aria-valuetext={low}
         value={from}
         onInput={({ currentTarget: { valueAsNumber } }) =>
@@ -39,14 +40,14 @@ function One({ slice, onChange }: { slice: Slice; onChange: Props["onChange"] })
       />
       <input
         {...common}
-        aria-label={`${axis.title}, to`}
+        aria-label={text.sliceTo(axis.title)}
         aria-valuetext={high}
         value={to}
         onInput={({ currentTarget: { valueAsNumber } }) =>
           onChange(slice, Math.min(from, valueAsNumber), valueAsNumber)
         }
       />
-      <output class="quiet small">{all ? "all of it" : `${low} to ${high} ${axis.unit}`}</output>
+      <output class="quiet small">{all ? text.wholeRange : text.range(low, high, axis.unit)}</output>
     </fieldset>
   );
 }

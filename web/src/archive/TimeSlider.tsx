@@ -1,9 +1,10 @@
-/** The run's history under one's finger: back to any generation, and played forward. */
+/** A slider through the generations of a run, with playback. */
 
 import { useEffect, useState } from "preact/hooks";
 import { count } from "../ui/format";
 import { useClock } from "../replay/clock";
 import { IconButton, TimeRange } from "../replay/Transport";
+import { text } from "./text";
 
 interface Props {
   /** The newest generation. */
@@ -15,7 +16,7 @@ interface Props {
   onMove: (generation: number | null) => void;
 }
 
-/** The whole history takes so long to play. */
+/** Duration of the playback. */
 const PLAY_SECONDS = 10;
 
 export function TimeSlider({ last, at, ready, onMove }: Props) {
@@ -47,22 +48,22 @@ export function TimeSlider({ last, at, ready, onMove }: Props) {
     <div class="time-slider">
       <IconButton
         icon={playing ? "pause" : "play"}
-        label={playing ? "Pause the history" : "Play the history"}
-        title={playing ? "Pause" : "Play the history of the archive"}
+        label={playing ? text.pauseHistory : text.playHistory}
+        title={playing ? text.pause : text.playArchive}
         disabled={last === 0}
         onClick={playing ? () => setPlaying(false) : play}
       />
       <TimeRange
-        label="Generation that the map shows"
-        valueText={at === null ? `newest, ${shown}` : `${shown} of ${last}`}
+        label={text.shownGeneration}
+        valueText={at === null ? text.newestOf(shown) : text.generationOf(shown, last)}
         last={last}
         value={shown}
         disabled={last === 0}
         onScrub={scrub}
       />
-      <output class="moment">{at !== null && !ready ? "Loading …" : `generation ${count(shown)}`}</output>
+      <output class="moment">{at !== null && !ready ? text.loading : text.moment(count(shown))}</output>
       <button class="small-button" disabled={at === null} onClick={() => scrub(last)}>
-        Newest
+        {text.newest}
       </button>
     </div>
   );

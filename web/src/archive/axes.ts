@@ -4,6 +4,7 @@ import type { Archive, Axis } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
 import { words } from "../ui/format";
 import { roundStep } from "./geometry";
+import { text } from "./text";
 
 /** Columns of measures by name: what was recorded of each creature. */
 export type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
@@ -15,7 +16,7 @@ const BINS = 24;
 /** Everything that a map can be drawn over, by name. */
 export const choicesOf = (archive: Archive) => [
   ...archive.recorded.map(({ name, title }): [string, string] => [name, title]),
-  [FITNESS, "Fitness"] as [string, string],
+  [FITNESS, text.fitness] as [string, string],
 ];
 
 /** The names of both axes: those asked for, else the archive's first two, else fitness. */

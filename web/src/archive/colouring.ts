@@ -4,6 +4,7 @@ import type { Archive } from "../api/types";
 import { type Palette, pixel, sequential, table } from "../ui/colours";
 import { FITNESS, type Measures, type Measure, choicesOf, measureOf } from "./axes";
 import type { Tile, Tiles } from "./projection";
+import { text } from "./text";
 
 export interface Colouring {
   measure: Measure;
@@ -15,8 +16,8 @@ export const AGE = "age";
 
 /** Everything that a map can be coloured by, by name. */
 export const coloursOf = (archive: Archive): [name: string, title: string][] => [
-  [FITNESS, "Fitness"],
-  [AGE, "Age"],
+  [FITNESS, text.fitness],
+  [AGE, text.age],
   ...choicesOf(archive).filter(([name]) => name !== FITNESS),
 ];
 
@@ -29,7 +30,7 @@ export function colourMeasure(
 ): Measure {
   if (name !== AGE) return measureOf(name, archive, measures);
   const valueOf: Measure["valueOf"] = (elite) => generation - elite.generation;
-  return { name, title: "Age", unit: "generations", scale: "linear", valueOf };
+  return { name, title: text.age, unit: "generations", scale: "linear", valueOf };
 }
 
 /** Ends at the least and the greatest value there is. */

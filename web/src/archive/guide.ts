@@ -1,10 +1,11 @@
-/** What an archive is, told on the one that is shown; and whether somebody was told before. */
+/** The tour of an archive, and whether it was shown before. */
 
 import { useState } from "preact/hooks";
 import type { Archive, Run } from "../api/types";
 import { count, number } from "../ui/format";
 import type { Step } from "../ui/Guide";
 import type { ArchiveView } from "./archiveView";
+import { text } from "./text";
 
 const STORAGE_KEY = "microcosmos:guided";
 
@@ -25,7 +26,7 @@ function rememberGuided(): void {
   }
 }
 
-/** Open on a first visit, and whenever it is asked for. */
+/** Open on the first visit and on request. */
 export function useGuide() {
   const [open, setOpen] = useState(() => !wasGuided());
   const [asked, setAsked] = useState(false);
@@ -46,34 +47,30 @@ export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }:
   const running = run.status === "running" || run.status === "queued";
   return [
     {
-      title: "The best of every kind",
-      text:
-        "This run does not look for one champion. It keeps the best swimmer of every kind that it " +
-        `meets: ${count(elites.size)} of ${count(archive.cells)} kinds have one so far.`,
+      title: text.tourBest,
+      text: text.tourBestAbout(count(elites.size), count(archive.cells)),
       about: "map",
     },
     {
-      title: "What a kind is",
-      text: `Each cell is a kind of swimmer: to the right with more ${x}, upwards with more ${y}. A newcomer takes a cell only if it is fitter than whoever holds it.`,
+      title: text.tourKind,
+      text: text.tourKindAbout(x!, y!),
       about: "axes",
     },
     {
-      title: "How good they are",
+      title: text.tourColour,
       text: best
-        ? `The colour is ${colouring.measure.title.toLowerCase()}. The fittest swimmer is marked: it came in generation ${best.generation} with fitness ${number(best.fitness)}. Point at any other cell to see its swimmer move.`
-        : "The colour will tell how fit a swimmer is. The first ones are being simulated.",
+        ? text.tourColourAbout(colouring.measure.title.toLowerCase(), best.generation, number(best.fitness))
+        : text.tourNoColour,
       about: "legend",
     },
     {
-      title: running ? "It is alive" : "How it came to be",
-      text: running
-        ? "Cells flash when a better swimmer takes them. The slider goes back to any generation; the button beside it plays the history."
-        : `The slider goes back to any of the ${count(run.generation)} generations; the button beside it plays the history.`,
+      title: running ? text.tourLive : text.tourHistory,
+      text: running ? text.tourLiveAbout : text.tourHistoryAbout(count(run.generation)),
       about: "time",
     },
     {
-      title: "Look closer",
-      text: "Click a cell to open its creature: its replay, its network, its parents. The gallery shows all of them moving at once.",
+      title: text.tourOpen,
+      text: text.tourOpenAbout,
       about: "views",
     },
   ];

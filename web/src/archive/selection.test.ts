@@ -95,8 +95,8 @@ describe("a token", () => {
   });
 
   it.each<[Principal["scope"], owner: string | null | undefined, RegExp | null]>([
-    ["read", undefined, /may only look/],
-    ["read", "ada", /may only look/],
+    ["read", undefined, /read-only/],
+    ["read", "ada", /read-only/],
     ["write", undefined, null],
     ["write", "ada", null],
     ["write", "bob", /^Only bob or an admin/],

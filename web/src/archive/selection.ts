@@ -1,14 +1,15 @@
-/** Choosing elites on a map or a wall: by bins, each with all elites that stand in it. */
+/** Selecting elites on the map or in the gallery, by bins with all of their elites. */
 
 import type { Projection, Tiles } from "./projection";
 import type { Layout, Spot } from "./layout";
+import { text } from "./text";
 
 /** Cells of the archive. */
 export type CellSet = ReadonlySet<number>;
 
 export interface Selection {
   chosen: CellSet;
-  /** Null where nothing can be done with what is chosen. */
+  /** Null if selecting is not allowed. */
   onChoose: ((chosen: CellSet) => void) | null;
 }
 
@@ -35,10 +36,9 @@ export function toggle(chosen: CellSet, cells: CellSet): CellSet {
 }
 
 /** What keys do on a map or a wall, in the words that a screen reader says. */
-export const keyHelp = ({ onChoose }: Pick<Selection, "onChoose">): string =>
-  "Enter opens one" + (onChoose ? ", Space chooses it, Shift with arrows several, Escape none." : ".");
+export const keyHelp = ({ onChoose }: Pick<Selection, "onChoose">): string => text.keyHelp(onChoose !== null);
 
-/** What a key makes of the choice; null where it has nothing to say of it. */
+/** The selection after a key; null if the key does not change it. */
 export function selectByKey(
   { key, shiftKey }: KeyboardEvent,
   chosen: CellSet,

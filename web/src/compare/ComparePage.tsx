@@ -1,4 +1,4 @@
-/** Several runs side by side: their curves, their figures, and where their specs differ. */
+/** The comparison of runs: curves, figures, and differences of their specs. */
 
 import type { Experiment, Run } from "../api/types";
 import type { Curves as Columns } from "../store/curves";
@@ -12,6 +12,7 @@ import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { type Compared, Legend } from "./Legend";
 import { Figures, Specs } from "./Tables";
 import { CurveOptions } from "../charts/curves/CurveOptions";
+import { text } from "./text";
 import "./compare.css";
 
 export function ComparePage({ query }: { query: URLSearchParams }) {
@@ -25,20 +26,16 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
   );
   return (
     <main>
-      <nav class="crumbs" aria-label="Where you are">
-        <a href="/">Runs</a>
+      <nav class="crumbs" aria-label={text.breadcrumbs}>
+        <a href="/">{text.runs}</a>
       </nav>
       <header class="page-head">
-        <h1>Compare</h1>
+        <h1>{text.compare}</h1>
       </header>
       {error && <p class="banner wrong">{error}</p>}
-      {asked.length > MAX_LINES && (
-        <p class="banner warning">
-          At most {MAX_LINES} runs can be compared: the first {MAX_LINES} of {asked.length} are shown.
-        </p>
-      )}
+      {asked.length > MAX_LINES && <p class="banner warning">{text.tooMany(MAX_LINES, asked.length)}</p>}
       {ids.length === 0 && <NothingChosen />}
-      {ids.length > 0 && runs.length === 0 && !error && <p class="quiet loading">Loading runs …</p>}
+      {ids.length > 0 && runs.length === 0 && !error && <p class="quiet loading">{text.loading}</p>}
       {runs.length > 0 && (
         <div class="compare">
           <Legend runs={runs} ids={ids} />
@@ -57,10 +54,10 @@ const nameOf = (run: Run, experiments: Experiment[]) =>
 function NothingChosen() {
   return (
     <section class="empty card">
-      <h2>Nothing to compare yet</h2>
-      <p>Choose two or more runs by their boxes in the list, then press Compare.</p>
+      <h2>{text.nothingChosen}</h2>
+      <p>{text.nothingChosenHint}</p>
       <a class="button primary" href="/">
-        See all runs
+        {text.showRuns}
       </a>
     </section>
   );
@@ -80,14 +77,14 @@ function Plots({ runs, curves, query }: PlotsProps) {
   });
   return (
     <section class="card" aria-labelledby="compare-curves">
-      <h2 id="compare-curves">Curves</h2>
+      <h2 id="compare-curves">{text.curves}</h2>
       <CurveOptions look={look} />
       <Curves plots={overlayPlots(oneLinePerRun, drawn, look)} x={NO_X} look={look} />
     </section>
   );
 }
 
-/** Each run has its own places. */
+/** Each run has its own x values. */
 const NO_X: readonly number[] = [];
 
 /** One line a run. */

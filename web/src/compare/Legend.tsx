@@ -1,9 +1,10 @@
-/** Which runs are compared, and how each of them is drawn. */
+/** The legend of the compared runs. */
 
 import type { Run } from "../api/types";
 import { LineKey } from "../charts/lineStyle";
 import { setQuery } from "../store/router";
 import { StatusBadge } from "../run/RunStatus";
+import { text } from "./text";
 
 export interface Compared {
   run: Run;
@@ -15,7 +16,7 @@ export interface Compared {
 export function Legend({ runs, ids }: { runs: Compared[]; ids: string[] }) {
   const without = (id: string) => ids.filter((each) => each !== id).join() || null;
   return (
-    <ul class="compare-legend" aria-label="Runs">
+    <ul class="compare-legend" aria-label={text.runs}>
       {runs.map(({ run, name, place }) => (
         <li key={run.id}>
           <LineKey index={place} />
@@ -23,7 +24,7 @@ export function Legend({ runs, ids }: { runs: Compared[]; ids: string[] }) {
           <StatusBadge run={run} />
           <button
             class="plain small-button"
-            aria-label={`Leave ${name} out`}
+            aria-label={text.remove(name)}
             onClick={() => setQuery({ runs: without(run.id) })}
           >
             ✕

@@ -1,4 +1,4 @@
-/** The figures of several runs, and where their specs differ. */
+/** Tables of the figures of runs and of the differences of their specs. */
 
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
@@ -8,24 +8,25 @@ import { timeOf } from "../run/RunStatus";
 import { differences, written } from "../run/spec/difference";
 import { LineKey } from "../charts/lineStyle";
 import type { Compared } from "./Legend";
+import { text } from "./text";
 
 const ROWS: [title: string, write: (run: Run) => string][] = [
-  ["QD score", (run) => number(run.qd_score, 5)],
-  ["Coverage", (run) => percent(run.coverage)],
-  ["Best fitness", (run) => number(run.best, 5)],
-  ["Generations", (run) => `${count(run.generation)} / ${count(run.generations)}`],
-  ["Evaluations", (run) => count(run.evaluations)],
-  ["Diverged", (run) => count(run.diverged)],
-  ["Evaluations/s", (run) => number(run.evaluations_per_second)],
-  ["Time", (run) => (run.eta_seconds ? `${duration(run.eta_seconds)} left` : timeOf(run).text)],
-  ["Device", (run) => run.device ?? "–"],
+  [text.qdScore, (run) => number(run.qd_score, 5)],
+  [text.coverage, (run) => percent(run.coverage)],
+  [text.bestFitness, (run) => number(run.best, 5)],
+  [text.generations, (run) => `${count(run.generation)} / ${count(run.generations)}`],
+  [text.evaluations, (run) => count(run.evaluations)],
+  [text.diverged, (run) => count(run.diverged)],
+  [text.evaluationsPerSecond, (run) => number(run.evaluations_per_second)],
+  [text.time, (run) => (run.eta_seconds ? text.left(duration(run.eta_seconds)) : timeOf(run).text)],
+  [text.device, (run) => run.device ?? "–"],
 ];
 
 export function Figures({ runs }: { runs: Compared[] }) {
   return (
     <section class="card" aria-labelledby="compare-figures">
-      <h2 id="compare-figures">Figures</h2>
-      <Table runs={runs} corner="Figure">
+      <h2 id="compare-figures">{text.figures}</h2>
+      <Table runs={runs} corner={text.figure}>
         {ROWS.map(([title, write]) => (
           <tr key={title}>
             <th scope="row">{title}</th>
@@ -44,10 +45,10 @@ export function Specs({ runs }: { runs: Compared[] }) {
   const differing = useMemo(() => differences(specs), specs);
   return (
     <section class="card" aria-labelledby="compare-specs">
-      <h2 id="compare-specs">Where the specs differ</h2>
-      {differing.length === 0 && <p class="quiet">Nowhere: all of them are the same.</p>}
+      <h2 id="compare-specs">{text.differences}</h2>
+      {differing.length === 0 && <p class="quiet">{text.noDifferences}</p>}
       {differing.length > 0 && (
-        <Table runs={runs} corner="Field">
+        <Table runs={runs} corner={text.field}>
           {differing.map(({ path, values }) => (
             <tr key={path}>
               <th scope="row">
@@ -68,7 +69,7 @@ type TableProps = { runs: Compared[]; corner: string; children: ComponentChildre
 
 function Table({ runs, corner, children }: TableProps) {
   return (
-    <div class="wide-table" tabIndex={0} role="region" aria-label={`${corner}s of the runs`}>
+    <div class="wide-table" tabIndex={0} role="region" aria-label={text.tableOf(corner)}>
       <table>
         <thead>
           <tr>

@@ -1,4 +1,4 @@
-/** Asks for a creature to be made fitter by gradients, in a run of its own. */
+/** The button that starts a refinement run from a creature. */
 
 import { useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -9,10 +9,11 @@ import { applyResponse } from "../store/store";
 import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
+import { text } from "./text";
 
 interface Props {
   creature: Creature;
-  /** The run whose cells count, where the creature was reached from one. */
+  /** The run whose cells bound the refinement, if the page was opened from one. */
   run: string | null;
 }
 
@@ -37,12 +38,8 @@ export function RefineButton({ creature, run }: Props) {
     }
   };
   return (
-    <button
-      disabled={busy}
-      onClick={() => void start()}
-      title="Gradient steps towards higher fitness that do not leave its cell"
-    >
-      {busy ? "Starting …" : "Refine"}
+    <button disabled={busy} onClick={() => void start()} title={text.refineAbout}>
+      {busy ? text.starting : text.refine}
     </button>
   );
 }

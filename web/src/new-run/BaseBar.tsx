@@ -19,20 +19,20 @@ export interface CreatureFile {
 }
 
 interface Props {
-  desk: DraftState;
-  work: Draft;
+  draft: DraftState;
+  current: Draft;
   experiments: Experiment[];
   file: CreatureFile | null;
 }
 
-export function BaseBar({ desk, work, experiments, file }: Props) {
-  const { base, spec } = work;
-  const { size } = desk.changed;
+export function BaseBar({ draft, current, experiments, file }: Props) {
+  const { base, spec } = current;
+  const { size } = draft.changed;
   const equal = size > 0 || base.kind !== "preset" ? equalPreset(spec, experiments) : null;
   return (
     <p class="base-bar" role="status">
       <span>
-        {desk.restored && "Your draft is back: "}
+        {draft.restored && "Your draft is back: "}
         {size === 0 ? "As in " : `${size} ${size === 1 ? "change" : "changes"} from `}
         <BaseName base={base} />
         {base.kind === "creature" && " with its world, body, coupling, controller and task"}
@@ -41,14 +41,14 @@ export function BaseBar({ desk, work, experiments, file }: Props) {
       {base.fork && (
         <span class="base-fork">
           <ForkSourceText fork={base.fork} />
-          <button type="button" class="plain" onClick={desk.dropFork}>
+          <button type="button" class="plain" onClick={draft.dropFork}>
             Begin from random ones instead
           </button>
         </span>
       )}
       {size > 0 && (
-        <button type="button" class="plain" onClick={desk.reset}>
-          {desk.restored ? "Discard draft" : "Undo all changes"}
+        <button type="button" class="plain" onClick={draft.reset}>
+          {draft.restored ? "Discard draft" : "Undo all changes"}
         </button>
       )}
       {file && base.name === file.sha && (

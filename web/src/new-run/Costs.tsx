@@ -63,7 +63,7 @@ function PerWorker({ estimate: { seconds, queue } }: { estimate: Estimate | Swee
 
 /** In full: on what it rests, and what the words mean. */
 export function CostDetails({ estimate }: { estimate: Estimate }) {
-  const { memory_bytes, memory_limit_bytes, evaluations, cell_steps, pace } = estimate;
+  const { memory_bytes, memory_limit_bytes, evaluations, cell_steps, speed } = estimate;
   const fits = memory_bytes <= memory_limit_bytes;
   return (
     <section class="card cost-details" aria-labelledby="cost-title">
@@ -85,7 +85,7 @@ export function CostDetails({ estimate }: { estimate: Estimate }) {
         <b>{number(cell_steps)}</b>{" "}
         <span class="quiet">
           cell steps, the unit of work: one cell of fluid brought forward by one step.
-          {pace && ` Here ${number(pace.cell_steps_per_second)} of them take a second.`}
+          {speed && ` Here ${number(speed.cell_steps_per_second)} of them take a second.`}
         </span>
       </p>
       <p class="quiet">{wait(estimate)}</p>

@@ -1,81 +1,50 @@
 /** The spec at hand: as a form or as JSON, with what it is about and what it will cost. */
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import type { Experiment, FieldError, Json, Spec } from "../api/types";
+import type { Experiment, Json } from "../api/types";
 import { useRefusal } from "../store/principal";
 import type { Draft } from "../store/draft";
+import { Segments } from "../ui/Select";
 import { BodyDrawing } from "./BodyDrawing";
 import { CostDetails, Costs } from "./Costs";
-import { Outline } from "./form/Outline";
-import { Segments } from "../ui/Select";
-import { complaints, messagesByPath, withValue } from "./form/document";
-import type { FormState } from "./form/Entry";
-import { type Section, formOf } from "./form/fields";
-import { JsonView } from "./form/JsonView";
-import { withoutInitial } from "./initialCreatures";
-import { SpecForm, partsOf } from "./form/SpecForm";
-import { HAS_ERRORS, useEstimate } from "./estimate";
-import { ForkCard, isForkField } from "./ForkCard";
-import { useFork } from "./fork";
-import { useSubmission } from "./submission";
-import { SweepCard, goToSweep } from "./SweepCard";
-import { type SweepForm, isSweep, useSweepEstimate, useSweepForm } from "./sweep";
 import type { DraftState } from "./draftState";
+import { type EditorState, useEditor } from "./editorState";
+import { ForkCard } from "./ForkCard";
+import { JsonView } from "./form/JsonView";
+import { Outline } from "./form/Outline";
+import { SpecForm, partsOf } from "./form/SpecForm";
+import { isSweep } from "./sweep";
+import { SweepCard, goToSweep } from "./SweepCard";
 import "./form/form.css";
 
-interface EditorProps {
-  desk: DraftState;
-  work: Draft;
+type View = "form" | "json";
+
+interface Props {
+  draft: DraftState;
+  current: Draft;
   experiment: Experiment;
-  view: "form" | "json";
-  show: (view: "form" | "json") => void;
+  view: View;
+  show: (view: View) => void;
   take: (text: string, file: string, typed?: boolean) => string | null;
   replacing: boolean;
 }
 
-export function Editor({ desk, work, experiment, view, show, take, replacing }: EditorProps) {
-  const { spec, base } = work;
-  const forking = base.fork !== undefined;
-  const form = useMemo(() => {
-    const whole = formOf(experiment.schema);
-    return forking ? withoutInitial(whole) : whole;
-  }, [experiment, forking]);
-  const parts = useMemo(() => partsOf(form), [form]);
-  const slips = useMemo(() => complaints(form, spec), [form, spec]);
-  const check = useEstimate(spec, slips);
+export function Editor(props: Props) {
+  const { draft, current, experiment } = props;
+  const editor = useEditor(draft, current, experiment);
+  const { check, forking, submission, sweep } = editor;
   const [illegible, setIllegible] = useState<string | null>(null);
-  const sweeping = useSweepForm(form, spec, experiment);
-  const fork = useFork(work);
-  const many = forking ? null : sweeping.sent;
-  const all = useSweepEstimate(slips.length === 0 ? many : null);
-  const sweep = useMemo(() => many && { sweep: many }, [many]);
-  const submission = useSubmission(spec, fork.sent ?? sweep);
-  const refused = (submission.refusal?.errors ?? []).map(fieldError);
-  const errors = [...slips, ...(many ? specErrors(refused) : refused), ...check.errors].filter(
-    ({ field }) => !forking || !isForkField(field),
-  );
-  const slipped = !forking && isSweep(sweeping) && !many && hasProblems(sweeping);
-  const [closed, close] = useClosed(form);
-  const state: FormState = {
-    document: spec as Json,
-    original: base.spec as Json,
-    changed: desk.changed,
-    messages: messagesByPath(errors, form, spec),
-    change: (path, value) => desk.change((now) => withValue(now, path, value) as Spec),
-    closed,
-    close,
-  };
-  const element = useRef<HTMLFormElement>(null);
-  useSubmitKey(element);
+  const form = useRef<HTMLFormElement>(null);
+  useSubmitKey(form);
   const refusal = useRefusal();
   return (
     <form
       class="new-run"
       noValidate
-      ref={element}
+      ref={form}
       onSubmit={(event) => {
         event.preventDefault();
-        if (!illegible && !slipped && !refusal) void submission.start();
+        if (!illegible && !editor.slipped && !refusal) void submission.start();
       }}
     >
       <div class="new-columns">
@@ -86,92 +55,93 @@ export function Editor({ desk, work, experiment, view, show, take, replacing }: 
           {check.estimate && <CostDetails estimate={check.estimate} />}
         </aside>
         <div class="new-spec">
-          <div class="spec-bar">
-            <Segments label="How the spec is shown" choices={VIEWS} value={view} onChoose={show} />
-            {view === "form" && <Outline parts={parts} state={state} />}
-            {!forking && (
-              <button type="button" class="plain wide-only" onClick={goToSweep}>
-                Several runs
-              </button>
-            )}
-          </div>
-          {view === "form" && <SpecForm form={form} state={state} />}
-          {view === "json" && (
-            <JsonView
-              key={desk.revision}
-              spec={spec}
-              errors={illegible ? [] : errors}
-              take={(text) => take(text, "", true)}
-              onProblem={setIllegible}
-              replace={replacing}
+          <SpecView {...props} {...{ editor, illegible }} onProblem={setIllegible} />
+          {forking ? (
+            <ForkCard {...editor.fork} errors={[...editor.refused, ...check.errors]} />
+          ) : (
+            <SweepCard
+              sweeping={sweep}
+              errors={[...editor.refused, ...editor.sweepErrors]}
+              spec={current.spec as Json}
             />
           )}
-          {forking ? (
-            <ForkCard {...fork} errors={[...refused, ...check.errors]} />
-          ) : (
-            <SweepCard sweeping={sweeping} errors={[...refused, ...all.errors]} spec={spec as Json} />
-          )}
         </div>
       </div>
-      <div class="submit-bar">
-        <div class="submit-inner">
-          <Costs
-            estimate={many ? all.estimate : check.estimate}
-            runs={many ? sweeping.total : 1}
-            problem={
-              illegible
-                ? "What is written as JSON cannot be used."
-                : (submission.refusal?.message ??
-                  check.problem ??
-                  (slipped || all.errors.length > 0 ? HAS_ERRORS : all.problem))
-            }
-          />
-          <span class="submit-how">
-            {refusal ? <span class="quiet">{refusal}</span> : <kbd class="quiet wide-only">Ctrl + Enter</kbd>}
-            <button class="primary" type="submit" disabled={submission.busy || refusal !== null}>
-              {submission.busy
-                ? "Starting …"
-                : startLabel(!forking && isSweep(sweeping) ? sweeping.total : 1)}
-            </button>
-          </span>
-        </div>
-      </div>
+      <SubmitBar editor={editor} illegible={illegible !== null} refusal={refusal} />
     </form>
   );
 }
 
-const startLabel = (runs: number) =>
-  runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`;
+interface SpecProps extends Props {
+  editor: EditorState;
+  illegible: string | null;
+  onProblem: (problem: string | null) => void;
+}
 
-/** What a refused sweep says of the spec itself stands beside its fields. */
-const specErrors = (errors: readonly FieldError[]): FieldError[] =>
-  errors
-    .filter(({ field }) => field.startsWith("spec."))
-    .map((error) => ({ ...error, field: error.field.slice("spec.".length) }));
-
-/** What a creature does not fit may be told of a part of the spec: `control: inputs`. */
-const fieldError = (error: FieldError): FieldError => ({ ...error, field: error.field.replace(/: .*/, "") });
-
-const hasProblems = ({ problems: { seeds, axes, total } }: SweepForm) =>
-  [seeds, total, ...axes].some((problem) => problem !== null);
+/** The spec as a form or as JSON, and the switch between both. */
+function SpecView({ editor, illegible, onProblem, draft, current, view, show, take, replacing }: SpecProps) {
+  const { form, state, forking, errors } = editor;
+  const parts = useMemo(() => partsOf(form), [form]);
+  return (
+    <>
+      <div class="spec-bar">
+        <Segments label="How the spec is shown" choices={VIEWS} value={view} onChoose={show} />
+        {view === "form" && <Outline parts={parts} state={state} />}
+        {!forking && (
+          <button type="button" class="plain wide-only" onClick={goToSweep}>
+            Several runs
+          </button>
+        )}
+      </div>
+      {view === "form" && <SpecForm form={form} state={state} />}
+      {view === "json" && (
+        <JsonView
+          key={draft.revision}
+          spec={current.spec}
+          errors={illegible ? [] : errors}
+          take={(text) => take(text, "", true)}
+          onProblem={onProblem}
+          replace={replacing}
+        />
+      )}
+    </>
+  );
+}
 
 const VIEWS = [
   ["form", "Form"],
   ["json", "JSON"],
 ] as const;
 
-/** Which parts are shown closed: at first those that are seldom changed. */
-function useClosed(form: Section): [ReadonlySet<string>, FormState["close"]] {
-  const seldom = useMemo(
-    () => new Set(form.fields.filter((field) => "seldom" in field).map(({ path }) => path)),
-    [form],
-  );
-  const [closed, setClosed] = useState<ReadonlySet<string>>(seldom);
-  useEffect(() => setClosed(seldom), [seldom]);
-  const close = (path: string, shut: boolean) =>
-    setClosed((now) => new Set(shut ? [...now, path] : [...now].filter((each) => each !== path)));
-  return [closed, close];
+interface SubmitProps {
+  editor: EditorState;
+  illegible: boolean;
+  refusal: string | null;
 }
+
+function SubmitBar({ editor, illegible, refusal }: SubmitProps) {
+  const { estimate, runs, problem, submission, sweep, forking } = editor;
+  const wanted = !forking && isSweep(sweep) ? sweep.total : 1;
+  return (
+    <div class="submit-bar">
+      <div class="submit-inner">
+        <Costs
+          {...{ estimate, runs }}
+          problem={illegible ? "What is written as JSON cannot be used." : problem}
+        />
+        <span class="submit-how">
+          {refusal ? <span class="quiet">{refusal}</span> : <kbd class="quiet wide-only">Ctrl + Enter</kbd>}
+          <button class="primary" type="submit" disabled={submission.busy || refusal !== null}>
+            {submission.busy ? "Starting …" : startLabel(wanted)}
+          </button>
+        </span>
+      </div>
+    </div>
+  );
+}
+
+const startLabel = (runs: number) =>
+  runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`;
 
 /** Control or Command with Enter submits, wherever the focus is. */
 function useSubmitKey(form: { current: HTMLFormElement | null }): void {

@@ -12,7 +12,7 @@ import { Editor } from "./Editor";
 import { usePresetCosts } from "./estimate";
 import { ofFound, ofPreset, completeSpec } from "./sources";
 import { OpenFileButton, useDocumentDrop } from "./OpenDocument";
-import { useDraft } from "./draftState";
+import { type DraftState, useDraft } from "./draftState";
 import "./new-run.css";
 
 export function NewRunPage({ query }: { query: URLSearchParams }) {
@@ -32,23 +32,69 @@ interface NewRunProps {
 }
 
 function NewRunForm({ experiments, query }: NewRunProps) {
-  const desk = useDraft(query, experiments);
+  const draft = useDraft(query, experiments);
+  const { current } = draft;
   const [picked, setPicked] = useState<Experiment | null>(null);
-  const [file, setFile] = useState<CreatureFile | null>(null);
   const [replacing, setReplacing] = useState(false);
-  const own = experiments.find(({ experiment }) => experiment === desk.work?.spec.experiment);
+  const own = experiments.find(({ experiment }) => experiment === current?.spec.experiment);
   const chosen = picked ?? own ?? experiments[0]!;
-  useEffect(() => setPicked(null), [desk.revision]);
-  /** Begins from a document; what was typed as JSON goes on from the same beginning. */
-  const take = (text: string, name: string, typed = false): string | null => {
+  useEffect(() => setPicked(null), [draft.revision]);
+  const { take, file } = useDocument(draft, experiments, chosen, own);
+  const costs = usePresetCosts(chosen);
+  const view = query.get("view") === "json" ? "json" : "form";
+  const show = (next: "form" | "json", replace = false) => {
+    setReplacing(replace);
+    setQuery({ view: next === "json" ? "json" : null });
+  };
+  const preset = current?.base.kind === "preset" ? current.base.name : null;
+  return (
+    <>
+      <Header take={take} onPaste={() => show("json", true)} />
+      {draft.problem && (
+        <p class="banner wrong" role="alert">
+          {draft.problem}
+        </p>
+      )}
+      <ExperimentPicker
+        experiments={experiments}
+        chosen={chosen}
+        preset={chosen.presets.find(({ name }) => preset === `${chosen.experiment}/${name}`) ?? null}
+        estimates={costs}
+        onPreset={(one, of) => draft.startFrom(ofPreset(one, of))}
+        onExperiment={(one) =>
+          one.presets[0] ? draft.startFrom(ofPreset(one.presets[0], one)) : setPicked(one)
+        }
+      />
+      {!current && <p class="quiet loading">Loading …</p>}
+      {current && own && (
+        <>
+          <BaseBar {...{ draft, current, experiments, file }} />
+          <Editor {...{ draft, current, view, show, take, replacing }} experiment={own} />
+        </>
+      )}
+    </>
+  );
+}
+
+type Take = (text: string, name: string, typed?: boolean) => string | null;
+
+/** Starts from a document; what was typed as JSON goes on from the same beginning. */
+function useDocument(
+  draft: DraftState,
+  experiments: Experiment[],
+  chosen: Experiment,
+  own: Experiment | undefined,
+): { take: Take; file: CreatureFile | null } {
+  const [file, setFile] = useState<CreatureFile | null>(null);
+  const take: Take = (text, name, typed = false) => {
     try {
       const found = readText(text, chosen.experiment === "refinement");
       const same = typed && found.kind === "spec" && found.spec.experiment === own?.experiment;
       if (same) {
         const spec = completeSpec(found.spec, experiments);
-        desk.change(() => spec);
+        draft.change(() => spec);
       } else {
-        desk.startFrom(ofFound(found, name, experiments));
+        draft.startFrom(ofFound(found, name, experiments));
         setFile(found.kind === "creature" ? { sha: found.creature.sha256, text } : null);
       }
       return null;
@@ -57,50 +103,21 @@ function NewRunForm({ experiments, query }: NewRunProps) {
     }
   };
   useDocumentDrop(take);
-  const costs = usePresetCosts(chosen);
-  const view = query.get("view") === "json" ? "json" : "form";
-  const show = (next: "form" | "json", replace = false) => {
-    setReplacing(replace);
-    setQuery({ view: next === "json" ? "json" : null });
-  };
-  const { work } = desk;
-  const base = work?.base;
-  const preset = base?.kind === "preset" ? base.name : null;
+  return { take, file };
+}
+
+function Header({ take, onPaste }: { take: Take; onPaste: () => void }) {
   return (
-    <>
-      <header class="page-head">
-        <h1>New run</h1>
-        <span class="spring" />
-        <span class="quiet small wide-only">Paste or drop a spec, a run or a creature file, or</span>
-        <span class="actions">
-          <button type="button" onClick={() => show("json", true)}>
-            Paste a spec
-          </button>
-          <OpenFileButton take={take} />
-        </span>
-      </header>
-      {desk.problem && (
-        <p class="banner wrong" role="alert">
-          {desk.problem}
-        </p>
-      )}
-      <ExperimentPicker
-        experiments={experiments}
-        chosen={chosen}
-        preset={chosen.presets.find(({ name }) => preset === `${chosen.experiment}/${name}`) ?? null}
-        estimates={costs}
-        onPreset={(one, of) => desk.startFrom(ofPreset(one, of))}
-        onExperiment={(one) =>
-          one.presets[0] ? desk.startFrom(ofPreset(one.presets[0], one)) : setPicked(one)
-        }
-      />
-      {!work && <p class="quiet loading">Loading …</p>}
-      {work && own && (
-        <>
-          <BaseBar {...{ desk, work, experiments, file }} />
-          <Editor {...{ desk, work, view, show, take, replacing }} experiment={own} />
-        </>
-      )}
-    </>
+    <header class="page-head">
+      <h1>New run</h1>
+      <span class="spring" />
+      <span class="quiet small wide-only">Paste or drop a spec, a run or a creature file, or</span>
+      <span class="actions">
+        <button type="button" onClick={onPaste}>
+          Paste a spec
+        </button>
+        <OpenFileButton take={take} />
+      </span>
+    </header>
   );
 }

@@ -15,7 +15,7 @@ interface Props {
 }
 
 export function SweepCard({ sweeping, errors, spec }: Props) {
-  const { seeded, seeds, axes, name, fields, problems, total, change } = sweeping;
+  const { axes, fields, problems, total, change } = sweeping;
   const add = () => {
     const free = fields.find(({ path }) => !axes.some((axis) => axis.path === path));
     const usual = fields.find(({ path }) => path === "world.viscosity") ?? free;
@@ -29,32 +29,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
         Several runs at once: the same spec with other seeds, or with other values of any fields. They are
         summed up on one page, with median and spread.
       </p>
-      <div class="sweep-entries">
-        {seeded && (
-          <label class="sweep-seeds">
-            <span>How many seeds</span>
-            <input
-              type="text"
-              inputMode="numeric"
-              value={seeds}
-              aria-invalid={problems.seeds !== null}
-              onInput={(event) => change({ seeds: event.currentTarget.value })}
-            />
-          </label>
-        )}
-        {isSweep(sweeping) && (
-          <label class="sweep-name-field">
-            <span>Name of the sweep</span>
-            <input
-              type="text"
-              maxLength={200}
-              value={name}
-              placeholder="may be left empty"
-              onInput={(event) => change({ name: event.currentTarget.value })}
-            />
-          </label>
-        )}
-      </div>
+      <Entries sweeping={sweeping} />
       <Wrong said={[problems.seeds, ...complaintsOf(errors, "seeds")]} />
       {axes.map((axis, i) => (
         <Row
@@ -80,6 +55,39 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
         )}
       </p>
     </section>
+  );
+}
+
+/** How many seeds, and what the sweep is called. */
+function Entries({ sweeping }: { sweeping: SweepForm }) {
+  const { seeded, seeds, name, problems, change } = sweeping;
+  return (
+    <div class="sweep-entries">
+      {seeded && (
+        <label class="sweep-seeds">
+          <span>How many seeds</span>
+          <input
+            type="text"
+            inputMode="numeric"
+            value={seeds}
+            aria-invalid={problems.seeds !== null}
+            onInput={(event) => change({ seeds: event.currentTarget.value })}
+          />
+        </label>
+      )}
+      {isSweep(sweeping) && (
+        <label class="sweep-name-field">
+          <span>Name of the sweep</span>
+          <input
+            type="text"
+            maxLength={200}
+            value={name}
+            placeholder="may be left empty"
+            onInput={(event) => change({ name: event.currentTarget.value })}
+          />
+        </label>
+      )}
+    </div>
   );
 }
 

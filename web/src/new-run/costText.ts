@@ -21,19 +21,19 @@ export function about({ seconds }: Pick<Estimate, "seconds">): string | null {
 const WIDE = 1.5;
 
 /** What the time rests on. */
-export function basis({ pace }: Estimate): string {
-  if (!pace) return "unknown until a first run of this kind has been measured here";
-  const judges = `judged by ${pace.runs} earlier ${pace.runs === 1 ? "run" : "runs"}`;
-  const [low, high] = [rough(pace.low), rough(pace.high)];
-  const wide = pace.high > WIDE * pace.low && low !== high;
+export function basis({ speed }: Estimate): string {
+  if (!speed) return "unknown until a first run of this kind has been measured here";
+  const judges = `judged by ${speed.runs} earlier ${speed.runs === 1 ? "run" : "runs"}`;
+  const [low, high] = [rough(speed.low), rough(speed.high)];
+  const wide = speed.high > WIDE * speed.low && low !== high;
   const range = wide ? `; at their paces ${low} to ${high}` : "";
-  return `on ${pace.device}, ${judges}${range}`;
+  return `on ${speed.device}, ${judges}${range}`;
 }
 
 /** What it will wait for. */
 export function wait({ queue }: Estimate): string {
-  const { waiting, workers, free } = queue;
+  const { runs_ahead, workers, idle_workers } = queue;
   if (workers === 0) return "No worker is running: it will wait until one is.";
-  if (waiting > 0) return `${waiting} queued ${waiting === 1 ? "run goes" : "runs go"} before it.`;
-  return free > 0 ? "A worker is free: it starts at once." : "It starts when a worker is free.";
+  if (runs_ahead > 0) return `${runs_ahead} queued ${runs_ahead === 1 ? "run goes" : "runs go"} before it.`;
+  return idle_workers > 0 ? "A worker is free: it starts at once." : "It starts when a worker is free.";
 }

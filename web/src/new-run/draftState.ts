@@ -4,6 +4,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
 import type { Experiment, Spec } from "../api/types";
 import {
+  type Address,
   type Base,
   type Draft,
   FORK_PARAMETERS,
@@ -19,7 +20,7 @@ import { withInitial } from "./initialCreatures";
 import { addressed, load, ofPreset } from "./sources";
 
 export interface DraftState {
-  work: Draft | null;
+  current: Draft | null;
   /** Where the spec differs from what it was begun from. */
   changed: ReadonlySet<string>;
   /** Counts how often the whole spec was replaced. */
@@ -41,67 +42,87 @@ const NONE: ReadonlySet<string> = new Set();
 
 export function useDraft(query: URLSearchParams, experiments: Experiment[]): DraftState {
   const wanted = addressed(query);
-  const [work, setWork] = useState(() => loadDraft(wanted));
-  const [restored, setRestored] = useState(work !== null);
+  const [current, setCurrent] = useState(() => loadDraft(wanted));
+  const [restored, setRestored] = useState(current !== null);
   const [revision, setRevision] = useState(0);
   const [problem, setProblem] = useState<string | null>(null);
-  const shown = useRef(work ? String(wanted) : null);
-  const changed = useMemo(() => (work ? new Set(changedPaths(work.spec, work.base.spec)) : NONE), [work]);
+  const shown = useRef(current ? String(wanted) : null);
+  const changed = useMemo(
+    () => (current ? new Set(changedPaths(current.spec, current.base.spec)) : NONE),
+    [current],
+  );
   const put = (next: Draft) => {
     const address = addressOf(next.base);
     shown.current = String(address);
     setQuery({ ...UNNAMED, ...(address && Object.fromEntries(address)) });
-    setWork(next);
+    setCurrent(next);
     setRestored(false);
     setRevision((count) => count + 1);
     setProblem(null);
   };
   const replace = (next: Draft, text: string) => {
-    if (work && (changed.size > 0 || work.base.fork)) offerUndo(text, () => put(work));
+    if (current && (changed.size > 0 || current.base.fork)) offerUndo(text, () => put(current));
     put(next);
   };
-  const release = () => {
-    if (!work?.base.fork) return;
-    const { fork: _, ...base } = { ...work.base, spec: withInitial(work.base.spec, []) };
-    replace({ base, spec: withInitial(work.spec, []) }, "It begins from random creatures.");
-  };
-  // A way back from here leads nowhere from another page.
-  useEffect(() => () => dismissToast(undoToast), []);
-  const begin = (base: Base) => replace({ base, spec: base.spec }, "Begun anew without your changes.");
-  useEffect(() => {
-    // Without a name in it the address means whatever is at hand.
-    if (shown.current === String(wanted) || (work && !wanted)) return;
-    let current = true;
-    const usual = ofPreset(experiments[0]!.presets[0]!, experiments[0]!);
-    const asked = wanted ? load(wanted, experiments) : Promise.resolve(usual);
-    const fail = (error: unknown) => {
-      if (!work) begin(usual);
-      setProblem(messageOf(error));
-    };
-    asked.then(
-      (base) => current && begin(base),
-      (error) => current && fail(error),
-    );
-    return () => {
-      current = false;
-    };
-  }, [String(wanted)]);
-  useEffect(() => {
-    if (!work) return;
-    if (changed.size > 0 || work.base.foreign) saveDraft(work);
-    else discardDraft();
-  }, [work, changed]);
+  const startFrom = (base: Base) => replace({ base, spec: base.spec }, "Begun anew without your changes.");
+  useBase(wanted, shown, current !== null, experiments, startFrom, setProblem);
+  useKept(current, changed);
   return {
-    work,
+    current,
     changed,
     revision,
     restored: restored && changed.size > 0,
     problem,
-    change: (next) => setWork((now) => now && { ...now, spec: next(now.spec) }),
-    startFrom: begin,
-    reset: () => work && replace({ ...work, spec: work.base.spec }, "Changes taken back."),
-    dropFork: release,
+    change: (next) => setCurrent((now) => now && { ...now, spec: next(now.spec) }),
+    startFrom,
+    reset: () => current && replace({ ...current, spec: current.base.spec }, "Changes taken back."),
+    dropFork: () => {
+      if (current?.base.fork) replace(withoutFork(current), "It begins from random creatures.");
+    },
   };
+}
+
+function withoutFork({ base: { fork: _, ...base }, spec }: Draft): Draft {
+  return { base: { ...base, spec: withInitial(base.spec, []) }, spec: withInitial(spec, []) };
+}
+
+/** Starts from what the address names, or from the usual preset, unless it is shown already. */
+function useBase(
+  wanted: Address | null,
+  shown: { current: string | null },
+  begun: boolean,
+  experiments: Experiment[],
+  startFrom: (base: Base) => void,
+  onProblem: (problem: string) => void,
+): void {
+  useEffect(() => {
+    // Without a name in it the address means whatever is at hand.
+    if (shown.current === String(wanted) || (begun && !wanted)) return;
+    let wanting = true;
+    const usual = ofPreset(experiments[0]!.presets[0]!, experiments[0]!);
+    const asked = wanted ? load(wanted, experiments) : Promise.resolve(usual);
+    const fail = (error: unknown) => {
+      if (!begun) startFrom(usual);
+      onProblem(messageOf(error));
+    };
+    asked.then(
+      (base) => wanting && startFrom(base),
+      (error) => wanting && fail(error),
+    );
+    return () => {
+      wanting = false;
+    };
+  }, [String(wanted)]);
+}
+
+/** Keeps what was changed for this tab; an undo note leads nowhere from another page. */
+function useKept(current: Draft | null, changed: ReadonlySet<string>): void {
+  useEffect(() => () => dismissToast(undoToast), []);
+  useEffect(() => {
+    if (!current) return;
+    if (changed.size > 0 || current.base.foreign) saveDraft(current);
+    else discardDraft();
+  }, [current, changed]);
 }
 
 let undoToast = 0;

@@ -57,9 +57,9 @@ describe("a draft", () => {
 });
 
 describe("costs in words", () => {
-  const queue = { waiting: 0, workers: 1, free: 1 };
-  const pace = { device: "a CPU", runs: 3, cell_steps_per_second: 1e6, low: 600, high: 700 };
-  const estimate = (changes: object) => ({ seconds: 650, pace, queue, ...changes }) as Estimate;
+  const queue = { runs_ahead: 0, workers: 1, idle_workers: 1 };
+  const speed = { device: "a CPU", runs: 3, cell_steps_per_second: 1e6, low: 600, high: 700 };
+  const estimate = (changes: object) => ({ seconds: 650, speed, queue, ...changes }) as Estimate;
 
   it.each([
     [3, "10 s"],
@@ -74,18 +74,18 @@ describe("costs in words", () => {
     expect(about(estimate({}))).toBe("about 11 min");
     expect(about(estimate({ seconds: 2 }))).toBe("a few seconds");
     expect(basis(estimate({}))).toBe("on a CPU, judged by 3 earlier runs");
-    expect(basis(estimate({ pace: { ...pace, runs: 1, high: 1300 } }))).toBe(
+    expect(basis(estimate({ speed: { ...speed, runs: 1, high: 1300 } }))).toBe(
       "on a CPU, judged by 1 earlier run; at their paces 10 min to 22 min",
     );
     expect(about(estimate({ seconds: null }))).toBeNull();
-    expect(basis(estimate({ pace: null }))).toMatch(/^unknown until a first run/);
+    expect(basis(estimate({ speed: null }))).toMatch(/^unknown until a first run/);
   });
 
   it.each([
     [{ workers: 0 }, /No worker/],
-    [{ waiting: 2 }, /2 queued runs go/],
+    [{ runs_ahead: 2 }, /2 queued runs go/],
     [{}, /at once/],
-    [{ free: 0 }, /when a worker is free/],
+    [{ idle_workers: 0 }, /when a worker is free/],
   ])("says what a run waits for with %j", (changes, words) =>
     expect(wait(estimate({ queue: { ...queue, ...changes } }))).toMatch(words),
   );

@@ -1,9 +1,10 @@
-/** The way to publish something; few go it, and the dialog comes with who does. */
+/** The button that loads and opens the publishing dialog. */
 
 import { useState } from "preact/hooks";
 import { lazy } from "../ui/lazy";
 import { useRefusal } from "../store/principal";
 import type { Props } from "./PublishDialog";
+import { text } from "./text";
 
 const PublishDialog = lazy(async () => (await import("./PublishDialog")).PublishDialog, "section");
 
@@ -12,7 +13,7 @@ export function PublishButton(props: Props) {
   if (useRefusal()) return null;
   return (
     <>
-      <button onClick={() => setOpened((times) => times + 1)}>Publish</button>
+      <button onClick={() => setOpened((times) => times + 1)}>{text.publish}</button>
       {opened > 0 && <PublishDialog {...props} opened={opened} />}
     </>
   );

@@ -1,4 +1,4 @@
-/** Publishes a creature or an archive: what to call it, whom to name, how long, for whom. */
+/** The dialog that publishes a creature or an archive. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -6,6 +6,7 @@ import { messageOf } from "../api/problem";
 import type { Creature, Share, ShareRequest } from "../api/types";
 import { Options } from "../ui/Select";
 import { copyText } from "../ui/clipboard";
+import { text } from "./text";
 import "./publish.css";
 
 export interface Props {
@@ -16,21 +17,21 @@ export interface Props {
 }
 
 const LICENCES = [
-  ["CC-BY-4.0", "CC BY 4.0: name the author"],
-  ["CC-BY-SA-4.0", "CC BY-SA 4.0: and share alike"],
-  ["CC-BY-NC-4.0", "CC BY-NC 4.0: and not for money"],
-  ["CC0-1.0", "CC0: no conditions"],
+  ["CC-BY-4.0", text.ccBy],
+  ["CC-BY-SA-4.0", text.ccBySa],
+  ["CC-BY-NC-4.0", text.ccByNc],
+  ["CC0-1.0", text.cc0],
 ] as const;
 const TERMS = [
-  ["never", "Never"],
-  ["1", "In a day"],
-  ["7", "In a week"],
-  ["30", "In a month"],
-  ["date", "On a date …"],
+  ["never", text.never],
+  ["1", text.inADay],
+  ["7", text.inAWeek],
+  ["30", text.inAMonth],
+  ["date", text.onADate],
 ] as const;
 const DAY_MS = 86_400_000;
 
-/** Opens whenever `opened` grows; what was typed before is still there. */
+/** Opens whenever `opened` grows; keeps what was typed. */
 export function PublishDialog({ opened, ...props }: Props & { opened: number }) {
   const dialog = useRef<HTMLDialogElement>(null);
   const [share, setShare] = useState<Share | null>(null);
@@ -50,15 +51,14 @@ export function PublishDialog({ opened, ...props }: Props & { opened: number }) 
   );
 }
 
-interface AskingProps extends Props {
+interface FormProps extends Props {
   onDone: (share: Share) => void;
   onEnd: () => void;
 }
 
-function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
+function PublishForm({ of, title, file, onDone, onEnd }: FormProps) {
   const [busy, setBusy] = useState(false);
   const [error, setError] = useState<string | null>(null);
-  const [term, setTerm] = useState<string>("never");
   const submit = async (event: SubmitEvent) => {
     event.preventDefault();
     setBusy(true);
@@ -72,48 +72,11 @@ function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
     }
     setBusy(false);
   };
-  const licences = LICENCES.some(([name]) => name === (file?.licence ?? name))
-    ? LICENCES
-    : [[file!.licence, `${file!.licence}: as its file says`] as const, ...LICENCES];
   return (
     <form onSubmit={(event) => void submit(event as unknown as SubmitEvent)}>
-      <h2 id="publish-title">Publish</h2>
-      <p class="quiet small">
-        Whoever has the address sees {"run" in of ? "this archive as it is now" : "this creature"} and its
-        ancestry, without a token, and nothing else. You can take it back at any time.
-      </p>
-      <label>
-        Title
-        <input name="title" maxLength={200} defaultValue={title} placeholder="What it is called" />
-      </label>
-      <label>
-        Credit
-        <input name="credit" maxLength={1000} placeholder="Names, with commas between them" />
-      </label>
-      {file?.credit && file.credit.length > 0 && (
-        <p class="quiet small">Its file names {file.credit.join(", ")} already, who stay named.</p>
-      )}
-      <label>
-        Licence
-        <select name="licence" defaultValue={file?.licence ?? LICENCES[0][0]}>
-          <Options of={licences} />
-        </select>
-      </label>
-      <label>
-        Expires
-        <select name="term" value={term} onChange={(event) => setTerm(event.currentTarget.value)}>
-          <Options of={TERMS} />
-        </select>
-      </label>
-      {term === "date" && (
-        <label>
-          Last moment
-          <input name="until" type="datetime-local" required />
-        </label>
-      )}
-      <label class="check">
-        <input name="listed" type="checkbox" /> List it in the commons, for everybody to find
-      </label>
+      <h2 id="publish-title">{text.publish}</h2>
+      <p class="quiet small">{text.about("run" in of)}</p>
+      <Fields title={title} file={file} />
       {error && (
         <p class="banner wrong" role="alert">
           {error}
@@ -121,27 +84,70 @@ function PublishForm({ of, title, file, onDone, onEnd }: AskingProps) {
       )}
       <p class="links">
         <button class="primary" disabled={busy}>
-          {busy ? "Publishing …" : "Publish"}
+          {busy ? text.publishing : text.publish}
         </button>
         <button type="button" onClick={onEnd}>
-          Cancel
+          {text.cancel}
         </button>
       </p>
     </form>
   );
 }
 
-/** What the form asks for; an empty field is left to the server. */
+function Fields({ title, file }: Pick<Props, "title" | "file">) {
+  const [term, setTerm] = useState<string>("never");
+  const licences = LICENCES.some(([name]) => name === (file?.licence ?? name))
+    ? LICENCES
+    : [[file!.licence, text.licenceOfFile(file!.licence)] as const, ...LICENCES];
+  return (
+    <>
+      <label>
+        {text.title}
+        <input name="title" maxLength={200} defaultValue={title} placeholder={text.titleHint} />
+      </label>
+      <label>
+        {text.credit}
+        <input name="credit" maxLength={1000} placeholder={text.creditHint} />
+      </label>
+      {file?.credit && file.credit.length > 0 && (
+        <p class="quiet small">{text.creditOfFile(file.credit.join(", "))}</p>
+      )}
+      <label>
+        {text.licence}
+        <select name="licence" defaultValue={file?.licence ?? LICENCES[0][0]}>
+          <Options of={licences} />
+        </select>
+      </label>
+      <label>
+        {text.expires}
+        <select name="term" value={term} onChange={(event) => setTerm(event.currentTarget.value)}>
+          <Options of={TERMS} />
+        </select>
+      </label>
+      {term === "date" && (
+        <label>
+          {text.expiryDate}
+          <input name="until" type="datetime-local" required />
+        </label>
+      )}
+      <label class="check">
+        <input name="listed" type="checkbox" /> {text.list}
+      </label>
+    </>
+  );
+}
+
+/** The request of the form; empty fields are left out. */
 export function requestOf(form: FormData, now = Date.now()): ShareRequest {
-  const text = (name: string) => String(form.get(name) ?? "").trim();
-  const credit = text("credit")
+  const value = (name: string) => String(form.get(name) ?? "").trim();
+  const credit = value("credit")
     .split(",")
     .map((name) => name.trim());
   return {
-    ...(text("title") && { title: text("title") }),
+    ...(value("title") && { title: value("title") }),
     credit: credit.filter(Boolean),
-    licence: text("licence"),
-    expires_at: endOf(text("term"), text("until"), now),
+    licence: value("licence"),
+    expires_at: endOf(value("term"), value("until"), now),
     listed: form.get("listed") === "on",
   };
 }
@@ -156,22 +162,22 @@ function Published({ share, onEnd }: { share: Share; onEnd: () => void }) {
   useEffect(() => address.current!.focus(), []);
   return (
     <div class="published">
-      <h2 id="publish-title">Published</h2>
+      <h2 id="publish-title">{text.published}</h2>
       <label>
-        Its address
+        {text.link}
         <input ref={address} readOnly value={share.url} onFocus={(event) => event.currentTarget.select()} />
       </label>
       <p class="links">
-        <button class="primary" onClick={() => void copyText(share.url, "Link copied.")}>
-          Copy link
+        <button class="primary" onClick={() => void copyText(share.url, text.linkCopied)}>
+          {text.copyLink}
         </button>
         <a class="button" href={`/s/${share.slug}`} target="_blank">
-          Look at it
+          {text.open}
         </a>
         <a class="button" href="/shares">
-          All shares
+          {text.allShares}
         </a>
-        <button onClick={onEnd}>Done</button>
+        <button onClick={onEnd}>{text.done}</button>
       </p>
     </div>
   );

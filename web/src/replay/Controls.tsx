@@ -1,15 +1,16 @@
-/** What is chosen about a replay, and what its colours mean. */
+/** Controls of a replay, and the legend of its field. */
 
 import { ColourBar } from "../ui/ColourBar";
 import { css } from "../ui/colours";
 import { number } from "../ui/format";
 import type { Field, FieldName } from "./fields";
 import { type ReplayView, SPEEDS } from "./look";
+import { text } from "./text";
 
 export function Speed({ value, onChange }: { value: number; onChange: (speed: number) => void }) {
   return (
     <label class="compact">
-      Speed
+      {text.speed}
       <select value={String(value)} onChange={(event) => onChange(Number(event.currentTarget.value))}>
         {SPEEDS.map((speed) => (
           <option key={speed} value={String(speed)}>
@@ -22,10 +23,10 @@ export function Speed({ value, onChange }: { value: number; onChange: (speed: nu
 }
 
 const TITLES: Record<FieldName, string> = {
-  vorticity: "Vorticity",
-  speed: "Speed",
-  energy: "Energy",
-  none: "None",
+  vorticity: text.vorticity,
+  speed: text.speed,
+  energy: text.energy,
+  none: text.none,
 };
 
 interface Props {
@@ -33,7 +34,7 @@ interface Props {
   name: FieldName;
   look: ReplayView;
   change: (part: Partial<ReplayView>) => void;
-  /** Whether the flow is known that tracers follow. */
+  /** True if the replay has the flow that tracers follow. */
   flows: boolean;
 }
 
@@ -41,7 +42,7 @@ export function LookChoice({ names, name, look, change, flows }: Props) {
   return (
     <div class="view-options">
       {names.length > 1 && (
-        <div class="tabs" role="group" aria-label="Field shown">
+        <div class="tabs" role="group" aria-label={text.field}>
           {names.map((each) => (
             <button
               key={each}
@@ -55,9 +56,9 @@ export function LookChoice({ names, name, look, change, flows }: Props) {
         </div>
       )}
       {flows && names.includes("speed") && (
-        <Check label="Tracers" checked={look.tracers} onChange={(tracers) => change({ tracers })} />
+        <Check label={text.tracers} checked={look.tracers} onChange={(tracers) => change({ tracers })} />
       )}
-      <Check label="Follow" checked={look.follow} onChange={(follow) => change({ follow })} />
+      <Check label={text.follow} checked={look.follow} onChange={(follow) => change({ follow })} />
     </div>
   );
 }
@@ -83,7 +84,7 @@ export function FieldLegend({ field: { title, unit, range, colour } }: { field: 
   return (
     <ColourBar
       name={`${title} (${unit})`}
-      label={`${title} from ${numbers[0]} to ${numbers[2]} ${unit}`}
+      label={text.legend(title, numbers[0], numbers[2], unit)}
       colourAt={(share) => css(colour(share))}
       numbers={numbers}
     />

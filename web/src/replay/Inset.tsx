@@ -2,6 +2,7 @@
 
 import type { Replay } from "../decode/replay";
 import { ReplayLoop } from "./Loop";
+import { text } from "./text";
 import "./replay.css";
 
 interface Props {
@@ -17,7 +18,7 @@ export function ReplayInset({ replay, note }: Props) {
         <ReplayLoop
           key={replay.header.creature}
           replay={replay}
-          name="The elite of this cell, swimming"
+          name={text.inset}
           onFirst={() => mark("inset")}
         />
       ) : (

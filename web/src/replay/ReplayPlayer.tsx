@@ -15,6 +15,7 @@ import { chainsOf } from "./motion";
 import { drawScene, wayOf } from "./scene";
 import { Tracers } from "./tracers";
 import { IconButton, StepRange } from "./Transport";
+import { text } from "./text";
 import "./replay.css";
 
 /** Steps of the simulation in a second at speed 1. */
@@ -48,7 +49,7 @@ export function ReplayPlayer({ films, ...given }: Props) {
   const playback = usePlayback(replays[0]!, look.speed, given.moment, player);
   const flows = replays.every(({ drive }) => drive);
   return (
-    <div ref={player} class="player" role="group" aria-label="Replay player" tabIndex={-1}>
+    <div ref={player} class="player" role="group" aria-label={text.player} tabIndex={-1}>
       <div class="stages">
         {films.map(({ replay, name }, i) => (
           <figure key={i}>
@@ -110,19 +111,19 @@ function Transport({ moment, toggle, step, header }: Playback & { header: Replay
   const { playing, time } = moment;
   return (
     <>
-      <IconButton icon="back" label="One frame back" keys=", ArrowLeft" onClick={() => step(-1)} />
+      <IconButton icon="back" label={text.frameBack} keys=", ArrowLeft" onClick={() => step(-1)} />
       <IconButton
         icon={playing ? "pause" : "play"}
-        label={playing ? "Pause" : "Play"}
+        label={playing ? text.pause : text.play}
         keys="Space"
         onClick={toggle}
       />
-      <IconButton icon="forward" label="One frame on" keys=". ArrowRight" onClick={() => step(1)} />
+      <IconButton icon="forward" label={text.frameForward} keys=". ArrowRight" onClick={() => step(1)} />
       <StepRange
         {...{ time, every, steps }}
         last={frames - 1}
         keys="Home End"
-        title="Home and End lead to the first and the last frame"
+        title={text.homeEnd}
         onScrub={(time) => moment.scrub(time)}
       />
     </>
@@ -146,11 +147,10 @@ function Stage({ replay, theme, field, tracing, follow, time, onClick }: StagePr
     const chains = chainsOf(replay.header.edges);
     return { replay, painter, chains, way: wayOf(replay), follow, theme: field?.ground ?? theme };
   }, [replay, theme, field, follow]);
-  const shown = field ? `colours show the fluid's ${field.title.toLowerCase()}` : "the fluid is left blank";
   return (
     <CanvasStage
       size={replay.header.size}
-      label={`The creature swimming; ${shown}${tracing ? ", tracers its paths" : ""}.`}
+      label={text.stage(field?.title ?? null, tracing)}
       blank={!field}
       fits
       draw={(canvas, size) => drawScene(canvas, size, { ...scene, tracers }, time)}

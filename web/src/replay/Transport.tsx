@@ -1,5 +1,7 @@
 /** Buttons and sliders that move through time. */
 
+import { text } from "./text";
+
 const PATHS = {
   play: "M4.5 2.5v11l9-5.5z",
   pause: "M4 2.5h3v11H4zM9 2.5h3v11H9z",
@@ -77,10 +79,10 @@ interface StepProps extends Pick<SliderProps, "last" | "onScrub" | "keys" | "tit
 /** A slider over the frames of a replay, and the step it stands at. */
 export function StepRange({ time, every, steps, ...rest }: StepProps) {
   const step = Math.min(steps, Math.round(time * every));
-  const valueText = `step ${step} of ${steps}`;
+  const valueText = text.step(step, steps);
   return (
     <>
-      <TimeRange label="Moment of the replay" step="any" value={time} {...{ valueText }} {...rest} />
+      <TimeRange label={text.moment} step="any" value={time} {...{ valueText }} {...rest} />
       <output class="moment">
         {step} / {steps}
       </output>

@@ -1,7 +1,8 @@
-/** What of the fluid can be shown: planes of whole numbers, what one means, and its colours. */
+/** Fields of the fluid that can be shown: integer planes, units and colours. */
 
 import type { Replay } from "../decode/replay";
 import { type Rgb, diverging, table, viridis } from "../ui/colours";
+import { text } from "./text";
 
 export type FieldName = "vorticity" | "speed" | "energy" | "none";
 
@@ -45,7 +46,7 @@ function vorticityOf(replays: Replay[], theme: "light" | "dark"): Field {
   const most = Math.max(...replays.map(strongest));
   return {
     name: "vorticity",
-    title: "Vorticity",
+    title: text.vorticity,
     unit: "1/step",
     range: [-most, most],
     colour: (t) => diverging(2 * t - 1, theme),
@@ -60,7 +61,7 @@ function speedOf(replays: Replay[]): Field {
   const speeds = new Map(replays.map((replay) => [replay, new Speeds(replay)]));
   return {
     name: "speed",
-    title: "Speed",
+    title: text.speed,
     unit: "cells/step",
     range: [0, Math.max(...[...speeds.values()].map((each) => each.strongest()))],
     colour: viridis,
@@ -74,8 +75,8 @@ function speedOf(replays: Replay[]): Field {
 function energyOf(replays: Replay[], theme: "light" | "dark"): Field {
   return {
     name: "energy",
-    title: "Energy",
-    unit: "density",
+    title: text.energy,
+    unit: text.density,
     range: [0, Math.max(...replays.map(({ header }) => header.energy!.scale))],
     colour: (t) => diverging(0.85 * t, theme),
     ground: theme,

@@ -1,9 +1,10 @@
-/** Replays that a worker renders when they are asked for. */
+/** Replays, which a worker renders on request. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { type Replay, decodeReplay } from "../decode/replay";
 import { poll } from "../store/polling";
+import { text } from "./text";
 import "./replay.css";
 
 interface Rendered {
@@ -41,7 +42,7 @@ interface State {
 
 const NOTHING: Omit<State, "asked"> = { found: new Map(), note: null, error: null };
 
-/** Creatures' replays, asked for until they have been rendered. */
+/** Replays of creatures; requests are repeated until they are rendered. */
 export function useReplays(shas: string[]): Rendered {
   const asked = shas.join();
   const [state, setState] = useState<State>({ ...NOTHING, asked });
@@ -70,7 +71,7 @@ export function useReplays(shas: string[]): Rendered {
 
 const decoded = (bytes: ArrayBuffer | null) => bytes && decodeReplay(bytes);
 
-/** What to see until then. */
+/** Shown while replays are rendered. */
 export function RecordingStatus({ replays, note, error, what }: Rendered & { what: string }) {
   if (error) return <p class="banner wrong">{error}</p>;
   if (replays) return null;
@@ -79,7 +80,7 @@ export function RecordingStatus({ replays, note, error, what }: Rendered & { wha
       <p>
         <span class="ripple" aria-hidden="true" />
         <span>{what}</span>
-        <span class="small">{note ? `${note} Trying again …` : "The first one takes longest."}</span>
+        <span class="small">{note ? text.retrying(note) : text.firstReplay}</span>
       </p>
     </div>
   );

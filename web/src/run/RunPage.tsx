@@ -28,6 +28,7 @@ import { LogCard } from "./LogCard";
 import { PublishButton } from "../publish/PublishButton";
 import { SpecCard } from "./spec/SpecCard";
 import { commandsFor } from "./runCommands";
+import { text } from "./text";
 import "./run.css";
 
 const GaitsRun = lazy(async () => (await import("./gaits/GaitsRun")).GaitsRun, "section");
@@ -48,61 +49,69 @@ export function RunPage({ id, query }: Props) {
   const run = useStore((state) => state.runs.get(id));
   const detail = useStore((state) => state.details.get(id));
   const title = useTitle(run);
-  const refusal = useRefusal(run);
   useEffect(() => {
-    document.title = `${title} · Microcosmos`;
+    document.title = text.pageTitle(title);
   }, [title]);
   if (!run) {
     return (
       <main>
-        {error ? <NotFound what="No such run" reason={error} /> : <p class="quiet loading">Loading run …</p>}
+        {error ? (
+          <NotFound what={text.noSuchRun} reason={error} />
+        ) : (
+          <p class="quiet loading">{text.loadingRun}</p>
+        )}
       </main>
     );
   }
-  const freedom = forceFreeShare(run.spec);
   return (
     <main>
-      <nav class="crumbs" aria-label="Where you are">
-        <a href="/">Runs</a>
-        {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
+      <nav class="crumbs" aria-label={text.breadcrumbs}>
+        <a href="/">{text.runs}</a>
+        {run.sweep && <a href={`/sweeps/${run.sweep}`}>{text.sweep}</a>}
       </nav>
-      <header class="page-head">
-        <NameField
-          of={run}
-          title={title}
-          fixed={!!refusal || !!run.deleted_at}
-          onName={(name) => void editRun(id, { name })}
-        >
-          <h1>
-            {title} <code>{short(run.id)}</code>
-          </h1>
-        </NameField>
-        <StatusBadge run={run} />
-        {freedom !== "all" && <NotForceFree some={freedom === "some"} />}
-        <span class="spring" />
-        {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
-          <PublishButton of={{ run: run.id }} title={run.name ?? ""} />
-        )}
-        {hasArchive(run) && !!run.coverage && !run.deleted_at && (
-          <ForkLink run={run.id} title="A new run that begins from the creatures of this one" />
-        )}
-        {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
-        {!refusal && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={title} />}
-        {!refusal && <LifecycleButtons run={run} title={title} />}
-      </header>
+      <Header run={run} title={title} />
       {run.deleted_at ? <BinNotice run={run} /> : <RunSections {...{ run, query, error, detail }} />}
     </main>
   );
 }
 
-interface WholeProps {
+function Header({ run, title }: { run: Run; title: string }) {
+  const refusal = useRefusal(run);
+  const forceFree = forceFreeShare(run.spec);
+  return (
+    <header class="page-head">
+      <NameField
+        of={run}
+        title={title}
+        fixed={!!refusal || !!run.deleted_at}
+        onName={(name) => void editRun(run.id, { name })}
+      >
+        <h1>
+          {title} <code>{short(run.id)}</code>
+        </h1>
+      </NameField>
+      <StatusBadge run={run} />
+      {forceFree !== "all" && <NotForceFree some={forceFree === "some"} />}
+      <span class="spring" />
+      {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
+        <PublishButton of={{ run: run.id }} title={run.name ?? ""} />
+      )}
+      {hasArchive(run) && !!run.coverage && !run.deleted_at && <ForkLink run={run.id} title={text.fork} />}
+      {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
+      {!refusal && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={title} />}
+      {!refusal && <LifecycleButtons run={run} title={title} />}
+    </header>
+  );
+}
+
+interface SectionsProps {
   run: Run;
   query: URLSearchParams;
   error: string | null;
   detail: Detail | undefined;
 }
 
-function RunSections({ run, query, error, detail }: WholeProps) {
+function RunSections({ run, query, error, detail }: SectionsProps) {
   return (
     <>
       {error && <p class="banner wrong">{error}</p>}
@@ -143,26 +152,26 @@ function CurrentActivity({ run }: { run: Run }) {
 /** Ways within a long page. */
 function SectionLinks({ run }: { run: Run }) {
   const kinds: Record<string, [id: string, name: string][]> = {
-    folding: [["folds", "Pictures"]],
+    folding: [["folds", text.pictures]],
     neuroevolution: [
-      ["species", "Species"],
-      ["network", "Network"],
+      ["species", text.species],
+      ["network", text.network],
     ],
   };
   const sections: [id: string, name: string][] = [
     ...(hasArchive(run)
       ? ([
-          ["archive", "Archive"],
-          ["curves", "Curves"],
+          ["archive", text.archive],
+          ["curves", text.curves],
         ] as [string, string][])
       : []),
     ...(kinds[run.experiment] ?? []),
-    ["log", "Log"],
-    ["spec", "Spec"],
-    ["files", "Files"],
+    ["log", text.log],
+    ["spec", text.spec],
+    ["files", text.files],
   ];
   return (
-    <nav class="sections" aria-label="Parts of this page">
+    <nav class="sections" aria-label={text.sections}>
       {sections.map(([id, name]) => (
         <a key={id} href={`#${id}`}>
           {name}
@@ -177,7 +186,7 @@ const learns = (run: Run) => ["folding", "refinement"].includes(run.experiment);
 
 function useTitle(run: Run | undefined): string {
   const experiments = useExperiments().value ?? [];
-  return run ? titleOf(run, experiments) : "Run";
+  return run ? titleOf(run, experiments) : text.run;
 }
 
 function Banners({ run }: { run: Run }) {
@@ -199,8 +208,8 @@ function Banners({ run }: { run: Run }) {
 }
 
 const searchFacts = (run: Run): Figure[] => [
-  ["Evaluations", count(run.evaluations)],
-  ["Evaluations/s", number(run.evaluations_per_second)],
+  [text.evaluations, count(run.evaluations)],
+  [text.evaluationsPerSecond, number(run.evaluations_per_second)],
 ];
 
 function RunFacts({ run }: { run: Run }) {
@@ -212,7 +221,7 @@ function RunFacts({ run }: { run: Run }) {
     ...figuresOf(run),
   ];
   return (
-    <section class="run-facts" aria-label="How the run is doing">
+    <section class="run-facts" aria-label={text.status}>
       <RunProgress run={run} />
       <dl class="facts">
         {facts.map(([name, value]) => (

@@ -43,12 +43,12 @@ describe("what a run is doing before its figures tell", () => {
   } as Run;
 
   it("is said, and for how long", () => {
-    expect(activityOf(run)).toContain("most of a minute on a CPU");
+    expect(activityOf(run)).toContain("up to a minute on a CPU");
     expect(activityOf({ ...run, device: "gpu, fast" })).not.toContain("CPU");
     expect(activityOf({ ...run, generation: 1 })).toBeNull();
     expect(activityOf({ ...run, status: "finished" })).toBeNull();
     const queued = { ...run, status: "queued", queued_at: "2026-01-01T00:01:30Z" } as Run;
-    expect(activityOf({ ...queued, waiting: "All workers are busy." })).toBe("All workers are busy.");
+    expect(activityOf({ ...queued, waiting_reason: "All workers are busy." })).toBe("All workers are busy.");
     const now = Date.parse("2026-01-01T00:01:42Z");
     expect(elapsedOf(run, now)).toBe("42 s");
     expect(elapsedOf(queued, now)).toBe("12 s");

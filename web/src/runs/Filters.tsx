@@ -1,4 +1,4 @@
-/** What a list of runs leaves out, and its order. */
+/** Filters and order of the list of runs. */
 
 import { useState } from "preact/hooks";
 import type { Experiment, RunQuery } from "../api/types";
@@ -7,10 +7,11 @@ import { Select } from "../ui/Select";
 import { words } from "../ui/format";
 import { STATES } from "../run/RunStatus";
 import { NO_FILTERS, NEWEST, ORDERS, isFiltered } from "./runQuery";
+import { text } from "./text";
 
 type Pair = [value: string, title: string];
-const ANY: Pair = ["", "any"];
-/** Between the last key and the question. */
+const ANY: Pair = ["", text.any];
+/** Delay between the last key and the request. */
 const SETTLE_MS = 200;
 
 interface Props {
@@ -22,17 +23,16 @@ interface Props {
 
 export function Filters({ query, experiments, tags, onChange }: Props) {
   const [typed, setTyped] = useState<string | null>(null);
-  const find = (text: string) => {
+  const find = (query: string) => {
     setTyped(null);
-    onChange({ q: text || null });
+    onChange({ q: query || null });
   };
   useDebounced(typed, SETTLE_MS, find);
-  const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
   return (
     <form
       class="filters"
       role="search"
-      aria-label="Runs"
+      aria-label={text.runs}
       onSubmit={(event) => {
         event.preventDefault();
         if (typed !== null) find(typed);
@@ -40,38 +40,13 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
     >
       <input
         type="search"
-        aria-label="Find runs by name, tag, note or id"
-        placeholder="Name, tag, note or id"
+        aria-label={text.find}
+        placeholder={text.findHint}
         maxLength={200}
         value={typed ?? query.q ?? ""}
         onInput={(event) => setTyped(event.currentTarget.value)}
       />
-      <Select
-        title="State"
-        value={query.status?.[0] ?? ""}
-        choices={[ANY, ...STATES.map((state): Pair => [state, words(state)])]}
-        onChange={(status) => onChange({ status: status || null })}
-      />
-      <Select
-        title="Experiment"
-        value={query.experiment?.[0] ?? ""}
-        choices={[ANY, ...experiments.map(({ experiment, title }): Pair => [experiment, title])]}
-        onChange={(experiment) => onChange({ experiment: experiment || null })}
-      />
-      {known.length > 0 && (
-        <Select
-          title="Tag"
-          value={query.tag ?? ""}
-          choices={[ANY, ...known.map((tag): Pair => [tag, tag])]}
-          onChange={(tag) => onChange({ tag: tag || null })}
-        />
-      )}
-      <Select
-        title="Order"
-        value={query.sort ?? NEWEST}
-        choices={ORDERS}
-        onChange={(sort) => onChange({ sort: sort === NEWEST ? null : sort })}
-      />
+      <Selects {...{ query, experiments, tags, onChange }} />
       {isFiltered(query) && (
         <button
           type="button"
@@ -81,9 +56,43 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
             onChange(NO_FILTERS);
           }}
         >
-          Show all
+          {text.showAll}
         </button>
       )}
     </form>
+  );
+}
+
+function Selects({ query, experiments, tags, onChange }: Props) {
+  const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
+  return (
+    <>
+      <Select
+        title={text.state}
+        value={query.status?.[0] ?? ""}
+        choices={[ANY, ...STATES.map((state): Pair => [state, words(state)])]}
+        onChange={(status) => onChange({ status: status || null })}
+      />
+      <Select
+        title={text.experiment}
+        value={query.experiment?.[0] ?? ""}
+        choices={[ANY, ...experiments.map(({ experiment, title }): Pair => [experiment, title])]}
+        onChange={(experiment) => onChange({ experiment: experiment || null })}
+      />
+      {known.length > 0 && (
+        <Select
+          title={text.tag}
+          value={query.tag ?? ""}
+          choices={[ANY, ...known.map((tag): Pair => [tag, tag])]}
+          onChange={(tag) => onChange({ tag: tag || null })}
+        />
+      )}
+      <Select
+        title={text.order}
+        value={query.sort ?? NEWEST}
+        choices={ORDERS}
+        onChange={(sort) => onChange({ sort: sort === NEWEST ? null : sort })}
+      />
+    </>
   );
 }

@@ -1,6 +1,6 @@
-/** A run in the list: how it is doing, what people say of it, what can be done. */
+/** A run in the list: status, labels, result and actions. */
 
-import type { Experiment } from "../api/types";
+import type { Experiment, Run } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { restore } from "../store/lifecycle";
 import { useStore } from "../store/store";
@@ -14,6 +14,7 @@ import { CommandButtons, StatusBadge, RunProgress, timeOf } from "../run/RunStat
 import { NameField, NoteField, TagList } from "../run/RunLabels";
 import { Sparkline } from "../charts/Sparkline";
 import { commandsFor } from "../run/runCommands";
+import { text } from "./text";
 
 interface Props {
   id: string;
@@ -27,58 +28,25 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
   const run = useStore((state) => state.runs.get(id)!);
   const title = titleOf(run, experiments);
   const name = `${title} ${short(run.id)}`;
+  const fixed = useRefusal(run) !== null || run.deleted_at !== null;
   const time = timeOf(run);
-  const mayMake = !useRefusal();
-  const mayChange = !useRefusal(run);
-  const fixed = !mayChange || run.deleted_at !== null;
   const [figureName, figure] = keyFigureOf(run);
   return (
     <tr class={chosen ? "chosen-row" : ""}>
       <td class="row-choice">
         {!run.deleted_at && (
-          <input type="checkbox" aria-label={`Compare ${name}`} checked={chosen} onChange={onChoose} />
+          <input type="checkbox" aria-label={text.compareRun(name)} checked={chosen} onChange={onChoose} />
         )}
       </td>
       <th scope="row">
-        <NameField of={run} {...{ title, fixed }} onName={(name) => void editRun(run.id, { name })}>
-          <a class="run-name" href={`/runs/${run.id}`}>
-            {title} <code>{short(run.id)}</code>
-          </a>
-        </NameField>
-        {run.sweep && (
-          <a class="badge sweep-link" href={`/sweeps/${run.sweep}`} aria-label={`The sweep of ${name}`}>
-            sweep
-          </a>
-        )}
-        {forceFreeShare(run.spec) === "none" && <NotForceFree />}
-        {run.status === "running" && run.generation === 0 && (
-          <span class="row-note quiet">compiling and computing its first generation</span>
-        )}
-        {run.purge_at && (
-          <span class="row-note gone quiet">until {moment(run.purge_at)}, then gone for good</span>
-        )}
-        {run.waiting && <span class="row-note reason">{run.waiting}</span>}
-        {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
-        {run.warning && <span class="row-note warning-text">{run.warning}</span>}
-        <span class="labels">
-          <TagList
-            {...{ run, name, fixed }}
-            known={knownTags}
-            onPick={(tag) => setQuery({ tag })}
-            onAdd={(tag) => addTag(run, tag)}
-            onRemove={(tag) => removeTag(run, tag)}
-          />
-          <NoteField
-            {...{ run, name, fixed }}
-            onNote={(note) => void editRun(run.id, { note })}
-            onRemove={() => removeNote(run)}
-          />
-        </span>
+        <RowTitle {...{ run, title, name, fixed }} />
+        <RowNotes run={run} />
+        <RowLabels {...{ run, name, fixed, knownTags }} />
       </th>
-      <td data-label="State">
+      <td data-label={text.state}>
         <StatusBadge run={run} />
       </td>
-      <td data-label="Progress" class="with-bar">
+      <td data-label={text.progress} class="with-bar">
         <RunProgress run={run} />
         <span class="quiet">
           {run.generation} / {run.generations}
@@ -86,36 +54,103 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
       </td>
       <td data-label={time.label} class="time">
         {time.text}
-        {run.status === "running" && time.text !== DASH && <span class="quiet"> left</span>}
+        {run.status === "running" && time.text !== DASH && <span class="quiet"> {text.left}</span>}
       </td>
-      <td data-label="Evaluations/s">{number(run.evaluations_per_second)}</td>
-      <td data-label="Result" class="with-spark">
+      <td data-label={text.evaluationsPerSecond}>{number(run.evaluations_per_second)}</td>
+      <td data-label={text.result} class="with-spark">
         <span>
           {figure} <span class="quiet small">{figureName}</span>
         </span>
-        {run.sparkline.length > 1 && (
-          <Sparkline values={run.sparkline} label={`QD score of ${name} over time`} />
-        )}
+        {run.sparkline.length > 1 && <Sparkline values={run.sparkline} label={text.sparkline(name)} />}
       </td>
-      <td class="row-actions">
-        <span class="actions">
-          {mayChange && run.deleted_at && (
-            <button onClick={() => void restore(run.id)} aria-label={`Restore ${name}`}>
-              Restore
-            </button>
-          )}
-          {!fixed && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={name} />}
-          {mayMake && (
-            <a class="button" href={`/new?from=${run.id}`} aria-label={`Clone ${name}`}>
-              Clone
-            </a>
-          )}
-        </span>
-      </td>
+      <RowActions {...{ run, title, name }} />
     </tr>
   );
 }
 
-function lastLine(text: string): string {
-  return text.trim().split("\n").at(-1) ?? "";
+interface PartProps {
+  run: Run;
+  title: string;
+  /** The title with the run's id. */
+  name: string;
+  /** Whether we may not change the run. */
+  fixed: boolean;
+}
+
+function RowTitle({ run, title, name, fixed }: PartProps) {
+  return (
+    <>
+      <NameField of={run} {...{ title, fixed }} onName={(name) => void editRun(run.id, { name })}>
+        <a class="run-name" href={`/runs/${run.id}`}>
+          {title} <code>{short(run.id)}</code>
+        </a>
+      </NameField>
+      {run.sweep && (
+        <a class="badge sweep-link" href={`/sweeps/${run.sweep}`} aria-label={text.sweepOf(name)}>
+          {text.sweep}
+        </a>
+      )}
+      {forceFreeShare(run.spec) === "none" && <NotForceFree />}
+    </>
+  );
+}
+
+/** Why the run waits, is compiling, failed or will be purged. */
+function RowNotes({ run }: { run: Run }) {
+  return (
+    <>
+      {run.status === "running" && run.generation === 0 && (
+        <span class="row-note quiet">{text.compiling}</span>
+      )}
+      {run.purge_at && <span class="row-note gone quiet">{text.purged(moment(run.purge_at))}</span>}
+      {run.waiting_reason && <span class="row-note reason">{run.waiting_reason}</span>}
+      {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
+      {run.warning && <span class="row-note warning-text">{run.warning}</span>}
+    </>
+  );
+}
+
+function RowLabels({ run, name, fixed, knownTags }: Omit<PartProps, "title"> & { knownTags: string }) {
+  return (
+    <span class="labels">
+      <TagList
+        {...{ run, name, fixed }}
+        known={knownTags}
+        onPick={(tag) => setQuery({ tag })}
+        onAdd={(tag) => addTag(run, tag)}
+        onRemove={(tag) => removeTag(run, tag)}
+      />
+      <NoteField
+        {...{ run, name, fixed }}
+        onNote={(note) => void editRun(run.id, { note })}
+        onRemove={() => removeNote(run)}
+      />
+    </span>
+  );
+}
+
+function RowActions({ run, title, name }: Omit<PartProps, "fixed">) {
+  const mayCreate = useRefusal() === null;
+  const mayChange = useRefusal(run) === null;
+  return (
+    <td class="row-actions">
+      <span class="actions">
+        {mayChange && run.deleted_at && (
+          <button onClick={() => void restore(run.id)} aria-label={text.restoreRun(name)}>
+            {text.restore}
+          </button>
+        )}
+        {mayChange && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={name} />}
+        {mayCreate && (
+          <a class="button" href={`/new?from=${run.id}`} aria-label={text.cloneRun(name)}>
+            {text.clone}
+          </a>
+        )}
+      </span>
+    </td>
+  );
+}
+
+function lastLine(traceback: string): string {
+  return traceback.trim().split("\n").at(-1) ?? "";
 }

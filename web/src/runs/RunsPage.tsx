@@ -1,4 +1,4 @@
-/** All runs, alive: found, sorted, named, compared. */
+/** The list of runs: search, sort, rename, compare. */
 
 import { useState } from "preact/hooks";
 import { MAX_LINES } from "../charts/lineStyle";
@@ -16,20 +16,21 @@ import { NO_FILTERS, WITHOUT_SWEEP, ariaSort, groupsSweeps, isFiltered, nextSort
 import { RunRow } from "./RunRow";
 import { SweepRows } from "./SweepRows";
 import { Welcome } from "./Welcome";
+import { text } from "./text";
 import "./runs.css";
 
-/** Sweeps that stand above the list, at first and when more are asked for. */
+/** Number of sweeps above the list, at first and after “Show more”. */
 const FIRST_SWEEPS = 5;
 const MAX_SWEEPS = 100;
 const TAGS_ID = "known-tags";
 
 const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
-  { title: "Run", key: "name" },
-  { title: "State", key: "status" },
-  { title: "Progress", key: "progress", falling: true },
-  { title: "Time" },
-  { title: "Evaluations/s" },
-  { title: "Result", key: "qd_score", falling: true },
+  { title: text.run, key: "name" },
+  { title: text.state, key: "status" },
+  { title: text.progress, key: "progress", falling: true },
+  { title: text.time },
+  { title: text.evaluationsPerSecond },
+  { title: text.result, key: "qd_score", falling: true },
 ];
 
 export function RunsPage({ query: address }: { query: URLSearchParams }) {
@@ -43,7 +44,6 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const next = useStore((state) => state.next);
   const experiments = useExperiments().value ?? [];
   const tags = useTags();
-  const refusal = useRefusal();
   const [chosen, setChosen] = useState<string[]>([]);
   const choose = (id: string) =>
     setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
@@ -51,26 +51,15 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const empty = fetched && listed.length === 0 && !swept;
   return (
     <main>
-      <header class="page-head">
-        <h1>{query.deleted ? "Bin" : "Runs"}</h1>
-        <span class="spring" />
-        <a class="button" href={query.deleted ? "/" : "/?deleted=true"}>
-          {query.deleted ? "Runs" : "Bin"}
-        </a>
-        {!refusal && (
-          <a class="button primary" href="/new">
-            New run
-          </a>
-        )}
-      </header>
+      <Header bin={query.deleted ?? false} />
       <Welcome />
       {error && <p class="banner wrong">{error}</p>}
-      {!fetched && !error && listed.length === 0 && <p class="quiet loading">Loading runs …</p>}
+      {!fetched && !error && listed.length === 0 && <p class="quiet loading">{text.loadingRuns}</p>}
       {(listed.length > 0 || swept || isFiltered(query)) && (
         <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
       )}
       {chosen.length > 0 && <CompareBar ids={chosen} onClear={() => setChosen([])} />}
-      {empty && query.deleted && !isFiltered(query) && <p class="quiet">The bin is empty.</p>}
+      {empty && query.deleted && !isFiltered(query) && <p class="quiet">{text.binEmpty}</p>}
       {empty && (isFiltered(query) ? <NoMatches /> : !query.deleted && <NoRuns />)}
       {query.sweep && <SweepBanner sweep={query.sweep} />}
       {swept && <SweepRows page={sweeps!} onMore={most < MAX_SWEEPS ? () => setMost(MAX_SWEEPS) : null} />}
@@ -82,6 +71,24 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       </datalist>
       {next && <LoadMore query={listedQuery} />}
     </main>
+  );
+}
+
+function Header({ bin }: { bin: boolean }) {
+  const refusal = useRefusal();
+  return (
+    <header class="page-head">
+      <h1>{bin ? text.bin : text.runs}</h1>
+      <span class="spring" />
+      <a class="button" href={bin ? "/" : "/?deleted=true"}>
+        {bin ? text.runs : text.bin}
+      </a>
+      {!refusal && (
+        <a class="button primary" href="/new">
+          {text.newRun}
+        </a>
+      )}
+    </header>
   );
 }
 
@@ -99,7 +106,7 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
       <thead>
         <tr>
           <th scope="col">
-            <span class="unseen">Compare</span>
+            <span class="unseen">{text.compare}</span>
           </th>
           {COLUMNS.map(({ title, key, falling = false }) => (
             <th key={title} scope="col" aria-sort={key ? ariaSort(query.sort, key) : undefined}>
@@ -113,7 +120,7 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
             </th>
           ))}
           <th scope="col">
-            <span class="unseen">Actions</span>
+            <span class="unseen">{text.actions}</span>
           </th>
         </tr>
       </thead>
@@ -137,27 +144,29 @@ function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   return (
     <p class="chosen" role="status">
       <span>
-        {ids.length} chosen
-        {ids.length === 1 && ": choose another one to compare them"}
-        {ids.length > MAX_LINES && `: at most ${MAX_LINES} can be compared`}
+        {text.selected(ids.length)}
+        {ids.length === 1 && text.selectAnother}
+        {ids.length > MAX_LINES && text.compareLimit(MAX_LINES)}
       </span>
       <span class="spring" />
       {ids.length > 1 && ids.length <= MAX_LINES && (
         <a class="button primary" href={`/compare?runs=${ids.join()}`}>
-          Compare
+          {text.compare}
         </a>
       )}
-      <button onClick={onClear}>Choose none</button>
+      <button onClick={onClear}>{text.clearSelection}</button>
     </p>
   );
 }
 
-/** Which sweep the list is of, and the way to it. */
+/** A link to the sweep whose runs are listed. */
 function SweepBanner({ sweep }: { sweep: string }) {
   if (sweep === WITHOUT_SWEEP) return null;
   return (
     <p class="banner reason">
-      Runs of <a href={`/sweeps/${sweep}`}>one sweep</a>: its page has their curves and figures together.
+      {text.runsOf}
+      <a href={`/sweeps/${sweep}`}>{text.oneSweep}</a>
+      {text.sweepHint}
     </p>
   );
 }
@@ -165,9 +174,9 @@ function SweepBanner({ sweep }: { sweep: string }) {
 function NoMatches() {
   return (
     <section class="empty card">
-      <h2>No run is like that</h2>
-      <p>Change what is asked for above, or look at all of them.</p>
-      <button onClick={() => setQuery(NO_FILTERS)}>Show all runs</button>
+      <h2>{text.noMatch}</h2>
+      <p>{text.noMatchHint}</p>
+      <button onClick={() => setQuery(NO_FILTERS)}>{text.showAllRuns}</button>
     </section>
   );
 }
@@ -175,13 +184,10 @@ function NoMatches() {
 function NoRuns() {
   return (
     <section class="empty card">
-      <h2>No runs yet</h2>
-      <p>
-        A run evolves swimmers: from random bodies that twitch to an archive of the best swimmer of every
-        kind. The demo takes minutes on a laptop.
-      </p>
+      <h2>{text.noRuns}</h2>
+      <p>{text.noRunsHint}</p>
       <a class="button primary" href="/new">
-        Start the first run
+        {text.startFirst}
       </a>
     </section>
   );
@@ -197,7 +203,7 @@ function LoadMore({ query }: { query: RunQuery }) {
   return (
     <p class="more">
       <button onClick={load} disabled={busy}>
-        {busy ? "Loading …" : "Load more"}
+        {busy ? text.loading : text.loadMore}
       </button>
     </p>
   );

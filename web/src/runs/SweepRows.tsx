@@ -1,8 +1,9 @@
-/** Sweeps above the list of runs: each stands as one for all of its runs. */
+/** Sweeps above the list of runs, one row for each. */
 
 import type { SweepPage } from "../api/types";
 import { moment } from "../ui/format";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../sweeps/SweepStatus";
+import { text } from "./text";
 import "./sweepRows.css";
 
 interface Props {
@@ -13,7 +14,7 @@ interface Props {
 
 export function SweepRows({ page, onMore }: Props) {
   return (
-    <section class="sweep-rows" aria-label="Sweeps">
+    <section class="sweep-rows" aria-label={text.sweeps}>
       <ul>
         {page.items.map((sweep) => (
           <li key={sweep.id} class="card sweep-row">
@@ -29,13 +30,13 @@ export function SweepRows({ page, onMore }: Props) {
               <SweepProgress sweep={sweep} />
               <SweepStates sweep={sweep} />
             </span>
-            <a class="button" href={`/?sweep=${sweep.id}`} aria-label={`Runs of ${sweepTitle(sweep)}`}>
-              Runs
+            <a class="button" href={`/?sweep=${sweep.id}`} aria-label={text.runsOfSweep(sweepTitle(sweep))}>
+              {text.runs}
             </a>
           </li>
         ))}
       </ul>
-      {page.next && onMore && <button onClick={onMore}>Show more sweeps</button>}
+      {page.next && onMore && <button onClick={onMore}>{text.moreSweeps}</button>}
     </section>
   );
 }

@@ -1,8 +1,9 @@
-/** A first visit: the way to an archive that explains itself. */
+/** An invitation to the tour, shown on the first visit. */
 
 import { hasArchive } from "../store/fetch";
 import { useStore } from "../store/store";
 import { wasGuided } from "../archive/guide";
+import { text } from "./text";
 
 export function Welcome() {
   const first = useStore((state) => {
@@ -12,8 +13,7 @@ export function Welcome() {
   if (wasGuided() || !first) return null;
   return (
     <p class="banner welcome">
-      New here? {first.demonstration ? "The demonstration" : "A run"} fills an archive with the best swimmer
-      of every kind. <a href={`/runs/${first.id}`}>Let it explain itself in a minute.</a>
+      {text.welcome(first.demonstration)} <a href={`/runs/${first.id}`}>{text.tour}</a>
     </p>
   );
 }

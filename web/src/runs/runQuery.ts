@@ -1,29 +1,30 @@
-/** Which runs a list shows and in which order: between the address and the query. */
+/** Filters and order of the list of runs, in the address and in the request. */
 
 import type { RunQuery } from "../api/types";
 import { STATES } from "../run/RunStatus";
+import { text } from "./text";
 
 export const NEWEST = "-created";
 
-/** Orders as a menu has them. */
+/** The orders of the menu. */
 export const ORDERS: [sort: NonNullable<RunQuery["sort"]>, title: string][] = [
-  [NEWEST, "Newest first"],
-  ["created", "Oldest first"],
-  ["name", "Name"],
-  ["-name", "Name, from the end"],
-  ["status", "State"],
-  ["-status", "State, from the end"],
-  ["-progress", "Most progress"],
-  ["progress", "Least progress"],
-  ["-evaluations", "Most evaluations"],
-  ["evaluations", "Fewest evaluations"],
-  ["-qd_score", "Highest QD score"],
-  ["qd_score", "Lowest QD score"],
-  ["-best", "Highest fitness"],
-  ["best", "Lowest fitness"],
+  [NEWEST, text.newest],
+  ["created", text.oldest],
+  ["name", text.name],
+  ["-name", text.nameFalling],
+  ["status", text.stateRising],
+  ["-status", text.stateFalling],
+  ["-progress", text.mostProgress],
+  ["progress", text.leastProgress],
+  ["-evaluations", text.mostEvaluations],
+  ["evaluations", text.fewestEvaluations],
+  ["-qd_score", text.highestQdScore],
+  ["qd_score", text.lowestQdScore],
+  ["-best", text.highestFitness],
+  ["best", text.lowestFitness],
 ];
 
-/** What the address asks for; words that make no sense there are passed over. */
+/** The query of an address; unknown values are ignored. */
 export function queryOf(address: URLSearchParams): RunQuery {
   const status = STATES.filter((state) => listOf(address, "status").includes(state));
   const experiment = listOf(address, "experiment");
@@ -40,22 +41,22 @@ export function queryOf(address: URLSearchParams): RunQuery {
   };
 }
 
-/** What shows everything again. */
+/** Removes all filters. */
 export const NO_FILTERS = { q: null, status: null, experiment: null, tag: null, sweep: null };
 
-/** Instead of a sweep: runs that belong to none. */
+/** In place of a sweep id: runs outside sweeps. */
 export const WITHOUT_SWEEP = "none";
 const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
 
 const listOf = (address: URLSearchParams, key: string) => (address.get(key) ?? "").split(",").filter(Boolean);
 
-/** Whether anything is left out. */
+/** True if any filter is set. */
 export const isFiltered = ({ sort: _, deleted: __, ...filters }: RunQuery) => Object.keys(filters).length > 0;
 
 /** What to ask the server for: as long as nothing is asked of them, runs of sweeps stand as one. */
 export const groupsSweeps = (query: RunQuery) => Object.keys(query).length === 0;
 
-/** The order after one more click on a column: its own first, then reversed, then the usual. */
+/** The order after a click on a column: by the column, then reversed, then the default. */
 export function nextSort(sort: string | undefined, key: string, falling: boolean): string | null {
   const [first, second] = falling ? [`-${key}`, key] : [key, `-${key}`];
   if (sort === first) return second;

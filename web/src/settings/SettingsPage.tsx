@@ -1,4 +1,4 @@
-/** Who one is here, and the tokens of all. */
+/** The settings page: the signed-in principal, and for admins all tokens. */
 
 import { signOut } from "../api/client";
 import { messageOf } from "../api/problem";
@@ -7,6 +7,7 @@ import { usePrincipal } from "../store/principal";
 import { showToast } from "../store/toasts";
 import { Tokens } from "./Tokens";
 import { day } from "./tokenText";
+import { text } from "./text";
 import "./settings.css";
 
 export function SettingsPage() {
@@ -14,10 +15,10 @@ export function SettingsPage() {
   return (
     <main>
       <header class="page-head">
-        <h1>Settings</h1>
+        <h1>{text.settings}</h1>
       </header>
       {error && <p class="banner wrong">{error}</p>}
-      {!value && !error && <p class="quiet loading">Loading …</p>}
+      {!value && !error && <p class="quiet loading">{text.loading}</p>}
       {value && (
         <div class="settings">
           <PrincipalCard principal={value} />
@@ -28,13 +29,13 @@ export function SettingsPage() {
   );
 }
 
-/** Where this page came from. */
+/** The port of this page. */
 const PORT = globalThis.location?.port || "80";
 
 const SCOPE_TEXT = {
-  read: "You may look at everything and change nothing.",
-  write: "You may look at everything, and change what you made.",
-  admin: "You may do everything, also make tokens for others.",
+  read: text.scopeRead,
+  write: text.scopeWrite,
+  admin: text.scopeAdmin,
 };
 
 function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { principal: Principal }) {
@@ -49,19 +50,18 @@ function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { pri
   return (
     <section class="card" aria-labelledby="you-title">
       <header class="card-head">
-        <h2 id="you-title">{needed ? name : "This machine"}</h2>
+        <h2 id="you-title">{needed ? name : text.thisMachine}</h2>
         <span class="badge">{scope}</span>
         <span class="spring" />
-        {needed && <button onClick={leave}>Sign out</button>}
+        {needed && <button onClick={leave}>{text.signOut}</button>}
       </header>
       <p>
         {SCOPE_TEXT[scope]}
-        {expires_at && ` Your token is good until ${day(expires_at)}.`}
+        {expires_at && text.validUntil(day(expires_at))}
       </p>
       {!needed && (
         <p class="quiet">
-          The server answers nobody but this machine, and asks for no token. From elsewhere it is reached
-          safely through{" "}
+          {text.localOnly}
           <code>
             ssh -L {PORT}:127.0.0.1:{PORT} HOST
           </code>

@@ -1,8 +1,9 @@
-/** In place of every page while the server does not know who asks. */
+/** The sign-in page, shown until there is a valid token. */
 
 import { useState } from "preact/hooks";
 import { signIn } from "../api/client";
 import { messageOf } from "../api/problem";
+import { text } from "./text";
 import "./settings.css";
 
 export function SignInPage() {
@@ -23,13 +24,10 @@ export function SignInPage() {
   return (
     <main>
       <form class="card sign-in" onSubmit={submit}>
-        <h1>Sign in</h1>
-        <p class="quiet">
-          This server asks for a token. Whoever runs it can make one for you; the first one was shown when it
-          was started.
-        </p>
+        <h1>{text.signIn}</h1>
+        <p class="quiet">{text.signInHint}</p>
         <label>
-          Token
+          {text.token}
           <input
             type="password"
             name="token"
@@ -47,7 +45,7 @@ export function SignInPage() {
           </p>
         )}
         <button class="primary" disabled={busy || !token.trim()}>
-          Sign in
+          {text.signIn}
         </button>
       </form>
     </main>

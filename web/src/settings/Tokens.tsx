@@ -1,4 +1,4 @@
-/** The tokens of all: made, shown once, revoked. Only admins come here. */
+/** Create, list and revoke tokens; for admins. */
 
 import { useState } from "preact/hooks";
 import { createToken, readTokens, revokeToken } from "../api/client";
@@ -10,6 +10,7 @@ import { ConfirmButton } from "../ui/ConfirmButton";
 import { Select } from "../ui/Select";
 import { copyText } from "../ui/clipboard";
 import { TERMS, day, endOf, isExpired, tokenStatus } from "./tokenText";
+import { text } from "./text";
 
 export function Tokens({ own }: { own: string | null }) {
   const [turn, setTurn] = useState(0);
@@ -18,7 +19,7 @@ export function Tokens({ own }: { own: string | null }) {
   const again = () => setTurn((count) => count + 1);
   return (
     <section class="card" aria-labelledby="tokens-title">
-      <h2 id="tokens-title">Tokens</h2>
+      <h2 id="tokens-title">{text.tokens}</h2>
       <NewToken
         onMade={(token) => {
           setMade(token);
@@ -27,7 +28,7 @@ export function Tokens({ own }: { own: string | null }) {
       />
       {made && <Secret made={made} onDone={() => setMade(null)} />}
       {error && <p class="banner wrong">{error}</p>}
-      {value?.length === 0 && <p class="quiet">There are none yet.</p>}
+      {value?.length === 0 && <p class="quiet">{text.noTokens}</p>}
       {value && value.length > 0 && <Table tokens={value} own={own} onRevoked={again} />}
     </section>
   );
@@ -51,20 +52,25 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
   return (
     <form class="new-token" onSubmit={submit}>
       <label>
-        Whose it is
+        {text.owner}
         <input
           value={name}
           required
           maxLength={64}
           autocomplete="off"
-          placeholder="alice, laptop"
+          placeholder={text.ownerHint}
           onInput={({ currentTarget }) => setName(currentTarget.value)}
         />
       </label>
-      <Select title="May" choices={SCOPES} value={scope} onChange={(name) => setScope(name as TokenScope)} />
-      <Select title="Good for" choices={LIFETIMES} value={days} onChange={setDays} />
+      <Select
+        title={text.scope}
+        choices={SCOPES}
+        value={scope}
+        onChange={(name) => setScope(name as TokenScope)}
+      />
+      <Select title={text.validFor} choices={LIFETIMES} value={days} onChange={setDays} />
       <button class="primary" disabled={!name.trim()}>
-        Make a token
+        {text.create}
       </button>
       {error && (
         <p class="wrong-text" role="alert">
@@ -76,24 +82,26 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
 }
 
 const SCOPES = [
-  ["read", "look (read)"],
-  ["write", "look and make (write)"],
-  ["admin", "everything (admin)"],
+  ["read", text.readOnly],
+  ["write", text.readAndWrite],
+  ["admin", text.admin],
 ] as const;
 const LIFETIMES = TERMS.map(([title, days]) => [String(days), title.toLowerCase()] as const);
 
-/** The only time that it can be read. */
+/** The secret of a new token, which is shown once. */
 function Secret({ made, onDone }: { made: CreatedToken; onDone: () => void }) {
   return (
     <div class="banner secret" role="status">
       <p>
-        The token of <strong>{made.name}</strong>. It is shown only now: keep it where passwords are kept.
+        {text.secretOf}
+        <strong>{made.name}</strong>
+        {text.secretHint}
       </p>
       <code tabIndex={0}>{made.secret}</code>
       <span class="actions">
-        <button onClick={() => copyText(made.secret, "Token copied.")}>Copy</button>
+        <button onClick={() => copyText(made.secret, text.copied)}>{text.copy}</button>
         <button class="plain" onClick={onDone}>
-          Done
+          {text.done}
         </button>
       </span>
     </div>
@@ -108,17 +116,17 @@ interface TableProps {
 
 function Table({ tokens, own, onRevoked }: TableProps) {
   return (
-    <div class="wide-table" tabIndex={0} role="group" aria-label="Tokens">
+    <div class="wide-table" tabIndex={0} role="group" aria-label={text.tokens}>
       <table>
         <thead>
           <tr>
-            {["Name", "Begins", "May", "Made", "Last used", "Good"].map((title) => (
+            {text.columns.map((title) => (
               <th key={title} scope="col">
                 {title}
               </th>
             ))}
             <th scope="col">
-              <span class="unseen">Revoke</span>
+              <span class="unseen">{text.revoke}</span>
             </th>
           </tr>
         </thead>
@@ -127,18 +135,22 @@ function Table({ tokens, own, onRevoked }: TableProps) {
             <tr key={token.id} class={isExpired(token) ? "quiet" : undefined}>
               <th scope="row">
                 {token.name}
-                {token.id === own && " (you)"}
+                {token.id === own && ` ${text.you}`}
               </th>
               <td>
-                <code>{token.beginning}…</code>
+                <code>{token.prefix}…</code>
               </td>
               <td>{token.scope}</td>
               <td>{day(token.created_at)}</td>
-              <td>{token.last_used_at ? day(token.last_used_at) : "Never"}</td>
+              <td>{token.last_used_at ? day(token.last_used_at) : text.never}</td>
               <td>{tokenStatus(token)}</td>
               <td>
                 {!isExpired(token) && (
-                  <ConfirmButton verb="Revoke" what={token.name} onConfirm={() => revoke(token, onRevoked)} />
+                  <ConfirmButton
+                    verb={text.revoke}
+                    what={token.name}
+                    onConfirm={() => revoke(token, onRevoked)}
+                  />
                 )}
               </td>
             </tr>
@@ -152,7 +164,7 @@ function Table({ tokens, own, onRevoked }: TableProps) {
 async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void> {
   try {
     await revokeToken(id);
-    showToast({ kind: "note", text: `The token of ${name} is revoked.` });
+    showToast({ kind: "note", text: text.revoked(name) });
     onRevoked();
   } catch (error) {
     showToast({ kind: "wrong", text: messageOf(error) });

@@ -7,7 +7,7 @@ const NOW = Date.parse("2026-06-15T12:00:00Z");
 const token = (changes: Partial<Token>): Token => ({
   id: "0",
   name: "alice",
-  beginning: "mc_abcdef",
+  prefix: "mc_abcdef",
   scope: "write",
   created_at: "2026-01-01T12:00:00Z",
   expires_at: null,
@@ -18,10 +18,10 @@ const token = (changes: Partial<Token>): Token => ({
 
 describe("a token", () => {
   it.each([
-    [{}, "No end", false],
+    [{}, "No expiry", false],
     [{ expires_at: "2026-07-01T12:00:00Z" }, "Until 1 Jul 2026", false],
-    [{ expires_at: "2026-06-15T11:59:00Z" }, "Expired 15 Jun 2026", true],
-    [{ revoked_at: "2026-05-02T12:00:00Z" }, "Revoked 2 May 2026", true],
+    [{ expires_at: "2026-06-15T11:59:00Z" }, "Expired on 15 Jun 2026", true],
+    [{ revoked_at: "2026-05-02T12:00:00Z" }, "Revoked on 2 May 2026", true],
   ])("stands as %o says", (changes, standing, over) => {
     expect(tokenStatus(token(changes), NOW)).toBe(standing);
     expect(isExpired(token(changes), NOW)).toBe(over);

@@ -1,4 +1,4 @@
-/** What people have published for everybody to find, moving. */
+/** The commons: listed shares as moving tiles. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -7,24 +7,25 @@ import { type Motion, decodeMotion } from "../decode/motion";
 import { usePages } from "../store/paging";
 import { poll } from "../store/polling";
 import { SwimmingBody } from "../replay/SwimmingBody";
+import { text } from "./text";
 import "./shares.css";
 
 export function CommonsPage() {
   const { items: shares, error, more } = usePages(api.readCommons, ({ slug }) => slug);
   useEffect(() => {
-    document.title = "Commons · Microcosmos";
+    document.title = text.commonsTitle;
   }, []);
   return (
     <main>
       <header class="page-head">
-        <h1>Commons</h1>
+        <h1>{text.commons}</h1>
       </header>
       {error && <p class="banner wrong">{error}</p>}
-      {!shares && !error && <p class="quiet loading">Loading …</p>}
+      {!shares && !error && <p class="quiet loading">{text.loading}</p>}
       {shares?.length === 0 && (
         <section class="empty card">
-          <h2>Nothing is listed yet</h2>
-          <p>Publish a creature from its page, or an archive from its run’s, and choose to list it.</p>
+          <h2>{text.nothingListed}</h2>
+          <p>{text.nothingListedHint}</p>
         </section>
       )}
       <ul class="commons">
@@ -34,7 +35,7 @@ export function CommonsPage() {
           </li>
         ))}
       </ul>
-      {more && <button onClick={more}>Show more</button>}
+      {more && <button onClick={more}>{text.showMore}</button>}
     </main>
   );
 }
@@ -54,7 +55,7 @@ function Tile({ share }: { share: Share }) {
       <SwimmingBody motion={motion} />
       <strong>{share.title}</strong>
       <span class="quiet small">
-        {share.run ? `Archive, generation ${share.generation}` : "Creature"}
+        {share.run ? text.archive(share.generation) : text.creature}
         {share.credit.length > 0 && ` · ${share.credit.join(", ")}`}
       </span>
       <span class="quiet small licence">{share.licence.slice(0, 60)}</span>

@@ -1,8 +1,9 @@
-/** How to bring a shared creature to an installation of one's own. */
+/** How to import a shared creature into another installation. */
 
 import { creatureFileUrl } from "../api/urls";
 import type { Share } from "../api/types";
 import { copyText } from "../ui/clipboard";
+import { text } from "./text";
 
 export function ImportHint({ share, sha }: { share: Share; sha: string }) {
   const file = new URL(creatureFileUrl(sha), share.url).href;
@@ -10,14 +11,11 @@ export function ImportHint({ share, sha }: { share: Share; sha: string }) {
   return (
     <section class="card import-hint" aria-labelledby="taking-title">
       <div class="card-head">
-        <h2 id="taking-title">Import it into your own Microcosmos</h2>
+        <h2 id="taking-title">{text.importTitle}</h2>
         <span class="spring" />
-        <button onClick={() => void copyText(command, "Command copied.")}>Copy the command</button>
+        <button onClick={() => void copyText(command, text.commandCopied)}>{text.copyCommand}</button>
       </div>
-      <p>
-        Download the JSON file above and drop it on any page of your Microcosmos, or run this where it runs.
-        Name, ancestors, licence and credit come along, and it can be measured again there.
-      </p>
+      <p>{text.importHint}</p>
       <pre class="command" tabIndex={0}>
         {command}
       </pre>

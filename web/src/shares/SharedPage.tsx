@@ -1,4 +1,4 @@
-/** What was shared, as whoever has its address sees it: a creature, or an archive and its elites. */
+/** The public page of a share: a creature, or an archive and its elites. */
 
 import { useEffect } from "preact/hooks";
 import * as api from "../api/client";
@@ -12,6 +12,7 @@ import { ArchiveRun } from "../run/ArchiveRun";
 import { CreatureView } from "../creature/CreaturePage";
 import { FileLink } from "../ui/FileLink";
 import { ImportHint } from "./ImportHint";
+import { text } from "./text";
 import "./shares.css";
 
 interface Props {
@@ -24,15 +25,15 @@ interface Props {
 export function SharedPage({ slug, sha, query }: Props) {
   const { value: share, error } = useFetched(() => api.readShare(slug), [slug]);
   useEffect(() => {
-    if (share) document.title = `${share.title} · Microcosmos`;
+    if (share) document.title = text.pageTitle(share.title);
   }, [share]);
   if (!share) {
     return (
       <main>
         {error ? (
-          <NotFound what="Nothing to see here" reason={error} />
+          <NotFound what={text.notShared} reason={error} />
         ) : (
-          <p class="quiet loading">Loading …</p>
+          <p class="quiet loading">{text.loading}</p>
         )}
       </main>
     );
@@ -41,13 +42,13 @@ export function SharedPage({ slug, sha, query }: Props) {
   return (
     <main>
       {share.run && sha && (
-        <nav class="crumbs" aria-label="Where you are">
+        <nav class="crumbs" aria-label={text.breadcrumbs}>
           <a href={`/s/${slug}`}>{share.title}</a>
         </nav>
       )}
       <header class="page-head">
         <h1>
-          {share.run && sha ? "Creature" : share.title} {creature && <code>{short(creature)}</code>}
+          {share.run && sha ? text.creature : share.title} {creature && <code>{short(creature)}</code>}
         </h1>
       </header>
       <Terms share={share} />
@@ -64,23 +65,23 @@ const LICENCE_URLS: Record<string, string> = {
   "CC0-1.0": "https://creativecommons.org/publicdomain/zero/1.0/",
 };
 
-/** Whose it is, what may be done with it, and how long it stays. */
+/** Credit, licence and expiry of a share. */
 function Terms({ share: { credit, licence, expires_at, created_at } }: { share: Share }) {
-  const text = LICENCE_URLS[licence];
+  const url = LICENCE_URLS[licence];
   return (
     <dl class="facts terms">
-      {credit.length > 0 && <Term name="Credit">{credit.join(", ")}</Term>}
-      <Term name="Licence">
-        {text ? (
-          <a href={text} target="_blank" rel="noreferrer license">
+      {credit.length > 0 && <Term name={text.credit}>{credit.join(", ")}</Term>}
+      <Term name={text.licence}>
+        {url ? (
+          <a href={url} target="_blank" rel="noreferrer license">
             {licence}
           </a>
         ) : (
           licence
         )}
       </Term>
-      <Term name="Shared">{moment(created_at)}</Term>
-      {expires_at && <Term name="Until">{moment(expires_at)}</Term>}
+      <Term name={text.shared}>{moment(created_at)}</Term>
+      {expires_at && <Term name={text.until}>{moment(expires_at)}</Term>}
     </dl>
   );
 }
@@ -103,7 +104,7 @@ interface CreatureProps {
 function SharedCreature({ share, sha, query }: CreatureProps) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   if (error) return <p class="banner wrong">{error}</p>;
-  if (!creature) return <p class="quiet loading">Loading creature …</p>;
+  if (!creature) return <p class="quiet loading">{text.loadingCreature}</p>;
   return (
     <>
       <CreatureView {...{ creature, query }} />
@@ -123,21 +124,18 @@ function SharedArchive({ share, id, query }: ArchiveProps) {
   const run = useStore((state) => state.runs.get(id));
   const detail = useStore((state) => state.details.get(id));
   if (!run) {
-    return error ? <p class="banner wrong">{error}</p> : <p class="quiet loading">Loading …</p>;
+    return error ? <p class="banner wrong">{error}</p> : <p class="quiet loading">{text.loading}</p>;
   }
   return (
     <>
       <ArchiveRun {...{ run, detail, query }} />
       <section class="card" aria-labelledby="files-title">
-        <h2 id="files-title">Files</h2>
+        <h2 id="files-title">{text.files}</h2>
         <p class="links">
           <FileLink url={archiveUrl(id, "h5")} name="archive.h5" />
           <FileLink url={archiveUrl(id, "csv")} name="archive.csv" />
         </p>
-        <p class="quiet">
-          As they were after generation {count(share.generation ?? 0)}. Computed by version {run.version}
-          {run.device && `, on ${run.device}`}.
-        </p>
+        <p class="quiet">{text.filesAbout(count(share.generation ?? 0), run.version, run.device)}</p>
       </section>
     </>
   );

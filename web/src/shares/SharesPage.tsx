@@ -1,4 +1,4 @@
-/** What was published from here, and taking it back. */
+/** The list of shares, with revoking. */
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
@@ -9,6 +9,7 @@ import { showToast } from "../store/toasts";
 import { moment } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { copyText } from "../ui/clipboard";
+import { text } from "./text";
 import "./shares.css";
 
 export function SharesPage() {
@@ -17,29 +18,29 @@ export function SharesPage() {
   return (
     <main>
       <header class="page-head">
-        <h1>Shares</h1>
+        <h1>{text.shares}</h1>
       </header>
       {error && <p class="banner wrong">{error}</p>}
-      {!shares && !error && <p class="quiet loading">Loading …</p>}
+      {!shares && !error && <p class="quiet loading">{text.loading}</p>}
       {shares?.length === 0 && (
         <section class="empty card">
-          <h2>Nothing is shared</h2>
-          <p>{refusal ?? "Publish a creature from its page, or an archive from its run’s."}</p>
+          <h2>{text.nothingShared}</h2>
+          <p>{refusal ?? text.nothingSharedHint}</p>
         </section>
       )}
       {shares && shares.length > 0 && (
-        <section class="card scroll" aria-label="What was published" tabIndex={0}>
+        <section class="card scroll" aria-label={text.published} tabIndex={0}>
           <table class="plain-table shares">
             <thead>
               <tr>
-                <th scope="col">Title</th>
-                <th scope="col">What</th>
-                <th scope="col">Licence</th>
-                <th scope="col">Published</th>
-                <th scope="col">Expires</th>
-                <th scope="col">Seen by</th>
+                <th scope="col">{text.title}</th>
+                <th scope="col">{text.content}</th>
+                <th scope="col">{text.licence}</th>
+                <th scope="col">{text.publishedOn}</th>
+                <th scope="col">{text.expires}</th>
+                <th scope="col">{text.visibleTo}</th>
                 <th scope="col">
-                  <span class="unseen">Actions</span>
+                  <span class="unseen">{text.actions}</span>
                 </th>
               </tr>
             </thead>
@@ -51,7 +52,7 @@ export function SharesPage() {
           </table>
         </section>
       )}
-      {more && <button onClick={more}>Show more</button>}
+      {more && <button onClick={more}>{text.showMore}</button>}
     </main>
   );
 }
@@ -70,30 +71,30 @@ function Row({ share, onChange }: { share: Share; onChange: (share: Share) => vo
           title
         )}
       </th>
-      <td data-label="What">
+      <td data-label={text.content}>
         {run ? (
-          <a href={`/runs/${run}`}>archive, generation {generation}</a>
+          <a href={`/runs/${run}`}>{text.archiveOf(generation)}</a>
         ) : (
-          <a href={`/creatures/${creature}`}>creature</a>
+          <a href={`/creatures/${creature}`}>{text.creatureLink}</a>
         )}
       </td>
-      <td data-label="Licence">{licence.slice(0, 40)}</td>
-      <td data-label="Published">{moment(share.created_at)}</td>
-      <td data-label="Expires">{share.expires_at ? moment(share.expires_at) : "never"}</td>
-      <td data-label="Seen by">
-        {live ? (share.listed ? "everybody" : "who has the link") : `nobody: ${state}`}
+      <td data-label={text.licence}>{licence.slice(0, 40)}</td>
+      <td data-label={text.publishedOn}>{moment(share.created_at)}</td>
+      <td data-label={text.expires}>{share.expires_at ? moment(share.expires_at) : text.never}</td>
+      <td data-label={text.visibleTo}>
+        {live ? (share.listed ? text.everybody : text.linkHolders) : text.nobody(state)}
       </td>
       <td>
         {live && (
           <span class="actions">
             <button
               class="slim"
-              aria-label={`Copy link of ${title}`}
-              onClick={() => void copyText(share.url, "Link copied.")}
+              aria-label={text.copyLinkOf(title)}
+              onClick={() => void copyText(share.url, text.linkCopied)}
             >
-              Copy link
+              {text.copyLink}
             </button>
-            <ConfirmButton verb="Revoke" what={title} onConfirm={() => revoke(share, onChange)} />
+            <ConfirmButton verb={text.revoke} what={title} onConfirm={() => revoke(share, onChange)} />
           </span>
         )}
       </td>
@@ -104,7 +105,7 @@ function Row({ share, onChange }: { share: Share; onChange: (share: Share) => vo
 async function revoke(share: Share, onChange: (share: Share) => void): Promise<void> {
   try {
     onChange(await api.revoke(share.slug));
-    showToast({ kind: "note", text: `${share.title} is not shared any more.` });
+    showToast({ kind: "note", text: text.revoked(share.title) });
   } catch (error) {
     showToast({ kind: "wrong", text: messageOf(error) });
   }

@@ -1,9 +1,10 @@
-/** What people ask of a run. A cancel waits a moment, so that it can be taken back. */
+/** Commands for a run. Cancelling is delayed so that it can be undone. */
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import { applyResponse } from "./store";
 import { dismissToast, showToast } from "./toasts";
+import { text } from "./text";
 
 const UNDO_MS = 4000;
 
@@ -21,6 +22,6 @@ export function cancelWithUndo(id: string, title: string): void {
     clearTimeout(timer);
     dismissToast(toast);
   };
-  const action = { label: "Undo", run: undo };
-  const toast = showToast({ kind: "note", text: `Cancelling ${title} …`, action });
+  const action = { label: text.undo, run: undo };
+  const toast = showToast({ kind: "note", text: text.cancelling(title), action });
 }

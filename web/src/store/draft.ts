@@ -67,9 +67,9 @@ export function forkAddress(
 
 export const FORK_PARAMETERS = ["creature", "cells", "at"] as const;
 
-export function saveDraft(work: Draft): void {
+export function saveDraft(draft: Draft): void {
   try {
-    sessionStorage.setItem(KEY, JSON.stringify(work));
+    sessionStorage.setItem(KEY, JSON.stringify(draft));
   } catch {
     // Full, or forbidden: the draft then lives as long as the page.
   }
@@ -81,15 +81,15 @@ export function discardDraft(): void {
 
 /** The draft, where it was begun from what the address names, or the address names nothing. */
 export function loadDraft(wanted: Address | null): Draft | null {
-  const work = storedDraft();
-  if (!work || !wanted) return work;
-  return String(addressOf(work.base)) === String(wanted) ? work : null;
+  const draft = storedDraft();
+  if (!draft || !wanted) return draft;
+  return String(addressOf(draft.base)) === String(wanted) ? draft : null;
 }
 
 function storedDraft(): Draft | null {
   try {
-    const work = JSON.parse(sessionStorage.getItem(KEY) ?? "null") as Draft | null;
-    return work?.base?.spec && work.spec ? work : null;
+    const draft = JSON.parse(sessionStorage.getItem(KEY) ?? "null") as Draft | null;
+    return draft?.base?.spec && draft.spec ? draft : null;
   } catch {
     return null;
   }

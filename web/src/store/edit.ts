@@ -1,12 +1,13 @@
-/** What people say of a run: its name, its tags, a note. */
+/** Editing the name, tags and note of a run. */
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Run, RunChange } from "../api/types";
 import { applyResponse, currentState, dispatch } from "./store";
 import { dismissToast, showToast } from "./toasts";
+import { text } from "./text";
 
-/** Shown at once; taken back where the server refuses it. */
+/** Apply a change at once; revert it if the server refuses. */
 export async function editRun(id: string, change: RunChange): Promise<void> {
   const before = currentState().runs.get(id);
   dispatch({ type: "edit", run: id, change });
@@ -27,7 +28,7 @@ export function addTag({ id, tags }: Run, tag: string): void {
 
 export function removeTag({ id, tags }: Run, tag: string): void {
   void editRun(id, { tags: tags.filter((each) => each !== tag) });
-  offerUndo(`Removed the tag ${tag}.`, () => {
+  offerUndo(text.tagRemoved(tag), () => {
     const run = currentState().runs.get(id);
     if (run) addTag(run, tag);
   });
@@ -35,13 +36,13 @@ export function removeTag({ id, tags }: Run, tag: string): void {
 
 export function removeNote({ id, note }: Run): void {
   void editRun(id, { note: null });
-  offerUndo("Removed the note.", () => void editRun(id, { note }));
+  offerUndo(text.noteRemoved, () => void editRun(id, { note }));
 }
 
-function offerUndo(text: string, back: () => void): void {
+function offerUndo(note: string, back: () => void): void {
   const undo = () => {
     dismissToast(toast);
     back();
   };
-  const toast = showToast({ kind: "note", text, action: { label: "Undo", run: undo } });
+  const toast = showToast({ kind: "note", text: note, action: { label: text.undo, run: undo } });
 }

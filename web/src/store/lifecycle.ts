@@ -1,12 +1,13 @@
-/** A run's further life: more generations, the bin and the way out of it. */
+/** Extending, deleting and restoring a run. */
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Run } from "../api/types";
 import { applyResponse } from "./store";
 import { dismissToast, showToast } from "./toasts";
+import { text } from "./text";
 
-/** What the server answers is shown; where it refuses, its words are. */
+/** Apply the answer of the server, or show its error. */
 async function attempt(answered: Promise<Run>): Promise<boolean> {
   try {
     await applyResponse("change", answered);
@@ -21,14 +22,14 @@ export const extend = (id: string, generations: number) => attempt(api.extendRun
 
 export const restore = (id: string) => attempt(api.restoreRun(id));
 
-/** Into the bin at once; the note leads back, and so does the bin. */
+/** Move a run to the bin; the note and the bin can undo it. */
 export async function remove(id: string, title: string): Promise<boolean> {
   if (!(await attempt(api.deleteRun(id)))) return false;
   const back = () => {
     dismissToast(toast);
     void restore(id);
   };
-  const action = { label: "Undo", run: back };
-  const toast = showToast({ kind: "note", text: `${title} is in the bin.`, action });
+  const action = { label: text.undo, run: back };
+  const toast = showToast({ kind: "note", text: text.inBin(title), action });
   return true;
 }

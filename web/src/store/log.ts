@@ -20,14 +20,14 @@ interface LoadedLog extends Loaded<LogEntry[]> {
 /** Anew whenever the run's standing changes, and now and then while it goes on. */
 export function useLog({ id, ...run }: Run): LoadedLog {
   const epoch = useStore((state) => epochOf(state, id));
-  const { status, wish, attempt, warning, error, device } = run;
+  const { status, requested_state, attempt, warning, error, device } = run;
   const calm = useThrottled(run.generation, SLOW_MS);
   const known = useRef<LogEntry[]>([]);
   const [whole, setWhole] = useState(false);
   const loaded = useFetched(async () => {
     known.current = await extendLog(id, known.current, whole);
     return known.current;
-  }, [id, epoch, status, wish, attempt, warning, error, device, calm, whole]);
+  }, [id, epoch, status, requested_state, attempt, warning, error, device, calm, whole]);
   const earlier = () => {
     known.current = [];
     setWhole(true);

@@ -29,7 +29,7 @@ describe("polling", () => {
     await vi.advanceTimersByTimeAsync(10 * POLL_MS);
     expect(said).toEqual([
       ["note", null],
-      ["note", "The server could not be reached."],
+      ["note", "The server cannot be reached. Check that it is running and try again."],
       ["note", "Busy."],
       ["note", null],
       ["value", "done"],

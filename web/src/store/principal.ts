@@ -1,4 +1,4 @@
-/** Who the server takes us for; that it takes us for nobody; and what it would refuse us. */
+/** The signed-in principal, and why it may not do something. */
 
 import { useEffect, useState } from "preact/hooks";
 import { readPrincipal } from "../api/client";
@@ -6,18 +6,19 @@ import type { Principal, Owned } from "../api/types";
 import { SIGNED_OUT, isSignedOut } from "../api/signedOut";
 import { type Loaded, useFetched } from "./fetch";
 import { dispatch, useStore } from "./store";
+import { text } from "./text";
 
 export function usePrincipal(): Loaded<Principal> {
   return useFetched(readPrincipal, []);
 }
 
-/** Keeps in the store who we are; the server may be away, and is asked again with the stream. */
+/** Load the principal into the store; after a failure the event stream loads it again. */
 export async function loadPrincipal(): Promise<void> {
   const principal = await readPrincipal().catch(() => null);
   if (principal) dispatch({ type: "principal", principal });
 }
 
-/** Whether a request was refused for want of a token; nothing works then until there is one. */
+/** True if a request was refused because it had no valid token. */
 export function useSignedOut(): boolean {
   const [unknown, setUnknown] = useState(isSignedOut);
   useEffect(() => {
@@ -29,18 +30,17 @@ export function useSignedOut(): boolean {
   return unknown;
 }
 
-/** Why we may not make anything here, or not change what somebody made; null where we may. */
+/** Why the principal may not create, or change this thing; null if allowed. */
 export const useRefusal = (thing?: Owned): string | null =>
   refusalOf(
     useStore((state) => state.principal),
     thing,
   );
 
-/** Names of tokens need not differ: where they are the same, the server has the last word. */
+/** Token names are not unique; the server decides in the end. */
 export function refusalOf(principal: Principal | null, thing?: Owned): string | null {
   if (!principal || principal.scope === "admin") return null;
-  if (principal.scope === "read") return "Your token may only look.";
+  if (principal.scope === "read") return text.readOnly;
   if (thing?.owner === undefined || thing.owner === principal.name) return null;
-  const owner = thing.owner ? `${thing.owner} or an admin` : "an admin";
-  return `Only ${owner} may change it.`;
+  return text.ownerOnly(thing.owner);
 }

@@ -18,7 +18,7 @@ const STABLE_ORDERS = ["created", "name", "experiment", "status"];
 export function useRunList(query: RunQuery): Loaded<true> {
   const asked = JSON.stringify(query);
   const news = useThrottled(useStore((state) => `${state.epoch} ${state.listVersion}`));
-  const waits = useStore((state) => state.listed.some((id) => state.runs.get(id)?.waiting));
+  const waits = useStore((state) => state.listed.some((id) => state.runs.get(id)?.waiting_reason));
   const moves = !STABLE_ORDERS.includes((query.sort ?? "created").replace("-", ""));
   const tick = useTick(REFRESH_MS, waits || moves);
   const { value, error } = useFetched(async () => {

@@ -1,4 +1,4 @@
-/** Sweeps, asked for anew when there is news of them, and what is asked of their runs. */
+/** Sweeps: reading them when they change, and commands for all of their runs. */
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
@@ -7,6 +7,7 @@ import { type Loaded, useFetched } from "./fetch";
 import { useStore } from "./store";
 import { useThrottled } from "./throttle";
 import { dismissToast, showToast } from "./toasts";
+import { text } from "./text";
 
 /** More points than a screen can show apart would only be slower. */
 const POINTS = 300;
@@ -25,11 +26,11 @@ const totalOf = (counts: ReadonlyMap<string, number>) =>
 export interface SweepDetail {
   sweep: Sweep;
   summary: SweepSummary;
-  /** Each run by itself, where that is wanted. */
+  /** The curves of each run, if wanted. */
   curves: SweepCurves | null;
 }
 
-/** A sweep with what its runs say together, as far as they are. */
+/** A sweep with the summary of its runs. */
 export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
   const news = useThrottled(useStore((state) => `${state.epoch} ${state.sweepVersions.get(id) ?? 0}`));
   return useFetched(async () => {
@@ -43,12 +44,12 @@ export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
 }
 
 const DONE: Record<api.RunCommand, string> = {
-  pause: "asked to pause",
-  resume: "queued again",
-  cancel: "asked to cancel",
+  pause: text.pausing,
+  resume: text.queued,
+  cancel: text.cancellingRuns,
 };
 
-/** What was asked, once it is done; what the server says where it refuses. */
+/** Await a request; show the error if it fails. */
 async function attempt<T>(answered: Promise<T>): Promise<T | null> {
   try {
     return await answered;
@@ -58,11 +59,11 @@ async function attempt<T>(answered: Promise<T>): Promise<T | null> {
   }
 }
 
-/** How many runs did it, and how many could not. */
-const outcome = ({ changed, left }: SweepChanged, done: string) =>
-  `${countRuns(changed.length)} ${done}${left.length > 0 ? `; ${countRuns(left.length)} left as they were` : ""}.`;
+/** Count the runs that changed and those that did not. */
+const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
+  text.outcome(text.runs(changed.length), done, skipped.length > 0 ? text.runs(skipped.length) : null);
 
-/** Asks it of every run. */
+/** Send a command to every run. */
 export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {
   const answer = await attempt(api.commandSweep(id, verb));
   if (answer) showToast({ kind: "note", text: outcome(answer, DONE[verb]) });
@@ -72,7 +73,7 @@ export const renameSweep = (id: string, name: string | null) => attempt(api.rena
 
 export const restoreSweep = (id: string) => attempt(api.restoreSweep(id));
 
-/** Its runs into the bin at once; the note leads back, and so does the page. */
+/** Move all runs to the bin; the note and the page can undo it. */
 export async function removeSweep(id: string): Promise<void> {
   const answer = await attempt(api.deleteSweep(id));
   if (!answer) return;
@@ -80,19 +81,17 @@ export async function removeSweep(id: string): Promise<void> {
     dismissToast(toast);
     void restoreSweep(id);
   };
-  const text = outcome(answer, "put into the bin");
-  const toast = showToast({ kind: "note", text, action: { label: "Undo", run: back } });
+  const note = outcome(answer, text.deleted);
+  const toast = showToast({ kind: "note", text: note, action: { label: text.undo, run: back } });
 }
 
-const countRuns = (count: number) => `${count} ${count === 1 ? "run" : "runs"}`;
-
-/** A cancel waits a moment, so that it can be taken back. */
+/** Cancel all runs after a delay in which it can be undone. */
 export function cancelSweepWithUndo(id: string, title: string): void {
   const timer = setTimeout(() => void sendSweepCommand(id, "cancel"), UNDO_MS);
   const undo = () => {
     clearTimeout(timer);
     dismissToast(toast);
   };
-  const action = { label: "Undo", run: undo };
-  const toast = showToast({ kind: "note", text: `Cancelling all runs of ${title} …`, action });
+  const action = { label: text.undo, run: undo };
+  const toast = showToast({ kind: "note", text: text.cancellingSweep(title), action });
 }

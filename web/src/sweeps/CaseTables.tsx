@@ -1,9 +1,10 @@
 /** The cases of a sweep as a legend, their final values, and every run. */
 
-import type { Spread } from "../api/types";
+import type { Member, Spread } from "../api/types";
 import { count, number, percent, words } from "../ui/format";
 import { LineKey } from "../charts/lineStyle";
 import { type ShownCase, memberName } from "./bands";
+import { text } from "./text";
 
 interface LegendProps {
   cases: ShownCase[];
@@ -16,7 +17,7 @@ export function Cases({ cases, chosen, onChoose }: LegendProps) {
   const turn = (place: number) =>
     onChoose(chosen.includes(place) ? chosen.filter((one) => one !== place) : [...chosen, place]);
   return (
-    <ul class="compare-legend sweep-legend" aria-label="Cases">
+    <ul class="compare-legend sweep-legend" aria-label={text.cases}>
       {cases.map(({ place, name }) => (
         <li key={place}>
           <label class="compact">
@@ -31,10 +32,10 @@ export function Cases({ cases, chosen, onChoose }: LegendProps) {
 }
 
 const TITLES: Record<string, [title: string, write: (value: number | null) => string]> = {
-  qd_score: ["QD score", number],
-  coverage: ["Coverage", percent],
-  best: ["Best fitness", number],
-  evaluations: ["Evaluations", (value) => (value === null ? "–" : count(value))],
+  qd_score: [text.qdScore, number],
+  coverage: [text.coverage, percent],
+  best: [text.bestFitness, number],
+  evaluations: [text.evaluations, (value) => (value === null ? "–" : count(value))],
 };
 
 const titleOf = (name: string) => TITLES[name]?.[0] ?? words(name);
@@ -50,15 +51,15 @@ export function Finals({ cases }: { cases: ShownCase[] }) {
   return (
     <section class="card" aria-labelledby="finals">
       <div class="card-head">
-        <h2 id="finals">Figures</h2>
-        <span class="quiet small">median, the quartiles below it; as far as the runs are</span>
+        <h2 id="finals">{text.figures}</h2>
+        <span class="quiet small">{text.figuresAbout}</span>
       </div>
-      <div class="wide-table" tabIndex={0} role="region" aria-label="Figures of the cases">
+      <div class="wide-table" tabIndex={0} role="region" aria-label={text.figuresOfCases}>
         <table>
           <thead>
             <tr>
-              <th scope="col">Case</th>
-              <th scope="col">Runs</th>
+              <th scope="col">{text.case}</th>
+              <th scope="col">{text.runs}</th>
               {figures.map((name) => (
                 <th key={name} scope="col">
                   {titleOf(name)}
@@ -90,7 +91,7 @@ export function Finals({ cases }: { cases: ShownCase[] }) {
 /** How many of a case's runs are finished. */
 function doneOf(members: ShownCase["summary"]["members"]): string {
   const done = members.filter(({ status }) => status === "finished").length;
-  return done === members.length ? count(done) : `${done} of ${members.length} finished`;
+  return done === members.length ? count(done) : text.finished(done, members.length);
 }
 
 interface SpreadProps {
@@ -105,11 +106,7 @@ function Figure({ spread, write }: SpreadProps) {
   return (
     <span title={`from ${write(min)} to ${write(max)}`}>
       <b>{write(median)}</b>
-      {!one && (
-        <span class="quiet small spread">
-          {write(low)} to {write(high)}
-        </span>
-      )}
+      {!one && <span class="quiet small spread">{text.range(write(low), write(high))}</span>}
     </span>
   );
 }
@@ -120,15 +117,15 @@ export function Members({ cases }: { cases: ShownCase[] }) {
   const several = cases.length > 1;
   return (
     <section class="card" aria-labelledby="members">
-      <h2 id="members">Runs</h2>
-      <div class="wide-table sweep-members" tabIndex={0} role="region" aria-label="Every run">
+      <h2 id="members">{text.runs}</h2>
+      <div class="wide-table sweep-members" tabIndex={0} role="region" aria-label={text.everyRun}>
         <table>
           <thead>
             <tr>
-              <th scope="col">Run</th>
-              {several && <th scope="col">Case</th>}
-              <th scope="col">State</th>
-              <th scope="col">Generations</th>
+              <th scope="col">{text.run}</th>
+              {several && <th scope="col">{text.case}</th>}
+              <th scope="col">{text.state}</th>
+              <th scope="col">{text.generations}</th>
               {figures.map((name) => (
                 <th key={name} scope="col">
                   {titleOf(name)}
@@ -137,32 +134,47 @@ export function Members({ cases }: { cases: ShownCase[] }) {
             </tr>
           </thead>
           <tbody>
-            {cases.flatMap(({ summary, place, name }) =>
-              summary.members.map((member, i) => (
-                <tr key={member.run}>
-                  <th scope="row">
-                    <a href={`/runs/${member.run}`}>{memberName(member)}</a>
-                  </th>
-                  {several && (
-                    <td>
-                      <LineKey index={place} /> {name}
-                    </td>
-                  )}
-                  <td>
-                    <span class={`badge ${member.status}`}>{member.status}</span>
-                  </td>
-                  <td>
-                    {count(member.generation)} / {count(member.generations)}
-                  </td>
-                  {figures.map((figure) => (
-                    <td key={figure}>{writerOf(figure)(summary.finals[figure]?.values[i] ?? null)}</td>
-                  ))}
-                </tr>
+            {cases.flatMap((shown) =>
+              shown.summary.members.map((member, i) => (
+                <MemberRow key={member.run} {...{ shown, member, i, figures, several }} />
               )),
             )}
           </tbody>
         </table>
       </div>
     </section>
+  );
+}
+
+interface MemberProps {
+  shown: ShownCase;
+  member: Member;
+  /** The member's index within its case. */
+  i: number;
+  figures: string[];
+  several: boolean;
+}
+
+function MemberRow({ shown: { summary, place, name }, member, i, figures, several }: MemberProps) {
+  return (
+    <tr>
+      <th scope="row">
+        <a href={`/runs/${member.run}`}>{memberName(member)}</a>
+      </th>
+      {several && (
+        <td>
+          <LineKey index={place} /> {name}
+        </td>
+      )}
+      <td>
+        <span class={`badge ${member.status}`}>{member.status}</span>
+      </td>
+      <td>
+        {count(member.generation)} / {count(member.generations)}
+      </td>
+      {figures.map((figure) => (
+        <td key={figure}>{writerOf(figure)(summary.finals[figure]?.values[i] ?? null)}</td>
+      ))}
+    </tr>
   );
 }

@@ -1,4 +1,4 @@
-/** A sweep: what its runs say together, and how each of them stands. */
+/** The page of a sweep: summary, curves and all runs. */
 
 import { useEffect } from "preact/hooks";
 import type { CaseSummary, Sweep } from "../api/types";
@@ -23,7 +23,7 @@ import { NameField } from "../run/RunLabels";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, Check } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
-import "./sweeps.css";
+import { text } from "./text";
 
 interface Props {
   id: string;
@@ -33,18 +33,18 @@ interface Props {
 export function SweepPage({ id, query }: Props) {
   const each = query.get("each") === "1";
   const { value, error } = useSweep(id, each);
-  const title = value ? sweepTitle(value.sweep) : "Sweep";
+  const title = value ? sweepTitle(value.sweep) : text.sweep;
   useEffect(() => {
-    document.title = `${title} · Microcosmos`;
+    document.title = text.pageTitle(title);
   }, [title]);
   return (
     <main>
-      <nav class="crumbs" aria-label="Where you are">
-        <a href="/">Runs</a>
+      <nav class="crumbs" aria-label={text.breadcrumbs}>
+        <a href="/">{text.runs}</a>
       </nav>
       {error && value && <p class="banner wrong">{error}</p>}
-      {error && !value && <NotFound what="No such sweep" reason={error} />}
-      {!value && !error && <p class="quiet loading">Loading sweep …</p>}
+      {error && !value && <NotFound what={text.noSuchSweep} reason={error} />}
+      {!value && !error && <p class="quiet loading">{text.loadingSweep}</p>}
       {value && <LoadedSweep {...{ value, query, each }} />}
     </main>
   );
@@ -58,17 +58,17 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
   return (
     <>
       <Head sweep={sweep} />
-      <section class="run-facts" aria-label="How the sweep is doing">
+      <section class="run-facts" aria-label={text.status}>
         <SweepProgress sweep={sweep} />
         <SweepStates sweep={sweep} />
       </section>
       <section class="card sweep-curves" aria-labelledby="bands">
         <div class="card-head">
-          <h2 id="bands">Curves</h2>
-          <span class="quiet small">the median of each case, between its quartiles</span>
+          <h2 id="bands">{text.curves}</h2>
+          <span class="quiet small">{text.curvesAbout}</span>
         </div>
         <CurveBar log={query.get("log") === "1"}>
-          <Check title="Each run" name="each" on={each} />
+          <Check title={text.eachRun} name="each" on={each} />
         </CurveBar>
         {summary.cases.length > 1 && (
           <Cases cases={summary.cases.map(shownOf)} chosen={chosen} onChoose={choose} />
@@ -109,12 +109,12 @@ function CaseCurves({
 }) {
   const log = query.get("log") === "1";
   const plots = bandsOf(shown, curves);
-  if (shown.length === 0) return <p class="quiet">Choose a case to see its curves.</p>;
-  if (plots.length === 0) return <p class="quiet waiting">They begin with the first generation.</p>;
+  if (shown.length === 0) return <p class="quiet">{text.chooseCase}</p>;
+  if (plots.length === 0) return <p class="quiet waiting">{text.noCurves}</p>;
   return <Curves plots={plots} x={NO_X} look={{ over: "generation", log, smooth: 1 }} />;
 }
 
-/** Each case has its own places. */
+/** Each case has its own x values. */
 const NO_X: readonly number[] = [];
 
 function Head({ sweep }: { sweep: Sweep }) {
@@ -133,7 +133,7 @@ function Head({ sweep }: { sweep: Sweep }) {
       </header>
       <p class="quiet sweep-about">
         {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)}
-        {sweep.owner && <> · by {sweep.owner}</>} · <a href={`/?sweep=${sweep.id}`}>As a list of runs</a>
+        {sweep.owner && <> · {text.by(sweep.owner)}</>} · <a href={`/?sweep=${sweep.id}`}>{text.listRuns}</a>
       </p>
       {sweep.deleted > 0 && <BinNotice sweep={sweep} />}
     </>
@@ -142,24 +142,24 @@ function Head({ sweep }: { sweep: Sweep }) {
 
 /** Only what the state of any run allows. */
 function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
-  const { id, standing, total } = sweep;
+  const { id, status_counts, total } = sweep;
   const refusal = useRefusal(sweep);
   if (refusal) return <span class="quiet small">{refusal}</span>;
-  const { queued = 0, running = 0, paused = 0 } = standing;
+  const { queued = 0, running = 0, paused = 0 } = status_counts;
   const going = queued + running;
   if (total === 0) return null;
   return (
-    <span class="actions" role="group" aria-label="All runs">
-      {paused > 0 && <button onClick={() => void sendSweepCommand(id, "resume")}>Resume all</button>}
-      {going > 0 && <button onClick={() => void sendSweepCommand(id, "pause")}>Pause all</button>}
+    <span class="actions" role="group" aria-label={text.allRuns}>
+      {paused > 0 && <button onClick={() => void sendSweepCommand(id, "resume")}>{text.resumeAll}</button>}
+      {going > 0 && <button onClick={() => void sendSweepCommand(id, "pause")}>{text.pauseAll}</button>}
       {going + paused > 0 && (
         <button class="danger" onClick={() => cancelSweepWithUndo(id, title)}>
-          Cancel all
+          {text.cancelAll}
         </button>
       )}
       {going === 0 && (
         <button class="danger" onClick={() => void removeSweep(id)}>
-          Delete all
+          {text.deleteAll}
         </button>
       )}
     </span>
@@ -169,11 +169,10 @@ function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
 function BinNotice({ sweep }: { sweep: Sweep }) {
   const { id, deleted, total } = sweep;
   const refusal = useRefusal(sweep);
-  const which =
-    total === 0 ? "Its runs are" : deleted === 1 ? "One of its runs is" : `${deleted} of its runs are`;
   return (
     <p class="banner warning" role="status">
-      {which} in the bin. {!refusal && <button onClick={() => void restoreSweep(id)}>Restore</button>}
+      {text.inBin(deleted, total)}{" "}
+      {!refusal && <button onClick={() => void restoreSweep(id)}>{text.restore}</button>}
     </p>
   );
 }

@@ -3,12 +3,13 @@
 import type { CaseSummary, CaseValues, Json, Member, SweepCurves } from "../api/types";
 import type { Band, Plot, Series } from "../charts/curves/plots";
 import { number, percent, short } from "../ui/format";
+import { text } from "./text";
 
 type Figure = "qd_score" | "coverage" | "best";
 const FIGURES: [figure: Figure, title: string, write: Plot["write"]][] = [
-  ["qd_score", "QD score", number],
-  ["coverage", "Coverage", percent],
-  ["best", "Best fitness", number],
+  ["qd_score", text.qdScore, number],
+  ["coverage", text.coverage, percent],
+  ["best", text.bestFitness, number],
 ];
 
 export interface ShownCase {
@@ -40,15 +41,15 @@ function bandOf({ summary, name, colour, dash }: ShownCase, figure: Figure): Ser
   const { high, low, median } = summary[figure];
   const common = { colour, x: summary.generation, other: true };
   return [
-    { ...common, name: `${name}, upper quartile`, y: high, edge: true },
-    { ...common, name: `${name}, lower quartile`, y: low, edge: true },
+    { ...common, name: text.upperQuartile(name), y: high, edge: true },
+    { ...common, name: text.lowerQuartile(name), y: low, edge: true },
     { ...common, name, y: median, ...(dash && { dash }) },
   ];
 }
 
 function linesOf({ summary, colour }: ShownCase, figure: Figure, curves: SweepCurves | null): Series[] {
   const mine = new Set(summary.members.map(({ run }) => run));
-  const lines = curves?.lines.filter(({ run }) => mine.has(run)) ?? [];
+  const lines = curves?.runs.filter(({ run }) => mine.has(run)) ?? [];
   return lines.map((line) => ({
     name: short(line.run),
     colour,
@@ -59,22 +60,22 @@ function linesOf({ summary, colour }: ShownCase, figure: Figure, curves: SweepCu
   }));
 }
 
-/** What tells a case from the others; fields by their last names where those are clear. */
+/** The name of a case: its values, with the last part of each field's path where that is unique. */
 export function caseName(values: CaseValues): string {
   const paths = Object.keys(values);
   const last = (path: string) => path.split(".").at(-1)!;
   const clear = new Set(paths.map(last)).size === paths.length;
   const parts = paths.map((path) => `${clear ? last(path) : path} ${valueText(values[path]!)}`);
-  return parts.join(", ") || "all runs";
+  return parts.join(", ") || text.oneCase;
 }
 
 export function valueText(value: Json): string {
   if (typeof value === "number") return number(value, 6);
-  const text = typeof value === "string" ? value : JSON.stringify(value);
-  return text.length > 40 ? `${text.slice(0, 39)}…` : text;
+  const written = typeof value === "string" ? value : JSON.stringify(value);
+  return written.length > 40 ? `${written.slice(0, 39)}…` : written;
 }
 
 /** A run among the others of its case. */
 export function memberName({ seed, run }: Member): string {
-  return seed === null ? short(run) : `seed ${seed}`;
+  return seed === null ? short(run) : text.seed(seed);
 }

@@ -42,7 +42,7 @@ describe("the bands of a sweep", () => {
       { run: "a", ...line },
       { run: "of another case", ...line },
     ];
-    const [plot] = bandsOf([shown(summaryOf([1, 2], [5, 6]), 0)], { generation: [1, 2], lines });
+    const [plot] = bandsOf([shown(summaryOf([1, 2], [5, 6]), 0)], { generation: [1, 2], runs: lines });
     expect(plot!.series.map(({ faint = false }) => faint)).toEqual([true, false, false, false]);
     expect(plot!.bands).toEqual([{ high: 1, low: 2, colour: "--series-0" }]);
   });

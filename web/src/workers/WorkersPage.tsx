@@ -1,9 +1,10 @@
-/** Who computes, how busy they are, and what waits for them. */
+/** The workers page: workers, their load, and the queue. */
 
 import type { Queue, Worker } from "../api/types";
 import { useStore } from "../store/store";
 import { useWorkers } from "../store/refresh";
 import { bytes, count, duration, labelOf, number, percent, short } from "../ui/format";
+import { text } from "./text";
 import "./workers.css";
 
 export function WorkersPage() {
@@ -11,13 +12,13 @@ export function WorkersPage() {
   return (
     <main>
       <header class="page-head">
-        <h1>Workers</h1>
+        <h1>{text.workers}</h1>
       </header>
       {error && <p class="banner wrong">{error}</p>}
-      {!value && !error && <p class="quiet loading">Loading workers …</p>}
+      {!value && !error && <p class="quiet loading">{text.loading}</p>}
       {value?.workers.length === 0 && <NoWorkers />}
       {value && value.workers.length > 0 && (
-        <ul class="workers" aria-label="Workers">
+        <ul class="workers" aria-label={text.workers}>
           {value.workers.map((worker) => (
             <li key={worker.name} class="card">
               <WorkerCard worker={worker} />
@@ -33,10 +34,12 @@ export function WorkersPage() {
 function NoWorkers() {
   return (
     <section class="empty card">
-      <h2>No worker is alive</h2>
+      <h2>{text.noWorkers}</h2>
       <p>
-        Runs wait until somebody computes them. Start a worker with <code>make run</code>, or beside a running
-        server with <code>python -m worker.supervisor</code>.
+        {text.noWorkersHint}
+        <code>make run</code>
+        {text.orBeside}
+        <code>python -m worker.supervisor</code>.
       </p>
     </section>
   );
@@ -45,8 +48,8 @@ function NoWorkers() {
 function WorkerCard({ worker }: { worker: Worker }) {
   const { name, device, kind, status, load, since } = worker;
   const [used, memory] = [worker.memory_used_bytes, worker.memory_bytes];
-  const busy = kind === "gpu" ? percent(load) : `${number(load, 2)} per core`;
-  const room = used === null ? bytes(memory) : `${bytes(used)} of ${bytes(memory)}`;
+  const busy = kind === "gpu" ? percent(load) : text.perCore(number(load, 2));
+  const room = used === null ? bytes(memory) : text.usedOf(bytes(used), bytes(memory));
   return (
     <>
       <header class="card-head">
@@ -55,29 +58,27 @@ function WorkerCard({ worker }: { worker: Worker }) {
         <span class={`badge ${status === "busy" ? "running" : ""}`}>{status}</span>
       </header>
       <p class="quiet small">{device}</p>
-      <Meter title={kind === "gpu" ? "GPU" : "Load"} share={load} text={busy} />
+      <Meter title={kind === "gpu" ? text.gpu : text.load} share={load} reading={busy} />
       <Meter
-        title={kind === "gpu" ? "GPU memory" : "Memory"}
+        title={kind === "gpu" ? text.gpuMemory : text.memory}
         share={used === null ? null : used / memory}
-        text={room}
+        reading={room}
       />
       <CurrentRun worker={worker} />
       <PluginList worker={worker} />
-      <p class="quiet small">
-        {status === "busy" ? "Busy" : "Idle"} for {duration(secondsSince(since))}
-      </p>
+      <p class="quiet small">{text.since(status === "busy", duration(secondsSince(since)))}</p>
     </>
   );
 }
 
 const secondsSince = (iso: string) => Math.max(1, (Date.now() - Date.parse(iso)) / 1000);
 
-function Meter({ title, share, text }: { title: string; share: number | null; text: string }) {
+function Meter({ title, share, reading }: { title: string; share: number | null; reading: string }) {
   const part = Math.min(1, Math.max(0, share ?? 0));
   return (
     <div class="meter">
       <span>{title}</span>
-      <span>{text}</span>
+      <span>{reading}</span>
       {share !== null && (
         <div
           class={`meter-bar ${part > 0.9 ? "full" : ""}`}
@@ -86,7 +87,7 @@ function Meter({ title, share, text }: { title: string; share: number | null; te
           aria-valuemin={0}
           aria-valuemax={100}
           aria-valuenow={Math.round(100 * part)}
-          aria-valuetext={text}
+          aria-valuetext={reading}
         >
           <div style={{ width: `${100 * part}%` }} />
         </div>
@@ -95,13 +96,13 @@ function Meter({ title, share, text }: { title: string; share: number | null; te
   );
 }
 
-/** What it has of users' own, and what it could not load. */
+/** Plug-ins of a worker, and modules that failed to load. */
 function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
   return (
     <>
       {plugins.length > 0 && (
         <details class="plugins">
-          <summary>{count(plugins.length)} of users’ own</summary>
+          <summary>{text.plugins(plugins.length)}</summary>
           <ul>
             {plugins.map(({ kind, name, title, source }) => (
               <li key={`${kind} ${name}`}>
@@ -114,22 +115,22 @@ function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
       )}
       {unloaded.map(({ module, reason }) => (
         <p key={module} class="wrong-text small">
-          {module} is not loaded: {reason}
+          {text.notLoaded(module, reason)}
         </p>
       ))}
     </>
   );
 }
 
-/** Events tell of a run's progress sooner than the next look at its worker. */
-function CurrentRun({ worker: { carries, status } }: { worker: Worker }) {
-  const live = useStore((state) => (carries ? state.runs.get(carries.id) : undefined));
-  if (!carries) {
-    return <p class="quiet">{status === "busy" ? "Getting ready for a run." : "Waits for a run."}</p>;
+/** The run of a worker; events update its progress earlier than the list of workers. */
+function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
+  const live = useStore((state) => (current_run ? state.runs.get(current_run.id) : undefined));
+  if (!current_run) {
+    return <p class="quiet">{status === "busy" ? text.preparing : text.waiting}</p>;
   }
-  const run = { ...carries, ...(live && { generation: live.generation, progress: live.progress }) };
+  const run = { ...current_run, ...(live && { generation: live.generation, progress: live.progress }) };
   const share = Math.round(1000 * run.progress) / 10;
-  const attempt = run.attempt > 1 ? `, attempt ${run.attempt}` : "";
+  const attempt = run.attempt > 1 ? text.attempt(run.attempt) : "";
   return (
     <div>
       <a class="run-name" href={`/runs/${run.id}`}>
@@ -138,7 +139,7 @@ function CurrentRun({ worker: { carries, status } }: { worker: Worker }) {
       <div
         class="progress running"
         role="progressbar"
-        aria-label={`Progress of ${labelOf(run)} ${short(run.id)}`}
+        aria-label={text.progressOf(labelOf(run), short(run.id))}
         aria-valuemin={0}
         aria-valuemax={100}
         aria-valuenow={share}
@@ -146,7 +147,7 @@ function CurrentRun({ worker: { carries, status } }: { worker: Worker }) {
         <div style={{ width: `${share}%` }} />
       </div>
       <span class="quiet small">
-        Generation {count(run.generation)} of {count(run.generations)}
+        {text.generation(count(run.generation), count(run.generations))}
         {attempt}
       </span>
     </div>
@@ -156,8 +157,8 @@ function CurrentRun({ worker: { carries, status } }: { worker: Worker }) {
 function QueueCard({ queue: { total, items } }: { queue: Queue }) {
   return (
     <section class="card queue" aria-labelledby="queue-title">
-      <h2 id="queue-title">Queue</h2>
-      {total === 0 && <p class="quiet">No run waits.</p>}
+      <h2 id="queue-title">{text.queue}</h2>
+      {total === 0 && <p class="quiet">{text.queueEmpty}</p>}
       {total > 0 && (
         <ol>
           {items.map((run) => (
@@ -167,14 +168,14 @@ function QueueCard({ queue: { total, items } }: { queue: Queue }) {
               </a>
               <span class="quiet small">
                 {run.memory_bytes !== null && `${bytes(run.memory_bytes)}, `}
-                waits for {duration(secondsSince(run.queued_at))}
+                {text.waitingFor(duration(secondsSince(run.queued_at)))}
               </span>
-              <span class="reason">{run.waiting}</span>
+              <span class="reason">{run.waiting_reason}</span>
             </li>
           ))}
         </ol>
       )}
-      {total > items.length && <p class="quiet small">And {count(total - items.length)} more.</p>}
+      {total > items.length && <p class="quiet small">{text.more(count(total - items.length))}</p>}
     </section>
   );
 }

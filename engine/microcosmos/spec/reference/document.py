@@ -12,12 +12,12 @@ from .fields import Field, Part, experiment, parts
 
 HEAD = """# Every field of a spec
 
-Made of the schemas by `python -m microcosmos.spec.reference > docs/spec.md`; a test says when
-that is due. A spec is a JSON object with an `experiment`; whatever is left out has the default
-that stands here, and an unknown field is refused. Lengths are in cells and times in steps of
-the lattice, whose density is 1 at rest; where no unit stands the number has none. (a, b) leaves
-the ends out, [a, b] has them. A source says where the method comes from; *Tensen et al. 2026*
-is the Microcosmos paper, with which [reproduction.md](reproduction.md) compares value by value.
+A spec is a JSON object with an `experiment`. A field that is left out has its default, and an
+unknown field is refused. Lengths are in cells and times in steps of the lattice, whose density
+is 1 at rest; a field without a unit has none. The range (a, b) excludes its ends, [a, b]
+includes them. The source names the origin of the method; *Tensen et al. 2026* is the
+Microcosmos paper, with which [reproduction.md](reproduction.md) compares each value. This page
+is generated: `python -m microcosmos.spec.reference > docs/spec.md`.
 """
 
 COLUMNS = ("field", "type", "unit", "range", "default", "meaning", "source")
@@ -31,7 +31,7 @@ def reference() -> str:
             HEAD,
             *_contents(),
             *(line for one in found for line in _experiment(one)),
-            "# Parts\n",
+            "## Parts\n",
             *(line for part in parts() for line in _part(part)),
             *_measures(),
         ]
@@ -42,12 +42,12 @@ def _contents() -> Iterator[str]:
     experiments = ", ".join(f"[`{name}`](#{name})" for name in EXPERIMENTS)
     found = ", ".join(f"[{part.name}](#{part.name.lower()})" for part in parts())
     yield f"Experiments: {experiments}.\n"
-    yield f"Parts: {found}. What is measured: [measures](#measures).\n"
-    yield "# Experiments\n"
+    yield f"Parts: {found}. The numbers that every evaluation records: [measures](#measures).\n"
+    yield "## Experiments\n"
 
 
 def _experiment(chosen: Experiment) -> Iterator[str]:
-    yield f"## {chosen.name}\n"
+    yield f"### {chosen.name}\n"
     yield f"{chosen.title}. {experiment(chosen.name).text}\n"
     yield from _table(experiment(chosen.name).fields)
     if chosen.presets:
@@ -55,10 +55,10 @@ def _experiment(chosen: Experiment) -> Iterator[str]:
 
 
 def _part(part: Part) -> Iterator[str]:
-    yield f"## {part.name}\n"
+    yield f"### {part.name}\n"
     said = part.text + (f" *Source: {part.source}.*" if part.source else "")
     yield f"{said}\n"
-    yield f"Stands at {', '.join(f'`{path}`' for path in part.paths)}.\n"
+    yield f"Used at {', '.join(f'`{path}`' for path in part.paths)}.\n"
     yield from _table(part.fields)
 
 
@@ -72,10 +72,10 @@ def _table(fields: tuple[Field, ...]) -> Iterator[str]:
 
 
 def _measures() -> Iterator[str]:
-    yield "# Measures\n"
+    yield "## Measures\n"
     yield (
-        "What is recorded of every creature, and the axis that each makes unless `low`, `high` "
-        "and `scale` of its [Descriptor](#descriptor) say otherwise.\n"
+        "Every evaluation records these measures. A measure makes the axis below unless `low`, "
+        "`high` and `scale` of its [Descriptor](#descriptor) change it.\n"
     )
     yield _row(("name", "title", "unit", "low", "high", "scale"))
     yield _row(["---"] * 6)

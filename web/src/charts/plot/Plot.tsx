@@ -52,13 +52,9 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
   const [near, setNear] = useState<Point | null>(null);
   useEffect(() => onNear?.(near), [near]);
   const room: Room = { left: 78, right: width - 14, top: upper ? 48 : 14, bottom: height - 48 };
-  const spot = ({ x: at, y: value }: Point, k: number): [number, number] => [
-    room.left + place(x.scale, at) * (room.right - room.left),
-    value === null ? room.top + 10 + 12 * k : room.bottom - place(y.scale, value) * (room.bottom - room.top),
-  ];
-  const drawn = lines.map((line, k) => ({ line, spots: line.points.map((p) => spot(p, k)) }));
+  const drawn = lines.map((line, k) => ({ line, spots: line.points.map((p) => spotOf(p, k, x, y, room)) }));
   const highlighted = lit ?? lines.find(({ points }) => points.includes(near!))?.name ?? null;
-  const faint = (line: Line) => (highlighted !== null && highlighted !== line.name ? "faint" : "");
+  const faint = ({ name }: Line) => (highlighted !== null && highlighted !== name ? "faint" : "");
   const follow = (event: PointerEvent) => {
     const box = host.current!.getBoundingClientRect();
     setNear(nearest(drawn, event.clientX - box.left, event.clientY - box.top));
@@ -84,19 +80,27 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
           </svg>
         )}
         {width > 0 &&
-          drawn.map(({ line, spots }) =>
-            line.points.map((point, i) => (
-              <Mark
-                key={`${line.name} ${point.x}`}
-                {...{ point, line, spot: spots[i]!, flip: spots[i]![0] > width / 2 }}
-                look={point === near ? "near" : faint(line)}
-                onNear={setNear}
-              />
-            )),
-          )}
+          drawn.map((each) => (
+            <Marks
+              key={each.line.name}
+              {...each}
+              {...{ near, width }}
+              faint={faint(each.line)}
+              onNear={setNear}
+            />
+          ))}
       </div>
     </figure>
   );
+}
+
+/** Where a point is drawn; without a value at the top, a line's crosses below those of the others. */
+function spotOf(point: Point, k: number, x: Axis, y: Axis, room: Room): [number, number] {
+  const { left, right, top, bottom } = room;
+  return [
+    left + place(x.scale, point.x) * (right - left),
+    point.y === null ? top + 10 + 12 * k : bottom - place(y.scale, point.y) * (bottom - top),
+  ];
 }
 
 function LinePath({ line, spots, faint }: Drawn & { faint: string }) {
@@ -107,6 +111,23 @@ function LinePath({ line, spots, faint }: Drawn & { faint: string }) {
       style={{ stroke: `var(${line.colour})`, strokeDasharray: line.dash, strokeWidth: line.width }}
     />
   );
+}
+
+interface MarksProps extends Drawn {
+  near: Point | null;
+  width: number;
+  faint: string;
+  onNear: (point: Point | null) => void;
+}
+
+function Marks({ line, spots, near, width, faint, onNear }: MarksProps) {
+  return line.points.map((point, i) => (
+    <Mark
+      key={point.x}
+      {...{ point, line, spot: spots[i]!, flip: spots[i]![0] > width / 2, onNear }}
+      look={point === near ? "near" : faint}
+    />
+  ));
 }
 
 interface Drawn {

@@ -59,15 +59,21 @@ export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
           tell(found);
         }}
       />
-      <div id="spec-json-problems" role="status">
-        {problem && <p class="wrong-text">{problem}</p>}
-        {errors.map(({ field, message }) => (
-          <p key={`${field} ${message}`} class="wrong-text">
-            <code>{field}</code>: {message.replaceAll("`", "")}
-          </p>
-        ))}
-      </div>
+      <Problems problem={problem} errors={errors} />
     </section>
+  );
+}
+
+function Problems({ problem, errors }: { problem: string | null; errors: FieldError[] }) {
+  return (
+    <div id="spec-json-problems" role="status">
+      {problem && <p class="wrong-text">{problem}</p>}
+      {errors.map(({ field, message }) => (
+        <p key={`${field} ${message}`} class="wrong-text">
+          <code>{field}</code>: {message.replaceAll("`", "")}
+        </p>
+      ))}
+    </div>
   );
 }
 

@@ -1,0 +1,18 @@
+"""The run that a worker carries out, in short."""
+
+from ..tables import FINISHED, Run
+from .schemas import RunBrief
+
+
+def brief(run: Run) -> RunBrief:
+    """Return the summary of a run."""
+    names = (name for name in RunBrief.model_fields if name != "progress")
+    return RunBrief(**{name: getattr(run, name) for name in names}, progress=progress(run))
+
+
+def progress(run: Run) -> float:
+    """Return the share of its generations that a run has completed.
+
+    A finished run counts as complete, even if it stopped early.
+    """
+    return 1.0 if run.status == FINISHED else min(1.0, run.generation / run.generations)

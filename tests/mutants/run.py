@@ -1,0 +1,116 @@
+"""Break the code on purpose, one defect at a time, and report whether the tests notice.
+
+`make mutants` tries all, `make mutants NAMES="auth gradient-wrap"` those whose names begin so.
+Each mutant is a file beside this one: the source file, a text that it holds exactly once, the
+replacement, and the tests of `make test` that have to fail. All happens in a copy of the
+repository, so that nothing is left broken.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[2]
+
+
+class Mutant(NamedTuple):
+    """A seeded defect."""
+
+    name: str
+    about: str
+    file: str
+    text: str
+    replacement: str
+    tests: list[str]
+
+    @property
+    def of_page(self) -> bool:
+        return self.file.startswith("web/")
+
+    def broken(self, source: str) -> str:
+        """The source with the defect; `ValueError` unless it holds the text exactly once."""
+        if (found := source.count(self.text)) != 1:
+            raise ValueError(
+                f"mutants/{self.name}.toml: {self.file} must hold {self.text!r} exactly once, "
+                f"found {found} times"
+            )
+        return source.replace(self.text, self.replacement)
+
+
+def mutants() -> list[Mutant]:
+    """All of them, by name."""
+    files = sorted(Path(__file__).parent.glob("*.toml"))
+    return [Mutant(name=file.stem, **tomllib.loads(file.read_text())) for file in files]
+
+
+def copy_repository(to: Path) -> None:
+    """Copy what git knows or would add; what is installed is linked."""
+    listed = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    names = subprocess.run(listed, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    for name in filter(None, names.split("\0")):
+        if (ROOT / name).is_file():
+            (to / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, to / name)
+    for name in (".venv", ".cache", "web/node_modules", "web/dist"):
+        if (ROOT / name).exists():
+            (to / name).symlink_to(ROOT / name)
+
+
+def environment(copy: Path) -> Mapping[str, str]:
+    """The copy's own packages go before those that are installed."""
+    path = os.pathsep.join([str(copy / ".venv" / "bin"), os.environ["PATH"]])
+    here = {"PYTHONPATH": f"{copy}:{copy / 'engine'}", "PATH": path, "NO_COLOR": "1"}
+    return os.environ | here
+
+
+def caught_by(mutant: Mutant, copy: Path) -> str | None:
+    """The test that fails with the defect in the copy, which is mended afterwards."""
+    file = copy / mutant.file
+    source = file.read_text()
+    file.write_text(mutant.broken(source))
+    if mutant.of_page:
+        command, folder = ["npx", "vitest", "run", "--bail", "1", *mutant.tests], copy / "web"
+    else:
+        pytest = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
+        command, folder = [*pytest, "-m", "not long", *mutant.tests], copy
+    try:
+        done = subprocess.run(
+            command, cwd=folder, env=environment(copy), capture_output=True, text=True
+        )
+    finally:
+        file.write_text(source)
+    # Pytest ends with 1 where a test failed; 2 and more mean that it could not run them.
+    if done.returncode not in (0, 1):
+        raise RuntimeError(f"{mutant.name}: {' '.join(command)}\n{done.stdout}{done.stderr}")
+    lines = (done.stdout + done.stderr).splitlines()
+    failed = (line for line in lines if line.lstrip().startswith("FAIL"))
+    return next(failed, "an error").strip()[:150] if done.returncode == 1 else None
+
+
+def main(beginnings: list[str]) -> int:
+    chosen = [one for one in mutants() if one.name.startswith(tuple(beginnings or [""]))]
+    missed = []
+    with tempfile.TemporaryDirectory() as folder:
+        copy_repository(Path(folder))
+        for mutant in chosen:
+            began = time.monotonic()
+            failed = caught_by(mutant, Path(folder))
+            if failed is None:
+                missed.append(mutant.name)
+            word = "caught" if failed else "MISSED"
+            seconds = time.monotonic() - began
+            print(f"{word}  {seconds:4.0f} s  {mutant.name}: {mutant.about}")
+            print(f"                {failed or 'all tests pass'}", flush=True)
+    print(f"{len(chosen) - len(missed)} of {len(chosen)} caught")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,25 @@
+"""Every mutant can still be made: its text is there once, and so are its tests."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from run import ROOT, Mutant, mutants
+
+
+@pytest.mark.parametrize("mutant", mutants(), ids=lambda mutant: mutant.name)
+def test_a_mutant_changes_one_place_and_names_tests(mutant: Mutant):
+    source = (ROOT / mutant.file).read_text()
+    assert mutant.broken(source) != source
+    folder = ROOT / "web" if mutant.of_page else ROOT
+    assert [path for path in mutant.tests if not (folder / path).exists()] == []
+
+
+def test_there_are_mutants_of_every_kind():
+    kinds = {mutant.name.partition("-")[0] for mutant in mutants()}
+    assert {"physics", "gradient", "insertion", "claim", "resume", "auth"} <= kinds
+    assert {"sandbox", "page"} <= kinds
+    assert len(mutants()) >= 25

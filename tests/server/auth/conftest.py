@@ -1,0 +1,22 @@
+"""Tokens in the database."""
+
+import pytest
+
+from server.auth import tokens
+from server.tables import Token
+
+
+@pytest.fixture
+def admin(services) -> str:
+    return tokens.create(services, "root", "admin").secret
+
+
+@pytest.fixture
+def rows(services):
+    """Reads the tokens of the database."""
+
+    def read():
+        with services.sessions.read() as session:
+            return session.query(Token).all()
+
+    return read

@@ -1,0 +1,30 @@
+"""Workers with plug-ins, and a spec that needs them."""
+
+import pytest
+
+from server.workers import registry
+
+
+@pytest.fixture
+def have(services):
+    """A worker that reports what it has of users' own."""
+
+    def have(name="worker", plugins=(), **said):
+        found = [dict(one) for one in plugins]
+        told = (services.sessions, name, "some device", 1 << 40, "idle")
+        registry.report(*told, plugins=found, **said)
+
+    return have
+
+
+@pytest.fixture
+def mine(spec):
+    """A spec with a fitness, a descriptor and a body of one's own."""
+    axes = [{"name": "mine.sway", "bins": 4}, {"name": "displacement", "bins": 4}]
+    return {
+        **spec,
+        "world": {"width": 64, "height": 64},
+        "body": {"builder": "mine.cross", "own": {"settings": {"strictness": 2}}},
+        "task": {"fitness": "mine.straight", "steps": 40},
+        "archive": {"descriptors": axes},
+    }

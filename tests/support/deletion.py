@@ -1,0 +1,54 @@
+"""Runs that are finished, deleted and purged, and what is left of them."""
+
+from pathlib import Path
+
+from sqlalchemy import func, select, update
+
+from microcosmos.spec import parse
+from server.attempts.begin import claim
+from server.maintenance.reconcile import reconcile
+from server.runs.submission import submit
+from server.tables import (
+    Base,
+    Run,
+)
+
+
+def rows(services):
+    """How many rows each table has."""
+    with services.sessions.read() as session:
+        return {
+            table.name: session.scalar(select(func.count()).select_from(table))
+            for table in Base.metadata.sorted_tables
+        }
+
+
+def files(services):
+    root = Path(services.settings.artifacts)
+    return sorted(str(path.relative_to(root)) for path in root.rglob("*") if path.is_file())
+
+
+def finish(services, run_id, *reports, files=True):
+    attempt = claim(services, run_id, "worker")
+    for report in reports:
+        attempt.record(report, 1.0)
+        if files:
+            attempt.save(report.generation, b"%d %s" % (report.generation, run_id.bytes))
+    attempt.finish()
+
+
+def another(services, spec, seed, key=None):
+    return submit(services, parse({**spec, "seed": seed}), key)[0].id
+
+
+def let_time_pass(services, run_id):
+    """As if it had lain in the bin for its day."""
+    with services.sessions.write.begin() as session:
+        over = update(Run).where(Run.id == run_id)
+        session.execute(over.values(purge_at=Run.deleted_at))
+
+
+def delete_for_good(api, services, run_id):
+    assert api.delete(f"runs/{run_id}").status_code == 200
+    let_time_pass(services, run_id)
+    reconcile(services)

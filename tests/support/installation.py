@@ -1,0 +1,111 @@
+"""An installation over a database for all tests, and real servers in threads."""
+
+import os
+import shutil
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from functools import cached_property
+from pathlib import Path
+from uuid import uuid4
+
+import psycopg
+import pytest
+import uvicorn
+from psycopg import sql
+from sqlalchemy import make_url, select
+
+from server.app import create_app
+from server.local.redis_embedded import prepare
+from server.services.services import Services, connect
+from server.settings import Settings
+from server.tables import Base, Run, migrations
+
+POSTGRESQL = "postgresql://127.0.0.1:5432/postgres"
+
+
+@contextmanager
+def own_postgresql() -> Iterator[str]:
+    """A database of PostgreSQL for this process alone, dropped at the end."""
+    if given := os.environ.get("MICROCOSMOS_TEST_DATABASE_URL"):
+        yield given
+        return
+    name = f"microcosmos_test_{uuid4().hex[:12]}"
+    try:
+        connection = psycopg.connect(POSTGRESQL, autocommit=True, connect_timeout=2)
+        connection.execute(sql.SQL("CREATE DATABASE {}").format(sql.Identifier(name)))
+    except psycopg.Error:
+        pytest.skip("no PostgreSQL on 127.0.0.1:5432 where we may create a database")
+    database = sql.Identifier(name)
+    with connection:
+        # What a test wrote need not outlive the machine: nothing waits for the disk.
+        connection.execute(
+            sql.SQL("ALTER DATABASE {} SET synchronous_commit = off").format(database)
+        )
+        yield str(make_url(POSTGRESQL).set(database=name))
+        connection.execute(sql.SQL("DROP DATABASE {} WITH (FORCE)").format(database))
+
+
+@contextmanager
+def own_redis(folder: Path) -> Iterator[str]:
+    """A Redis for this process alone: its address."""
+    redis = prepare(folder / "files")
+    process = redis.start(folder / "log")
+    redis.wait(process, folder / "log")
+    yield redis.url
+    process.terminate()
+    process.wait()
+
+
+class Installation:
+    """An installation for all tests on one database; its server starts when one is needed."""
+
+    def __init__(self, settings: Settings, stack: ExitStack):
+        self.services = connect(settings)
+        migrations.upgrade(self.services.sessions)
+        self._stack = stack
+        stack.callback(self.services.close)
+
+    @cached_property
+    def address(self) -> str:
+        return self._stack.enter_context(running(self.services.settings))
+
+    def clean(self) -> None:
+        """Leave nothing to the next test: no row, no key, no file."""
+        with self.services.sessions.write.begin() as session:
+            for left in session.scalars(select(Run.id)):
+                self.services.jobs.forget(str(left))
+            for table in reversed(Base.metadata.sorted_tables):
+                session.execute(table.delete())
+        empty_redis(self.services)
+        shutil.rmtree(self.services.settings.artifacts, ignore_errors=True)
+
+
+def empty_redis(services: Services) -> None:
+    """Remove everything that is ours, as FLUSHALL would."""
+    for queue in (*services.jobs.evolving, services.jobs.renderings, services.jobs.audits):
+        queue.delete(delete_jobs=True)
+    pattern = f"*{services.settings.redis_prefix[:-1]}*"
+    if keys := list(services.redis.scan_iter(pattern, count=1000)):
+        services.redis.delete(*keys)
+
+
+@contextmanager
+def running(settings: Settings) -> Iterator[str]:
+    """A server in a thread: its address."""
+    app = create_app(connect(settings))
+    config = uvicorn.Config(app, port=0, log_level="warning", timeout_graceful_shutdown=5)
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    while not server.started:
+        assert thread.is_alive(), "the server did not start"
+        time.sleep(0.01)
+    port = server.servers[0].sockets[0].getsockname()[1]
+    try:
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        app.state.end_streams()  # As a signal would in the main thread.
+        server.should_exit = True
+        thread.join()

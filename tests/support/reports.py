@@ -1,0 +1,130 @@
+"""Creatures and reports of generations, as experiments make them."""
+
+import base64
+import struct
+from types import SimpleNamespace
+from typing import Any
+
+from microcosmos.archive import creature
+from microcosmos.spec import EXPERIMENTS
+
+
+def little_endian(*values: float) -> str:
+    return base64.b64encode(struct.pack(f"<{len(values)}f", *values)).decode()
+
+
+def identity(number: int = 1) -> dict[str, Any]:
+    """The identity of a swimmer whose one weight is a number."""
+    demo = EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump(mode="json")
+    genome = {
+        "encoding": "cppn",
+        "inputs": ["position", "sine", "cosine"],
+        "outputs": ["rest_angle", "rest_length"],
+        "control": demo["control"],
+        "nodes": {
+            "id": [0, 1, 2, 3, 4],
+            "activation": ["identity"] * 5,
+            "bias": little_endian(0, 0, 0, 0, 0),
+        },
+        "connections": {
+            "innovation": [0],
+            "source": [1],
+            "target": [3],
+            "enabled": [True],
+            "weight": little_endian(number),
+        },
+    }
+    return {
+        "format": "microcosmos-creature/1",
+        "genome": genome,
+        "world": {**demo["world"], "coupling": demo["coupling"]},
+        "body": demo["body"],
+        "task": demo["task"],
+    }
+
+
+def table(generation: int, *rows: dict[str, Any], summary: Any = None) -> Any:
+    """The report of an experiment without an archive: rows of values."""
+    return SimpleNamespace(
+        generation=generation,
+        evaluations=generation,
+        diverged=0,
+        elites=(),
+        rows=tuple(row(values) for values in rows),
+        summary=summary,
+        **dict.fromkeys(("qd_score", "coverage", "best", "mean")),
+    )
+
+
+def row(values: dict[str, Any]) -> Any:
+    found = identity(values["number"]) if "number" in values else None
+    return SimpleNamespace(
+        values=values,
+        creature=creature.name(found) if found else None,
+        identity=creature.canonical(found) if found else None,
+        measured=None,
+        provenance=None,
+    )
+
+
+def report(
+    generation: int,
+    elites: dict[int, float] | None = None,
+    descriptors: tuple[float, ...] = (0.25, 0.5),
+    measures: dict[str, float] | None = None,
+    summary: dict[str, Any] | None = None,
+) -> Any:
+    """The report of a generation: new elites by cell, with their fitness."""
+    found = [
+        elite(generation, *item, descriptors, measures or {}) for item in (elites or {}).items()
+    ]
+    return SimpleNamespace(
+        generation=generation,
+        qd_score=10.0 * generation,
+        coverage=generation / 256,
+        best=float(generation),
+        mean=0.5 * generation,
+        evaluations=16 * generation,
+        diverged=generation,
+        elites=tuple(found),
+        rows=(),
+        summary=summary,
+    )
+
+
+def elite(
+    generation: int,
+    cell: int,
+    fitness: float,
+    descriptors: tuple[float, ...],
+    measures: dict[str, float],
+) -> Any:
+    found = identity(1000 * generation + cell)
+    return SimpleNamespace(
+        cell=cell,
+        fitness=fitness,
+        descriptors=descriptors,
+        creature=creature.name(found),
+        identity=creature.canonical(found),
+        generation=generation,
+        measured={
+            "fitness": fitness,
+            "descriptors": {"bending_effort": 0.25, "stretching_effort": 0.5},
+            "measures": {
+                "displacement": fitness,
+                "bending_effort": 0.25,
+                "stretching_effort": 0.5,
+                **measures,
+            },
+            "block": 16,
+            "room": [24, 64],
+            "device": "a device",
+        },
+        provenance={
+            "parents": ["ab" * 32],
+            "operator": "neat",
+            "generation": generation,
+            "seed": 0,
+            "version": "0.1.0",
+        },
+    )

@@ -1,0 +1,74 @@
+/** Texts of the archive: map, gallery, slider and tour. */
+
+export const text = {
+  forkCreature: "Start a new run from this creature",
+  archive: "Archive",
+  elites: (count: string) => `${count} elites`,
+  explain: "Explain",
+  map: "Map",
+  gallery: "Gallery",
+  view: "View of the archive",
+  mapLabel: (keys: string) => `Archive map. Arrow keys move between elites, ${keys}`,
+  across: "Horizontal axis",
+  up: "Vertical axis",
+  voronoi: (cells: string, axes: number) => `${cells} Voronoi cells over ${axes} descriptors`,
+  grid: (cells: string, axes: number) =>
+    `${cells} cells over ${axes} ${axes === 1 ? "descriptor" : "descriptors"}`,
+  legend: (label: string, low: unknown, high: unknown) => `${label} from ${low} to ${high}`,
+  colour: "Colour",
+  palette: "Palette",
+  simulating: "Simulating …",
+  fitness: "Fitness",
+  generation: "Generation",
+  open: "Open",
+  bestOf: "best of",
+  here: "in this cell",
+  tileSize: "Tile size",
+  galleryLabel: (keys: string) => `Gallery. Arrow keys move between creatures, ${keys}`,
+  galleryHint: "Point at a creature to read its measures. Click it to open it.",
+  select: "Select",
+  creatures: (count: string, generation: string | null) =>
+    `${count} ${count === "1" ? "creature" : "creatures"}${generation === null ? "" : ` of generation ${generation}`}`,
+  selected: (creatures: string) => `${creatures} selected`,
+  fork: (creatures: number) =>
+    `Start a new run from ${creatures === 1 ? "this creature" : "these creatures"}`,
+  clearSelection: "Clear selection",
+  sliceFrom: (axis: string) => `${axis}, from`,
+  sliceTo: (axis: string) => `${axis}, to`,
+  wholeRange: "full range",
+  range: (low: string, high: string, unit: string) => `${low} to ${high} ${unit}`,
+  pause: "Pause",
+  playArchive: "Play the history of the archive",
+  pauseHistory: "Pause the history",
+  playHistory: "Play the history",
+  shownGeneration: "Generation shown",
+  newestOf: (shown: number) => `newest, ${shown}`,
+  generationOf: (shown: number, last: number) => `${shown} of ${last}`,
+  loading: "Loading …",
+  moment: (generation: string) => `generation ${generation}`,
+  newest: "Newest",
+  age: "Age",
+  tourBest: "The best of every kind",
+  tourBestAbout: (elites: string, cells: string) =>
+    `This run does not search for a single champion. It keeps the best swimmer of every kind: ${elites} of ${cells} kinds have one so far.`,
+  tourKind: "Cells are kinds",
+  tourKindAbout: (x: string, y: string) =>
+    `Each cell is one kind of swimmer: ${x} increases to the right, ${y} upwards. A new swimmer takes a cell only if it is fitter than its current elite.`,
+  tourColour: "Colour is fitness",
+  tourColourAbout: (measure: string, generation: number, fitness: string) =>
+    `The colour shows ${measure}. The fittest swimmer is marked: it appeared in generation ${generation} and has fitness ${fitness}. Point at any other cell to see its swimmer move.`,
+  tourNoColour: "The colour will show the fitness of each swimmer. The first swimmers are being simulated.",
+  tourLive: "The archive is live",
+  tourHistory: "The history",
+  tourLiveAbout:
+    "A cell flashes when a better swimmer takes it. The slider shows any earlier generation; the button beside it plays the history.",
+  tourHistoryAbout: (generations: string) =>
+    `The slider shows any of the ${generations} generations; the button beside it plays the history.`,
+  tourOpen: "Open a creature",
+  tourOpenAbout:
+    "Click a cell to open its creature: replay, network and parents. The gallery shows all creatures moving at once.",
+  keyHelp: (select: boolean) =>
+    `Enter opens one${select ? ", Space selects it, Shift with arrows selects several, Escape clears the selection." : "."}`,
+  mapHint: (select: boolean) =>
+    `Point at a cell to see its creature swim. Click it to open it.${select ? " Drag over several cells to select them." : ""}`,
+};

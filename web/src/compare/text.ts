@@ -1,0 +1,31 @@
+/** Texts of the comparison of runs. */
+
+export const text = {
+  breadcrumbs: "Breadcrumbs",
+  runs: "Runs",
+  compare: "Compare",
+  tooMany: (limit: number, asked: number) =>
+    `At most ${limit} runs can be compared. The first ${limit} of ${asked} are shown.`,
+  loading: "Loading runs …",
+  nothingChosen: "No runs selected",
+  nothingChosenHint: "Select two or more runs in the list of runs, then press Compare.",
+  showRuns: "Show all runs",
+  curves: "Curves",
+  remove: (name: string) => `Remove ${name}`,
+  qdScore: "QD score",
+  coverage: "Coverage",
+  bestFitness: "Best fitness",
+  generations: "Generations",
+  evaluations: "Evaluations",
+  diverged: "Diverged",
+  evaluationsPerSecond: "Evaluations/s",
+  time: "Time",
+  left: (duration: string) => `${duration} left`,
+  device: "Device",
+  figures: "Figures",
+  figure: "Figure",
+  differences: "Differences of the specs",
+  noDifferences: "All specs are the same.",
+  field: "Field",
+  tableOf: (corner: string) => `${corner}s of the runs`,
+};

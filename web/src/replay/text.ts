@@ -1,0 +1,27 @@
+/** Texts of replays. */
+
+export const text = {
+  speed: "Speed",
+  vorticity: "Vorticity",
+  energy: "Energy",
+  none: "None",
+  field: "Field",
+  tracers: "Tracers",
+  follow: "Follow",
+  legend: (title: string, low: unknown, high: unknown, unit: string) =>
+    `${title} from ${low} to ${high} ${unit}`,
+  inset: "The elite of this cell, swimming",
+  player: "Replay player",
+  frameBack: "Previous frame",
+  pause: "Pause",
+  play: "Play",
+  frameForward: "Next frame",
+  homeEnd: "Home and End go to the first and the last frame",
+  stage: (field: string | null, tracing: boolean) =>
+    `The swimming creature; ${field ? `colours show the ${field.toLowerCase()} of the fluid` : "no field is shown"}${tracing ? ", tracers show its flow" : ""}.`,
+  moment: "Time in the replay",
+  step: (step: number, steps: number) => `step ${step} of ${steps}`,
+  retrying: (note: string) => `${note} Trying again …`,
+  firstReplay: "The first replay takes longest.",
+  density: "density",
+};

@@ -1,0 +1,19 @@
+/** Texts of notes about what was done, and of refusals. */
+
+export const text = {
+  undo: "Undo",
+  cancelling: (title: string) => `Cancelling ${title} …`,
+  tagRemoved: (tag: string) => `Removed the tag ${tag}.`,
+  noteRemoved: "Removed the note.",
+  inBin: (title: string) => `${title} is in the bin.`,
+  readOnly: "Your token is read-only.",
+  ownerOnly: (owner: string | null) => `Only ${owner ? `${owner} or an admin` : "an admin"} can change it.`,
+  pausing: "will pause",
+  queued: "queued again",
+  cancellingRuns: "will be cancelled",
+  deleted: "moved to the bin",
+  runs: (count: number) => `${count} ${count === 1 ? "run" : "runs"}`,
+  outcome: (changed: string, done: string, left: string | null) =>
+    `${changed} ${done}${left ? `; ${left} not changed` : ""}.`,
+  cancellingSweep: (title: string) => `Cancelling all runs of ${title} …`,
+};

@@ -1,0 +1,27 @@
+/** Texts of the workers page. */
+
+export const text = {
+  workers: "Workers",
+  loading: "Loading workers …",
+  noWorkers: "No live workers",
+  noWorkersHint: "Runs wait for a worker. Start one with ",
+  orBeside: ", or beside a running server with ",
+  perCore: (load: string) => `${load} per core`,
+  usedOf: (used: string, memory: string) => `${used} of ${memory}`,
+  gpu: "GPU",
+  load: "Load",
+  gpuMemory: "GPU memory",
+  memory: "Memory",
+  since: (busy: boolean, duration: string) => `${busy ? "Busy" : "Idle"} for ${duration}`,
+  plugins: (count: number) => `${count} ${count === 1 ? "plug-in" : "plug-ins"}`,
+  notLoaded: (module: string, reason: string) => `${module} is not loaded: ${reason}`,
+  preparing: "Preparing a run.",
+  waiting: "Waiting for a run.",
+  attempt: (attempt: number) => `, attempt ${attempt}`,
+  progressOf: (label: string, id: string) => `Progress of ${label} ${id}`,
+  generation: (generation: string, generations: string) => `Generation ${generation} of ${generations}`,
+  queue: "Queue",
+  queueEmpty: "The queue is empty.",
+  waitingFor: (duration: string) => `waiting for ${duration}`,
+  more: (count: string) => `and ${count} more`,
+};
