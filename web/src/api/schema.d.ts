@@ -2615,6 +2615,8 @@ export interface components {
         SweepSummary: {
             /** Cases */
             cases: components["schemas"]["CaseSummary"][];
+            /** Generation */
+            generation: number | null;
             /**
              * Id
              * Format: uuid
@@ -4689,9 +4691,9 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                form: string;
-                sha: string;
                 slug: string;
+                sha: string;
+                form: string;
             };
             cookie?: never;
         };

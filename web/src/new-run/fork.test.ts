@@ -193,8 +193,8 @@ describe("what an address of a fork names", () => {
       (await load([["fork", RUN], ...words], EXPERIMENTS)).fork;
     expect(await some(["cells", "0-2,8-9"])).toEqual({ ...ALL, cells: [2, 9], creatures: 1 });
     expect(await some(["at", "99"])).toEqual({ ...ALL, at: 8 });
-    await expect(some(["cells", "4,6-8"])).rejects.toThrow("nobody lives there");
-    await expect(some(["at", "0"])).rejects.toThrow("nobody lives there");
+    await expect(some(["cells", "4,6-8"])).rejects.toThrow("hold no elites");
+    await expect(some(["at", "0"])).rejects.toThrow("hold no elites");
     await expect(some(["at", "then"])).rejects.toThrow("“at” must be a generation; got then.");
   });
 
@@ -213,6 +213,6 @@ describe("what an address of a fork names", () => {
     );
     expect(base).toMatchObject({ kind: "creature", fork: { run: null, creature: SHA } });
     expect(base.spec).toMatchObject({ world: { width: 96 }, search: { origin: [SHA] } });
-    await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("fills no archive");
+    await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("has no archive");
   });
 });
