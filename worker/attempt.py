@@ -77,9 +77,9 @@ class Attempt:
     def restore(self) -> bytes | None:
         return persist(self._claim.restore)
 
-    def origin(self) -> list[dict[str, Any]]:
+    def initial(self) -> list[dict[str, Any]]:
         """The files of the creatures that the run begins from."""
-        return persist(self._claim.origin)
+        return persist(self._claim.initial)
 
     @property
     def other_device(self) -> bool:

@@ -68,9 +68,9 @@ class Claim:
         """Say which kind of device computes."""
         self._end(f"Computing on {device}.", device=device)
 
-    def origin(self) -> list[dict[str, Any]]:
+    def initial(self) -> list[dict[str, Any]]:
         """The files of the creatures that the run begins from."""
-        names = self.spec.get("search", {}).get("origin", [])
+        names = self.spec.get("search", {}).get("initial", [])
         with self.services.sessions.read() as session:
             return initial.files(session, names)
 

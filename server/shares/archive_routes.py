@@ -52,14 +52,14 @@ def read_shared_archive(
     run: RunDep,
     session: SessionDep,
     generation: Annotated[int | None, Query(ge=0)] = None,
-    features: str = "",
+    measures: str = "",
 ) -> ArchiveRead:
-    return archives.read_archive(run, session, generation, features)
+    return archives.read_archive(run, session, generation, measures)
 
 
 @router.get("/runs/{run_id}/archive/history", dependencies=[PUBLIC])
-def read_shared_history(run: RunDep, session: SessionDep, features: str = "") -> HistoryRead:
-    return archives.read_history(run, session, features)
+def read_shared_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
+    return archives.read_history(run, session, measures)
 
 
 @router.get("/runs/{run_id}/archive/centroids", dependencies=[PUBLIC])

@@ -4854,7 +4854,7 @@ export interface operations {
         parameters: {
             query?: {
                 generation?: number | null;
-                features?: string;
+                measures?: string;
             };
             header?: never;
             path: {
@@ -4980,7 +4980,7 @@ export interface operations {
     read_shared_history_api_v1_shares__slug__runs__run_id__archive_history_get: {
         parameters: {
             query?: {
-                features?: string;
+                measures?: string;
             };
             header?: never;
             path: {
