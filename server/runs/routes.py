@@ -23,7 +23,7 @@ from ..specs import parsing
 from ..specs.drawings import drawing_read
 from ..tables import Run, Status
 from . import lifecycle, listing
-from .commands import SPEC_BYTES, IdempotencyKey, changed, submitted
+from .commands import SPEC_BYTES, IdempotencyKey, changed, current, submitted
 from .deps import AnyRunDep, OwnRunId
 from .idempotency import earlier
 from .overview import read_run, read_runs
@@ -67,10 +67,10 @@ def create_run(
     if known := earlier(
         services, idempotency_key, principal.token, spec.model_dump(mode="json")
     ):
-        return submitted(services, response, known.run_id, new=False)
+        return submitted(response, current(services, known.run_id), new=False)
     refuse_too_large(services, spec)
     run, new = submit(services, spec, idempotency_key, owner=principal.token, name=name or None)
-    return submitted(services, response, run.id, new)
+    return submitted(response, run, new)
 
 
 @router.post("/estimate", dependencies=[MAY_READ])

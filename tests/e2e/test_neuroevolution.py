@@ -29,7 +29,7 @@ def submit_a_small_population(page: Page, address: str) -> None:
     again.check()
     search.get_by_label("Every", exact=False).fill("4")
     search.get_by_label("Evaluations", exact=False).fill("128")
-    page.get_by_role("button", name="Start the run").click()
+    page.get_by_role("button", name="Start run").click()
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
 
 

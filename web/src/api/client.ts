@@ -84,22 +84,22 @@ export async function readRun(id: string): Promise<Run> {
 }
 
 /**
- * The archive now or as of a generation, with columns of the features that are named; only what
+ * The archive now or as of a generation, with columns of the measures that are named; only what
  * entered later than `after`, where that is given.
  */
 export function readArchive(
   id: string,
-  features: string[] = [],
+  measures: string[] = [],
   { generation, after }: { generation?: number; after?: number } = {},
 ) {
-  const query = { ...(features.length > 0 && { measures: features.join(",") }), generation, after };
+  const query = { ...(measures.length > 0 && { measures: measures.join(",") }), generation, after };
   const params = { path: { run_id: id }, query };
   return success(client.GET(`${ROOT}/runs/{run_id}/archive`, { params }));
 }
 
-/** Every elite that ever entered, with columns of the features that are named. */
-export function readHistory(id: string, features: string[]) {
-  const query = features.length > 0 ? { measures: features.join(",") } : {};
+/** Every elite that ever entered, with columns of the measures that are named. */
+export function readHistory(id: string, measures: string[]) {
+  const query = measures.length > 0 ? { measures: measures.join(",") } : {};
   const params = { path: { run_id: id }, query };
   return success(client.GET(`${ROOT}/runs/{run_id}/archive/history`, { params }));
 }

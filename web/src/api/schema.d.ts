@@ -2359,6 +2359,8 @@ export interface components {
         SweepSummary: {
             /** Cases */
             cases: components["schemas"]["CaseSummary"][];
+            /** Generation */
+            generation: number | null;
             /**
              * Id
              * Format: uuid

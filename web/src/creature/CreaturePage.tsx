@@ -9,6 +9,7 @@ import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { number, short, words } from "../ui/format";
 import { isForceFree } from "../ui/coupling";
+import { reasonOf } from "../ui/NotFound";
 import { NotForceFree } from "../ui/NotForceFree";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
 import { replayViewOf, queryOf } from "../replay/look";
@@ -58,7 +59,7 @@ export function CreaturePage({ sha, query }: Props) {
         {creature && isEvolved(creature) && <ForkLink run={run} creature={sha} title={text.fork} />}
         {creature && isEvolved(creature) && <RefineButton creature={creature} run={run} />}
       </header>
-      {error && <p class="banner wrong">{error}</p>}
+      {error && <p class="banner wrong">{reasonOf(error, sha)}</p>}
       {!creature && !error && <p class="quiet loading">{text.loading}</p>}
       {creature && <CreatureView key={sha} {...{ creature, query }} />}
     </main>

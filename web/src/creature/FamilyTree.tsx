@@ -12,7 +12,7 @@ interface Props {
   hrefOf: (creature: string) => string | null;
 }
 
-const TITLE_HEIGHT = 26;
+const TITLE_HEIGHT = 36;
 const NAME_HEIGHT = HIGH - 8;
 
 export function FamilyTree({ tree, self, hrefOf }: Props) {

@@ -1,6 +1,5 @@
 /** The button that starts a refinement run from a creature. */
 
-import { useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Json } from "../api/types";
@@ -8,6 +7,7 @@ import { useRefusal } from "../store/principal";
 import { applyResponse } from "../store/store";
 import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
+import { ConfirmButton } from "../ui/ConfirmButton";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
 import { text } from "./text";
 
@@ -18,11 +18,9 @@ interface Props {
 }
 
 export function RefineButton({ creature, run }: Props) {
-  const [busy, setBusy] = useState(false);
   const refusal = useRefusal();
   if (refusal) return null;
   const start = async () => {
-    setBusy(true);
     try {
       const archive = run ? (await api.readRun(run)).spec.archive : undefined;
       const spec = {
@@ -34,12 +32,9 @@ export function RefineButton({ creature, run }: Props) {
       navigate(`/runs/${made.id}`);
     } catch (error) {
       showToast({ kind: "wrong", text: messageOf(error) });
-      setBusy(false);
     }
   };
   return (
-    <button disabled={busy} onClick={() => void start()} title={text.refineAbout}>
-      {busy ? text.starting : text.refine}
-    </button>
+    <ConfirmButton verb={text.refine} what={text.refineWhat} queues={text.refineAbout} onConfirm={start} />
   );
 }

@@ -83,7 +83,8 @@ export const text = {
   outputOf: (name: string) => `Output of ${name} over time and along the body`,
   outputAt: (value: string, share: number, step: number) =>
     `${value} at ${share} % of the body, step ${step}`,
-  refineAbout: "Start a run that improves this creature by gradient steps within its cell",
+  refineAbout: "Queues a new run, which improves this creature by gradient steps within its cell.",
+  refineWhat: "this creature",
   starting: "Starting …",
   refine: "Refine",
   remeasured: "Measurement on this server",

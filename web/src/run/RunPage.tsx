@@ -56,7 +56,7 @@ export function RunPage({ id, query }: Props) {
     return (
       <main>
         {error ? (
-          <NotFound what={text.noSuchRun} reason={error} />
+          <NotFound what={text.noSuchRun} reason={error} id={id} />
         ) : (
           <p class="quiet loading">{text.loadingRun}</p>
         )}
@@ -145,7 +145,7 @@ const NO_ELITES: Elites = new Map();
 function CurrentActivity({ run }: { run: Run }) {
   const asked = activityOf(run) !== null;
   const now = useNow(asked);
-  useRunRefresh(run.id, run.status === "queued");
+  useRunRefresh(run.id, run.status === "queued" || run.status === "running");
   return asked ? <RunActivity run={run} now={now} /> : null;
 }
 
