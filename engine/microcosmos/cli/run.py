@@ -54,10 +54,10 @@ def evolve(
 
     evaluations = evaluations_of(chosen, path)
     prepare(cache=CACHE)
-    chosen, origin = begun(chosen, begin_from or ())
-    refuse_without_files(chosen, origin, path)
+    chosen, initial = begun(chosen, begin_from or ())
+    refuse_without_files(chosen, initial, path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
-    if not carry_on(chosen, path, checkpoint_seconds, other_device, origin):
+    if not carry_on(chosen, path, checkpoint_seconds, other_device, initial):
         console.print(f"Stopped. The same command goes on from {path}.")
         raise typer.Exit(130)
     best = path.with_suffix(".best.json")
@@ -80,7 +80,7 @@ def carry_on(
     archive: Path,
     checkpoint_seconds: float,
     other_device: bool,
-    origin: Sequence[Mapping[str, Any]] = (),
+    initial: Sequence[Mapping[str, Any]] = (),
 ) -> bool:
     """Carry out the run with a progress bar; the first Ctrl-C asks it to stop."""
     from .. import experiments
@@ -115,7 +115,7 @@ def carry_on(
                 tell=tell,
                 checkpoint_seconds=checkpoint_seconds,
                 other_device=other_device,
-                origin=origin,
+                initial=initial,
             )
         except experiments.OtherDevice as error:
             progress.stop()

@@ -10,7 +10,7 @@ from microcosmos import naming
 from microcosmos.archive import creature, file
 from microcosmos.build import build
 from microcosmos.experiments.archive_file import OtherDevice
-from microcosmos.search import FEATURES
+from microcosmos.search import MEASURES
 
 
 def test_another_seed_gives_another_archive(small, course, experiment, finish):
@@ -128,7 +128,7 @@ def test_diverged_creatures_are_kept_apart_with_their_reason(small):
 
 def test_the_file_names_what_it_holds(experiment, course):
     tree, attributes = file.load(experiment.save(course[0][-1]))
-    assert json.loads(attributes["features"]) == list(FEATURES)
+    assert json.loads(attributes["measures"]) == list(MEASURES)
     assert json.loads(attributes["device"]) == [experiment.plan.device]
     count = len(tree["archive"]["cell"])
     assert all(len(v) == count for v in tree["archive"].values() if not isinstance(v, dict))

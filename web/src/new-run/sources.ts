@@ -11,7 +11,7 @@ import { type Found, specOf } from "./readDocument";
 import { count, short } from "../ui/format";
 import { text } from "./text";
 
-/** Creatures that a run can begin from; `search.origin` in the schemas has the same. */
+/** Creatures that a run can begin from; `search.initial` in the schemas has the same. */
 export const MAX_CREATURES = 4096;
 
 export function addressed(query: URLSearchParams): Address | null {
