@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from sqlalchemy import select
 
-from ..auth.authorize import MAY_READ
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED
 from ..services.deps import SessionDep
 from ..tables import Generation
 from .curves import told
@@ -17,7 +17,7 @@ from .species import history
 router = APIRouter(prefix="/runs/{run_id}", tags=["runs"])
 
 
-@router.get("/generations", dependencies=[MAY_READ])
+@router.get("/generations", dependencies=[MAY_READ_SHARED])
 def read_generations(
     run: RunDep,
     session: SessionDep,

@@ -58,5 +58,5 @@ def figures_at(
     return found
 
 
-def known(figures: Mapping[str, float | None]) -> dict[str, float]:
+def known(figures: Mapping[Any, float | None]) -> dict[str, float]:
     return {name: value for name, value in figures.items() if value is not None}

@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 from small import TINY
 from sqlalchemy import insert
 
-from server.runs import lifecycle
+from server.runs.announce import announce
 from server.tables import FINISHED, Generation, Run
 
 FAST = 10_000
@@ -27,7 +27,7 @@ def compute(services: Any, run: str, qd_scores: list[float]) -> None:
             for name, figure in (known | told).items():
                 setattr(row, name, figure)
         row.status = FINISHED
-    lifecycle.announce(services, UUID(run))
+    announce(services, UUID(run))
 
 
 @pytest.mark.e2e
