@@ -69,7 +69,7 @@ def create_app(services: Services) -> FastAPI:
     )
     app.state.services = services
     errors.install(app)
-    request_log.discreet()
+    request_log.install()
     describe(app)
     app.state.authenticator = authenticator = Authenticator(services)
     app.add_middleware(
