@@ -11,7 +11,7 @@ from ..archives import routes as archives
 from ..archives.schemas import ArchiveRead, CentroidsRead, HistoryRead
 from ..auth.authorize import PUBLIC
 from ..core.errors import ProblemError
-from ..runs import curve_routes
+from ..runs import detail_routes
 from ..runs.overview import read_run
 from ..runs.schemas import Curves, RunRead
 from ..services.deps import ServicesDep, SessionDep
@@ -44,7 +44,7 @@ def read_shared_generations(
     session: SessionDep,
     points: Annotated[int | None, Query(ge=2, le=10_000)] = None,
 ) -> Curves:
-    return curve_routes.read_generations(run, session, points)
+    return detail_routes.read_generations(run, session, points)
 
 
 @router.get("/runs/{run_id}/archive", dependencies=[PUBLIC])
