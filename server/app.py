@@ -16,6 +16,7 @@ from .auth import bootstrap
 from .auth import routes as tokens_api
 from .auth.authenticate import Authenticator
 from .auth.authorize import MAY_READ, PUBLIC
+from .auth.capability import HEADER
 from .auth.middleware import PrincipalMiddleware
 from .auth.tokens import watch
 from .core import errors, nowhere, page, request_log
@@ -39,10 +40,9 @@ from .runs import detail_routes as details_api
 from .runs import routes as runs_api
 from .services.services import Services, connect
 from .settings import Settings
-from .shares import archive_routes as shared_archives_api
-from .shares import creature_routes as shared_api
 from .shares import page as share_page
 from .shares import routes as shares_api
+from .shares.capability import open_share
 from .specs import routes as experiments_api
 from .sweeps import routes as sweeps_api
 from .tables import migrations
@@ -69,8 +69,12 @@ def create_app(services: Services) -> FastAPI:
     request_log.discreet()
     describe(app)
     app.state.authenticator = authenticator = Authenticator(services)
-    app.add_middleware(PrincipalMiddleware, authenticator=authenticator)
-    app.add_middleware(Discretion)
+    app.add_middleware(
+        PrincipalMiddleware,
+        authenticator=authenticator,
+        open_share=partial(open_share, services),
+    )
+    app.add_middleware(Discretion, share_header=HEADER)
     app.state.requests = requests = Requests()
     app.add_middleware(Counting, requests=requests)
     api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
@@ -88,8 +92,6 @@ def create_app(services: Services) -> FastAPI:
         renderings_api,
         measurements_api,
         shares_api,
-        shared_api,
-        shared_archives_api,
         events_api,
         workers_api,
         queue_api,

@@ -7,7 +7,7 @@ from sqlalchemy import select
 
 from microcosmos.spec import Folding, parse, targets
 
-from ..auth.authorize import MAY_READ
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED
 from ..core.errors import ProblemError
 from ..core.schemas import MOST_ROWS
 from ..services.deps import SessionDep
@@ -20,7 +20,7 @@ from .schemas import Curves, Log, LogEntryRead, Species, TagRead, Target
 router = APIRouter()
 
 
-@router.get("/runs/{run_id}/generations", tags=["runs"], dependencies=[MAY_READ])
+@router.get("/runs/{run_id}/generations", tags=["runs"], dependencies=[MAY_READ_SHARED])
 def read_generations(
     run: RunDep,
     session: SessionDep,

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
-from ..auth.authorize import MAY_READ, Writer
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Writer
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..core.uploads import json_route
@@ -130,7 +130,7 @@ def _refuse_unknown(experiments: list[str]) -> None:
             raise ProblemError(422, "Invalid input", f"experiment: {message}", [error])
 
 
-@router.get("/{run_id}", dependencies=[MAY_READ])
+@router.get("/{run_id}", dependencies=[MAY_READ_SHARED])
 def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     return read_run(services, session, run)
 

@@ -1,6 +1,6 @@
 /** Every request of the page. Answers other than success are thrown as `Problem`. */
 
-import { sharedSlug } from "./address";
+import { SHARE_HEADER, sharedSlug } from "./address";
 import { ROOT, client, success, whenReady } from "./http";
 import type {
   Ancestors,
@@ -266,9 +266,9 @@ export function revoke(slug: string): Promise<Share> {
 
 /** The motion of the creature whose picture stands for a share; null while it is made. */
 export function readCover({ slug, cover }: Share): Promise<ArrayBuffer | null> {
-  const params = { path: { slug, sha: cover } };
-  const path = `${ROOT}/shares/{slug}/creatures/{sha}/motion` as const;
-  return whenReady(client.GET(path, { params, parseAs: "arrayBuffer" }));
+  const params = { path: { sha: cover } };
+  const headers = { [SHARE_HEADER]: slug };
+  return whenReady(client.GET(`${ROOT}/creatures/{sha}/motion`, { params, headers, parseAs: "arrayBuffer" }));
 }
 
 /** Has a creature evaluated again by the program that measured it. */
