@@ -38,7 +38,7 @@ def watch_it_end(page: Page) -> None:
     expect(ended).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("heading", name="Neuroevolution")).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("Into empty cells over"))).to_be_visible()
-    scores = page.get_by_role("img", name=re.compile("QD score .* evaluated again [0-9]"))
+    scores = page.get_by_role("img", name=re.compile("QD score .* re-evaluated [0-9]"))
     expect(scores).to_be_visible()
 
 
