@@ -27,6 +27,7 @@ from .creatures import network_routes as networks_api
 from .creatures import routes as creatures_api
 from .creatures.sandbox import sandbox
 from .deletion import routes as deletion_api
+from .estimates import routes as queue_api
 from .events import routes as events_api
 from .events.fanout import Hub
 from .forks import routes as forks_api
@@ -35,12 +36,8 @@ from .maintenance.metrics import Counting, Requests
 from .maintenance.reconcile import reconciling
 from .renderings import measurement_routes as measurements_api
 from .renderings import routes as renderings_api
-from .runs import curve_routes as generations_api
-from .runs import log_routes as journal_api
-from .runs import queue_routes as queue_api
+from .runs import detail_routes as details_api
 from .runs import routes as runs_api
-from .runs import tag_routes as tags_api
-from .runs import target_routes as targets_api
 from .services.services import Services, connect
 from .settings import Settings
 from .shares import page as share_page
@@ -69,7 +66,7 @@ def create_app(services: Services) -> FastAPI:
     )
     app.state.services = services
     errors.install(app)
-    request_log.discreet()
+    request_log.install()
     describe(app)
     app.state.authenticator = authenticator = Authenticator(services)
     app.add_middleware(
@@ -87,11 +84,9 @@ def create_app(services: Services) -> FastAPI:
         forks_api,
         deletion_api,
         sweeps_api,
-        generations_api,
-        journal_api,
+        details_api,
         archives_api,
         results_api,
-        targets_api,
         creatures_api,
         networks_api,
         renderings_api,
@@ -100,7 +95,6 @@ def create_app(services: Services) -> FastAPI:
         events_api,
         workers_api,
         queue_api,
-        tags_api,
         tokens_api,
     ):
         api.include_router(noun.router)
