@@ -96,7 +96,7 @@ def every_experiment_shows_its_body_and_cost(page: Page) -> None:
         drawing = page.locator(".body-drawing")
         expect(drawing).to_contain_text(nodes, timeout=FAST)
         assert page.locator(".filament").first.get_attribute("d")
-        expect(page.get_by_label("Estimated cost")).to_contain_text("No worker is running")
+        expect(page.get_by_role("region", name="Cost")).to_contain_text("No worker is running")
     choose(page, "Folding")
     expect(page.get_by_role("img", name=re.compile("^Picture"))).to_have_count(2, timeout=FAST)
     choose(page, "Refinement")

@@ -42,12 +42,12 @@ def watch_it_begin(page: Page, run: Written) -> None:
         1, timeout=FAST
     )
     run.begin("worker 1")
-    expect(page.get_by_text("most of a minute on a CPU")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("up to a minute on a CPU")).to_be_visible(timeout=FAST)
     elapsed = page.locator(".activity .quiet")
     before = elapsed.inner_text()
     expect(elapsed).not_to_have_text(before, timeout=FAST)
     run.go_on(1, 4)
-    expect(page.get_by_text("most of a minute on a CPU")).to_have_count(0, timeout=FAST)
+    expect(page.get_by_text("up to a minute on a CPU")).to_have_count(0, timeout=FAST)
 
 
 def follow_the_log(page: Page, run: Written) -> None:
