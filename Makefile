@@ -1,13 +1,16 @@
-# The doors of Microcosmos. `make run` and `make test` need Python 3.11 or 3.12 and make.
+# The commands of Microcosmos. They need Python 3.11 or 3.12 and make.
 
 PYTHON ?= $(shell command -v python3.12 >/dev/null && python3.12 -c '' 2>/dev/null && echo python3.12 || echo python3)
 VENV := .venv
 BIN := $(VENV)/bin
 LOCK := $(shell nvidia-smi -L >/dev/null 2>&1 && echo requirements-cuda.lock || echo requirements.lock)
 INSTALLED := $(VENV)/installed-$(LOCK)
-# Node comes from the registry where the machine has none.
+# Node is installed from the registry if the machine has none.
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print) docs/glossary.md
+
+# Tests start hundreds of processes, which need not read all sources anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run install web test test-all test-long mutants check peers bench acceptance validate pictures docs texts \
 	release-check lock
@@ -43,10 +46,9 @@ check: install web
 	$(BIN)/pytest -m fast tests/engine
 
 # `make test` is everything essential; `make test-all` adds the tests marked `long` (see
-# tests/README.md). What is about bits is compiled as the product is; the rest without
-# optimising, see tests/engine/conftest.py. The tests of the server fork, which a process with
-# JAX in it must not: the last part has them, and the product whole, real processes and a
-# browser, which mostly wait.
+# tests/README.md). Tests about bits compile as the product does; the others compile without
+# optimising, see tests/engine/conftest.py. Tests of the server fork, and a process with JAX must
+# not, so they run last, together with those of real processes and a browser.
 test: install web
 	@rm -f $(TIMES)
 	$(call part,style,$(STYLE))
@@ -64,11 +66,11 @@ test-long: install web
 	$(call part,long server,$(SERVER) -m long)
 	@cat $(TIMES)
 
-ENGINE = $(BIN)/pytest -q -n auto --maxprocesses 4
+ENGINE = $(BIN)/pytest -q -p no:schemathesis -n auto --maxprocesses 4
 BITS = MICROCOSMOS_TEST_OPTIMISED=1 $(ENGINE) tests/engine
 SERVER = $(BIN)/pytest -q -n 3 --ignore=tests/engine --ignore=tests/examples
 TIMES := $(VENV)/times
-# A named part of the tests; its time is printed at the end. Status 5 is that of no test.
+# A named part of the tests; its time is printed at the end. Status 5 means that no test matched.
 define part
 	@begun=$$(date +%s); { $(2); } || [ $$? = 5 ] || exit 1; \
 	echo "$(1): $$(( $$(date +%s) - begun )) s" >> $(TIMES)
@@ -78,7 +80,7 @@ endef
 mutants: install web
 	$(BIN)/python tests/mutants/run.py $(NAMES)
 
-# What benchmarks compare with; not needed for anything else.
+# Libraries with which the benchmarks compare.
 peers: install
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-peers.lock
 
@@ -92,11 +94,11 @@ bench: peers web
 	$(BIN)/python engine/benchmarks/generation.py
 	$(BIN)/python web/benchmarks/page.py
 
-# All of it, or some: make acceptance PARTS=databases
+# All parts, or some: make acceptance PARTS=databases
 acceptance: install web
 	$(BIN)/python tests/faults/acceptance.py $(PARTS)
 
-# Every page into docs/pictures/page; DATA names a folder with finished runs.
+# Take a picture of every page into docs/pictures/page; DATA names a folder with finished runs.
 pictures: install web
 	DATA=$(DATA) $(BIN)/python tests/e2e/pictures.py
 
@@ -107,12 +109,12 @@ validate: install
 texts: install
 	@$(BIN)/python tests/texts.py
 
-# The documentation site; the server shows it at /help from its next start on.
+# Build the documentation site; the server shows it at /help.
 docs: install
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-docs.lock
 	$(BIN)/sphinx-build -q -W --keep-going -d .cache/doctrees docs docs/_build
 
-# The wheel in an environment that has nothing else, with the newest versions of what it needs.
+# Install the wheel into an empty environment, with the newest versions of its dependencies.
 release-check: install
 	rm -rf dist && $(BIN)/python -m pip wheel -q --disable-pip-version-check --no-build-isolation --no-deps -w dist .
 	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && $(PYTHON) -m venv $$folder/venv \
@@ -121,8 +123,8 @@ release-check: install
 	&& JAX_PLATFORMS=cpu venv/bin/microcosmos evolve demo --out demo.h5 \
 	&& JAX_PLATFORMS=cpu venv/bin/microcosmos replay demo.best.json --check
 
-# TensorNEAT is under the GPL-3, and no part of this. Of what it asks for, its NEAT needs SymPy
-# beside what is installed; the rest (Brax, MuJoCo, Gymnax ...) is for its own tasks.
+# TensorNEAT is under the GPL-3 and no part of Microcosmos. Its NEAT needs only SymPy in addition;
+# its other dependencies (Brax, MuJoCo, Gymnax ...) are for its own tasks.
 .PHONY: tensorneat
 TENSORNEAT_COMMIT := ee204900e8e55ffe0ed756651ea871c70230dd34
 TENSORNEAT_SRC ?= git+https://github.com/EMI-Group/tensorneat@$(TENSORNEAT_COMMIT)

@@ -1,5 +1,5 @@
 # A worker, a renderer or an auditor: `docker build -f docker/worker.Dockerfile .`
-# For NVIDIA GPUs: `--build-arg LOCK=requirements-cuda.lock`, whose packages bring CUDA with them;
+# For NVIDIA GPUs: `--build-arg LOCK=requirements-cuda.lock`, whose packages include CUDA;
 # the machine needs the driver and the NVIDIA container toolkit.
 
 FROM python:3.12-slim-bookworm

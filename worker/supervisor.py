@@ -17,8 +17,8 @@ from rq.serializers import JSONSerializer
 from rq.worker import SpawnWorker
 from sqlalchemy.exc import SQLAlchemyError
 
-from server.estimates.position import in_line
-from server.maintenance.reconcile import job_died, job_stopped
+from server.attempts.leases import job_died, job_stopped
+from server.queue.order import in_order
 from server.services import services
 from server.services.services import Services
 from server.settings import Settings
@@ -128,9 +128,11 @@ def own_queues(shared: Services, plugin_versions: set[str]) -> list[Queue]:
     if not plugin_versions:
         return shared.jobs.evolving
     with shared.sessions.read() as session:
-        waiting = in_line(session)
-    able = [one for one in waiting if plugin_versions.issuperset(one.plugin_versions or ())]
-    queues = [shared.jobs.evolving_with(one.plugin_versions, one.of_sweep) for one in able]
+        queued = in_order(session)
+    able = [run for run in queued if plugin_versions.issuperset(run.plugin_versions or ())]
+    queues = [
+        shared.jobs.evolving_with(run.plugin_versions, run.sweep is not None) for run in able
+    ]
     return list({queue.name: queue for queue in (*queues, *shared.jobs.evolving)}.values())
 
 

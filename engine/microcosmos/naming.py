@@ -1,12 +1,14 @@
 """Canonical bytes of creatures: JSON by RFC 8785, SHA-256 names, arrays as base64."""
 
 from base64 import b64decode, b64encode
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from hashlib import sha256
 from typing import Any
 
 import numpy as np
 import rfc8785
+
+from .version import VERSION
 
 FORMAT = "microcosmos-creature/1"
 LICENCE = "CC-BY-4.0"
@@ -50,3 +52,32 @@ def canonical(identity: Mapping[str, Any]) -> bytes:
 def name(identity: Mapping[str, Any]) -> str:
     """Return the SHA-256 of the canonical form, in hexadecimal."""
     return sha256(canonical(identity)).hexdigest()
+
+
+def document(
+    identity: Mapping[str, Any],
+    measured: Mapping[str, Any] | None,
+    provenance: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """Return the creature file around an identity."""
+    return {
+        "identity": dict(identity),
+        "sha256": name(identity),
+        "measured": dict(measured) if measured else None,
+        "provenance": dict(provenance) if provenance else None,
+        "licence": LICENCE,
+        "credit": [],
+    }
+
+
+def provenance(
+    operator: str, *, generation: int = 0, parents: Iterable[str] = (), seed: int = 0
+) -> dict[str, Any]:
+    """Return how a creature came to be, in this version."""
+    return {
+        "parents": list(parents),
+        "operator": operator,
+        "generation": generation,
+        "seed": seed,
+        "version": VERSION,
+    }

@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from ..deletion.garbage import leave_behind, named
+from ..creatures.insertion import mark_garbage, named
 from ..storage.artifacts import Stored, superfluous
 from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 
@@ -63,7 +63,7 @@ def rewind(session: Session, run: Run) -> bool:
     last = run.checkpoint_generation
     if run.generation <= last:
         return False
-    leave_behind(session, run.id, *(named(run.id, table, last) for table in (Elite, Result)))
+    mark_garbage(session, run.id, *(named(run.id, table, last) for table in (Elite, Result)))
     for table in (Elite, Result, Generation):
         session.execute(delete(table).where(table.run_id == run.id, table.generation > last))
     kept = session.get(Generation, (run.id, last))

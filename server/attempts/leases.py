@@ -1,10 +1,13 @@
-"""That a run is still in good hands."""
+"""Leases: renew them, and take runs back from jobs that ended."""
 
 from typing import Literal
 from uuid import UUID
 
 from ..core.database import Sessions, clock
-from ..runs.lifecycle import change
+from ..queue.order import requeue
+from ..runs.announce import announce
+from ..runs.lifecycle import change, hand_back, release
+from ..services.services import Services
 from ..tables import QUEUED, RUNNING, Run
 
 Lease = Literal["held", "waiting", "over", "lost"]
@@ -24,3 +27,23 @@ def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> Lease:
         if run and run.status == RUNNING:
             return "lost"
         return "waiting" if run and run.status == QUEUED else "over"
+
+
+def job_died(services: Services, run_id: UUID, worker: str, error: str) -> None:
+    """Take a run back from a job process that died: it is queued for another attempt."""
+    with services.sessions.write.begin() as session:
+        run = release(session, run_id, Run.worker == worker, error=error)
+    _taken_back(services, run_id, run)
+
+
+def job_stopped(services: Services, run_id: UUID, worker: str) -> None:
+    """Take a run back from a job that was killed because its worker stops."""
+    with services.sessions.write.begin() as session:
+        run = hand_back(session, run_id, Run.worker == worker)
+    _taken_back(services, run_id, run)
+
+
+def _taken_back(services: Services, run_id: UUID, run: Run | None) -> None:
+    if run:
+        announce(services, run_id)
+    requeue(services.sessions, services.jobs, run_id)

@@ -4,6 +4,9 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
+MOST_ROWS = (1 << 31) - 1
+"""Largest integer of a column: PostgreSQL refuses to compare larger ones."""
+
 
 class Wire(BaseModel):
     model_config = ConfigDict(extra="forbid", from_attributes=True)

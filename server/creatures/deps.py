@@ -1,21 +1,45 @@
 """FastAPI dependencies: the creature that a path names."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import Depends, Path
+from sqlalchemy.orm import Session
 
+from ..auth.capability import SharedView, SharedViewDep
 from ..core.errors import ProblemError
-from ..services.deps import SessionDep
+from ..services.deps import ServicesDep, SessionDep
 from ..tables import Creature
 
 Sha = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
 
 
-def creature(sha: Sha, session: SessionDep) -> Creature:
+def find_creature(session: Session, sha: str, share: SharedView | None) -> Creature:
+    """Return the row; raise `ProblemError` where it is missing or not in the share."""
+    if share:
+        share.refuse_unless_holds(session, sha)
     found = session.get(Creature, sha)
     if found is None:
         raise ProblemError(404, "Not found", f"No creature has the name {sha}.")
     return found
 
 
+def creature(sha: Sha, session: SessionDep, share: SharedViewDep) -> Creature:
+    return find_creature(session, sha, share)
+
+
+@dataclass(frozen=True)
+class Identity:
+    """The identity of a creature, read with a connection that is closed again."""
+
+    sha256: str
+    json: bytes
+
+
+def identity(sha: Sha, services: ServicesDep, share: SharedViewDep) -> Identity:
+    with services.sessions.read() as session:
+        return Identity(sha, find_creature(session, sha, share).identity)
+
+
 CreatureDep = Annotated[Creature, Depends(creature)]
+IdentityDep = Annotated[Identity, Depends(identity)]

@@ -1,13 +1,14 @@
-"""Insert creatures and the links to their parents."""
+"""Insert creatures and the links to their parents; mark those that may be garbage."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, cast
+from uuid import UUID
 
-from sqlalchemy import select
-from sqlalchemy.orm import Session
+from sqlalchemy import Select, select
+from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from ..core.database import insert_missing, insert_or_update
-from ..tables import Creature, Parent
+from ..tables import Creature, Elite, GarbageCreature, Parent, Result
 
 NAMES_PER_QUERY = 500
 
@@ -54,3 +55,22 @@ def links(child: str, parents: Sequence[str]) -> Iterator[dict[str, Any]]:
     """Yield a row for each parent of a creature."""
     for position, parent in enumerate(parents):
         yield {"child": child, "position": position, "parent": parent}
+
+
+def named(run_id: UUID, table: type[Elite | Result], after: int = 0) -> Select[str]:
+    """Select the creatures of a run's rows after a generation."""
+    mine = (table.run_id == run_id) & (table.generation > after)
+    return creatures_of(table).where(mine)
+
+
+def creatures_of(table: type[Elite | Result]) -> Select[str]:
+    """Select the distinct creatures of rows."""
+    creature = cast(InstrumentedAttribute[str], table.creature)
+    return select(creature).where(creature.is_not(None)).distinct()
+
+
+def mark_garbage(session: Session, run_id: UUID, *creatures: Select[str]) -> None:
+    """Mark creatures for collection once their run is deleted, unless something uses them."""
+    names = sorted({name for some in creatures for name in session.scalars(some)})
+    rows = [{"run_id": run_id, "creature": name} for name in names]
+    insert_missing(session, GarbageCreature, rows)

@@ -1,4 +1,4 @@
-"""The network of a creature in forms for other programs and for people."""
+"""Write the network of a creature in forms for other programs and for people."""
 
 import json
 from collections.abc import Callable
@@ -8,12 +8,10 @@ from microcosmos.viz import networks
 from microcosmos.viz.networks import Network
 
 from ..core.errors import ProblemError
-from ..tables import Creature
 
 
-def network_of(row: Creature) -> Network:
-    """The network of a creature; raises `ProblemError` where its genes are none."""
-    identity = json.loads(row.identity)
+def network_of(identity: dict[str, Any]) -> Network:
+    """Return the network of a creature; raise `ProblemError` if its genes have none."""
     genome: dict[str, Any] = identity["genome"]
     if "nodes" not in genome:
         detail = (
@@ -25,7 +23,7 @@ def network_of(row: Creature) -> Network:
 
 
 def tensorneat(network: Network) -> bytes:
-    """A genome of TensorNEAT."""
+    """Return the network as a genome of TensorNEAT."""
     return networks.dump_tensorneat(networks.write_tensorneat(network))
 
 
@@ -35,12 +33,12 @@ FORMS: dict[str, tuple[str, Callable[[Network], str | bytes]]] = {
     "py": ("text/x-python", networks.numpy_code),
     "npz": ("application/octet-stream", tensorneat),
 }
-"""What a network is written as, by the ending of the file: media type and writer."""
+"""Media type and writer of each form, by the ending of the file."""
 
 
-def written(row: Creature, form: str) -> bytes:
-    """The network in a form; raises `ProblemError` where it cannot be written so."""
-    network = network_of(row)
+def written(identity: bytes, form: str) -> bytes:
+    """Return the network in a form. Only for the sandbox: code is proved by running it."""
+    network = network_of(json.loads(identity))
     try:
         data = FORMS[form][1](network)
     except ValueError as error:

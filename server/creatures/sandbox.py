@@ -1,4 +1,4 @@
-"""The server's end of the quarantine, in which files of strangers are read."""
+"""The sandbox: a process that reads the files of strangers and runs code of networks."""
 
 import atexit
 import json
@@ -13,21 +13,21 @@ from typing import Any
 
 from ..core.errors import RETRY, ProblemError
 from ..core.schemas import Problem
-from .sandbox_process import LENGTH, SECONDS
+from .sandbox_process import LENGTH, PROBLEM, RESULT, SECONDS
 
-PATIENCE = 30.0
-"""Seconds for the quarantine to begin, on a machine that is busy; a file has `SECONDS`."""
-ENDING = 0.2
-"""Seconds within which a process that was killed is known to be gone."""
+START_SECONDS = 30.0
+"""Time for the process to start on a busy machine. One request has `SECONDS`."""
+END_SECONDS = 0.2
+"""Time within which the end of a killed process is noticed."""
 SINGLE = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "HDF5_PLUGIN_PRELOAD": "::"}
-"""A process that forks must have one thread; and HDF5 none of its plugins."""
+"""A process that forks must have one thread, and HDF5 must load no plug-in."""
 SECRETS = [f"MICROCOSMOS_{name}_URL" for name in ("DATABASE", "REDIS", "ARTIFACTS")]
 SECRETS += ["MICROCOSMOS_TOKEN"]
-"""Nothing that is read there may get to know them."""
+"""Variables that the process does not inherit."""
 
 
-class Quarantine:
-    """A process that reads files for us. It begins at the first, and again if it was ended."""
+class Sandbox:
+    """Starts the process at the first request, and again if it has ended."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -35,55 +35,60 @@ class Quarantine:
         self._control: socket.socket | None = None
 
     def creature(self, body: bytes) -> dict[str, Any]:
-        """The creature file in some bytes; `ProblemError` says why there is none."""
-        told = json.loads(self._read(body) or "null")
-        if told is None:
-            self._refuse_gone()
-            detail = (
-                "Reading the file took too long, or ended the process that read it; a sound "
-                f"one takes much less than {SECONDS:g} seconds."
-            )
-            raise ProblemError(422, "Unreadable", detail)
-        if problem := told.get("problem"):
-            raise ProblemError.of(Problem.model_validate(problem))
-        return told["file"]
+        """Return the creature file in some bytes; raise `ProblemError` if there is none."""
+        return json.loads(self._result(b"creature\n" + body, "Reading the file"))
 
-    def _read(self, body: bytes) -> bytes:
-        """What the quarantine says of a body; nothing where that was its end."""
+    def network(self, identity: bytes, form: str) -> bytes:
+        """Return a creature's network in a form; raise `ProblemError` if that fails."""
+        return self._result(form.encode() + b"\n" + identity, "Writing the network")
+
+    def _result(self, request: bytes, action: str) -> bytes:
+        status, _, content = self._read(request).partition(b"\n")
+        if status == PROBLEM:
+            raise ProblemError.of(Problem.model_validate_json(content))
+        if status != RESULT:
+            self._refuse_gone()
+            detail = f"{action} took too long, or ended the process that did it; "
+            detail += f"a sound one takes much less than {SECONDS:g} seconds."
+            raise ProblemError(422, "Unreadable", detail)
+        return content
+
+    def _read(self, request: bytes) -> bytes:
+        """Return the answer of the sandbox, empty if the request ended its process."""
         with self._connection() as connection:
-            connection.settimeout(PATIENCE)
+            connection.settimeout(START_SECONDS)
             try:
-                connection.sendall(LENGTH.pack(len(body)) + body)
+                connection.sendall(LENGTH.pack(len(request)) + request)
                 with connection.makefile("rb") as answer:
                     return answer.read()
             except (BrokenPipeError, ConnectionResetError):
                 return b""
 
     def _refuse_gone(self) -> None:
-        """What does not run, or was ended by somebody, says nothing about a file."""
+        """Raise `ProblemError` 503 if the whole process has ended, not the request alone."""
         with self._lock, suppress(subprocess.TimeoutExpired):
             if self._process:
-                self._process.wait(ENDING)
-            detail = "Files cannot be read just now; try again."
+                self._process.wait(END_SECONDS)
+            detail = "The server cannot do this just now; try again."
             raise ProblemError(503, "Unavailable", detail, headers=RETRY)
 
     def _connection(self) -> socket.socket:
-        """To a child of its own for one file."""
+        """Return a connection to a new child process for one request."""
         ours, theirs = socket.socketpair()
         with theirs, self._lock:
             try:
-                socket.send_fds(self._begun(), [b"\0"], [theirs.fileno()])
+                socket.send_fds(self._started(), [b"\0"], [theirs.fileno()])
             except OSError:  # It was ended.
                 self._end()
-                socket.send_fds(self._begun(), [b"\0"], [theirs.fileno()])
+                socket.send_fds(self._started(), [b"\0"], [theirs.fileno()])
         return ours
 
-    def begin(self) -> None:
-        """Start the process, which takes a second, before somebody waits for it."""
+    def start(self) -> None:
+        """Start the process, which takes a second, before the first request."""
         with self._lock:
-            self._begun()
+            self._started()
 
-    def _begun(self) -> socket.socket:
+    def _started(self) -> socket.socket:
         if self._control is None:
             self._control, theirs = socket.socketpair()
             environment = {k: v for k, v in os.environ.items() if k not in SECRETS} | SINGLE
@@ -107,8 +112,8 @@ class Quarantine:
 
 
 @cache
-def quarantine() -> Quarantine:
-    """One for all of this process; it keeps nothing from one file to the next."""
-    shared = Quarantine()
+def sandbox() -> Sandbox:
+    """Return the sandbox of this process. It keeps nothing between two requests."""
+    shared = Sandbox()
     atexit.register(shared.close)
     return shared

@@ -1,11 +1,12 @@
-"""Where files of strangers are read: each in a process that can open, write and keep nothing.
+"""The process of the sandbox: each request in a child that can open, write and keep nothing.
 
 `python -m server.creatures.sandbox_process` waits for connections on its standard input and
 forks for each.
-The child may have no more memory than it began with and `MEMORY`, no more time than `SECONDS`,
-and no file at all: whatever path a file names, the kernel refuses to open it.
+A request names a task: `creature` reads a file, the form of a network writes it. The child may
+use `MEMORY` beyond what it began with, `SECONDS` of time, and no file: the kernel opens none.
 """
 
+import json
 import os
 import resource
 import signal
@@ -16,9 +17,15 @@ import time
 from math import ceil
 from pathlib import Path
 
-from microcosmos.archive import creature, creature_h5
+from pydantic import ValidationError
 
-from . import files
+from microcosmos.archive import creature, creature_h5
+from microcosmos.archive.creature import CreatureError
+
+from ..core import errors
+from ..core.errors import ProblemError
+from ..core.schemas import Problem
+from . import files, networks
 from .probe import example
 
 MEMORY = 256 << 20
@@ -27,6 +34,8 @@ SECONDS = 1.5
 ALL_SECONDS = 5.0
 """With all waiting, of which there should be none."""
 LENGTH = struct.Struct("<Q")
+RESULT, PROBLEM = b"result", b"problem"
+"""First lines of answers."""
 
 
 def main() -> None:
@@ -45,23 +54,50 @@ def main() -> None:
 
 
 def warm_up() -> None:
-    """Read one of each kind: afterwards nothing has to be loaded, for nothing can be."""
-    file = creature.document(example(), None, None)
-    whole = creature.parse(file)
-    for body in (creature.canonical(file), creature_h5.dump(whole)):
-        assert b'"file"' in files.answer(body)[:10]
+    """Do each task once: later the child can load nothing."""
+    identity = example()
+    file = creature.document(identity, None, None)
+    for body in (creature.canonical(file), creature_h5.dump(creature.parse(file))):
+        assert answer(b"creature\n" + body).startswith(RESULT)
     for body in (b"{}", b"\xff", b"[" * 10_000, files.HDF5 + bytes(1000)):
-        assert b'"problem"' in files.answer(body)[:12]
+        assert answer(b"creature\n" + body).startswith(PROBLEM)
+    for form in networks.FORMS:
+        assert answer(form.encode() + b"\n" + creature.canonical(identity)).startswith(RESULT)
 
 
 def work(connection: socket.socket) -> None:
-    """Read a body, answer it, and be gone."""
+    """Answer one request, and end."""
     restrict()
     with connection.makefile("rb") as incoming:
         (length,) = LENGTH.unpack(incoming.read(LENGTH.size))
-        body = incoming.read(length)
-    connection.sendall(files.answer(body))
+        request = incoming.read(length)
+    connection.sendall(answer(request))
     connection.shutdown(socket.SHUT_WR)
+
+
+def answer(request: bytes) -> bytes:
+    """Return the result of a task, or the problem with it."""
+    task, _, body = request.partition(b"\n")
+    try:
+        if task == b"creature":
+            return RESULT + b"\n" + json.dumps(files.creature_file(body)).encode()
+        return RESULT + b"\n" + networks.written(body, task.decode())
+    except ProblemError as error:
+        problem = error.problem
+    except CreatureError as error:
+        problem = errors.bad_creature(error)
+    except ValidationError as error:
+        problem = errors.invalid(error)
+    except MemoryError:
+        problem = _unreadable("reading it needs more memory than a creature file has a use for")
+    except Exception as error:  # Any error in a library is the fault of the file.
+        problem = _unreadable(f"{type(error).__name__}: {error}")
+    return PROBLEM + b"\n" + problem.model_dump_json().encode()
+
+
+def _unreadable(why: str) -> Problem:
+    detail = f"The file cannot be read: {why:.300}."
+    return Problem(title="Unreadable", status=422, detail=detail)
 
 
 def restrict() -> None:

@@ -1,11 +1,9 @@
 """Creatures of runs that are gone: which anything still uses, and the end of the others."""
 
 from collections.abc import Collection, Sequence
-from typing import cast
-from uuid import UUID
 
-from sqlalchemy import Select, delete, select, union
-from sqlalchemy.orm import InstrumentedAttribute, Session
+from sqlalchemy import delete, select, union
+from sqlalchemy.orm import Session
 
 from ..core.database import insert_missing
 from ..tables import (
@@ -40,25 +38,6 @@ def in_use(session: Session, names: Collection[str]) -> set[str]:
         select(Creature.sha256).where(Creature.sha256.in_(names), Creature.imported),
     )
     return {name for name in session.scalars(union(*uses)) if name is not None}
-
-
-def named(run_id: UUID, table: type[Elite | Result], after: int = 0) -> Select[str]:
-    """The creatures of a run's rows after a generation."""
-    mine = (table.run_id == run_id) & (table.generation > after)
-    return creatures_of(table).where(mine)
-
-
-def creatures_of(table: type[Elite | Result]) -> Select[str]:
-    """Each creature that rows have, once."""
-    creature = cast(InstrumentedAttribute[str], table.creature)
-    return select(creature).where(creature.is_not(None)).distinct()
-
-
-def leave_behind(session: Session, run_id: UUID, *creatures: Select[str]) -> None:
-    """Remember what goes with a run, once that is gone."""
-    names = sorted({name for some in creatures for name in session.scalars(some)})
-    rows = [{"run_id": run_id, "creature": name} for name in names]
-    insert_missing(session, GarbageCreature, rows)
 
 
 def collect(session: Session) -> bool:

@@ -13,6 +13,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from ..core.database import clock
+from ..creatures.insertion import creatures_of, mark_garbage
 from ..runs.lifecycle import change
 from ..services.services import Services
 from ..storage.artifacts import run_folder
@@ -28,7 +29,7 @@ from ..tables import (
     Run,
     Share,
 )
-from .garbage import collect, creatures_of, discard, leave_behind
+from .garbage import collect, discard
 
 STEPS = 200
 """Transactions in one pass: other things have to be mended too."""
@@ -113,7 +114,7 @@ def _some(session: Session, run_id: UUID, table: type[Elite | Result]) -> bool:
     mine = _few(session, run_id, table)
     if mine is None:
         return False
-    leave_behind(session, run_id, creatures_of(table).where(mine))
+    mark_garbage(session, run_id, creatures_of(table).where(mine))
     session.execute(delete(table).where(mine))
     return True
 
@@ -138,7 +139,7 @@ def _few(
 
 def _end(session: Session, run_id: UUID) -> None:
     """The run itself, and what there are few of."""
-    leave_behind(
+    mark_garbage(
         session,
         run_id,
         select(InitialCreature.creature).where(InitialCreature.run_id == run_id),

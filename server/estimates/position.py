@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 from uuid import UUID
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from ..core.sizes import size
+from ..queue.order import in_order
 from ..services.services import Services
 from ..specs.stored import known
 from ..tables import QUEUED, Run, Worker
@@ -56,30 +56,11 @@ def line(services: Services, session: Session) -> Line:
     alive = registry.live(session, services.settings.lease)
     single = select(func.count()).where(Run.status == QUEUED, Run.sweep.is_(None))
     return Line(
-        runs=[one.run for one in in_line(session)],
+        runs=[run.id for run in in_order(session)],
         alive=alive,
         at_work=registry.at_work(session, alive),
         singles=session.scalars(single).one(),
     )
-
-
-class InLine(NamedTuple):
-    """A run that waits, and which workers may take it."""
-
-    run: UUID
-    of_sweep: bool
-    plugin_versions: list[str] | None
-    """Versions of users' own modules that it needs."""
-
-
-def in_line(session: Session) -> list[InLine]:
-    """Runs that wait, in the order in which they are taken: those of sweeps last."""
-    of_sweep = Run.sweep.is_not(None)
-    waiting = select(Run.id, of_sweep, Run.plugin_versions).where(Run.status == QUEUED)
-    # SQLite's clock counts milliseconds: what was resumed together waits in its old order.
-    ordered = waiting.order_by(of_sweep, Run.queued_at, Run.created_at, Run.id)
-    found = session.execute(ordered)
-    return [InLine(run, bool(swept), plugin_versions) for run, swept, plugin_versions in found]
 
 
 def reasons(services: Services, session: Session, runs: Sequence[Run]) -> dict[UUID, str]:

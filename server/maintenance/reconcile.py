@@ -7,7 +7,6 @@ import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
-from uuid import UUID
 
 from redis import RedisError
 from sqlalchemy import delete, select
@@ -15,8 +14,9 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from ..core.database import ago
 from ..deletion.purge import purge
-from ..estimates.position import in_line
-from ..runs.lifecycle import announce, hand_back, lost, release, yield_up
+from ..queue.order import in_order
+from ..runs.announce import announce
+from ..runs.lifecycle import lost, release, yield_up
 from ..runs.log import note
 from ..services.services import Services
 from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker
@@ -95,17 +95,15 @@ def take_back_lost(services: Services) -> None:
             run = release(session, run_id, *silent, error=error)
         if run:
             announce(services, run_id)
-            _enqueue(services, run)
+            services.jobs.enqueue([run] if run.status == QUEUED else [])
 
 
 def enqueue_missing(services: Services) -> None:
-    """Enqueue runs that wait and have no job, in the order in which they came."""
+    """Enqueue queued runs that have no job, in their order."""
     with services.sessions.read() as session:
-        line = in_line(session)
-    at_hand = services.jobs.runs_at_hand() if line else set()
-    for one in line:
-        if str(one.run) not in at_hand:
-            services.jobs.evolve(*one)
+        queued = in_order(session)
+    known = services.jobs.runs_at_hand() if queued else set()
+    services.jobs.enqueue(run for run in queued if str(run.id) not in known)
 
 
 def forget_empty_sweeps(services: Services) -> None:
@@ -122,38 +120,3 @@ def forget_workers(services: Services) -> None:
     with services.sessions.write.begin() as session:
         old = Worker.heartbeat_at < ago(session, FORGOTTEN_AFTER)
         session.execute(delete(Worker).where(old))
-
-
-def job_died(services: Services, run_id: UUID, worker: str, error: str) -> None:
-    """A job process ended without a word: its run waits for another attempt at once."""
-    with services.sessions.write.begin() as session:
-        run = release(session, run_id, Run.worker == worker, error=error)
-    if run:
-        announce(services, run_id)
-    requeue(services, run_id)
-
-
-def job_stopped(services: Services, run_id: UUID, worker: str) -> None:
-    """A job was killed because its worker had to stop: its run waits, without a mark."""
-    with services.sessions.write.begin() as session:
-        run = hand_back(session, run_id, Run.worker == worker)
-    if run:
-        announce(services, run_id)
-    requeue(services, run_id)
-
-
-def requeue(services: Services, run_id: UUID) -> None:
-    """Enqueue a run if it waits; where Redis does not answer, the next pass does it."""
-    with services.sessions.read() as session:
-        run = session.get(Run, run_id)
-    if run:
-        _enqueue(services, run)
-
-
-def _enqueue(services: Services, run: Run) -> None:
-    if run.status != QUEUED:
-        return
-    try:
-        services.jobs.evolve(run.id, run.sweep is not None, run.plugin_versions)
-    except RedisError as error:
-        log.warning("run %s stays queued until Redis answers: %s", run.id, error)

@@ -1,5 +1,6 @@
 """The queues: messages that a run or a rendering is to be made. The truth is in SQL."""
 
+import logging
 import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -7,7 +8,7 @@ from hashlib import sha256
 from typing import Any
 from uuid import UUID
 
-from redis import Redis
+from redis import Redis, RedisError
 from redis.backoff import ExponentialBackoff
 from redis.retry import Retry
 from rq import Queue
@@ -19,6 +20,8 @@ from rq.serializers import JSONSerializer
 from rq.utils import as_text
 
 from ..tables import AUDIT, MEASUREMENT, REPLAY, Run
+
+log = logging.getLogger(__name__)
 
 EVOLVE = "worker.jobs.evolve"
 RENDER = "worker.jobs.render"
@@ -65,6 +68,17 @@ class Jobs:
         self.forget(str(run_id))
         queue = self.evolving_with(plugin_versions, of_sweep)
         queue.enqueue(EVOLVE, str(run_id), job_id=str(run_id), job_timeout=-1, **KEPT)
+
+    def enqueue(self, runs: Iterable[Any]) -> None:
+        """Enqueue runs by `id`, `sweep` and `plugin_versions`.
+
+        Where Redis does not answer they stay queued in SQL, and the reconciler enqueues them.
+        """
+        try:
+            for run in runs:
+                self.evolve(run.id, run.sweep is not None, run.plugin_versions)
+        except RedisError as error:
+            log.warning("runs stay queued until Redis answers: %s", error)
 
     def evolve_new(self, runs: Iterable[Run]) -> None:
         """Ask for runs of a sweep that were never asked for, in their order."""

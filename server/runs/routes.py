@@ -1,42 +1,34 @@
-"""Runs: estimate, submit, list, read, name, pause, resume, cancel, extend,
-fork, delete, restore.
-"""
+"""Estimate, submit, list, read, name, pause, resume and cancel runs."""
 
-from collections.abc import Callable
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
-from fastapi import APIRouter, Body, Depends, Header, Query, Response
+from fastapi import APIRouter, Body, Depends, Query, Response
 from pydantic import StringConstraints
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
-from ..auth.authorize import MAY_READ, Writer
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Writer
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..core.uploads import json_route
-from ..creatures.initial import named
-from ..deletion import bin
 from ..estimates import position
 from ..estimates.eta import speed_of
 from ..estimates.schemas import EstimateRead
-from ..forks import extending, forking
-from ..maintenance.reconcile import requeue
+from ..queue.order import requeue
 from ..services.deps import ServicesDep, SessionDep
-from ..services.services import Services
 from ..specs import parsing
 from ..specs.drawings import drawing_read
 from ..tables import Run, Status
 from . import lifecycle, listing
-from .deps import AnyRunDep, OwnRunId, find_run
+from .commands import SPEC_BYTES, IdempotencyKey, changed, current, submitted
+from .deps import AnyRunDep, OwnRunId
 from .idempotency import earlier
 from .overview import read_run, read_runs
-from .schemas import NAME, Extension, Fork, RunChange, RunPage, RunRead
+from .schemas import NAME, RunChange, RunPage, RunRead
 from .submission import memory_limit, refuse_too_large, submit
-
-SPEC_BYTES = 1 << 20
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
 
@@ -50,7 +42,6 @@ def spec_sent(document: Document, services: ServicesDep) -> Spec:
 
 
 SpecDep = Annotated[Spec, Depends(spec_sent)]
-Key = Annotated[str | None, Header(alias="Idempotency-Key", min_length=1, max_length=255)]
 
 
 Called = Annotated[
@@ -66,7 +57,7 @@ def create_run(
     spec: SpecDep,
     services: ServicesDep,
     response: Response,
-    idempotency_key: Key = None,
+    idempotency_key: IdempotencyKey = None,
     name: Called = None,
 ) -> RunRead:
     """Queue a run. The same key with the same spec is the same run, answered with 200.
@@ -76,10 +67,10 @@ def create_run(
     if known := earlier(
         services, idempotency_key, principal.token, spec.model_dump(mode="json")
     ):
-        return _submitted(services, response, known.run_id, new=False)
+        return submitted(response, current(services, known.run_id), new=False)
     refuse_too_large(services, spec)
     run, new = submit(services, spec, idempotency_key, owner=principal.token, name=name or None)
-    return _submitted(services, response, run.id, new)
+    return submitted(response, run, new)
 
 
 @router.post("/estimate", dependencies=[MAY_READ])
@@ -139,7 +130,7 @@ def _refuse_unknown(experiments: list[str]) -> None:
             raise ProblemError(422, "Invalid input", f"experiment: {message}", [error])
 
 
-@router.get("/{run_id}", dependencies=[MAY_READ])
+@router.get("/{run_id}", dependencies=[MAY_READ_SHARED])
 def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     return read_run(services, session, run)
 
@@ -152,102 +143,21 @@ def change_run(run_id: OwnRunId, services: ServicesDep, sent: RunChange) -> RunR
     def say(session: Session, run: Run) -> Run:
         return lifecycle.change(session, run.id, **said) or run if said else run
 
-    return _changed(services, run_id, say)
+    return changed(services, run_id, say)
 
 
 @router.post("/{run_id}/pause", status_code=202)
 def pause_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
-    return _changed(services, run_id, lifecycle.pause)
+    return changed(services, run_id, lifecycle.pause)
 
 
 @router.post("/{run_id}/resume", status_code=202)
 def resume_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
-    changed = _changed(services, run_id, lifecycle.resume)
-    requeue(services, run_id)
-    return changed
+    run = changed(services, run_id, lifecycle.resume)
+    requeue(services.sessions, services.jobs, run_id)
+    return run
 
 
 @router.post("/{run_id}/cancel", status_code=202)
 def cancel_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
-    return _changed(services, run_id, lifecycle.cancel)
-
-
-@router.delete("/{run_id}")
-def delete_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
-    """Into the bin, from which it can be restored until `purge_at`."""
-    keep = services.settings.bin_seconds
-    return _changed(services, run_id, lambda session, run: bin.put(session, run, keep))
-
-
-@router.post("/{run_id}/restore")
-def restore_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
-    """Out of the bin, as it was."""
-    return _changed(services, run_id, bin.restore, deleted=True)
-
-
-@router.post(
-    "/{run_id}/extend",
-    status_code=202,
-)
-def extend_run(run_id: OwnRunId, services: ServicesDep, sent: Extension) -> RunRead:
-    """More generations for a finished run, which ends as if it had had them from the start."""
-    with services.sessions.read() as session:
-        run = find_run(session, run_id)
-    spec = extending.longer(run, sent.generations)
-    refuse_too_large(services, spec)
-    changed = _changed(
-        services, run_id, lambda session, _: extending.extend(session, run, spec)
-    )
-    requeue(services, run_id)
-    return changed
-
-
-@router.post("/{run_id}/fork", status_code=202)
-def fork_run(
-    principal: Writer,
-    run_id: UUID,
-    services: ServicesDep,
-    response: Response,
-    sent: Fork,
-    idempotency_key: Key = None,
-) -> RunRead:
-    """A new run that begins from creatures of this one, its spec changed by a merge patch.
-
-    The same key with the same request is the same run, though others may live there by then.
-    """
-    request = {"fork": str(run_id), **sent.model_dump(mode="json")}
-    if known := earlier(services, idempotency_key, principal.token, request):
-        return _submitted(services, response, known.run_id, new=False)
-    with services.sessions.read() as session, parsing.parsing(services) as parse:
-        spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
-    refuse_too_large(services, spec)
-    said = {"name": sent.name or None, "forked_from": run_id, "n_initial": len(named(spec))}
-    run, new = submit(services, spec, idempotency_key, request, owner=principal.token, **said)
-    return _submitted(services, response, run.id, new)
-
-
-def _submitted(
-    services: Services, response: Response, run_id: UUID | None, new: bool
-) -> RunRead:
-    assert run_id is not None  # No request for a run is one for a sweep.
-    response.status_code = 202 if new else 200
-    response.headers["Location"] = f"/api/v1/runs/{run_id}"
-    return _current(services, run_id)
-
-
-def _changed(
-    services: Services,
-    run_id: UUID,
-    change: Callable[[Session, Run], Run],
-    deleted: bool = False,
-) -> RunRead:
-    """With one connection at a time: requests that held two could wait for each other."""
-    with services.sessions.write.begin() as session:
-        change(session, find_run(session, run_id, deleted))
-    lifecycle.announce(services, run_id)
-    return _current(services, run_id)
-
-
-def _current(services: Services, run_id: UUID) -> RunRead:
-    with services.sessions.read() as session:
-        return read_run(services, session, session.get_one(Run, run_id))
+    return changed(services, run_id, lifecycle.cancel)

@@ -15,8 +15,9 @@ from ..core.uploads import json_route
 from ..deletion import bin
 from ..estimates import position
 from ..estimates.eta import speeds_of
+from ..queue.order import requeue
 from ..runs import lifecycle
-from ..runs.routes import SPEC_BYTES, Key
+from ..runs.commands import SPEC_BYTES, IdempotencyKey
 from ..runs.submission import memory_limit
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
@@ -35,7 +36,7 @@ from .schemas import (
     SweepSent,
     SweepSummary,
 )
-from .steering import announce, page, read_sweep, requeue, steer
+from .steering import announce, page, read_sweep, steer
 from .submission import earlier_sweep, submit_sweep
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=json_route(SPEC_BYTES))
@@ -56,7 +57,7 @@ def create_sweep(
     plan: PlanDep,
     services: ServicesDep,
     response: Response,
-    idempotency_key: Key = None,
+    idempotency_key: IdempotencyKey = None,
 ) -> SweepRead:
     """Queue all runs of a sweep, or none. The same key with the same request is the same."""
     sweep_id, new = earlier_sweep(services, plan, idempotency_key, principal.token), False
@@ -150,7 +151,7 @@ def pause_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
 def resume_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
     """Resume every run that is paused; `skipped` tells of the others."""
     resumed = _steered(services, sweep_id, lifecycle.resume)
-    requeue(services, resumed.changed)
+    requeue(services.sessions, services.jobs, *resumed.changed)
     return resumed
 
 

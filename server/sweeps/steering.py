@@ -8,14 +8,13 @@ from itertools import product
 from typing import Any
 from uuid import UUID
 
-from redis import RedisError
 from sqlalchemy import ColumnElement, and_, or_, select
 from sqlalchemy.orm import Session
 
 from ..auth import tokens
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
-from ..runs import lifecycle
+from ..runs.announce import announce as announce_runs
 from ..runs.lifecycle import KEPT, Conflict
 from ..runs.overview import progress
 from ..services.services import Services
@@ -122,7 +121,7 @@ def steer(
                     changed.append(change(session, run).id)
                 except Conflict as refusal:
                     skipped.append(_skipped(session, run, refusal))
-        lifecycle.announce(services, *(run_id for run_id in some if run_id in changed))
+        announce_runs(services, *(run_id for run_id in some if run_id in changed))
     announce(services, sweep_id)
     return changed, skipped
 
@@ -132,18 +131,6 @@ def _skipped(session: Session, run: Run, refusal: Conflict) -> SkippedRun:
     return SkippedRun.model_validate(
         {"run": run.id, "status": run.status, "reason": f"{refusal}."}
     )
-
-
-def requeue(services: Services, run_ids: Sequence[UUID]) -> None:
-    """Enqueue runs that wait again; where Redis does not answer, the next pass does it."""
-    with services.sessions.read() as session:
-        rows = session.execute(select(Run.id, Run.plugin_versions).where(Run.id.in_(run_ids)))
-        plugin_versions = {run_id: needed for run_id, needed in rows}
-    try:
-        for run_id in run_ids:
-            services.jobs.evolve(run_id, True, plugin_versions.get(run_id))
-    except RedisError as error:
-        log.warning("runs stay queued until Redis answers: %s", error)
 
 
 def several(ids: Sequence[UUID]) -> list[Sequence[UUID]]:

@@ -204,14 +204,20 @@ def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, shared_page: Page
     assert corners - {4}, "a cell of a grid has four corners, one of a tessellation seldom"
 
 
-def test_a_first_visit_is_guided_once(shared, shared_page: Page):
+def test_the_tour_scrolls_to_what_it_explains(shared, shared_page: Page):
     page = shared_page
+    page.set_viewport_size({"width": 1280, "height": 800})
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
     guide = page.get_by_role("complementary", name="Tour")
+    expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
+    expect(guide).not_to_be_visible()  # It opens by itself over the demonstration only.
+    page.get_by_role("button", name="Explain").click()
     expect(guide).to_contain_text("of 256 kinds have one", timeout=FAST)
     for title in ("Cells are kinds", "Colour is fitness", "The history", "Open a creature"):
         guide.get_by_role("button", name="Next").press("Enter")
         expect(guide.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
+        if title == "The history":
+            expect(page.locator(".time-slider")).to_be_in_viewport(ratio=1, timeout=FAST)
     expect(page.locator("#map-reading")).to_contain_text("Fitness")
     guide.get_by_role("button", name="Finish").press("Enter")
     expect(guide).not_to_be_visible()

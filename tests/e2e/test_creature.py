@@ -89,7 +89,7 @@ def choose_what_is_shown(page: Page) -> None:
 
 def read_the_shape_over_time(page: Page) -> None:
     picture = page.get_by_role(
-        "application", name=re.compile("^Rest angles, as applied over 40 steps")
+        "application", name=re.compile("^Rest angles \(applied\) over 40 steps")
     )
     box = picture.bounding_box()
     assert box
@@ -102,7 +102,7 @@ def read_the_shape_over_time(page: Page) -> None:
     moment = page.get_by_role("slider", name="Time in the replay")
     expect(moment).to_have_attribute("aria-valuetext", "step 20 of 40")
     page.get_by_role("button", name="Lengths").click()
-    lengths = page.get_by_role("application", name=re.compile("^Rest lengths, as applied"))
+    lengths = page.get_by_role("application", name=re.compile("^Rest lengths \(applied\)"))
     lengths.focus()
     page.keyboard.press("ArrowUp")
     expect(page.get_by_text(re.compile("^Step 20, edge 1: asked .* %, did"))).to_be_visible()
@@ -113,11 +113,11 @@ def read_the_shape_over_time(page: Page) -> None:
 
 def see_what_the_network_computes(page: Page) -> None:
     for name in ("rest angle", "rest length"):
-        expect(page.get_by_role("application", name=f"What {name} says")).to_be_visible()
-    hidden = page.get_by_role("button", name=re.compile("^position.*: what it computes"))
+        expect(page.get_by_role("application", name=f"Output of {name}")).to_be_visible()
+    hidden = page.get_by_role("button", name=re.compile("^position.*: show output"))
     hidden.focus()
     expect(hidden).to_have_attribute("aria-pressed", "true")
-    expect(page.get_by_role("application", name="What position says")).to_be_visible()
+    expect(page.get_by_role("application", name="Output of position")).to_be_visible()
 
 
 def keep_it_as_hdf5(page: Page, sha: str) -> None:

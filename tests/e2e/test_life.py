@@ -92,7 +92,7 @@ def fork_the_chosen(page: Page, address: str, run: str) -> None:
     text = chosen(page).inner_text().removesuffix(" selected")
     page.locator(".chosen-bar").get_by_role("link", name="Fork").click()
     beginning = page.locator(".base-bar")
-    expect(beginning).to_contain_text(f"Begins from {text} of run {run[:8]}.", timeout=FAST)
+    expect(beginning).to_contain_text(f"Starts from {text} of run {run[:8]}.", timeout=FAST)
     assert "cells=" in page.url
     expect(page.get_by_label("Estimate")).to_be_visible(timeout=FAST)
     beginning.get_by_role("link", name=text).click()
@@ -105,7 +105,7 @@ def fork_the_past(page: Page, address: str, run: str) -> None:
     expect(bar).to_contain_text(re.compile(r"^\d+ creatures? of generation 1"))
     bar.get_by_role("link", name="Fork").click()
     expect(page.locator(".base-bar")).to_contain_text(
-        f"of run {run[:8]}, as they were after generation 1.", timeout=FAST
+        f"of run {run[:8]}, taken after generation 1.", timeout=FAST
     )
 
 
@@ -115,13 +115,13 @@ def fork_an_elite_in_another_viscosity(page: Page, address: str, run: str) -> st
     map_of(page).focus()
     page.keyboard.press("ArrowRight")
     page.locator("#map-reading").get_by_role("link", name="Fork").click()
-    expect(page.locator(".base-bar")).to_contain_text("Begins from 1 creature", timeout=FAST)
+    expect(page.locator(".base-bar")).to_contain_text("Starts from 1 creature", timeout=FAST)
     world = page.get_by_role("group", name="World", exact=True)
     world.get_by_label("Viscosity", exact=True).fill(str(VISCOSITY))
     page.get_by_label("Name of the run").fill(NAME)
     page.keyboard.press("ControlOrMeta+Enter")
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
-    expect(page.get_by_text("Began from one creature of")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Started from 1 creature of")).to_be_visible(timeout=FAST)
     expect(page.get_by_role("heading", level=1)).to_contain_text(NAME)
     fork = page.url.rpartition("/")[2]
     made = page.request.get(f"{address}/api/v1/runs/{fork}").json()
@@ -133,17 +133,17 @@ def fork_an_elite_in_another_viscosity(page: Page, address: str, run: str) -> st
 def extend_by_keyboard(page: Page) -> None:
     page.get_by_role("button", name="Extend").focus()
     page.keyboard.press("Enter")
-    expect(page.get_by_label("Generations more")).to_be_focused()
+    expect(page.get_by_label("Generations to add")).to_be_focused()
     page.keyboard.press("ControlOrMeta+a")
     page.keyboard.type(str(MORE))
     page.keyboard.press("Enter")
-    standing = page.get_by_role("region", name="How the run is doing")
+    standing = page.get_by_role("region", name="Status of the run")
     expect(standing).to_contain_text(f"{LAST + MORE} / {LAST + MORE}", timeout=SLOW)
 
 
 def bin_and_undo(page: Page) -> None:
     page.get_by_role("button", name=f"Delete {NAME}").click()
-    expect(page.get_by_text("This run is in the bin until")).to_be_visible()
+    expect(page.get_by_text("This run is in the bin")).to_be_visible()
     assert violations(page) == []
     expect(page.get_by_role("button", name="Undo")).to_be_visible()
     page.keyboard.press("ControlOrMeta+z")
@@ -152,7 +152,7 @@ def bin_and_undo(page: Page) -> None:
 
 def bin_and_restore(page: Page, address: str, fork: str) -> None:
     page.get_by_role("button", name=f"Delete {NAME}").click()
-    expect(page.get_by_text("This run is in the bin until")).to_be_visible()
+    expect(page.get_by_text("This run is in the bin")).to_be_visible()
     page.goto(address)
     page.get_by_role("link", name="Bin").click()
     row = page.get_by_role("row", name=re.compile(NAME))

@@ -29,22 +29,22 @@ def submit_a_small_population(page: Page, address: str) -> None:
     again.check()
     search.get_by_label("Every", exact=False).fill("4")
     search.get_by_label("Evaluations", exact=False).fill("128")
-    page.get_by_role("button", name="Start the run").click()
+    page.get_by_role("button", name="Start run").click()
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
 
 
 def watch_it_end(page: Page) -> None:
-    ended = page.get_by_text("It ended after generation 8: its budget of 128 evaluations")
+    ended = page.get_by_text("Ended after generation 8: it used its budget of 128 evaluations")
     expect(ended).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("heading", name="Neuroevolution")).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("Into empty cells over"))).to_be_visible()
-    scores = page.get_by_role("img", name=re.compile("QD score .* evaluated again [0-9]"))
+    scores = page.get_by_role("img", name=re.compile("QD score .* re-evaluated [0-9]"))
     expect(scores).to_be_visible()
 
 
 def look_along_other_axes(page: Page) -> None:
     page.get_by_label("Horizontal axis").select_option("path_length")
-    page.get_by_label("Up").select_option(label="Fitness")
+    page.get_by_label("Vertical axis").select_option(label="Fitness")
     assert "x=path_length&y=fitness" in page.url
     expect(page.get_by_text("Path length (cells)")).to_be_visible(timeout=FAST)
     with page.expect_response(re.compile("measures=path_length")):

@@ -67,16 +67,19 @@ def test_pyribs_draws_our_archive(tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 def test_a_stiffness_is_recovered_within_a_hundredth_from_how_a_filament_straightens():
     module = example("stiffness")
     assert abs(module.main() / module.TRUE - 1) < 0.01
 
 
+@pytest.mark.long
 def test_a_gait_is_designed_for_a_path():
     found = example("path").main(steps=40, updates=6)
     assert found[-1] < found[0]
 
 
+@pytest.mark.long
 def test_a_rest_shape_is_designed_for_a_viscosity():
     ((before, after),) = example("rest_shape").main((0.5,), steps=60, updates=2).values()
     assert after > before
@@ -88,8 +91,8 @@ def test_a_task_of_ones_own_evolves_and_its_file_says_which_version_it_is(tmp_pa
     path = module.main(tmp_path / "own.h5", task={"steps": 20}, search=search)
     source = sha256((EXAMPLES / "own_task.py").read_bytes()).hexdigest()
     with h5py.File(path) as file:  # Without the module.
-        spec, names = (json.loads(bytes(file.attrs[name])) for name in ("spec", "features"))
-        rows, fitness = file["archive/features"][:], file["archive/fitness"][:]
+        spec, names = (json.loads(bytes(file.attrs[name])) for name in ("spec", "measures"))
+        rows, fitness = file["archive/measures"][:], file["archive/fitness"][:]
         sway = file["archive/descriptors"][:, 0]
     for part in (spec["task"], spec["body"], spec["archive"]["descriptors"][0]):
         assert part["own"]["source"] == source

@@ -67,11 +67,11 @@ def test_the_kernel_keeps_readers_from_files_and_memory(canary, deed, outcome):
     """Even where our own checks of a file fail."""
     text = f"""
 import h5py, io, signal
-from server import quarantine
+from server.creatures import sandbox_process
 canary, stored = {str(canary)!r}, io.BytesIO()
 with h5py.File(stored, "w") as file:
     file.create_dataset("a", (8,), "u1", external=[(canary, 0, 8)])
-quarantine.restrict()
+sandbox_process.restrict()
 signal.setitimer(signal.ITIMER_REAL, 0)  # A busy machine may take its time.
 try:
     print({deed})
@@ -86,7 +86,8 @@ except (OSError, MemoryError) as error:
 
 @pytest.mark.parametrize("deed", ["time.sleep(60)", "while True: pass"])
 def test_the_kernel_ends_readers_that_take_their_time(deed):
-    text = f"import time; from server import quarantine; quarantine.restrict()\n{deed}"
+    begin = "from server.creatures.sandbox_process import restrict; restrict()"
+    text = f"import time; {begin}\n{deed}"
     ended = subprocess.run([sys.executable, "-c", text], cwd=ROOT, check=False)
     assert ended.returncode in (-signal.SIGALRM, -signal.SIGPROF)
 

@@ -20,23 +20,28 @@ FRAMES, NODES, SIZE = 7, 3, (24, 16)
 def replay() -> bytes:
     """Three nodes that move to the right over still fluid."""
     header = {
-        "format": "microcosmos-replay/1",
+        "format": "microcosmos-replay/2",
         "creature": "ab" * 32,
         "frames": FRAMES,
         "every": 2,
         "steps": 12,
         "nodes": NODES,
         "edges": [[0, 1], [1, 2]],
+        "joints": [[0, 1]],
         "size": SIZE,
         "vorticity": {"scale": 0.1},
+        "velocity": {"scale": 0.1},
+        "energy": {"scale": 1.0, "frames": 0},
         "fitness": {"recorded": None, "replayed": 1.0, "difference": None},
         "device": "a device",
     }
     text = json.dumps(header).encode()
     time, node = np.arange(FRAMES)[:, None], np.arange(NODES)[None]
     positions = np.stack(np.broadcast_arrays(8.0 + time + node, 8.0), -1).astype("<f4")
-    vorticity = np.zeros((FRAMES, *SIZE), np.int8)
-    return struct.pack("<I", len(text)) + text + positions.tobytes() + vorticity.tobytes()
+    rest = np.zeros((FRAMES, 1 + 2), "<f4")  # One joint, two edges.
+    fluid = np.zeros((FRAMES, 1 + 2, *SIZE), np.int8)  # Vorticity and velocity.
+    arrays = positions.tobytes() + rest.tobytes() + fluid.tobytes()
+    return struct.pack("<I", len(text)) + text + arrays
 
 
 @pytest.fixture

@@ -1,10 +1,9 @@
 """Creature files as JSON: reading and writing."""
 
 import json
-from collections.abc import Mapping
 from typing import Any
 
-from ..naming import FORMAT, LICENCE, canonical, name
+from ..naming import FORMAT, LICENCE, canonical, document, name
 from ..spec.creature import CreatureError, Identity, check, room, scene_of
 
 __all__ = [
@@ -19,22 +18,6 @@ __all__ = [
     "room",
     "scene_of",
 ]
-
-
-def document(
-    identity: Mapping[str, Any],
-    measured: Mapping[str, Any] | None,
-    provenance: Mapping[str, Any] | None,
-) -> dict[str, Any]:
-    """Return the creature file around an identity."""
-    return {
-        "identity": dict(identity),
-        "sha256": name(identity),
-        "measured": dict(measured) if measured else None,
-        "provenance": dict(provenance) if provenance else None,
-        "licence": LICENCE,
-        "credit": [],
-    }
 
 
 def parse(data: Any) -> dict[str, Any]:

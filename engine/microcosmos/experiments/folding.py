@@ -12,7 +12,6 @@ from .. import naming, search
 from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Encoding, Vector
-from ..version import VERSION
 from . import table_file
 from .archive_file import filled, leaves
 from .lineage import identity
@@ -118,13 +117,7 @@ class Folding:
             return None
         row = state.table.rows[int(np.argmin(state.folds.least))]
         whole = self._identity(state, int(np.argmin(state.folds.least)))
-        return {
-            "identity": whole,
-            "sha256": row.creature,
-            "measured": None,
-            "provenance": dict(row.provenance or {}),
-            "licence": naming.LICENCE,
-        }
+        return naming.document(whole, None, row.provenance)
 
     def _identity(self, state: State, fold: int) -> dict[str, Any]:
         genotype = Vector(jnp.asarray(state.folds.best[fold]))
@@ -140,13 +133,8 @@ class Folding:
             "empty": float(np.mean(np.square(state.folds.picture[fold], dtype=np.float64))),
             "failed": int(np.count_nonzero(~np.isfinite(course))),
         }
-        provenance = {
-            "parents": [],
-            "operator": f"folding into {self.names[fold]}",
-            "generation": self.updates,
-            "seed": 0,
-            "version": VERSION,
-        }
+        operator = f"folding into {self.names[fold]}"
+        provenance = naming.provenance(operator, generation=self.updates)
         name, canonical = naming.name(whole), naming.canonical(whole)
         return Row(row, name, canonical, None, provenance)
 

@@ -18,7 +18,6 @@ from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Encoding, Genotype, Vector, take
 from ..search.gradients import genes_of, with_genes
-from ..version import VERSION
 from . import table_file, trials
 from .lineage import identity
 from .table_file import Table
@@ -46,7 +45,7 @@ class Refinement:
     """The creature's, a batch of one."""
     slopes: Callable[[Genotype], search.Slopes]
     evaluate_block: Callable[[Genotype], search.Evaluation]
-    niches: search.Cells
+    cells: search.Cells
     names: tuple[str, ...]
     """Descriptors."""
     steps: int
@@ -54,14 +53,14 @@ class Refinement:
     block: int
     frame: Mapping[str, Any]
     encoding: Encoding
-    origin: str
+    parent: str
     """The creature's name."""
     provenance: Mapping[str, Any] | None
     """How it came to be, if that is known."""
     device: str
-    features: tuple[str, ...] = search.FEATURES
+    measures: tuple[str, ...] = search.MEASURES
     own: Mapping[str, Any] = field(default_factory=dict)
-    """Versions of the measures of one's own among the features."""
+    """Versions of the measures of one's own among the measures."""
 
     def init(self) -> State:
         """Before the creature is measured."""
@@ -89,7 +88,7 @@ class Refinement:
         )
         best = self._best(state, found)
         if best is None:
-            row, length = _again(state), state.length / SHRINK
+            row, length = _unchanged(state), state.length / SHRINK
         else:
             row = self._row(state, found, best, tried.genes[best])
             longest = 0 < tried.lengths[best] == tried.lengths[0]
@@ -125,14 +124,7 @@ class Refinement:
         if not state.table.rows:
             return None
         row = state.table.rows[-1]
-        assert row.measured is not None
-        return {
-            "identity": self._identity(state.genes),
-            "sha256": row.creature,
-            "measured": dict(row.measured),
-            "provenance": row.provenance and dict(row.provenance),
-            "licence": naming.LICENCE,
-        }
+        return naming.document(self._identity(state.genes), row.measured, row.provenance)
 
     def _trials(self, state: State, stop: Callable[[], bool]) -> trials.Trials:
         """The creature as it is, or steps from it."""
@@ -149,7 +141,7 @@ class Refinement:
 
     def _best(self, state: State, found: search.Evaluation) -> int | None:
         """The fittest sound trial in the creature's cell, if it is fitter than before."""
-        cells = np.asarray(self.niches.of(jnp.asarray(found.features)))
+        cells = np.asarray(self.cells.of(jnp.asarray(found.measures)))
         home = self._home(state) if state.table.rows else cells[0]
         fitness = np.where((found.status == 0) & (cells == home), found.fitness, -np.inf)
         best = int(np.argmax(fitness))
@@ -162,17 +154,17 @@ class Refinement:
     def _home(self, state: State) -> int:
         measured = state.table.rows[0].measured
         assert measured is not None
-        features = np.array([[measured["features"][name] for name in self.features]])
-        return int(self.niches.of(jnp.asarray(features, jnp.float32))[0])
+        measures = np.array([[measured["measures"][name] for name in self.measures]])
+        return int(self.cells.of(jnp.asarray(measures, jnp.float32))[0])
 
     def _identity(self, genes: np.ndarray) -> dict[str, Any]:
         return identity(self.frame, self.encoding, take(self._genotypes(genes[None]), 0))
 
     def _row(self, state: State, found: search.Evaluation, best: int, genes: np.ndarray) -> Row:
-        features: dict[str, float] = dict(
-            zip(self.features, found.features[best].tolist(), strict=True)
+        measures: dict[str, float] = dict(
+            zip(self.measures, found.measures[best].tolist(), strict=True)
         )
-        descriptors = {name: features[name] for name in self.names}
+        descriptors = {name: measures[name] for name in self.names}
         first = not state.table.rows
         values = {
             "step": state.table.generation,
@@ -182,19 +174,18 @@ class Refinement:
         measured = {
             "fitness": float(found.fitness[best]),
             "descriptors": descriptors,
-            "features": features,
+            "measures": measures,
             "block": self.block,
             "room": list(self.encoding.room) if self.encoding.room else None,
             "device": self.device,
             **({"own": dict(self.own)} if self.own else {}),
         }
-        refined = {
-            "parents": [self.origin],
-            "operator": "refinement",
-            "generation": state.table.generation,
-            "seed": (self.provenance or {}).get("seed", 0),
-            "version": VERSION,
-        }
+        refined = naming.provenance(
+            "refinement",
+            generation=state.table.generation,
+            parents=[self.parent],
+            seed=(self.provenance or {}).get("seed", 0),
+        )
         provenance = self.provenance if first else refined
         whole = self._identity(genes)
         return Row(values, naming.name(whole), naming.canonical(whole), measured, provenance)
@@ -211,7 +202,7 @@ class Refinement:
         )
 
 
-def _again(state: State) -> Row:
+def _unchanged(state: State) -> Row:
     """Nothing better was found: the creature as it was."""
     if not state.table.rows:
         raise ValueError("`creature` must be one whose simulation stays finite.")

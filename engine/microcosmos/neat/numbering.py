@@ -21,7 +21,8 @@ class Counters(eqx.Module):
 
 def first_counters(inputs: int, outputs: int) -> Counters:
     """After the genes of minimal networks."""
-    return Counters(jnp.asarray(inputs * outputs), jnp.asarray(inputs + outputs))
+    # Types are stated: programs would be compiled anew for a weak one.
+    return Counters(jnp.asarray(inputs * outputs, int), jnp.asarray(inputs + outputs, int))
 
 
 def number(children: CPPN, novelty: Novelty, counters: Counters) -> tuple[CPPN, Counters]:

@@ -121,9 +121,9 @@ def no_species(population: CPPN, rows: int, threshold: float) -> Species:
         members=jnp.zeros(rows, int),
         of=jnp.full(individuals, UNASSIGNED),
         threshold=jnp.asarray(threshold, dtype),
-        next_number=jnp.asarray(0),
+        next_number=jnp.zeros((), int),
         peak=jnp.asarray(-jnp.inf, dtype),
-        peak_generation=jnp.asarray(0),
+        peak_generation=jnp.zeros((), int),
     )
 
 

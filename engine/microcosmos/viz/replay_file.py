@@ -13,8 +13,6 @@ import numpy as np
 REPLAY_VERSION = 2
 """The worker records a stored replay of an earlier version again."""
 REPLAY_FORMAT = f"microcosmos-replay/{REPLAY_VERSION}"
-FORMATS = ("microcosmos-replay/1", REPLAY_FORMAT)
-"""The first one knew neither what drives a body nor energy."""
 
 
 class ReplayError(ValueError):
@@ -53,8 +51,8 @@ class Replay:
     levels: np.ndarray
     """(frame, x, y) int8: the vorticity in units of `quantum`."""
 
-    drive: "Drive | None" = None
-    """None where the file is of the first format."""
+    drive: Drive | None = None
+    """None where only the motion is known."""
 
     @property
     def frames(self) -> int:
@@ -109,14 +107,15 @@ def read_replay(data: bytes) -> Replay:
     """The replay in these bytes. Raises `ReplayError` where they are not sound."""
     header, start = _header(data)
     frames, nodes, (width, height) = (header[key] for key in ("frames", "nodes", "size"))
-    whole = header["format"] == REPLAY_FORMAT
-    edges, joints, planes = _counts(header) if whole else (0, 0, 0)
-    shapes: list[tuple[tuple[int, ...], Any]] = [((frames, nodes, 2), "<f4")]
-    if whole:
-        shapes += [((frames, count), "<f4") for count in (joints, edges)]
-    shapes += [((frames, width, height), np.int8)]
-    if whole:
-        shapes += [((frames, 2, width, height), np.int8), ((planes, width, height), np.uint8)]
+    edges, joints, planes = _counts(header)
+    shapes: list[tuple[tuple[int, ...], Any]] = [
+        ((frames, nodes, 2), "<f4"),
+        ((frames, joints), "<f4"),
+        ((frames, edges), "<f4"),
+        ((frames, width, height), np.int8),
+        ((frames, 2, width, height), np.int8),
+        ((planes, width, height), np.uint8),
+    ]
     end = start + sum(np.dtype(kind).itemsize * prod(shape) for shape, kind in shapes)
     _need(len(data) == end, "bytes", f"{end} of them by its header", len(data))
     arrays = []
@@ -126,8 +125,6 @@ def read_replay(data: bytes) -> Replay:
         start += found.nbytes
     sound = all(np.isfinite(found).all() for found in arrays)
     _need(sound, "positions", "finite numbers", "others")
-    if not whole:
-        return Replay(header, *arrays)
     positions, angles, lengths, levels, velocity, energy = arrays
     speed, most = (header[name]["scale"] for name in ("velocity", "energy"))
     flow = velocity * np.float32(speed / 127), energy * np.float32(most / 255)
@@ -165,8 +162,8 @@ def _header(data: bytes) -> tuple[dict[str, Any], int]:
     except ValueError:
         raise ReplayError("header", "JSON", data[4 : 4 + length]) from None
     _need(isinstance(header, dict), "header", "a JSON object", header)
-    needed = " or ".join(map(repr, FORMATS))
-    _need(header.get("format") in FORMATS, "format", needed, header.get("format"))
+    found = header.get("format")
+    _need(found == REPLAY_FORMAT, "format", repr(REPLAY_FORMAT), found)
     _check(header)
     return header, 4 + length
 

@@ -18,19 +18,24 @@ def recording(frames, nodes, size):
     positions = random.uniform(0, 50, (frames, nodes, 2)).astype("<f4")
     levels = random.integers(-127, 128, (frames, *size)).astype(np.int8)
     header = {
-        "format": "microcosmos-replay/1",
+        "format": "microcosmos-replay/2",
         "creature": "</script><b>" + "ab" * 26,
         "frames": frames,
         "every": 5,
         "nodes": nodes,
         "edges": [[k, k + 1] for k in range(nodes - 1)],
         "size": list(size),
+        "joints": [],
         "vorticity": {"scale": 0.5},
+        "velocity": {"scale": 1.0},
+        "energy": {"scale": 1.0, "frames": 0},
     }
     text = json.dumps(header).encode()
     text += b" " * (-len(text) % 4)
-    data = struct.pack("<I", len(text)) + text + positions.tobytes() + levels.tobytes()
-    return data, positions, levels
+    lengths = np.ones((frames, nodes - 1), "<f4")
+    velocity = np.zeros((frames, 2, *size), np.int8)
+    arrays = b"".join(x.tobytes() for x in (positions, lengths, levels, velocity))
+    return struct.pack("<I", len(text)) + text + arrays, positions, levels
 
 
 def within(page, name):

@@ -27,8 +27,8 @@ OTHER = {
 """What makes another run of each."""
 
 
-def marked(*names):
-    return [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in names]
+def marked(*names, long=LONG):
+    return [pytest.param(name, marks=[pytest.mark.long] * (name in long)) for name in names]
 
 
 @pytest.fixture(scope="module", params=marked(*COMPUTED, *LEARNERS))
@@ -62,7 +62,7 @@ def test_interrupted_after_any_generation_it_goes_on_with_the_same_bytes(compute
     assert finish(experiment, experiment.restore(files[1])) == files[-1]
 
 
-@pytest.mark.parametrize("name", marked(*COMPUTED))
+@pytest.mark.parametrize("name", marked(*COMPUTED, long=("neuroevolution", "refinement")))
 def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, finish):
     states, _, experiment, spec = course_of(name)
     again = build(spec)

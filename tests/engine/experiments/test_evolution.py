@@ -12,7 +12,7 @@ from microcosmos.archive import creature, file
 from microcosmos.build import build
 from microcosmos.experiments import evolution
 from microcosmos.experiments.archive_file import OtherDevice
-from microcosmos.search import FEATURES
+from microcosmos.search import MEASURES
 
 
 def test_another_seed_gives_another_archive(small, course, experiment, finish):
@@ -146,7 +146,7 @@ def test_an_evaluation_that_cannot_be_trusted_is_no_elite(experiment, monkeypatc
 
 def test_the_file_names_what_it_holds(experiment, course):
     tree, attributes = file.load(experiment.save(course[0][-1]))
-    assert json.loads(attributes["features"]) == list(FEATURES)
+    assert json.loads(attributes["measures"]) == list(MEASURES)
     assert json.loads(attributes["device"]) == [experiment.plan.device]
     count = len(tree["archive"]["cell"])
     assert all(len(v) == count for v in tree["archive"].values() if not isinstance(v, dict))

@@ -97,6 +97,7 @@ def test_the_gradient_of_the_loss_agrees_with_central_differences(float64, docum
     np.testing.assert_allclose(slope, difference / h, rtol=1e-6)
 
 
+@pytest.mark.long
 def test_in_a_fluid_and_in_segments_it_learns_the_same_at_first(document):
     place = {"width": 32, "height": 32, "viscosity": 0.16}
     fluid = document | {"targets": [{"digit": 1}], "world": place, "steps": 40}

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import jax
 import jax.numpy as jnp
+import pytest
+
+pytestmark = pytest.mark.long
 
 SOURCE = Path(__file__).parents[3] / "engine" / "benchmarks" / "xor.py"
 

@@ -67,6 +67,12 @@ def test_the_strongest_vorticity_leaves_out_one_value_in_a_hundred():
         ({"edges": {}}, "edges"),
         ({"vorticity": {"scale": 0}}, "vorticity.scale"),
         ({"member": [0, 2]}, "member"),
+        ({"joints": None}, "joints"),
+        ({"joints": [[0, 1]]}, "joints"),
+        ({"velocity": {"scale": -1}}, "velocity.scale"),
+        ({"energy": []}, "energy"),
+        ({"energy": {"scale": 1, "frames": 3}}, "energy.frames"),
+        ({"energy": {"scale": None, "frames": 0}}, "energy.scale"),
     ],
 )
 def test_bytes_that_are_no_replay_are_refused(replay_bytes, change, field):

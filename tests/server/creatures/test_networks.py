@@ -2,6 +2,7 @@
 
 import io
 import re
+import time
 from xml.etree import ElementTree
 
 import numpy as np
@@ -9,6 +10,8 @@ import pytest
 
 from microcosmos import naming
 from microcosmos.archive import creature
+from server.creatures.sandbox import Sandbox
+from server.creatures.sandbox_process import SECONDS
 from server.tables import Creature
 
 TYPES = {
@@ -81,6 +84,34 @@ def test_a_network_with_a_cycle_is_updated_as_often_as_there_are_steps(api, know
     # v ← x / 2 + v / 2 comes to x.
     np.testing.assert_allclose(space["network"](np.ones((3, 1)))[0], 1.0)
     assert api.get(f"creatures/{sha}/network.svg").status_code == 200
+
+
+def test_the_code_of_a_network_with_very_many_steps_is_written_at_once(api, known):
+    """A few steps prove it, in the sandbox: nobody else waits meanwhile."""
+
+    def long(identity):
+        cycle(identity)
+        identity["task"]["steps"] = 1_000_000
+
+    sha = known(long)
+    begun = time.monotonic()
+    answer = api.get(f"creatures/{sha}/network.py")
+    assert "for _ in range(1000000):" in answer.text
+    assert time.monotonic() - begun < SECONDS
+
+
+@pytest.mark.parametrize("form", TYPES)
+def test_a_network_is_written_without_a_connection(api, services, known, form, monkeypatch):
+    """A stranger's network may take its time; the database has others to answer."""
+    sha, held = known(), []
+
+    def write(self, identity, form):
+        held.append(services.sessions.engine.pool.checkedout())
+        return b""
+
+    monkeypatch.setattr(Sandbox, "network", write)
+    assert api.get(f"creatures/{sha}/network.{form}").status_code == 200
+    assert held == [0]
 
 
 @pytest.mark.parametrize("form", TYPES)

@@ -21,7 +21,7 @@ def recorded(positions: np.ndarray) -> bytes:
     """A replay with these positions, (frame, node, 2), and some fluid behind them."""
     frames, nodes, _ = positions.shape
     header = {
-        "format": "microcosmos-replay/1",
+        "format": "microcosmos-replay/2",
         "frames": frames,
         "every": 5,
         "steps": 5 * (frames - 1),

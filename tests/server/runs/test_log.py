@@ -4,8 +4,8 @@ from uuid import uuid4
 
 import pytest
 
+from server.attempts import leases
 from server.attempts.begin import claim
-from server.maintenance import reconcile
 from server.runs import lifecycle
 from server.tables import Run
 
@@ -114,7 +114,7 @@ def test_a_worker_that_is_told_to_stop_hands_its_run_back(services, run_id, text
 
 def test_a_job_that_died_is_told(services, run_id, log):
     claim(services, run_id, "worker")
-    reconcile.job_died(services, run_id, "worker", "killed by signal 9")
+    leases.job_died(services, run_id, "worker", "killed by signal 9")
     assert ("error", 1, "Attempt 1 ended badly: killed by signal 9") in log()
 
 
@@ -141,7 +141,7 @@ def test_the_newest_entries_are_told_and_those_that_follow_one(api, services, ru
 @pytest.mark.postgresql
 def test_the_log_of_no_run_is_not_found_and_a_limit_has_to_make_sense(api, run_id):
     assert api.get(f"runs/{uuid4()}/log").status_code == 404
-    for wrong in ({"limit": 0}, {"after": -1}, {"after": 1 << 63}):
+    for wrong in ({"limit": 0}, {"after": -1}, {"after": 1 << 31}, {"after": 1 << 63}):
         refused = api.get(f"runs/{run_id}/log", params=wrong)
         assert refused.status_code == 422
         assert refused.json()["errors"][0]["field"] in wrong

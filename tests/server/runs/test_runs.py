@@ -1,5 +1,6 @@
 """Submitting, listing, reading and steering runs, over HTTP."""
 
+import re
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -124,6 +125,21 @@ def test_what_is_not_a_plain_json_object_is_refused(api, body, status, words):
     assert answer.status_code == status
     assert answer.headers["content-type"] == PROBLEM
     assert words in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("body", [b"{", b"\xff\xfe", b"1" * 5000])
+def test_a_body_that_is_not_json_is_refused_in_our_words(api, body):
+    detail = api.post("creatures", content=body).json()["detail"]
+    assert not re.search("codec|delimiter|Expecting|digits \\(", detail)
+    assert detail.startswith("JSON is needed; the body ") or "object is needed" in detail
+
+
+def test_an_id_that_is_none_is_answered_with_what_one_looks_like(api):
+    answer = api.get("runs/abc")
+    assert answer.status_code == 422
+    assert answer.json()["detail"] == (
+        "run_id: needs an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427; got 'abc'"
+    )
 
 
 def test_a_run_must_fit_the_largest_live_worker(api, services, spec):

@@ -23,7 +23,7 @@ def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, ru
 def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
     paused = api.post(f"runs/{run_id}/pause").json()
-    assert (paused["status"], paused["requested_state"]) == ("running", "pause")
+    assert (paused["status"], paused["requested_state"]) == ("running", "paused")
     assert attempt.record(report(1), 1.0) == "paused"
     attempt.pause()
     run = api.get(f"runs/{run_id}").json()

@@ -8,8 +8,8 @@ import httpx
 import pytest
 from sqlalchemy import delete, update
 
-from server.estimates.position import in_line
 from server.maintenance.reconcile import forget_empty_sweeps, reconcile
+from server.queue.order import in_order
 from server.tables import Run
 
 
@@ -17,7 +17,7 @@ def test_single_runs_are_taken_before_those_of_a_sweep(runs_of, api, services, s
     single = api.post("runs", json=spec).json()["id"]
     ids = runs_of(six)
     with services.sessions.read() as session:
-        assert [str(one.run) for one in in_line(session)] == [single, *ids]
+        assert [str(one.id) for one in in_order(session)] == [single, *ids]
     assert [queue.get_job_ids() for queue in services.jobs.evolving] == [[single], ids]
     assert api.post("runs/estimate", json=spec).json()["queue"]["runs_ahead"] == 1
     both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["runs_ahead"]
@@ -29,7 +29,7 @@ def test_runs_that_are_resumed_together_wait_in_their_old_order(runs_of, service
     with services.sessions.write.begin() as session:
         session.execute(update(Run).values(queued_at=datetime(2026, 1, 1, tzinfo=UTC)))
     with services.sessions.read() as session:
-        waiting = [str(one.run) for one in in_line(session)]
+        waiting = [str(one.id) for one in in_order(session)]
     assert waiting == runs_of(sweep)
 
 

@@ -77,7 +77,7 @@ def test_a_run_of_modules_that_no_worker_has_together_says_so(services, have):
         alive = Reported(session, services.settings.lease).alive
     task = {"fitness": "mine.straight", "own": {"source": A, "title": "x"}}
     body = {"builder": "mine.cross", "own": {"source": B, "title": "x"}}
-    assert plugins.needs({"task": task, "body": body}) == [A, B]
+    assert plugins.needed_versions({"task": task, "body": body}) == [A, B]
     assert "none has them together" in plugins.missing(alive, {"task": task, "body": body})
 
 

@@ -6,7 +6,7 @@ import pytest
 from sqlalchemy import event
 
 from server.attempts.begin import claim
-from server.estimates.position import in_line
+from server.queue.order import in_order
 from server.runs.overview import read_runs
 from server.tables import Run
 from server.workers import registry
@@ -168,7 +168,7 @@ def test_a_list_asks_the_queue_once_however_many_runs_wait(api, services, spec, 
 
     def count(limit):
         with services.sessions.read() as session:
-            runs = [session.get(Run, run_id) for run_id, *_ in in_line(session)[:limit]]
+            runs = [session.get(Run, run_id) for run_id, *_ in in_order(session)[:limit]]
             asked.clear()
             event.listen(services.sessions.engine, "before_cursor_execute", note)
             read_runs(services, session, runs)

@@ -37,7 +37,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const [at, setAt] = useMoment(query, run.generation);
   const view = useArchiveView(run, archive, elites, query, at);
   const [looking, setLooking] = useState<HoveredElite | null>(null);
-  const guide = useGuide();
+  const guide = useGuide(run);
   const [about, setAbout] = useState<string | null>(null);
   const gallery = query.get("view") === "gallery";
   const selection = useSelection(query, view.elites);

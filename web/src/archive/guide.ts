@@ -26,9 +26,12 @@ function rememberGuided(): void {
   }
 }
 
-/** Open on the first visit and on request. */
-export function useGuide() {
-  const [open, setOpen] = useState(() => !wasGuided());
+/** The tour opens by itself over the demonstration only. */
+export const opensByItself = (run: Pick<Run, "demonstration">) => run.demonstration && !wasGuided();
+
+/** Open on the first visit of the demonstration, and on request. */
+export function useGuide(run: Run) {
+  const [open, setOpen] = useState(() => opensByItself(run));
   const [asked, setAsked] = useState(false);
   const begin = () => {
     setAsked(true);
@@ -50,11 +53,13 @@ export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }:
       title: text.tourBest,
       text: text.tourBestAbout(count(elites.size), count(archive.cells)),
       about: "map",
+      selector: ".map-plot, .gallery-port",
     },
     {
       title: text.tourKind,
       text: text.tourKindAbout(x!, y!),
       about: "axes",
+      selector: ".axis-x",
     },
     {
       title: text.tourColour,
@@ -62,16 +67,19 @@ export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }:
         ? text.tourColourAbout(colouring.measure.title.toLowerCase(), best.generation, number(best.fitness))
         : text.tourNoColour,
       about: "legend",
+      selector: ".legend",
     },
     {
       title: running ? text.tourLive : text.tourHistory,
       text: running ? text.tourLiveAbout : text.tourHistoryAbout(count(run.generation)),
       about: "time",
+      selector: ".time-slider",
     },
     {
       title: text.tourOpen,
       text: text.tourOpenAbout,
       about: "views",
+      selector: ".archive-head",
     },
   ];
 }

@@ -1,4 +1,4 @@
-/** Whether a creature's swimming survives a finer look: asked for, waited for, told. */
+/** The physics audit of a creature: start it, wait for it, show its result. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -6,6 +6,7 @@ import type { Audit, AuditRow } from "../api/types";
 import { poll } from "../store/polling";
 import { setQuery } from "../store/router";
 import { number } from "../ui/format";
+import { text } from "./text";
 import "./audit.css";
 
 interface Props {
@@ -19,20 +20,15 @@ export function AuditCard({ sha, query }: Props) {
   return (
     <section class="card audit" aria-labelledby="audit-title">
       <div class="card-head">
-        <h2 id="audit-title">Audit of the physics</h2>
+        <h2 id="audit-title">{text.audit}</h2>
         {audit && <Verdict audit={audit} />}
         <span class="spring" />
-        {!asked && <button onClick={() => setQuery({ audit: "" })}>Audit the physics</button>}
+        {!asked && <button onClick={() => setQuery({ audit: "" })}>{text.runAudit}</button>}
       </div>
-      {!asked && (
-        <p class="quiet small">
-          Simulates the creature again: at twice the resolution and half the step, with another delta kernel,
-          with its gait made reciprocal. Swimming that does not survive is the solver’s.
-        </p>
-      )}
+      {!asked && <p class="quiet small">{text.auditAbout}</p>}
       {asked && !audit && !error && (
         <p class="quiet" role="status">
-          {note ? `${note} Trying again …` : "Simulating it again in finer steps; this takes minutes …"}
+          {note ? text.retrying(note) : text.auditing}
         </p>
       )}
       {error && <p class="banner wrong">{error}</p>}
@@ -47,7 +43,7 @@ interface Shown {
   error: string | null;
 }
 
-/** The audit, asked for until it has been made. */
+/** The audit; requests are repeated until it is ready. */
 function useAudit(sha: string, asked: boolean): Shown {
   const [state, setState] = useState<Shown>({ audit: null, note: null, error: null });
   useEffect(() => {
@@ -65,16 +61,16 @@ function useAudit(sha: string, asked: boolean): Shown {
 function Verdict({ audit }: { audit: Audit }) {
   const { survives } = audit.verdict;
   return (
-    <span class={`badge ${survives ? "finished" : "failed"}`}>
-      {survives ? "survives" : "does not survive"}
+    <span class={`badge ${survives ? "finished" : text.failed}`}>
+      {survives ? text.survives : text.fails}
     </span>
   );
 }
 
 function textOf({ verdict: { survives, reasons } }: Audit): string {
-  const start = survives ? "Its swimming survives refinement" : "Its swimming does not survive";
+  const start = survives ? text.auditPassed : text.auditFailed;
   if (reasons.length === 0) return `${start}.`;
-  return `${start}${survives ? "; still, " : ": "}${reasons.join("; ")}.`;
+  return text.auditReasons(start, survives, reasons.join("; "));
 }
 
 function Figures({ audit }: { audit: Audit }) {
@@ -85,13 +81,13 @@ function Figures({ audit }: { audit: Audit }) {
         <table class="results">
           <thead>
             <tr>
-              <th scope="col">Figure</th>
+              <th scope="col">{text.figure}</th>
               <th scope="col" class="numeric">
-                Here
+                {text.value}
               </th>
-              <th scope="col">Bar</th>
+              <th scope="col">{text.limit}</th>
               <th scope="col">
-                <span class="unseen">Passed</span>
+                <span class="unseen">{text.result}</span>
               </th>
             </tr>
           </thead>
@@ -106,7 +102,7 @@ function Figures({ audit }: { audit: Audit }) {
   );
 }
 
-const SIGNS = { true: ["✓", "passed"], false: ["✕", "failed"], null: ["", ""] } as const;
+const SIGNS = { true: ["✓", text.passed], false: ["✕", text.failed], null: ["", ""] } as const;
 
 function Row({ quantity, value, unit, bar, passed, note }: AuditRow) {
   const [sign, word] = SIGNS[`${passed}`];

@@ -1,4 +1,4 @@
-/** One creature: its motion, its network, what was measured, where it comes from. */
+/** The page of a creature: motion, network, measures and origin. */
 
 import { useEffect, useMemo } from "preact/hooks";
 import * as api from "../api/client";
@@ -9,6 +9,7 @@ import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { number, short, words } from "../ui/format";
 import { isForceFree } from "../ui/coupling";
+import { reasonOf } from "../ui/NotFound";
 import { NotForceFree } from "../ui/NotForceFree";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
 import { replayViewOf, queryOf } from "../replay/look";
@@ -24,6 +25,7 @@ import { PublishButton } from "../publish/PublishButton";
 import { RefineButton } from "./RefineButton";
 import { RecordingStatus, useReplays } from "../replay/recordings";
 import { SpaceTimeCard } from "./SpaceTimeCard";
+import { text } from "./text";
 import "./creature.css";
 import "./details.css";
 
@@ -35,32 +37,30 @@ interface Props {
 export function CreaturePage({ sha, query }: Props) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   useEffect(() => {
-    document.title = `Creature ${short(sha)} · Microcosmos`;
+    document.title = text.pageTitle(short(sha));
   }, [sha]);
   const run = query.get("run");
   return (
     <main>
-      <nav class="crumbs" aria-label="Where you are">
-        <a href="/">Runs</a>
+      <nav class="crumbs" aria-label={text.breadcrumbs}>
+        <a href="/">{text.runs}</a>
         {run && <a href={`/runs/${run}`}>{short(run)}</a>}
       </nav>
       <header class="page-head">
         <h1>
           {creature?.identity.genome.encoding === "gait"
             ? words(creature.identity.genome.swimmer)
-            : "Creature"}{" "}
+            : text.creature}{" "}
           <code>{short(sha)}</code>
         </h1>
         {creature && !isForceFree(creature.identity.world.coupling) && <NotForceFree />}
         <span class="spring" />
         {creature && <PublishButton of={{ creature: sha }} file={creature} title="" />}
-        {creature && isEvolved(creature) && (
-          <ForkLink run={run} creature={sha} title="A new run that begins from this creature" />
-        )}
+        {creature && isEvolved(creature) && <ForkLink run={run} creature={sha} title={text.fork} />}
         {creature && isEvolved(creature) && <RefineButton creature={creature} run={run} />}
       </header>
-      {error && <p class="banner wrong">{error}</p>}
-      {!creature && !error && <p class="quiet loading">Loading creature …</p>}
+      {error && <p class="banner wrong">{reasonOf(error, sha)}</p>}
+      {!creature && !error && <p class="quiet loading">{text.loading}</p>}
       {creature && <CreatureView key={sha} {...{ creature, query }} />}
     </main>
   );
@@ -77,8 +77,8 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
     <>
       <div class="creature-columns">
         <div class="motion stack">
-          <section class="card" aria-label="Replay">
-            <RecordingStatus {...rendering} what="Simulating this creature again to record its motion …" />
+          <section class="card" aria-label={text.replay}>
+            <RecordingStatus {...rendering} what={text.recording} />
             {replay && (
               <ReplayPlayer
                 {...{ films, moment }}
@@ -103,10 +103,10 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
   );
 }
 
-/** Whether it moves by itself; what folds only takes a shape. */
+/** True if the creature swims; a folding filament only takes a shape. */
 const swims = ({ identity }: Creature) => identity.genome.encoding !== "fold";
 
-/** Whether it has genes that evolve, and so a fitness to climb. */
+/** True if the creature has genes that evolve. */
 const isEvolved = (creature: Creature) => swims(creature) && creature.identity.genome.encoding !== "gait";
 
 function ReplayFitness({ replay, task }: { replay: Replay; task: Spec }) {
@@ -114,12 +114,9 @@ function ReplayFitness({ replay, task }: { replay: Replay; task: Spec }) {
   const swims = task.fitness === "displacement";
   return (
     <p class="quiet small">
-      {replayed === null
-        ? "This replay was made without the module that its fitness is of"
-        : `In this replay ${swims ? "it swims" : "its fitness is"} ${number(replayed, 4)}`}
-      {swims && " cells"}
-      {recorded !== null && `; its recorded fitness is ${number(recorded, 4)}`}
-      {difference !== null && difference !== 0 && ` (rounding: ${number(difference, 2)})`}.
+      {text.replayFitness(replayed === null ? null : number(replayed, 4), swims)}
+      {recorded !== null && text.recordedFitness(number(recorded, 4))}
+      {difference !== null && difference !== 0 && text.rounding(number(difference, 2))}.
     </p>
   );
 }

@@ -1,13 +1,15 @@
-/** Everything a creature can be kept as; films are made when somebody wants them. */
+/** Downloads of a creature; films are rendered on request. */
 
 import { useEffect, useState } from "preact/hooks";
-import { renderingReady } from "../api/files";
+import { renderingReady, save } from "../api/files";
 import { type PictureFormat, creatureFileUrl, creatureH5Url, pictureUrl } from "../api/urls";
 import { sharedSlug } from "../api/address";
+import { messageOf } from "../api/problem";
 import { poll } from "../store/polling";
 import { showToast } from "../store/toasts";
 import { copyText } from "../ui/clipboard";
-import { FileLink, save } from "../ui/FileLink";
+import { FileLink } from "../ui/FileLink";
+import { text } from "./text";
 
 const KINDS: [PictureFormat, string][] = [
   ["strip.png", "PNG"],
@@ -17,21 +19,14 @@ const KINDS: [PictureFormat, string][] = [
 
 export function Downloads({ sha }: { sha: string }) {
   return (
-    <p class="links pictures" role="group" aria-label="Keep it as">
-      <span class="quiet small">Keep it as</span>
+    <p class="links pictures" role="group" aria-label={text.download}>
+      <span class="quiet small">{text.download}</span>
       {!sharedSlug && (
-        <button onClick={() => void copyText(`${location.origin}/creatures/${sha}`, "Link copied.")}>
-          Copy link
+        <button onClick={() => void copyText(`${location.origin}/creatures/${sha}`, text.linkCopied)}>
+          {text.copyLink}
         </button>
       )}
-      <a
-        class="button"
-        href={creatureFileUrl(sha)}
-        download={`creature-${sha.slice(0, 12)}.json`}
-        title="The creature file with its ancestors, which others can bring to their own installation"
-      >
-        JSON
-      </a>
+      <FileLink url={creatureFileUrl(sha)} name="JSON" title={text.jsonAbout} />
       <FileLink url={creatureH5Url(sha)} name="HDF5" />
       {(sharedSlug ? [] : KINDS).map(([kind, title]) => (
         <Download key={kind} url={pictureUrl(sha, kind)} title={title} />
@@ -48,18 +43,18 @@ function Download({ url, title }: { url: string; title: string }) {
     return poll(() => renderingReady(url), {
       value: () => {
         setBusy(false);
-        save(url);
+        save(url).catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
       },
       note: () => {},
-      error: (text) => {
+      error: (message) => {
         setBusy(false);
-        showToast({ kind: "wrong", text });
+        showToast({ kind: "wrong", text: message });
       },
     });
   }, [busy, url]);
   return (
     <button disabled={busy} onClick={() => setBusy(true)}>
-      {busy ? `Rendering ${title} …` : title}
+      {busy ? text.rendering(title) : title}
     </button>
   );
 }

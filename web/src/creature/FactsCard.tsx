@@ -1,13 +1,14 @@
-/** What was measured of a creature, in which form, and where it comes from. */
+/** Measures, coupling and origin of a creature. */
 
 import type { Creature } from "../api/types";
 import { formOf, groupsOf, originOf } from "./facts";
+import { text } from "./text";
 
 export function FactsCard({ creature }: { creature: Creature }) {
   const form = formOf(creature);
   return (
     <section class="card facts-card" aria-labelledby="facts-title">
-      <h2 id="facts-title">Measurements and origin</h2>
+      <h2 id="facts-title">{text.facts}</h2>
       <div class="facts-columns">
         {groupsOf(creature).map(({ title, rows }) => (
           <div key={title}>
@@ -19,14 +20,14 @@ export function FactsCard({ creature }: { creature: Creature }) {
         ))}
         {form.length > 0 && (
           <div>
-            <h3>Coupling</h3>
+            <h3>{text.coupling}</h3>
             <dl class="rows">
               <Rows rows={form} />
             </dl>
           </div>
         )}
         <div>
-          <h3>Origin</h3>
+          <h3>{text.origin}</h3>
           <dl class="rows">
             <Rows rows={originOf(creature)} />
             <div>

@@ -1,4 +1,4 @@
-/** Where a creature comes from, and what came of it. */
+/** Ancestors and children of a creature. */
 
 import { useMemo } from "preact/hooks";
 import * as api from "../api/client";
@@ -9,8 +9,9 @@ import { setQuery } from "../store/router";
 import { FamilyTree } from "./FamilyTree";
 import { familyLayoutOf } from "./relatives";
 import { count } from "../ui/format";
+import { text } from "./text";
 
-/** Generations that are looked back at first, further, and at most. */
+/** Generations of ancestors: shown at first, added by each click, and at most. */
 const [NEAR, FURTHER, FARTHEST] = [2, 2, 12];
 
 interface Props {
@@ -24,7 +25,7 @@ export function FamilyCard({ creature, query }: Props) {
   const { value, error } = useFetched(() => api.readFamily(sha, back), [sha, back]);
   const tree = useMemo(() => value && familyLayoutOf(selfOf(creature), ...value), [creature, value]);
   const run = query.get("run");
-  // Through a share of one creature its ancestors are told of, and not shown.
+  // A share of one creature lists its ancestors without links.
   const hrefOf = (name: string) =>
     sharedSlug && !run ? null : pageUrl(`/creatures/${name}${run ? `?run=${run}` : ""}`);
   const credited = value ? creditOf(value[0].items, creature) : [];
@@ -32,40 +33,40 @@ export function FamilyCard({ creature, query }: Props) {
   return (
     <section class="card" aria-labelledby="family-title">
       <div class="card-head">
-        <h2 id="family-title">{sharedSlug ? "Ancestors" : "Parents and children"}</h2>
+        <h2 id="family-title">{sharedSlug ? text.ancestors : text.family}</h2>
         <span class="spring" />
         {value?.[0].more && back < FARTHEST && (
-          <button onClick={() => setQuery({ back: String(back + FURTHER) })}>Further back</button>
+          <button onClick={() => setQuery({ back: String(back + FURTHER) })}>{text.moreAncestors}</button>
         )}
       </div>
-      {error && <p class="banner wrong">{error} Load the page again to try once more.</p>}
-      {!value && !error && <p class="quiet loading">Looking for relatives …</p>}
-      {tree && tree.kin.length === 1 && (
-        <p class="quiet">
-          {creature.provenance
-            ? `It has no parents${sharedSlug ? "" : ", and no child of it has become an elite"}.`
-            : "It was brought here without its origin, and nothing has come of it yet."}
+      {error && (
+        <p class="banner wrong">
+          {error} {text.reload}
         </p>
       )}
+      {!value && !error && <p class="quiet loading">{text.loadingFamily}</p>}
+      {tree && tree.kin.length === 1 && (
+        <p class="quiet">{creature.provenance ? text.noParents(!sharedSlug) : text.noOrigin}</p>
+      )}
       {tree && tree.kin.length > 1 && <FamilyTree {...{ tree, hrefOf }} self={sha} />}
-      {credited.length > 0 && <p class="quiet small">Its ancestors are by {credited.join(", ")}.</p>}
+      {credited.length > 0 && <p class="quiet small">{text.creditAncestors(credited.join(", "))}</p>}
       {tree && (lost || tree.hidden > 0) && (
         <p class="quiet small">
-          {lost && "Dashed: never an elite, so only the name was kept. "}
-          {tree.hidden > 0 && `${count(tree.hidden)} more children, less fit, are not drawn.`}
+          {lost && text.dashed}
+          {tree.hidden > 0 && text.hiddenChildren(count(tree.hidden))}
         </p>
       )}
     </section>
   );
 }
 
-/** Whom its ancestors' files ask to name, with their licences, beside its own credit. */
+/** Credits of the ancestors with their licences, without those of the creature itself. */
 function creditOf(ancestors: Relative[], { credit }: Creature): string[] {
   const named = ancestors.flatMap(({ credit, licence }) =>
     (credit ?? []).map((name) => [name, `${name} (${licence})`] as const),
   );
   const others = named.filter(([name]) => !credit?.includes(name));
-  return [...new Set(others.map(([, text]) => text))];
+  return [...new Set(others.map(([, label]) => label))];
 }
 
 function selfOf({ sha256, measured, provenance }: Creature): Relative {

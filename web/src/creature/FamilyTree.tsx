@@ -3,15 +3,16 @@
 import type { Relative } from "../api/types";
 import { number, short } from "../ui/format";
 import { HIGH, type PlacedRelative, type FamilyLayout, WIDE } from "./relatives";
+import { text } from "./text";
 
 interface Props {
   tree: FamilyLayout;
   self: string;
-  /** Null where a page of its own cannot be seen. */
+  /** Null if the creature has no page here. */
   hrefOf: (creature: string) => string | null;
 }
 
-const TITLE_HEIGHT = 26;
+const TITLE_HEIGHT = 36;
 const NAME_HEIGHT = HIGH - 8;
 
 export function FamilyTree({ tree, self, hrefOf }: Props) {
@@ -22,7 +23,7 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
       class="scroll"
       tabIndex={0}
       role="group"
-      aria-label="Family tree"
+      aria-label={text.familyTree}
       ref={(box) => void box?.scrollTo(box.scrollWidth, 0)}
     >
       <div class="family" style={px({ width: tree.width, height: tree.height + TITLE_HEIGHT })}>
@@ -113,13 +114,13 @@ function Name({ relative, most, own, href }: NameProps) {
   );
 }
 
-/** What is known of somebody, in words. */
+/** Describe a relative. */
 function aboutOf({ creature, kept, fitness, operator, generation }: Relative): string {
-  if (!kept) return `${short(creature)}: never an elite, so not kept`;
+  if (!kept) return text.neverElite(short(creature));
   const parts = [
-    fitness === null ? null : `fitness ${number(fitness)}`,
-    generation === null ? null : `generation ${generation}`,
-    operator && `made by ${operator}`,
+    fitness === null ? null : text.fitnessOf(number(fitness)),
+    generation === null ? null : text.generationOf(generation),
+    operator && text.madeBy(operator),
   ];
   return [short(creature), ...parts.filter(Boolean)].join(", ");
 }

@@ -2,15 +2,16 @@
 
 import { useMemo } from "preact/hooks";
 import { count, number, percent } from "../ui/format";
+import { text } from "./text";
 
-/** More bars than this are too thin to see: then each stands for the farthest of several. */
+/** Above this number of genes, a bar shows the largest of several. */
 const MOST = 400;
 
 export function GeneStrip({ values }: { values: Float32Array }) {
   const bars = useMemo(() => barsOf(values), [values]);
   const size = values.reduce((sum, value) => sum + Math.abs(value), 0) / (values.length || 1);
   const bound = values.filter((value) => Math.abs(value) >= 1).length / (values.length || 1);
-  const summary = `${count(values.length)} genes, mean size ${number(size)}`;
+  const summary = text.genesSummary(count(values.length), number(size));
   return (
     <figure class="genes">
       <svg viewBox={`0 -1 ${bars.length} 2`} preserveAspectRatio="none" role="img" aria-label={summary}>
@@ -19,11 +20,11 @@ export function GeneStrip({ values }: { values: Float32Array }) {
         <path class="zero" d={`M0,0H${bars.length}`} />
       </svg>
       <figcaption>
-        <span class="key positive">up to 1</span>
-        <span class="key negative">down to −1</span>
+        <span class="key positive">{text.positiveGenes}</span>
+        <span class="key negative">{text.negativeGenes}</span>
         <span class="quiet">
           {summary}
-          {bound > 0 && `, ${percent(bound)} at their bounds`}
+          {bound > 0 && text.atBounds(percent(bound))}
         </span>
       </figcaption>
     </figure>

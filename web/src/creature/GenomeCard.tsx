@@ -1,4 +1,4 @@
-/** What a creature has inherited: a network, or a row of numbers. */
+/** The genome of a creature: a network, or a row of numbers. */
 
 import { useMemo, useState } from "preact/hooks";
 import { type NetworkFormat, networkUrl } from "../api/urls";
@@ -11,6 +11,7 @@ import { NetworkGraph } from "./NetworkGraph";
 import { NetworkOutputs } from "./NetworkOutputs";
 import type { Moment } from "../replay/moment";
 import { FileLink } from "../ui/FileLink";
+import { text } from "./text";
 
 const FORMS: [NetworkFormat, string][] = [
   ["svg", "SVG"],
@@ -50,12 +51,12 @@ function Network({ network, files, ...rest }: NetworkProps) {
   const [chosen, choose] = useState<number | null>(null);
   return (
     <section class="card" aria-labelledby="network-title">
-      <h2 id="network-title">Network</h2>
+      <h2 id="network-title">{text.network}</h2>
       <NetworkGraph network={network} chosen={chosen} onChoose={choose} />
       <NetworkOutputs {...rest} {...{ network, chosen }} />
       {files && (
         <p class="links network-files">
-          <span class="quiet small">Keep it as</span>
+          <span class="quiet small">{text.download}</span>
           {FORMS.map(([form, title]) => (
             <FileLink key={form} url={networkUrl(files, form)} name={title} />
           ))}
@@ -69,7 +70,7 @@ function Numbers({ genes }: { genes: Vector }) {
   const values = useMemo(() => decodeFloats(genes.values), [genes]);
   return (
     <section class="card" aria-labelledby="genes-title">
-      <h2 id="genes-title">Genes</h2>
+      <h2 id="genes-title">{text.genes}</h2>
       <GeneStrip values={values} />
     </section>
   );

@@ -4,6 +4,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { diverging, table } from "../ui/colours";
 import type { Moment } from "../replay/moment";
 import { useTheme } from "../ui/theme";
+import { text } from "./text";
 
 export interface Cells {
   columns: number;
@@ -17,9 +18,9 @@ interface Props {
   /** The value at which colours end, on both sides of zero. */
   most: number;
   label: string;
-  /** What stands beneath while nothing is pointed at. */
+  /** Text below while no cell is pointed at. */
   about?: string;
-  /** What is said of a cell that is pointed at, or chosen by the arrow keys. */
+  /** Text for the cell under the pointer or the arrow keys. */
   read: (column: number, row: number) => string;
   moment: Moment;
   /** Where a moment stands, from 0 to 1 across; and back, where a click may choose one. */
@@ -58,7 +59,7 @@ export function HeatMap({ cells, most, label, about, read, moment, place, timeAt
         class="heat-picture"
         tabIndex={0}
         role="application"
-        aria-label={`${label}. Arrow keys move along the body and through time.`}
+        aria-label={text.heatMap(label)}
         onPointerMove={at}
         onPointerDown={at}
         onPointerLeave={() => setSpot(null)}
@@ -119,7 +120,7 @@ function Picture({ cells: { columns, rows, values }, most }: Pick<Props, "cells"
   return <canvas ref={canvas} width={columns} height={rows} aria-hidden="true" />;
 }
 
-/** Moves by itself, so that nothing else is drawn anew with every frame of a film. */
+/** A cursor that moves without rendering anything else. */
 function Cursor({ moment, place }: Pick<Props, "moment" | "place">) {
   const line = useRef<HTMLSpanElement>(null);
   useEffect(() => {

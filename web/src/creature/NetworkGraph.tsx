@@ -4,6 +4,7 @@ import { useMemo } from "preact/hooks";
 import type { Link, Network } from "../decode/network";
 import { number } from "../ui/format";
 import { type Spot, layoutOf } from "./networkLayout";
+import { text } from "./text";
 import "./creature.css";
 import "./details.css";
 
@@ -22,7 +23,7 @@ export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
   const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
   const strongest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
   const enabled = network.links.filter((link) => link.enabled).length;
-  const summary = `${network.neurons.length} nodes, ${enabled} connections in use`;
+  const summary = text.networkSummary(network.neurons.length, enabled);
   return (
     <figure class="network">
       <div class="scroll">
@@ -31,7 +32,7 @@ export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
           style={{ maxWidth: `${LARGEST * width}px`, minWidth: `${SMALLEST * width}px` }}
           role={onChoose ? "group" : "img"}
           class={chosen === null ? "" : "choosing"}
-          aria-label={`Network: ${summary}`}
+          aria-label={text.networkLabel(summary)}
         >
           {network.links.map((link, i) => (
             <Wire key={i} link={link} spots={spots} strongest={strongest} into={link.target === chosen} />
@@ -42,11 +43,12 @@ export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
         </svg>
       </div>
       <figcaption>
-        <span class="key positive">positive</span>
-        <span class="key negative">negative</span>
-        <span class="key off">switched off</span>
+        <span class="key positive">{text.positive}</span>
+        <span class="key negative">{text.negative}</span>
+        <span class="key off">{text.disabled}</span>
         <span class="quiet">
-          {summary}; width: weight, up to {number(strongest, 2)}
+          {summary}
+          {text.widthMeans(number(strongest, 2))}
         </span>
       </figcaption>
     </figure>
@@ -63,17 +65,14 @@ interface WireProps {
 function Wire({ link, spots, strongest, into }: WireProps) {
   const [from, to] = [spots.get(link.source), spots.get(link.target)];
   if (!from || !to) return null;
-  const sign = link.weight < 0 ? "negative" : "positive";
+  const sign = link.weight < 0 ? text.negative : text.positive;
   return (
     <path
       class={`wire ${sign} ${link.enabled ? "" : "off"} ${into ? "into" : ""}`}
       d={pathOf(from, to)}
       stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / strongest}
     >
-      <title>
-        weight {number(link.weight)}
-        {link.enabled ? "" : ", switched off"}
-      </title>
+      <title>{text.weight(number(link.weight), link.enabled)}</title>
     </path>
   );
 }
@@ -98,12 +97,12 @@ interface NodeProps {
 function Node({ spot, chosen, onChoose }: NodeProps) {
   const { neuron, x, y } = spot;
   const choose = () => onChoose?.(neuron.id);
-  const named = `${neuron.label || `node ${neuron.id}`} ${neuron.activation}`;
+  const named = `${neuron.label || text.node(neuron.id)} ${neuron.activation}`;
   const widget = onChoose && {
     tabIndex: 0,
     role: "button" as const,
     "aria-pressed": chosen,
-    "aria-label": `${named}: what it computes`,
+    "aria-label": text.showOutput(named),
     onFocus: choose,
     onClick: choose,
     onPointerEnter: choose,
@@ -116,7 +115,7 @@ function Node({ spot, chosen, onChoose }: NodeProps) {
       {...widget}
     >
       <title>
-        {neuron.label || `node ${neuron.id}`}: {neuron.activation}, bias {number(neuron.bias)}
+        {text.nodeAbout(neuron.label || text.node(neuron.id), neuron.activation, number(neuron.bias))}
       </title>
       <circle r={RADIUS} />
       {neuron.role !== "input" && <Curve activation={neuron.activation} />}

@@ -1,4 +1,4 @@
-/** What a network computes: each output, and a node that is pointed at, over body and time. */
+/** Outputs of a network, and of the node that is pointed at, over the body and time. */
 
 import { useCallback, useMemo, useState } from "preact/hooks";
 import type { Spec } from "../api/types";
@@ -8,6 +8,7 @@ import { number } from "../ui/format";
 import type { Moment } from "../replay/moment";
 import { HeatMap } from "./HeatMap";
 import { DivergingLegend } from "./SpaceTime";
+import { text } from "./text";
 
 interface Props {
   network: Network;
@@ -30,18 +31,19 @@ export function NetworkOutputs({ network, chosen, control, steps, moment, every 
   const shared = { pictures, sight, moment, every };
   return (
     <div class="outputs">
-      <h3>What it computes</h3>
+      <h3>{text.outputs}</h3>
       <p class="quiet small">
-        {sight.recurrent
-          ? `Across: steps ${pictures.from} to ${pictures.to}, when its memory has settled. `
-          : sight.timer === "linear"
-            ? "Across: its whole life. "
-            : `Across: one period, ${number(sight.period)} steps. `}
-        Up: along the body. Point at a node, or move to it with Tab, to see it too.
+        {text.outputAxes(
+          sight.recurrent
+            ? text.settledSteps(pictures.from, pictures.to)
+            : sight.timer === "linear"
+              ? text.wholeLife
+              : text.onePeriod(number(sight.period)),
+        )}
       </p>
       {sight.senses && (
         <label class="compact">
-          Energy it senses
+          {text.sensedEnergy}
           <input
             type="range"
             min="0"
@@ -59,7 +61,7 @@ export function NetworkOutputs({ network, chosen, control, steps, moment, every 
         ))}
         {other && <Picture key="other" {...{ neuron: other, ...shared }} chosen />}
       </div>
-      <DivergingLegend title="Outputs, after tanh" end="1" />
+      <DivergingLegend title={text.tanhOutputs} end="1" />
     </div>
   );
 }
@@ -78,7 +80,7 @@ function Picture({ neuron, pictures, sight, moment, every, chosen }: PictureProp
   const said = pictures.values.get(neuron.id)!;
   const values = useMemo(() => (squashed(neuron) ? said.map(Math.tanh) : said), [neuron, said]);
   const most = squashed(neuron) ? 1 : values.reduce((top, value) => Math.max(top, Math.abs(value)), 0);
-  const name = neuron.label || `node ${neuron.id}`;
+  const name = neuron.label || text.node(neuron.id);
   const { from, to } = pictures;
   const place = useCallback(
     (time: number) => shareOf(time * (every ?? 0), { from, to }, sight),
@@ -87,15 +89,15 @@ function Picture({ neuron, pictures, sight, moment, every, chosen }: PictureProp
   const read = (column: number, row: number) => {
     const value = number(values[column * ROWS + row]);
     const step = Math.round(from + ((to - from) * column) / COLUMNS);
-    return `${value} at ${Math.round((100 * row) / (ROWS - 1))} % of the body, step ${step}`;
+    return text.outputAt(value, Math.round((100 * row) / (ROWS - 1)), step);
   };
-  const range = squashed(neuron) ? "" : `, up to ±${number(most, 2)}`;
+  const range = squashed(neuron) ? "" : text.upTo(number(most, 2));
   return (
     <figure class={chosen ? "chosen" : ""}>
       <figcaption>{name.charAt(0).toUpperCase() + name.slice(1)}</figcaption>
       <HeatMap
         cells={{ columns: COLUMNS, rows: ROWS, values }}
-        label={`What ${name} says over time and along the body`}
+        label={text.outputOf(name)}
         about={`${neuron.activation}${range}`}
         {...{ most, read, moment, place }}
       />

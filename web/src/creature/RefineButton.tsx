@@ -1,6 +1,5 @@
-/** Asks for a creature to be made fitter by gradients, in a run of its own. */
+/** The button that starts a refinement run from a creature. */
 
-import { useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature, Json } from "../api/types";
@@ -8,20 +7,20 @@ import { useRefusal } from "../store/principal";
 import { applyResponse } from "../store/store";
 import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
+import { ConfirmButton } from "../ui/ConfirmButton";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
+import { text } from "./text";
 
 interface Props {
   creature: Creature;
-  /** The run whose cells count, where the creature was reached from one. */
+  /** The run whose cells bound the refinement, if the page was opened from one. */
   run: string | null;
 }
 
 export function RefineButton({ creature, run }: Props) {
-  const [busy, setBusy] = useState(false);
   const refusal = useRefusal();
   if (refusal) return null;
   const start = async () => {
-    setBusy(true);
     try {
       const archive = run ? (await api.readRun(run)).spec.archive : undefined;
       const spec = {
@@ -33,16 +32,9 @@ export function RefineButton({ creature, run }: Props) {
       navigate(`/runs/${made.id}`);
     } catch (error) {
       showToast({ kind: "wrong", text: messageOf(error) });
-      setBusy(false);
     }
   };
   return (
-    <button
-      disabled={busy}
-      onClick={() => void start()}
-      title="Gradient steps towards higher fitness that do not leave its cell"
-    >
-      {busy ? "Starting …" : "Refine"}
-    </button>
+    <ConfirmButton verb={text.refine} what={text.refineWhat} queues={text.refineAbout} onConfirm={start} />
   );
 }

@@ -1,4 +1,4 @@
-/** Whether a creature does here what its file says: measured again when somebody asks. */
+/** Measure a creature again and compare with the numbers of its file. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -8,6 +8,7 @@ import type { Measurement } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { poll } from "../store/polling";
 import { number, words } from "../ui/format";
+import { text } from "./text";
 
 type State = "unknown" | "never" | "underway" | Measurement;
 
@@ -15,26 +16,22 @@ export function RemeasureCard({ sha }: { sha: string }) {
   const { state, note, error, start } = useMeasurement(sha);
   const refusal = useRefusal();
   const found = typeof state === "string" ? null : state;
-  if (sharedSlug && !found) return null; // Strangers have nothing measured.
+  if (sharedSlug && !found) return null; // Visitors of a share cannot start a measurement.
   const idle = state !== "unknown" && state !== "underway";
   return (
     <section class="card" aria-labelledby="measured-title">
       <div class="card-head">
-        <h2 id="measured-title">Measured here</h2>
+        <h2 id="measured-title">{text.remeasured}</h2>
         {found && <Verdict {...found} />}
         <span class="spring" />
         {!sharedSlug && !refusal && (idle || error) && (
-          <button onClick={() => void start()}>{found ? "Measure once more" : "Measure it here"}</button>
+          <button onClick={() => void start()}>{found ? text.measureAgain : text.measure}</button>
         )}
       </div>
-      {state === "never" && (
-        <p class="quiet small">
-          Runs the very program that measured it, and compares every recorded number bit for bit.
-        </p>
-      )}
+      {state === "never" && <p class="quiet small">{text.measureAbout}</p>}
       {state === "underway" && !error && (
         <p class="quiet" role="status">
-          {note ? `${note} Trying again …` : "Measuring it; its program may have to be compiled first …"}
+          {note ? text.retrying(note) : text.measuring}
         </p>
       )}
       {error && <p class="banner wrong">{error}</p>}
@@ -43,7 +40,7 @@ export function RemeasureCard({ sha }: { sha: string }) {
   );
 }
 
-/** The measurement of a creature on this installation, and what starts one. */
+/** The measurement of a creature on this server, and a function that starts one. */
 function useMeasurement(sha: string) {
   const [state, setState] = useState<State>("unknown");
   const [note, setNote] = useState<string | null>(null);
@@ -71,7 +68,9 @@ function useMeasurement(sha: string) {
 }
 
 function Verdict({ exact }: Measurement) {
-  return <span class={`badge ${exact ? "finished" : "paused"}`}>{exact ? "identical" : "differs"}</span>;
+  return (
+    <span class={`badge ${exact ? "finished" : "paused"}`}>{exact ? text.identical : text.differs}</span>
+  );
 }
 
 function MeasurementResult({ exact, device, recorded_device, fitness, figures }: Measurement) {
@@ -80,23 +79,19 @@ function MeasurementResult({ exact, device, recorded_device, fitness, figures }:
     <>
       <p class="small">
         {exact
-          ? "Every recorded number came out the same, to the bit."
-          : `Its fitness is ${number(fitness.measured, 6)} here; ${number(fitness.recorded, 6)} was recorded.`}{" "}
-        {same
-          ? "This is the kind of device that measured it first."
-          : `Here it is ${device}; it was recorded on ${recorded_device}, where rounding may differ.`}
+          ? text.allIdentical
+          : text.fitnessDiffers(number(fitness.measured, 6), number(fitness.recorded, 6))}{" "}
+        {same ? text.sameDevice : text.otherDevice(device, recorded_device)}
       </p>
       {figures.length > 0 && (
         <details>
-          <summary>
-            {figures.length === 1 ? "One number differs" : `${figures.length} numbers differ`}
-          </summary>
+          <summary>{figures.length === 1 ? text.oneDiffers : text.someDiffer(figures.length)}</summary>
           <table class="plain-table">
             <thead>
               <tr>
-                <th scope="col">Number</th>
-                <th scope="col">Recorded</th>
-                <th scope="col">Here</th>
+                <th scope="col">{text.number}</th>
+                <th scope="col">{text.recorded}</th>
+                <th scope="col">{text.here}</th>
               </tr>
             </thead>
             <tbody>

@@ -9,6 +9,7 @@ import { number, percent } from "../ui/format";
 import type { Moment } from "../replay/moment";
 import { useTheme } from "../ui/theme";
 import { HeatMap } from "./HeatMap";
+import { text } from "./text";
 
 export type Measure = "angles" | "lengths";
 
@@ -25,17 +26,17 @@ const KINDS: Record<Measure, Kind> = {
   angles: {
     of: anglesOf,
     item: "joint",
-    asked: "Rest angles, as applied",
-    done: "Angles of the body",
-    unit: "rad, change from the start",
+    asked: text.restAngles,
+    done: text.bodyAngles,
+    unit: text.angleUnit,
     write: (value) => `${number(value)} rad`,
   },
   lengths: {
     of: lengthsOf,
     item: "edge",
-    asked: "Rest lengths, as applied",
-    done: "Lengths of the body",
-    unit: "change from the start",
+    asked: text.restLengths,
+    done: text.bodyLengths,
+    unit: text.lengthUnit,
     write: (value) => percent(value),
   },
 };
@@ -57,9 +58,9 @@ export function SpaceTime({ replay, measure, moment }: Props) {
   const read = (column: number, row: number) => {
     const value = (course: Shape["asked"]) => kind.write(course.values[column * items + row]!);
     const step = Math.min(steps, column * every);
-    return `Step ${step}, ${kind.item} ${row + 1}: asked ${value(shape.asked)}, did ${value(shape.done)}`;
+    return text.shapeAt(step, kind.item, row + 1, value(shape.asked), value(shape.done));
   };
-  if (items === 0) return <p class="quiet">This body has no {kind.item}s.</p>;
+  if (items === 0) return <p class="quiet">{text.hasNo(kind.item)}</p>;
   return (
     <div class="space-time">
       {(["asked", "done"] as const).map((part) => (
@@ -73,15 +74,15 @@ export function SpaceTime({ replay, measure, moment }: Props) {
             </span>
             <HeatMap
               cells={{ columns: frames, rows: items, values: shape[part].values }}
-              label={`${kind[part]} over ${steps} steps and ${items} ${kind.item}s`}
+              label={text.shapeMap(kind[part], steps, items, kind.item)}
               {...{ most, read, moment, place, timeAt }}
             />
           </div>
         </figure>
       ))}
       <p class="heat-across small quiet">
-        <span>step 0</span>
-        <span>step {steps}</span>
+        <span>{text.step(0)}</span>
+        <span>{text.step(steps)}</span>
       </p>
       <DivergingLegend title={kind.unit} end={kind.write(most)} />
     </div>

@@ -1,14 +1,15 @@
-/** The body's shape over time: what is asked of it, and what it does. */
+/** The shape of the body over time: rest shape and actual shape. */
 
 import type { Replay } from "../decode/replay";
 import { setQuery } from "../store/router";
 import { Segments } from "../ui/Select";
 import type { Moment } from "../replay/moment";
 import { type Measure, SpaceTime } from "./SpaceTime";
+import { text } from "./text";
 
 const TITLES: [Measure, string][] = [
-  ["angles", "Angles"],
-  ["lengths", "Lengths"],
+  ["angles", text.angles],
+  ["lengths", text.lengths],
 ];
 
 interface Props {
@@ -22,10 +23,10 @@ export function SpaceTimeCard({ replay, query, moment }: Props) {
   return (
     <section class="card" aria-labelledby="shape-title">
       <div class="card-head">
-        <h2 id="shape-title">Shape over time</h2>
+        <h2 id="shape-title">{text.shape}</h2>
         <span class="spring" />
         <Segments
-          label="What is shown of the shape"
+          label={text.shapeView}
           choices={TITLES}
           value={measure}
           onChoose={(name) => setQuery({ shape: name === "angles" ? null : name })}

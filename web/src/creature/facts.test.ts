@@ -17,9 +17,9 @@ describe("a creature file", () => {
     expect(told(bare)).toEqual({
       Fitness: "not measured",
       Generation: "unknown",
-      "Made by": "unknown",
-      Seed: "unknown",
-      Genome: "a network that controls",
+      Operator: "unknown",
+      "Random seed": "unknown",
+      Genome: "a network that controls the body",
       Body: "Chain, 8 nodes",
       World: "64 × 32 cells, ν = 0.05",
       Device: "unknown",
@@ -28,10 +28,10 @@ describe("a creature file", () => {
   });
 
   it("with figures shows each of them, zeros too", () => {
-    const measured = { fitness: 0, descriptors: { speed: 0.5 }, features: {}, block: 1, device: "cpu" };
+    const measured = { fitness: 0, descriptors: { speed: 0.5 }, measures: {}, block: 1, device: "cpu" };
     const provenance = { parents: [], operator: "random", generation: 0, seed: 0, version: "1" };
     const facts = told({ ...bare, measured, provenance });
-    expect(facts).toMatchObject({ Fitness: "0", Speed: "0.5", Generation: "0", Seed: "0" });
+    expect(facts).toMatchObject({ Fitness: "0", Speed: "0.5", Generation: "0", "Random seed": "0" });
   });
 
   it("of a gait names swimmer and period, and figures with their units", () => {
@@ -39,7 +39,7 @@ describe("a creature file", () => {
     const measured = {
       fitness: 2,
       descriptors: {},
-      features: { cycle: 2, reynolds: 12.5, limited: 0.25 },
+      measures: { cycle: 2, reynolds: 12.5, limited: 0.25 },
       block: 1,
       device: "cpu",
     };
@@ -48,7 +48,7 @@ describe("a creature file", () => {
     expect(facts).toMatchObject({
       Swimmer: "Worm",
       Period: "600 steps",
-      "In the last cycle": "2 cells",
+      "Displacement in the last cycle": "2 cells",
       "Reynolds number": "12.5",
       "Limits active": "25 % of node steps",
     });

@@ -1,50 +1,51 @@
-/** What a creature file says of its creature, as rows of words. */
+/** The contents of a creature file as rows of a table. */
 
 import type { Creature, Genome, Spec } from "../api/types";
 import { couplingFacts } from "../ui/coupling";
 import { number, percent, words } from "../ui/format";
+import { text } from "./text";
 
-const UNKNOWN = "unknown";
-const NOT_MEASURED = "not measured";
+const UNKNOWN = text.unknown;
+const NOT_MEASURED = text.notMeasured;
 
 type Row = [name: string, value: string];
 
-/** Features whose bare name does not say what they are. */
-const FEATURES: Record<string, [name: string, write: (value: number) => string]> = {
-  displacement: ["Displacement", (value) => `${number(value, 6)} cells`],
-  cycle: ["In the last cycle", (value) => `${number(value, 6)} cells`],
-  direction: ["Direction", (value) => `${number(value)} rad`],
-  bending_effort: ["Bending effort", (value) => `${number(value, 6)} rad²`],
-  stretching_effort: ["Stretching effort", (value) => `${number(value, 6)} cells²`],
-  path_length: ["Path length", (value) => `${number(value, 6)} cells`],
-  rotation: ["Rotation", (value) => `${number(value)} rad`],
-  turning: ["Turning", (value) => `${number(value)} rad`],
-  energy: ["Energy collected", number],
-  mean_speed: ["Mean speed", (value) => `${number(value)} cells/step`],
-  curvature_mean: ["Mean curvature", (value) => `${number(value)} / cell`],
-  curvature_spread: ["Spread of curvature", (value) => `${number(value)} / cell`],
-  reynolds: ["Reynolds number", number],
-  sperm: ["Sperm number", number],
-  mach: ["Mach number", number],
-  limited: ["Limits active", (value) => `${percent(value)} of node steps`],
-  impulse: ["Net impulse", (value) => `${number(value)} lattice units`],
+/** Titles and units of measures. */
+const MEASURES: Record<string, [name: string, write: (value: number) => string]> = {
+  displacement: [text.displacement, (value) => `${number(value, 6)} cells`],
+  cycle: [text.lastCycle, (value) => `${number(value, 6)} cells`],
+  direction: [text.direction, (value) => `${number(value)} rad`],
+  bending_effort: [text.bendingEffort, (value) => `${number(value, 6)} rad²`],
+  stretching_effort: [text.stretchingEffort, (value) => `${number(value, 6)} cells²`],
+  path_length: [text.pathLength, (value) => `${number(value, 6)} cells`],
+  rotation: [text.rotation, (value) => `${number(value)} rad`],
+  turning: [text.turning, (value) => `${number(value)} rad`],
+  energy: [text.energyCollected, number],
+  mean_speed: [text.meanSpeed, (value) => `${number(value)} cells/step`],
+  curvature_mean: [text.meanCurvature, (value) => `${number(value)} / cell`],
+  curvature_spread: [text.curvatureSpread, (value) => `${number(value)} / cell`],
+  reynolds: [text.reynolds, number],
+  sperm: [text.sperm, number],
+  mach: [text.mach, number],
+  limited: [text.limited, (value) => `${percent(value)} of node steps`],
+  impulse: [text.impulse, (value) => `${number(value)} lattice units`],
 };
 
 export function measurementsOf({ identity, measured }: Creature): Row[] {
-  if (!measured) return [["Fitness", NOT_MEASURED]];
-  const figures = Object.entries({ ...measured.descriptors, ...measured.features });
+  if (!measured) return [[text.fitness, NOT_MEASURED]];
+  const figures = Object.entries({ ...measured.descriptors, ...measured.measures });
   const gait = identity.genome.encoding === "gait";
   return [
-    ...(gait ? [] : [["Fitness", number(measured.fitness, 6)] as Row]),
+    ...(gait ? [] : [[text.fitness, number(measured.fitness, 6)] as Row]),
     ...figures.map(([name, value]): Row => {
       const own = ownOf({ identity, measured })[name];
-      const [title, write] = FEATURES[name] ?? [own?.title ?? words(name), (x: number) => number(x, 6)];
+      const [title, write] = MEASURES[name] ?? [own?.title ?? words(name), (x: number) => number(x, 6)];
       return [title, own?.unit ? `${write(value)} ${own.unit}` : write(value)];
     }),
   ];
 }
 
-/** What a creature was measured with of users' own, by name. */
+/** Plug-ins that measured a creature, by name. */
 function ownOf({ identity, measured }: Pick<Creature, "identity" | "measured">): Record<string, Own> {
   const task = identity.task as { fitness?: string; own?: Own } | undefined;
   const measures = (measured as { own?: Record<string, Own> } | null)?.own ?? {};
@@ -57,17 +58,17 @@ interface Own {
   source: string;
 }
 
-/** Names, titles and versions of what a creature needs of users' own. */
+/** Titles, names and versions of the plug-ins that a creature needs. */
 function needsOf(creature: Creature): Row[] {
   const { genome } = creature.identity;
   const control = "control" in genome ? genome.control : (genome as unknown as Spec);
   const moved = control.own as unknown as Own | undefined;
   const name = "swimmer" in genome ? genome.swimmer : genome.encoding;
   const all = { ...ownOf(creature), ...(moved && { [name]: moved }) };
-  const told = Object.entries(all).map(
-    ([own, { title, source }]) => `${title} (${own}, version ${source.slice(0, 12)})`,
+  const told = Object.entries(all).map(([own, { title, source }]) =>
+    text.pluginVersion(title, own, source.slice(0, 12)),
   );
-  return told.length > 0 ? [["Of one's own", told.join("; ")]] : [];
+  return told.length > 0 ? [[text.plugins, told.join("; ")]] : [];
 }
 
 interface Group {
@@ -75,25 +76,28 @@ interface Group {
   rows: Row[];
 }
 
-/** Under which heading a feature stands; others are about the swimming as a whole. */
+/** Groups of measures; the others are in the group “Result”. */
 const GROUPS: [title: string, names: string[]][] = [
-  ["Control", ["bending_effort", "stretching_effort", "power", "efficiency"]],
-  ["Shape", ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes"]],
-  ["Network", ["hidden_nodes", "connections"]],
-  ["Flow", ["reynolds", "sperm", "mach", "limited", "impulse"]],
+  [text.control, ["bending_effort", "stretching_effort", "power", "efficiency"]],
+  [text.shapeGroup, ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes"]],
+  [text.network, ["hidden_nodes", "connections"]],
+  [text.flow, ["reynolds", "sperm", "mach", "limited", "impulse"]],
 ];
 
-/** Measurements in groups of what they are about. */
+/** Measures in groups. */
 export function groupsOf(creature: Creature): Group[] {
   const { measured, identity } = creature;
-  if (!measured) return [{ title: "Result", rows: measurementsOf(creature) }];
-  const figures = { ...measured.descriptors, ...measured.features };
+  if (!measured) return [{ title: text.resultGroup, rows: measurementsOf(creature) }];
+  const figures = { ...measured.descriptors, ...measured.measures };
   const among = (names: string[], inside: boolean) => {
     const some = Object.entries(figures).filter(([name]) => names.includes(name) === inside);
-    return { ...measured, descriptors: {}, features: Object.fromEntries(some) };
+    return { ...measured, descriptors: {}, measures: Object.fromEntries(some) };
   };
   const named = GROUPS.flatMap(([, names]) => names);
-  const first = { title: "Result", rows: measurementsOf({ ...creature, measured: among(named, false) }) };
+  const first = {
+    title: text.resultGroup,
+    rows: measurementsOf({ ...creature, measured: among(named, false) }),
+  };
   const gait = { ...creature, identity: { ...identity, genome: { encoding: "gait" } as Genome } };
   // Like a gait's, the figures of a group have no fitness before them.
   const others = GROUPS.map(([title, names]) => ({
@@ -108,54 +112,54 @@ export function originOf({ identity, measured, provenance, licence, credit }: Cr
     ...gaitOf(identity.genome),
     ...encodingOf(identity.genome),
     ...needsOf({ identity, measured, provenance, licence } as Creature),
-    ["Body", bodyOf(identity.body)],
-    ["World", worldOf(identity.world)],
+    [text.body, bodyOf(identity.body)],
+    [text.world, worldOf(identity.world)],
     ...(identity.genome.encoding === "gait"
       ? []
-      : [["Generation", String(provenance?.generation ?? UNKNOWN)] as Row]),
-    ["Made by", provenance?.operator ?? UNKNOWN],
-    ["Seed", String(provenance?.seed ?? UNKNOWN)],
-    ["Device", measured?.device ?? UNKNOWN],
-    ["Licence", licence],
-    ...(credit?.length ? [["Credit", credit.join(", ")] as Row] : []),
+      : [[text.generation, String(provenance?.generation ?? UNKNOWN)] as Row]),
+    [text.operator, provenance?.operator ?? UNKNOWN],
+    [text.seed, String(provenance?.seed ?? UNKNOWN)],
+    [text.device, measured?.device ?? UNKNOWN],
+    [text.licence, licence],
+    ...(credit?.length ? [[text.credit, credit.join(", ")] as Row] : []),
   ];
 }
 
-/** How body and fluid act on each other; nothing where there is no fluid. */
+/** The coupling of body and fluid; empty without a fluid. */
 export const formOf = ({ identity }: Creature): Row[] =>
   identity.world.fluid === false ? [] : couplingFacts(identity.world.coupling);
 
 function gaitOf(genome: Genome): Row[] {
   if (genome.encoding !== "gait") return [];
   return [
-    ["Swimmer", words(genome.swimmer)],
-    ["Period", `${number(genome.period)} steps`],
-    ["Ramp", `${number(genome.ramp)} ${genome.ramp === 1 ? "period" : "periods"}`],
+    [text.swimmer, words(genome.swimmer)],
+    [text.period, `${number(genome.period)} steps`],
+    [text.ramp, `${number(genome.ramp)} ${genome.ramp === 1 ? "period" : "periods"}`],
   ];
 }
 
 const ENCODINGS: Record<string, string> = {
-  cppn: "a network that controls",
-  "cppn-body": "a network that grows the body and controls it",
-  direct: "the control of every joint and edge",
-  weights: "the weights of a given network",
+  cppn: text.cppn,
+  "cppn-body": text.cppnBody,
+  direct: text.direct,
+  weights: text.weights,
 };
 
 function encodingOf({ encoding, ...genome }: Genome): Row[] {
   const known = ENCODINGS[encoding];
   const recurrent = "control" in genome && genome.control.recurrent === true;
-  return known ? [["Genome", recurrent ? `${known}, with memory` : known]] : [];
+  return known ? [[text.genome, recurrent ? text.withMemory(known) : known]] : [];
 }
 
 function bodyOf({ builder, nodes }: Spec): string {
   const count = Array.isArray(nodes) ? nodes.length : nodes;
   const name = words(String(builder ?? "chain"));
-  return typeof count === "number" ? `${name}, ${count} nodes` : name;
+  return typeof count === "number" ? text.bodyOf(name, count) : name;
 }
 
 function worldOf({ width, height, viscosity, steric, energy, fluid }: Spec): string {
-  const fields = [steric && "steric repulsion", energy && "energy"].filter(Boolean);
-  const water = fluid === false ? "no fluid" : `ν = ${number(viscosity as number)}`;
-  const size = `${width} × ${height} cells, ${water}`;
+  const fields = [steric && text.steric, energy && text.energy].filter(Boolean);
+  const water = fluid === false ? text.noFluid : `ν = ${number(viscosity as number)}`;
+  const size = text.worldOf(width, height, water);
   return [size, ...fields].join(", ");
 }

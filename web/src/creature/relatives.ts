@@ -1,6 +1,7 @@
 /** A creature between its ancestors and its children, as columns of names and lines. */
 
 import type { Ancestors, Children, Relative } from "../api/types";
+import { text } from "./text";
 
 export interface PlacedRelative {
   relative: Relative;
@@ -69,9 +70,9 @@ function linesOf(
   });
 }
 
-const TITLES = ["This creature", "Parents", "Grandparents"];
+const TITLES = [text.thisCreature, text.parents, text.grandparents];
 
 function titleOf(distance: number): string {
-  if (distance < 0) return "Children";
-  return TITLES[distance] ?? `${distance} generations back`;
+  if (distance < 0) return text.children;
+  return TITLES[distance] ?? text.generationsBack(distance);
 }

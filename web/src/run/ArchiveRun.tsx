@@ -1,9 +1,10 @@
-/** A run that searches: its archive, how good it is, and what the search is doing. */
+/** A run with an archive: map, curves and search. */
 
 import type { Run } from "../api/types";
 import type { Detail } from "../store/detail";
 import { ArchiveCard } from "../archive/ArchiveCard";
 import { CurvesCard, SearchCard, useComparedRuns } from "./RunCurves";
+import { text } from "./text";
 import "./run.css";
 
 interface Props {
@@ -23,8 +24,8 @@ export function ArchiveRun({ run, detail, query }: Props) {
             <ArchiveCard run={run} archive={detail.archive} elites={detail.elites} query={query} />
           ) : (
             <>
-              <h2 id="archive-title">Archive</h2>
-              <p class="quiet waiting">Loading the archive …</p>
+              <h2 id="archive-title">{text.archive}</h2>
+              <p class="quiet waiting">{text.loadingArchive}</p>
             </>
           )}
         </section>

@@ -1,15 +1,16 @@
-/** What can be kept of a run, and how it came to be. */
+/** Files of a run. */
 
 import { archiveUrl, resultsUrl } from "../api/urls";
 import type { Run } from "../api/types";
 import { hasArchive } from "../store/fetch";
 import { moment } from "../ui/format";
 import { FileLink } from "../ui/FileLink";
+import { text } from "./text";
 
 export function FilesCard({ run }: { run: Run }) {
   return (
     <section class="card files" id="files" aria-labelledby="files-title" tabIndex={-1}>
-      <h2 id="files-title">Files</h2>
+      <h2 id="files-title">{text.files}</h2>
       <p class="links">
         {hasArchive(run) ? (
           <>
@@ -24,9 +25,7 @@ export function FilesCard({ run }: { run: Run }) {
         )}
       </p>
       <p class="quiet">
-        {hasArchive(run) ? "Archive files are" : "results.h5 is"} of the last checkpoint. Created{" "}
-        {moment(run.created_at)}, attempt {run.attempt}, version {run.version}
-        {run.device && `, on ${run.device}`}.
+        {text.filesAbout(hasArchive(run), moment(run.created_at), run.attempt, run.version, run.device)}
       </p>
     </section>
   );

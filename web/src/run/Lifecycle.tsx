@@ -1,10 +1,11 @@
-/** More generations for a run that is done, its way into the bin, and where it came from. */
+/** Extending, deleting and restoring a run, and its origin. */
 
 import type { Run } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { extend, remove, restore } from "../store/lifecycle";
-import { count, moment, short } from "../ui/format";
+import { moment, short } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
+import { text } from "./text";
 
 const ENDED = ["finished", "failed", "cancelled", "paused"];
 
@@ -13,14 +14,14 @@ export function LifecycleButtons({ run, title }: { run: Run; title: string }) {
   return (
     <span class="actions">
       {extendable(run) && <Extend run={run} />}
-      <button class="danger" onClick={() => void remove(run.id, title)} aria-label={`Delete ${title}`}>
-        Delete
+      <button class="danger" onClick={() => void remove(run.id, title)} aria-label={text.deleteRun(title)}>
+        {text.delete}
       </button>
     </span>
   );
 }
 
-/** What a goal ended, a longer run would end at too. */
+/** A run that met a stopping condition cannot be extended. */
 const extendable = (run: Run) => run.status === "finished" && "search" in run.spec && !run.summary?.["ended"];
 
 function Extend({ run }: { run: Run }) {
@@ -28,7 +29,7 @@ function Extend({ run }: { run: Run }) {
   if (!open) {
     return (
       <button ref={button} onClick={() => setOpen(true)}>
-        Extend
+        {text.extend}
       </button>
     );
   }
@@ -44,7 +45,7 @@ function Extend({ run }: { run: Run }) {
       onKeyDown={(event) => event.key === "Escape" && setOpen(false)}
     >
       <label>
-        Generations more{" "}
+        {text.generationsToAdd}{" "}
         <input
           ref={field}
           type="number"
@@ -54,34 +55,33 @@ function Extend({ run }: { run: Run }) {
           defaultValue={String(run.generations)}
         />
       </label>
-      <button class="slim">Extend</button>
+      <button class="slim">{text.addGenerations}</button>
       <button type="button" class="slim" onClick={() => setOpen(false)}>
-        Close
+        {text.close}
       </button>
     </form>
   );
 }
 
-/** Where a fork began. */
+/** The run that a fork started from. */
 export function ForkedFrom({ run }: { run: Run }) {
   const from = run.forked_from;
   if (!from) return null;
-  const creatures = from.creatures === 1 ? "one creature" : `${count(from.creatures)} creatures`;
   return (
     <p class="quiet">
-      Began from {creatures} of{" "}
-      {from.run ? <a href={`/runs/${from.run}`}>run {short(from.run)}</a> : "a run that is gone"}.
+      {text.forkedFrom(from.creatures)}
+      {from.run ? <a href={`/runs/${from.run}`}>{text.runOf(short(from.run))}</a> : text.deletedRun}.
     </p>
   );
 }
 
-/** In place of a run's page while it lies in the bin. */
+/** Shown instead of the page while a run is in the bin. */
 export function BinNotice({ run }: { run: Run }) {
   const refusal = useRefusal(run);
   return (
     <p class="banner warning" role="status">
-      This run is in the bin until {run.purge_at && moment(run.purge_at)}; then it goes for good.{" "}
-      {refusal ?? <button onClick={() => void restore(run.id)}>Restore</button>}
+      {text.inBin(run.purge_at && moment(run.purge_at))}{" "}
+      {refusal ?? <button onClick={() => void restore(run.id)}>{text.restore}</button>}
     </p>
   );
 }

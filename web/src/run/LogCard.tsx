@@ -1,4 +1,4 @@
-/** What happened to a run: its journal, live. */
+/** The log of a run, live. */
 
 import type { Run } from "../api/types";
 import { useLog } from "../store/log";
@@ -7,12 +7,13 @@ import { Select } from "../ui/Select";
 import { count } from "../ui/format";
 import { LEVELS, type Level, LogList, atLeast, textOf } from "./LogList";
 import { copyText } from "../ui/clipboard";
+import { text } from "./text";
 import "./log.css";
 
 const NAMES: Record<Level, string> = {
-  info: "everything",
-  warning: "warnings and errors",
-  error: "errors only",
+  info: text.logAll,
+  warning: text.logWarnings,
+  error: text.logErrors,
 };
 
 export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
@@ -22,36 +23,31 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
   return (
     <section class="card log-card" id="log" aria-labelledby="log-title" tabIndex={-1}>
       <div class="card-head wraps">
-        <h2 id="log-title">Log</h2>
-        {shown.length > 0 && (
-          <span class="quiet">
-            {earlier && "the last "}
-            {count(shown.length)} entries
-          </span>
-        )}
+        <h2 id="log-title">{text.log}</h2>
+        {shown.length > 0 && <span class="quiet">{text.entries(count(shown.length), earlier !== null)}</span>}
         {earlier && (
           <button class="slim" onClick={earlier}>
-            Show earlier ones
+            {text.showEarlier}
           </button>
         )}
         <span class="spring" />
         <Select
-          title="Show"
+          title={text.show}
           choices={LEVELS.map((name) => [name, NAMES[name]])}
           value={level}
           onChange={(name) => setQuery({ level: name === "info" ? null : name })}
         />
         {shown.length > 0 && (
-          <button class="slim" onClick={() => copyText(textOf(shown), "Log copied.")}>
-            Copy
+          <button class="slim" onClick={() => copyText(textOf(shown), text.logCopied)}>
+            {text.copy}
           </button>
         )}
       </div>
       {error && <p class="banner wrong">{error}</p>}
-      {!entries && !error && <p class="quiet waiting">Loading the log …</p>}
+      {!entries && !error && <p class="quiet waiting">{text.loadingLog}</p>}
       {entries && shown.length === 0 && <p class="quiet">{emptyOf(entries.length, level)}</p>}
       {shown.length > 0 && (
-        <div class="log-scroll" tabIndex={0} role="group" aria-label="Entries, the newest first">
+        <div class="log-scroll" tabIndex={0} role="group" aria-label={text.logOrder}>
           <LogList entries={shown} />
         </div>
       )}
@@ -60,6 +56,6 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
 }
 
 function emptyOf(all: number, level: Level): string {
-  if (all === 0) return "Nothing was written down: the run was submitted before there was a log.";
-  return level === "error" ? "No errors." : "No warnings and no errors.";
+  if (all === 0) return text.logEmpty;
+  return level === "error" ? text.noErrors : text.noWarnings;
 }

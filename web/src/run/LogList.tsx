@@ -1,7 +1,8 @@
-/** The entries of a journal, the newest first. */
+/** Log entries, newest first. */
 
 import type { LogEntry } from "../api/types";
 import { moment } from "../ui/format";
+import { text } from "./text";
 
 export const LEVELS = ["info", "warning", "error"] as const;
 export type Level = (typeof LEVELS)[number];
@@ -12,7 +13,7 @@ export function atLeast(entries: readonly LogEntry[], level: Level): LogEntry[] 
   return entries.filter((entry) => LEVELS.indexOf(entry.level) >= least);
 }
 
-/** As lines of text, in the order in which it happened. */
+/** Entries as lines of text, oldest first. */
 export function textOf(entries: readonly LogEntry[]): string {
   return entries
     .map(({ at, level, attempt, text }) => `${at} ${level} [attempt ${attempt}] ${text}`)
@@ -29,16 +30,16 @@ export function LogList({ entries }: { entries: readonly LogEntry[] }) {
   );
 }
 
-function Line({ at, level, attempt, text }: LogEntry) {
-  const [first, ...more] = summaryOf(text);
+function Line({ at, level, attempt, text: message }: LogEntry) {
+  const [first, ...more] = summaryOf(message);
   return (
     <li class={`log-${level}`}>
       <time dateTime={at} title={moment(at)}>
         {new Date(at).toLocaleTimeString(undefined, { hour12: false })}
       </time>
-      <span class="quiet log-attempt">{attempt > 0 ? `attempt ${attempt}` : ""}</span>
+      <span class="quiet log-attempt">{attempt > 0 ? text.attempt(attempt) : ""}</span>
       <div class="log-text">
-        {level !== "info" && <b>{level === "error" ? "Error" : "Warning"}: </b>}
+        {level !== "info" && <b>{level === "error" ? text.error : text.warning}: </b>}
         {more.length === 0 ? (
           first
         ) : (
@@ -52,9 +53,9 @@ function Line({ at, level, attempt, text }: LogEntry) {
   );
 }
 
-/** Of a traceback the last line, which says what went wrong; then the whole. */
-export function summaryOf(text: string): [string, ...string[]] {
-  const lines = text.trim().split("\n");
+/** The last line of a traceback as its summary, then all lines. */
+export function summaryOf(message: string): [string, ...string[]] {
+  const lines = message.trim().split("\n");
   if (lines.length === 1) return [lines[0]!];
   const [begin] = lines[0]!.split(":");
   return [`${begin}: ${lines.at(-1)}`, ...lines];

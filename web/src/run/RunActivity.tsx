@@ -1,40 +1,35 @@
-/** What a run is doing where its figures do not say it yet. */
+/** The activity of a run before its first generation. */
 
 import type { Run } from "../api/types";
 import { duration } from "../ui/format";
+import { text } from "./text";
 import "../replay/replay.css";
 
-/** A sentence, or null where generations tell enough. */
+/** A sentence; null once there are generations. */
 export function activityOf(run: Run): string | null {
-  if (run.status === "queued") return run.waiting_reason ?? "It waits for a worker that is free.";
+  if (run.status === "queued") return run.waiting_reason ?? text.waitingForWorker;
   if (run.status !== "running" || run.generation > 0) return null;
   const device = run.device?.toLowerCase() ?? "";
-  if (!run.device) return "A worker has begun; it is getting ready.";
-  return device.includes("cpu")
-    ? "It is compiling and computing its first generation, which takes most of a minute on a CPU."
-    : "It is compiling and computing its first generation, which may take half a minute.";
+  if (!run.device) return text.preparing;
+  return device.includes("cpu") ? text.compilingCpu : text.compiling;
 }
 
-/** How long it has been at it, or has waited since it was queued last. */
+/** The time since the run started, or since it was last queued. */
 export function elapsedOf({ status, started_at, queued_at }: Run, now: number): string | null {
   const since = status === "queued" ? queued_at : started_at;
   return since && duration(Math.max(0, Math.floor((now - Date.parse(since)) / 1000)));
 }
 
 export function RunActivity({ run, now }: { run: Run; now: number }) {
-  const text = activityOf(run);
+  const activity = activityOf(run);
   const elapsed = elapsedOf(run, now);
-  if (!text) return null;
+  if (!activity) return null;
   return (
     <p class="activity">
       <span class="ripple small-ripple" aria-hidden="true" />
-      <span role="status">{text}</span>
-      {elapsed && (
-        <span class="quiet">
-          {run.status === "queued" ? "Waiting" : "Running"} for {elapsed}.
-        </span>
-      )}
-      {run.status === "queued" && <a href="/workers">See the workers.</a>}
+      <span role="status">{activity}</span>
+      {elapsed && <span class="quiet">{text.elapsed(run.status === "queued", elapsed)}</span>}
+      {run.status === "queued" && <a href="/workers">{text.showWorkers}</a>}
     </p>
   );
 }

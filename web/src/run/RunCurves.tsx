@@ -1,4 +1,4 @@
-/** The curves of a search, as they are asked for, and beside them those of other runs. */
+/** The curves of a search, with those of compared runs. */
 
 import type { ComponentChildren } from "preact";
 import { sharedSlug } from "../api/address";
@@ -13,8 +13,9 @@ import { REASONS, divergedBy, scoresOf, workOf } from "../charts/curves/plots";
 import { count, percent, short, titleOf, words } from "../ui/format";
 import { CurveOptions } from "../charts/curves/CurveOptions";
 import { RunPicker } from "./RunPicker";
+import { text } from "./text";
 
-/** More lines than this are not told apart. */
+/** More lines than this cannot be distinguished. */
 const MAX_COMPARED = 4;
 
 interface Props {
@@ -34,20 +35,20 @@ export function CurvesCard({ run, curves, query, beside: { ids, others, error } 
   const look = curveViewOf(query);
   return (
     <section class="card curves-card" id="curves" aria-labelledby="curves-title" tabIndex={-1}>
-      <h2 id="curves-title">Curves</h2>
+      <h2 id="curves-title">{text.curves}</h2>
       {curves && <CurveOptions look={look} />}
       {curves && !sharedSlug && <ComparedList {...{ run, ids, others }} />}
       {error && <p class="wrong-text small">{error}</p>}
       {curves ? (
         <Curves plots={arrangePlots(scoresOf, curves, others, look)} x={placesOf(curves, look)} look={look} />
       ) : (
-        <p class="quiet waiting">They begin with the first generation.</p>
+        <p class="quiet waiting">{text.noCurves}</p>
       )}
     </section>
   );
 }
 
-/** What the search is doing, over the same axis and beside the same runs. */
+/** Work of the search, over the same axis and with the same runs. */
 export function SearchCard({ run, curves, query, beside }: Props & { curves: Columns }) {
   const look = curveViewOf(query);
   const plots = arrangePlots(workOf, curves, beside.others, look);
@@ -55,24 +56,24 @@ export function SearchCard({ run, curves, query, beside }: Props & { curves: Col
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
     <section class="card search-card" id="search" aria-labelledby="work-title" tabIndex={-1}>
-      <h2 id="work-title">Search, generation by generation</h2>
+      <h2 id="work-title">{text.search}</h2>
       <Curves plots={plots} x={placesOf(curves, look)} look={look} />
       <DivergedTable run={run} reasons={diverged} />
     </section>
   );
 }
 
-/** Why evaluations do not count; runs of before know only how many. */
+/** Reasons for which evaluations diverged. */
 function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, count: number][] }) {
   const known = reasons.reduce((sum, [, number]) => sum + number, 0);
   const unknown = run.diverged - known;
   if (run.diverged === 0) {
-    return <p class="quiet small">No evaluation has diverged.</p>;
+    return <p class="quiet small">{text.noneDiverged}</p>;
   }
   const share = (number: number) => percent(number / Math.max(1, run.evaluations));
   return (
     <table class="plain-table diverged">
-      <caption>Evaluations that diverged: they count as nothing</caption>
+      <caption>{text.divergedCaption}</caption>
       <tbody>
         {reasons.map(([reason, number]) => (
           <tr key={reason}>
@@ -84,10 +85,10 @@ function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, c
         ))}
         {unknown > 0 && (
           <tr>
-            <th scope="row">Unknown</th>
+            <th scope="row">{text.unknown}</th>
             <td class="figure">{count(unknown)}</td>
             <td class="figure quiet">{share(unknown)}</td>
-            <td class="quiet">They were computed before reasons were recorded.</td>
+            <td class="quiet">{text.reasonMissing}</td>
           </tr>
         )}
       </tbody>
@@ -97,7 +98,7 @@ function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, c
 
 const placesOf = (curves: Columns, { over }: CurveView) => curves[over] as readonly number[];
 
-/** The runs that the address asks to stand beside, without doubles and the run itself. */
+/** The runs to compare that the address names, without duplicates and the run itself. */
 export function useComparedRuns(query: URLSearchParams, id: string): ComparedRuns {
   const asked = (query.get("with") ?? "").split(",").filter((other) => other && other !== id);
   const ids = [...new Set(asked)].slice(0, MAX_COMPARED);
@@ -118,12 +119,12 @@ function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: O
   const without = (id: string) => set(ids.filter((other) => other !== id));
   const nameOf = (id: string) => others.find(({ name }) => name.endsWith(short(id)))?.name ?? short(id);
   return (
-    <div class="beside-runs" role="group" aria-label="Runs beside this one">
-      {ids.length > 0 && <Chip colour="--series-1">This run</Chip>}
+    <div class="beside-runs" role="group" aria-label={text.comparedRuns}>
+      {ids.length > 0 && <Chip colour="--series-1">{text.thisRun}</Chip>}
       {ids.map((id, i) => (
         <Chip key={id} colour={`--series-${2 + i}`}>
           <a href={`/runs/${id}`}>{nameOf(id)}</a>
-          <button class="plain" aria-label={`Remove ${nameOf(id)}`} onClick={() => without(id)}>
+          <button class="plain" aria-label={text.remove(nameOf(id))} onClick={() => without(id)}>
             ✕
           </button>
         </Chip>
@@ -131,7 +132,7 @@ function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: O
       {ids.length < MAX_COMPARED && (
         <RunPicker
           run={run}
-          label="Compare with a run"
+          label={text.compareWith}
           fits={(other) => hasArchive(other) && other.generation > 0 && !ids.includes(other.id)}
           onChoose={(id) => set([...ids, id])}
         />

@@ -1,15 +1,16 @@
-/** What people say of a run, changed where it stands: its name, its tags, a note. */
+/** Name, tags and note of a run, edited in place. */
 
 import type { ComponentChildren } from "preact";
 import { useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
 import { InlineText } from "../ui/InlineText";
+import { text } from "./text";
 import "./labels.css";
 
 interface NameProps {
   of: { name: string | null };
   title: string;
-  /** Whether it is not ours to change. */
+  /** True if the name cannot be changed. */
   fixed: boolean;
   onName: (name: string | null) => void;
   children: ComponentChildren;
@@ -18,20 +19,20 @@ interface NameProps {
 /** A name, and a button that makes it a field. */
 export function NameField({ of, title, fixed, onName, children }: NameProps) {
   const [open, setOpen, button] = useEditing();
-  const done = (text: string | null) => {
+  const done = (name: string | null) => {
     setOpen(false);
-    if (text !== null && text !== (of.name ?? "") && text !== title) onName(text || null);
+    if (name !== null && name !== (of.name ?? "") && name !== title) onName(name || null);
   };
   if (fixed) return <>{children}</>;
-  if (open) return <InlineText label={`Name of ${title}`} value={title} limit={200} onDone={done} />;
+  if (open) return <InlineText label={text.nameOf(title)} value={title} limit={200} onDone={done} />;
   return (
     <>
       {children}
       <button
         ref={button}
         class="plain small-button"
-        aria-label={`Rename ${title}`}
-        title="Rename"
+        aria-label={text.renameRun(title)}
+        title={text.rename}
         onClick={() => setOpen(true)}
       >
         ✎
@@ -44,7 +45,7 @@ interface TagsProps {
   run: Run;
   name: string;
   fixed: boolean;
-  /** The id of a list of tags that others have. */
+  /** Id of the `datalist` of known tags. */
   known?: string;
   onPick: (tag: string) => void;
   onAdd: (tag: string) => void;
@@ -55,33 +56,33 @@ const MAX_TAGS = 20;
 
 export function TagList({ run, name, fixed, known, onPick, onAdd, onRemove }: TagsProps) {
   const [open, setOpen, button] = useEditing();
-  const done = (text: string | null) => {
+  const done = (tag: string | null) => {
     setOpen(false);
-    if (text) onAdd(text);
+    if (tag) onAdd(tag);
   };
   return (
     <span class="tags">
       {run.tags.map((tag) => (
         <span key={tag} class="tag">
-          <button title={`Runs tagged ${tag}`} onClick={() => onPick(tag)}>
+          <button title={text.runsTagged(tag)} onClick={() => onPick(tag)}>
             {tag}
           </button>
           {!fixed && (
-            <button aria-label={`Remove the tag ${tag} from ${name}`} onClick={() => onRemove(tag)}>
+            <button aria-label={text.removeTag(tag, name)} onClick={() => onRemove(tag)}>
               ✕
             </button>
           )}
         </span>
       ))}
-      {open && <InlineText label={`New tag of ${name}`} value="" limit={50} list={known} onDone={done} />}
+      {open && <InlineText label={text.newTag(name)} value="" limit={50} list={known} onDone={done} />}
       {!open && !fixed && run.tags.length < MAX_TAGS && (
         <button
           ref={button}
           class="plain small-button"
-          aria-label={`Add a tag to ${name}`}
+          aria-label={text.addTag(name)}
           onClick={() => setOpen(true)}
         >
-          + tag
+          {text.tag}
         </button>
       )}
     </span>
@@ -98,30 +99,30 @@ interface NoteProps {
 
 export function NoteField({ run, name, fixed, onNote, onRemove }: NoteProps) {
   const [open, setOpen, button] = useEditing();
-  const done = (text: string | null) => {
+  const done = (note: string | null) => {
     setOpen(false);
-    if (text === null || text === (run.note ?? "")) return;
-    if (text) onNote(text);
+    if (note === null || note === (run.note ?? "")) return;
+    if (note) onNote(note);
     else onRemove();
   };
   if (fixed) return run.note ? <span class="note quiet small">{run.note}</span> : null;
   if (open) {
-    return <InlineText label={`Note on ${name}`} value={run.note ?? ""} limit={10_000} long onDone={done} />;
+    return <InlineText label={text.noteOn(name)} value={run.note ?? ""} limit={10_000} long onDone={done} />;
   }
   return (
     <button
       ref={button}
       class={`plain small-button note ${run.note ? "" : "none"}`}
-      aria-label={run.note ? `Change the note on ${name}: ${run.note}` : `Add a note to ${name}`}
+      aria-label={run.note ? text.editNote(name, run.note) : text.addNote(name)}
       title={run.note ?? undefined}
       onClick={() => setOpen(true)}
     >
-      {run.note ?? "+ note"}
+      {run.note ?? text.note}
     </button>
   );
 }
 
-/** Whether a field is open; the button that opened it has the focus again afterwards. */
+/** State of an editor; its button gets the focus back when it closes. */
 function useEditing() {
   const button = useRef<HTMLButtonElement>(null);
   const [open, setOpen] = useState(false);

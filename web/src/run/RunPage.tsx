@@ -28,6 +28,7 @@ import { LogCard } from "./LogCard";
 import { PublishButton } from "../publish/PublishButton";
 import { SpecCard } from "./spec/SpecCard";
 import { commandsFor } from "./runCommands";
+import { text } from "./text";
 import "./run.css";
 
 const GaitsRun = lazy(async () => (await import("./gaits/GaitsRun")).GaitsRun, "section");
@@ -49,20 +50,24 @@ export function RunPage({ id, query }: Props) {
   const detail = useStore((state) => state.details.get(id));
   const title = useTitle(run);
   useEffect(() => {
-    document.title = `${title} · Microcosmos`;
+    document.title = text.pageTitle(title);
   }, [title]);
   if (!run) {
     return (
       <main>
-        {error ? <NotFound what="No such run" reason={error} /> : <p class="quiet loading">Loading run …</p>}
+        {error ? (
+          <NotFound what={text.noSuchRun} reason={error} id={id} />
+        ) : (
+          <p class="quiet loading">{text.loadingRun}</p>
+        )}
       </main>
     );
   }
   return (
     <main>
-      <nav class="crumbs" aria-label="Where you are">
-        <a href="/">Runs</a>
-        {run.sweep && <a href={`/sweeps/${run.sweep}`}>Sweep</a>}
+      <nav class="crumbs" aria-label={text.breadcrumbs}>
+        <a href="/">{text.runs}</a>
+        {run.sweep && <a href={`/sweeps/${run.sweep}`}>{text.sweep}</a>}
       </nav>
       <Header run={run} title={title} />
       {run.deleted_at ? <BinNotice run={run} /> : <RunSections {...{ run, query, error, detail }} />}
@@ -91,9 +96,7 @@ function Header({ run, title }: { run: Run; title: string }) {
       {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
         <PublishButton of={{ run: run.id }} title={run.name ?? ""} />
       )}
-      {hasArchive(run) && !!run.coverage && !run.deleted_at && (
-        <ForkLink run={run.id} title="A new run that begins from the creatures of this one" />
-      )}
+      {hasArchive(run) && !!run.coverage && !run.deleted_at && <ForkLink run={run.id} title={text.fork} />}
       {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
       {!refusal && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={title} />}
       {!refusal && <LifecycleButtons run={run} title={title} />}
@@ -142,33 +145,33 @@ const NO_ELITES: Elites = new Map();
 function CurrentActivity({ run }: { run: Run }) {
   const asked = activityOf(run) !== null;
   const now = useNow(asked);
-  useRunRefresh(run.id, run.status === "queued");
+  useRunRefresh(run.id, run.status === "queued" || run.status === "running");
   return asked ? <RunActivity run={run} now={now} /> : null;
 }
 
 /** Ways within a long page. */
 function SectionLinks({ run }: { run: Run }) {
   const kinds: Record<string, [id: string, name: string][]> = {
-    folding: [["folds", "Pictures"]],
+    folding: [["folds", text.pictures]],
     neuroevolution: [
-      ["species", "Species"],
-      ["network", "Network"],
+      ["species", text.species],
+      ["network", text.network],
     ],
   };
   const sections: [id: string, name: string][] = [
     ...(hasArchive(run)
       ? ([
-          ["archive", "Archive"],
-          ["curves", "Curves"],
+          ["archive", text.archive],
+          ["curves", text.curves],
         ] as [string, string][])
       : []),
     ...(kinds[run.experiment] ?? []),
-    ["log", "Log"],
-    ["spec", "Spec"],
-    ["files", "Files"],
+    ["log", text.log],
+    ["spec", text.spec],
+    ["files", text.files],
   ];
   return (
-    <nav class="sections" aria-label="Parts of this page">
+    <nav class="sections" aria-label={text.sections}>
       {sections.map(([id, name]) => (
         <a key={id} href={`#${id}`}>
           {name}
@@ -183,7 +186,7 @@ const learns = (run: Run) => ["folding", "refinement"].includes(run.experiment);
 
 function useTitle(run: Run | undefined): string {
   const experiments = useExperiments().value ?? [];
-  return run ? titleOf(run, experiments) : "Run";
+  return run ? titleOf(run, experiments) : text.run;
 }
 
 function Banners({ run }: { run: Run }) {
@@ -205,8 +208,8 @@ function Banners({ run }: { run: Run }) {
 }
 
 const searchFacts = (run: Run): Figure[] => [
-  ["Evaluations", count(run.evaluations)],
-  ["Evaluations/s", number(run.evaluations_per_second)],
+  [text.evaluations, count(run.evaluations)],
+  [text.evaluationsPerSecond, number(run.evaluations_per_second)],
 ];
 
 function RunFacts({ run }: { run: Run }) {
@@ -218,7 +221,7 @@ function RunFacts({ run }: { run: Run }) {
     ...figuresOf(run),
   ];
   return (
-    <section class="run-facts" aria-label="How the run is doing">
+    <section class="run-facts" aria-label={text.status}>
       <RunProgress run={run} />
       <dl class="facts">
         {facts.map(([name, value]) => (

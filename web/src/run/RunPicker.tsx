@@ -6,6 +6,7 @@ import { useExperiments } from "../store/fetch";
 import { useRunChoices } from "../store/runPage";
 import { moment, short, titleOf } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
+import { text } from "./text";
 
 interface Props {
   run: Run;
@@ -31,7 +32,7 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
   const select = useRef<HTMLSelectElement>(null);
   const close = useRef<HTMLButtonElement>(null);
   const fitting = value?.filter(fits) ?? [];
-  const none = error ?? (value && fitting.length === 0 ? "There is no other run that it could be." : null);
+  const none = error ?? (value && fitting.length === 0 ? text.noOtherRun : null);
   useEffect(() => (select.current ?? close.current)?.focus(), [none, value === null]);
   const choose = (event: Event) => {
     event.preventDefault();
@@ -49,7 +50,7 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
       ) : (
         <>
           <select ref={select} aria-label={label} aria-busy={!value}>
-            <option value="">{value ? "Choose a run …" : "Loading runs …"}</option>
+            <option value="">{value ? text.selectRun : text.loadingRuns}</option>
             {fitting.map((other) => (
               <option key={other.id} value={other.id}>
                 {titleOf(other, experiments)} {short(other.id)}, {moment(other.created_at)}
@@ -57,12 +58,12 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
             ))}
           </select>
           <button class="slim" disabled={!value}>
-            Choose
+            {text.compare}
           </button>
         </>
       )}
       <button ref={close} type="button" class="slim" onClick={onClose}>
-        Close
+        {text.close}
       </button>
     </form>
   );

@@ -1,16 +1,17 @@
-/** The small parts that say how a run is doing. */
+/** Status, progress, time and commands of a run. */
 
 import type { Run } from "../api/types";
 import { DASH, duration } from "../ui/format";
+import { text } from "./text";
 import "./run.css";
 
 export const STATES = ["queued", "running", "paused", "finished", "failed", "cancelled"] as const;
 
-const REQUESTED = { paused: "pausing", cancelled: "cancelling" };
+const REQUESTED = { paused: text.pausing, cancelled: text.cancelling };
 
 export function StatusBadge({ run }: { run: Run }) {
-  const text = run.requested_state ? REQUESTED[run.requested_state] : run.status;
-  return <span class={`badge ${run.status}`}>{text}</span>;
+  const status = run.requested_state ? REQUESTED[run.requested_state] : run.status;
+  return <span class={`badge ${run.status}`}>{status}</span>;
 }
 
 export function RunProgress({ run }: { run: Run }) {
@@ -19,7 +20,7 @@ export function RunProgress({ run }: { run: Run }) {
     <div
       class={`progress ${run.status}`}
       role="progressbar"
-      aria-label="Progress"
+      aria-label={text.progress}
       aria-valuenow={share}
       aria-valuemin={0}
       aria-valuemax={100}
@@ -29,18 +30,18 @@ export function RunProgress({ run }: { run: Run }) {
   );
 }
 
-/** Generations after which a rate is worth telling: the first ones compile. */
+/** Generations before the rate is shown; the first ones include compilation. */
 const MIN_GENERATIONS = 3;
 
-/** How long a run will take, or what it took, and which of both. */
+/** The time left of a run, or its duration. */
 export function timeOf(run: Run): { label: string; text: string } {
   if (run.status === "running") {
     const left = run.generation < MIN_GENERATIONS ? null : run.eta_seconds;
-    return { label: "Time left", text: duration(left) };
+    return { label: text.timeLeft, text: duration(left) };
   }
-  if (!run.started_at || !run.finished_at) return { label: "Time", text: DASH };
+  if (!run.started_at || !run.finished_at) return { label: text.time, text: DASH };
   const seconds = (Date.parse(run.finished_at) - Date.parse(run.started_at)) / 1000;
-  return { label: "Took", text: duration(seconds) };
+  return { label: text.took, text: duration(seconds) };
 }
 
 interface CommandHandlers {
@@ -49,24 +50,24 @@ interface CommandHandlers {
   cancel: (run: Run) => void;
 }
 
-/** Only what the run's state allows. */
+/** Buttons for the commands that the status allows. */
 export function CommandButtons({ run, on, name }: { run: Run; on: CommandHandlers; name: string }) {
   const alive = ["queued", "running", "paused"].includes(run.status);
   if (!alive || run.requested_state === "cancelled") return null;
   return (
     <span class="actions">
       {run.status === "paused" && (
-        <button onClick={() => on.resume(run)} aria-label={`Resume ${name}`}>
-          Resume
+        <button onClick={() => on.resume(run)} aria-label={text.resumeRun(name)}>
+          {text.resume}
         </button>
       )}
       {run.status !== "paused" && run.requested_state !== "paused" && (
-        <button onClick={() => on.pause(run)} aria-label={`Pause ${name}`}>
-          Pause
+        <button onClick={() => on.pause(run)} aria-label={text.pauseRun(name)}>
+          {text.pause}
         </button>
       )}
-      <button class="danger" onClick={() => on.cancel(run)} aria-label={`Cancel ${name}`}>
-        Cancel
+      <button class="danger" onClick={() => on.cancel(run)} aria-label={text.cancelRun(name)}>
+        {text.cancel}
       </button>
     </span>
   );

@@ -5,12 +5,12 @@ import { endReasonOf } from "./endReason";
 describe("why a run ended", () => {
   const run = { generations: 50, spec: { search: { stop: { evaluations: 5000 } } } } as unknown as Run;
   it.each([
-    [null, "It ended with the last of its 50 generations."],
+    [null, "Completed all 50 generations."],
     [
       "evaluations after generation 12",
-      "It ended after generation 12: its budget of 5,000 evaluations was used up.",
+      "Ended after generation 12: it used its budget of 5,000 evaluations.",
     ],
-    ["device_hours after generation 3", "It ended early: device hours after generation 3."],
+    ["device_hours after generation 3", "Ended early: device hours after generation 3."],
   ])("%j is told as %j", (ended, sentence) => {
     expect(endReasonOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
   });

@@ -2,11 +2,12 @@
 
 import type { Json, Run, Spec } from "../api/types";
 import { count, number } from "../ui/format";
+import { text } from "./text";
 
 const LIMITS: Record<string, (limit: number) => string> = {
-  evaluations: (limit) => `its budget of ${count(limit)} evaluations was used up`,
-  device_hours: (limit) => `its budget of ${number(limit)} device-hours was used up`,
-  fitness: (limit) => `a creature had reached the fitness ${number(limit)}`,
+  evaluations: (limit) => text.budgetEvaluations(count(limit)),
+  device_hours: (limit) => text.budgetHours(number(limit)),
+  fitness: (limit) => text.fitnessReached(number(limit)),
 };
 
 /** A sentence; what was decided is told as `evaluations after generation 12`. */
@@ -15,11 +16,9 @@ export function endReasonOf({ summary, spec, generations }: Run): string {
   const [, name, generation] = /^(\w+) after generation (\d+)$/.exec(told) ?? [];
   const limit = name === undefined ? null : limitOf(spec, name);
   const reason = limit === null ? undefined : LIMITS[name!]?.(limit);
-  if (reason) return `It ended after generation ${count(Number(generation))}: ${reason}.`;
-  if (told) return `It ended early: ${told.replaceAll("_", " ")}.`;
-  return generations === 1
-    ? "It ended with its only generation."
-    : `It ended with the last of its ${count(generations)} generations.`;
+  if (reason) return text.endedAfter(count(Number(generation)), reason);
+  if (told) return text.endedEarly(told.replaceAll("_", " "));
+  return generations === 1 ? text.completedOne : text.completed(count(generations));
 }
 
 function limitOf(spec: Spec, name: string): number | null {

@@ -1,7 +1,8 @@
-/** What a run has come to, in a few figures. */
+/** Key figures of a run. */
 
 import type { Run } from "../api/types";
 import { bytes, count, number, percent } from "../ui/format";
+import { text } from "./text";
 
 export type Figure = [name: string, value: string];
 
@@ -10,56 +11,56 @@ const told = (run: Run, name: string) => {
   return typeof value === "number" ? value : null;
 };
 
-/** Behind progress and time, on the page of a run. */
+/** The figures on the page of a run. */
 export function figuresOf(run: Run): Figure[] {
   switch (run.experiment) {
     case "gaits":
       return [
-        ["Points", count(told(run, "points") ?? run.evaluations)],
-        ["With warnings", count(told(run, "warned") ?? 0)],
-        ["Failed", count(told(run, "failed") ?? run.diverged)],
+        [text.points, count(told(run, "points") ?? run.evaluations)],
+        [text.withWarnings, count(told(run, "warned") ?? 0)],
+        [text.failed, count(told(run, "failed") ?? run.diverged)],
       ];
     case "folding":
-      return [["Mean loss", number(told(run, "loss"))]];
+      return [[text.meanLoss, number(told(run, "loss"))]];
     case "refinement":
       return [
-        ["Fitness before", number(told(run, "before"))],
-        ["Fitness", number(told(run, "fitness"))],
+        [text.fitnessBefore, number(told(run, "before"))],
+        [text.fitness, number(told(run, "fitness"))],
       ];
     case "scaling":
       return [
-        ["Exponent", number(told(run, "exponent"))],
-        ["All-pairs exponent", number(told(run, "exponent_all_pairs"))],
-        ["Peak memory", bytesOf(told(run, "peak_memory_bytes"))],
+        [text.exponent, number(told(run, "exponent"))],
+        [text.allPairsExponent, number(told(run, "exponent_all_pairs"))],
+        [text.peakMemory, bytesOf(told(run, "peak_memory_bytes"))],
       ];
     default:
       return [
-        ["QD score", number(run.qd_score)],
-        ["Coverage", percent(run.coverage)],
-        ["Best fitness", number(run.best)],
-        ["Diverged", count(run.diverged)],
+        [text.qdScore, number(run.qd_score)],
+        [text.coverage, percent(run.coverage)],
+        [text.bestFitness, number(run.best)],
+        [text.diverged, count(run.diverged)],
       ];
   }
 }
 
-/** The one figure that stands for a run in a list. */
+/** The figure of a run in a list. */
 export function keyFigureOf(run: Run): Figure {
   const figures = Object.fromEntries(figuresOf(run));
   switch (run.experiment) {
     case "gaits":
-      return ["points", figures["Points"]!];
+      return [text.points.toLowerCase(), figures[text.points]!];
     case "scaling":
       // The exponent is of many nodes only, which small measurements do not have.
-      if (told(run, "exponent") === null) return ["peak memory", figures["Peak memory"]!];
-      return ["exponent", figures["Exponent"]!];
+      if (told(run, "exponent") === null) return [text.peakMemory.toLowerCase(), figures[text.peakMemory]!];
+      return [text.exponent.toLowerCase(), figures[text.exponent]!];
     case "folding":
-      return ["mean loss", figures["Mean loss"]!];
+      return [text.meanLoss.toLowerCase(), figures[text.meanLoss]!];
     case "refinement":
-      return ["fitness", figures["Fitness"]!];
+      return [text.fitness.toLowerCase(), figures[text.fitness]!];
     case "neuroevolution":
-      return ["best fitness", figures["Best fitness"]!];
+      return [text.bestFitness.toLowerCase(), figures[text.bestFitness]!];
     default:
-      return ["QD score", figures["QD score"]!];
+      return [text.qdScore, figures[text.qdScore]!];
   }
 }
 
@@ -68,11 +69,11 @@ function bytesOf(value: number | null): string {
 }
 
 const GENERATIONS: Record<string, string> = {
-  gaits: "Strokes",
-  scaling: "Sizes",
-  folding: "Updates",
-  refinement: "Steps",
+  gaits: text.strokes,
+  scaling: text.sizes,
+  folding: text.updates,
+  refinement: text.steps,
 };
 
-/** What a generation of a run is called. */
-export const generationsOf = (run: Run) => GENERATIONS[run.experiment] ?? "Generation";
+/** The name of a generation of a run. */
+export const generationsOf = (run: Run) => GENERATIONS[run.experiment] ?? text.generation;

@@ -43,7 +43,7 @@ describe("what a run is doing before its figures tell", () => {
   } as Run;
 
   it("is said, and for how long", () => {
-    expect(activityOf(run)).toContain("most of a minute on a CPU");
+    expect(activityOf(run)).toContain("up to a minute on a CPU");
     expect(activityOf({ ...run, device: "gpu, fast" })).not.toContain("CPU");
     expect(activityOf({ ...run, generation: 1 })).toBeNull();
     expect(activityOf({ ...run, status: "finished" })).toBeNull();

@@ -1,4 +1,4 @@
-/** The buttons of a run, bound to what they ask of the server. */
+/** Handlers of the command buttons of a run. */
 
 import type { Run } from "../api/types";
 import { sendCommand, cancelWithUndo } from "../store/commands";

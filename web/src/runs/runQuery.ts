@@ -2,6 +2,7 @@
 
 import type { RunQuery } from "../api/types";
 import { STATES } from "../run/RunStatus";
+import { isUuid } from "../store/router";
 import { text } from "./text";
 
 export const NEWEST = "-created";
@@ -35,7 +36,7 @@ export function queryOf(address: URLSearchParams): RunQuery {
     ...(experiment.length > 0 && { experiment }),
     ...(q && { q }),
     ...(tag && { tag }),
-    ...(sweep && (sweep === WITHOUT_SWEEP || UUID.test(sweep)) && { sweep }),
+    ...(sweep && (sweep === WITHOUT_SWEEP || isUuid(sweep)) && { sweep }),
     ...(address.get("deleted") === "true" && { deleted: true }),
     ...(sort && sort !== NEWEST && { sort }),
   };
@@ -46,7 +47,6 @@ export const NO_FILTERS = { q: null, status: null, experiment: null, tag: null, 
 
 /** In place of a sweep id: runs outside sweeps. */
 export const WITHOUT_SWEEP = "none";
-const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
 
 const listOf = (address: URLSearchParams, key: string) => (address.get(key) ?? "").split(",").filter(Boolean);
 

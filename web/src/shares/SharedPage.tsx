@@ -39,6 +39,7 @@ export function SharedPage({ slug, sha, query }: Props) {
     );
   }
   const creature = sha ?? share.creature;
+  const [title, id] = headingOf(share, creature, sha !== null);
   return (
     <main>
       {share.run && sha && (
@@ -48,7 +49,7 @@ export function SharedPage({ slug, sha, query }: Props) {
       )}
       <header class="page-head">
         <h1>
-          {share.run && sha ? text.creature : share.title} {creature && <code>{short(creature)}</code>}
+          {title} {id && <code>{id}</code>}
         </h1>
       </header>
       <Terms share={share} />
@@ -64,6 +65,13 @@ const LICENCE_URLS: Record<string, string> = {
   "CC-BY-NC-4.0": "https://creativecommons.org/licenses/by-nc/4.0/",
   "CC0-1.0": "https://creativecommons.org/publicdomain/zero/1.0/",
 };
+
+/** Title and id of what is shown; the title of an untitled share contains the id already. */
+export function headingOf({ run, title }: Share, creature: string | null, inside: boolean) {
+  const heading = run && inside ? text.creature : title;
+  const id = creature && short(creature);
+  return [heading, id && heading.includes(id) ? null : id] as const;
+}
 
 /** Credit, licence and expiry of a share. */
 function Terms({ share: { credit, licence, expires_at, created_at } }: { share: Share }) {

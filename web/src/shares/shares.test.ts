@@ -2,8 +2,10 @@
 
 import { describe, expect, it } from "vitest";
 import { isPublicPage } from "../api/address";
+import type { Share } from "../api/types";
 import { requestOf } from "../publish/PublishDialog";
 import { routeOf } from "../store/router";
+import { headingOf } from "./SharedPage";
 
 const form = (fields: Record<string, string>) => {
   const data = new FormData();
@@ -51,5 +53,17 @@ describe("pages for strangers", () => {
     for (const path of ["/s", "/s/abc/runs/1", "/s/abc/creatures/1/2"]) {
       expect(routeOf(path)).toEqual({ page: "unknown" });
     }
+  });
+});
+
+describe("the heading of a share", () => {
+  const share = (title: string, run: string | null = null) => ({ title, run }) as Share;
+
+  it.each([
+    [share("Creature 0123abcd"), false, ["Creature 0123abcd", null]],
+    [share("Eel"), false, ["Eel", "0123abcd"]],
+    [share("Archive", "run"), true, ["Creature", "0123abcd"]],
+  ])("says the id once", (shared, inside, heading) => {
+    expect(headingOf(shared, "0123abcd".padEnd(64, "0"), inside)).toEqual(heading);
   });
 });

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Archive, GenerationEvent, Generations, Run, Values } from "../api/types";
 import { type Action, INITIAL_STATE, type State, epochOf, reduce } from "./reducer";
 import { MAX_POINTS, appendCurves } from "./curves";
-import { withPoint } from "./rate";
+import { withPoint } from "./sparkline";
 
 const RUN = {
   id: "a",

@@ -42,7 +42,10 @@ function newerOf(state: State, answer: Run, sent: number): Run {
   const known = state.runs.get(answer.id);
   const late = sent < Math.max(state.lastEvent.get(answer.id) ?? 0, state.trustedSince);
   if (!late) return { ...answer, spec: known?.spec ?? answer.spec };
-  return known ?? { ...answer, ...state.eventsWithoutSpec.get(answer.id), spec: answer.spec };
+  if (!known) return { ...answer, ...state.eventsWithoutSpec.get(answer.id), spec: answer.spec };
+  // Events carry no rates: those of a late response are the newest there are.
+  const { evaluations_per_second, eta_seconds } = answer;
+  return { ...known, evaluations_per_second, eta_seconds };
 }
 
 /** The answer to a change that was asked for here: which runs a list has may be another now. */

@@ -15,7 +15,7 @@ import type {
 } from "../api/types";
 import * as details from "./detail";
 import * as watched from "./watched";
-import { type RateWindow, rateOf, withEvent, withPoint } from "./rate";
+import { withPoint } from "./sparkline";
 import { applyResponses, applyChange, noteEvent, applyEdit, applyEvent } from "./reconcile";
 
 export type Connection = "connecting" | "live" | "lost";
@@ -25,7 +25,6 @@ export interface State {
   /** Who the server takes us for; null until it says so. */
   principal: Principal | null;
   runs: ReadonlyMap<string, Run>;
-  rates: ReadonlyMap<string, RateWindow>;
   details: ReadonlyMap<string, details.Detail>;
   watching: watched.Watching;
   /** How often the table of a run has grown since the page was opened. */
@@ -97,7 +96,6 @@ export const INITIAL_STATE: State = {
   connection: "connecting",
   principal: null,
   runs: new Map(),
-  rates: new Map(),
   details: new Map(),
   watching: new Map(),
   tableVersions: new Map(),
@@ -216,20 +214,18 @@ function withGeneration(state: State, event: GenerationEvent): State {
   const next = { ...opened, watching: watched.withGenerationEvent(opened.watching, event) };
   const run = state.runs.get(event.run);
   if (!run || event.generation <= run.generation) return next;
-  const pace = withEvent(state.rates.get(run.id) ?? [], event);
   return {
     ...noteEvent(next, run.id),
-    rates: new Map(next.rates).set(run.id, pace),
-    runs: new Map(next.runs).set(run.id, withGenerationFigures(run, event, pace)),
+    runs: new Map(next.runs).set(run.id, withGenerationFigures(run, event)),
   };
 }
 
-function withGenerationFigures(run: Run, event: GenerationEvent, pace: RateWindow): Run {
+function withGenerationFigures(run: Run, event: GenerationEvent): Run {
   const { generation, qd_score, coverage, best, evaluations, diverged } = event;
   const newer = { generation, qd_score, coverage, best, evaluations, diverged };
   const progress = Math.min(1, generation / run.generations);
   const sparkline = withPoint(run.sparkline, run.generation, qd_score, generation);
-  return { ...run, ...newer, progress, sparkline, ...rateOf(pace, run) };
+  return { ...run, ...newer, progress, sparkline };
 }
 
 /** Tables are short: they are fetched anew rather than put together of events. */

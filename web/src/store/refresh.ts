@@ -34,7 +34,7 @@ export function useWorkers() {
   return useFetched(ask, [tick, news]);
 }
 
-/** Why a run waits changes without an event of its own. */
+/** Reasons to wait, rates and times left come without events. */
 export function useRunRefresh(id: string, wanted: boolean): void {
   const tick = useTick(WORKERS_MS, wanted);
   useEffect(() => {

@@ -43,6 +43,13 @@ function sharedRoute(slug: string, [kind, sha, ...more]: string[]): Route {
   return one ? { page: "share", slug, sha } : { page: "unknown" };
 }
 
+const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
+
+export const isUuid = (id: string) => UUID.test(id);
+
+/** False for text that can name no run, sweep or creature. */
+export const isId = (id: string) => isUuid(id) || /^[0-9a-f]{64}$/.test(id);
+
 /** Null where there is no text, or its escapes are of none. */
 function decodePart(part: string | undefined): string | null {
   try {

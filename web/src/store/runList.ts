@@ -2,7 +2,7 @@
 
 import { useEffect } from "preact/hooks";
 import * as api from "../api/client";
-import type { RunPage, RunQuery } from "../api/types";
+import type { Run, RunPage, RunQuery } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
 import { currentState, dispatch, useStore } from "./store";
 import { useThrottled } from "./throttle";
@@ -18,11 +18,11 @@ const STABLE_ORDERS = ["created", "name", "experiment", "status"];
 export function useRunList(query: RunQuery): Loaded<true> {
   const asked = JSON.stringify(query);
   const news = useThrottled(useStore((state) => `${state.epoch} ${state.listVersion}`));
-  const waits = useStore((state) => state.listed.some((id) => state.runs.get(id)?.waiting_reason));
+  const waits = useStore((state) => state.listed.some((id) => changesSilently(state.runs.get(id))));
   const moves = !STABLE_ORDERS.includes((query.sort ?? "created").replace("-", ""));
   const tick = useTick(REFRESH_MS, waits || moves);
   const { value, error } = useFetched(async () => {
-    const { asked: before, listed: listed, eventCount: sent } = currentState();
+    const { asked: before, listed, eventCount: sent } = currentState();
     const known = before === asked ? listed.length : 0;
     return { asked, known, sent, page: await readUpTo(query, known) };
   }, [asked, news, tick]);
@@ -33,6 +33,9 @@ export function useRunList(query: RunQuery): Loaded<true> {
   const told = useStore((state) => state.asked) === asked;
   return { value: told || null, error };
 }
+
+/** Reasons to wait, rates and times left come without events. */
+const changesSilently = (run?: Run) => run !== undefined && ["queued", "running"].includes(run.status);
 
 /** The first page of a list, or as many runs as are known of it, in pages. */
 export async function readUpTo(query: RunQuery, known: number): Promise<RunPage> {

@@ -111,15 +111,6 @@ describe("events", () => {
     expect(back.details.get("a")!.curves!.summary.inserted).toEqual([5, 6]);
   });
 
-  it("tell the rate and the time left from two generations on", () => {
-    const next = [3, 4].reduce<State>(
-      (state, number) => reduce(state, { type: "generation", event: generation(number) }),
-      opened,
-    );
-    // 16 evaluations in 2 seconds, and 6 of 10 generations of 16 to come.
-    expect(next.runs.get("a")).toMatchObject({ evaluations_per_second: 8, eta_seconds: 12 });
-  });
-
   it("of how a run stands leave out what it is, which was told before", () => {
     const { spec: _, ...standing } = { ...RUN, generation: 3 };
     const next = reduce(opened, { type: "run", run: standing });

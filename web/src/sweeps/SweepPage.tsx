@@ -18,6 +18,7 @@ import { Curves } from "../charts/curves/Curves";
 import { type ShownCase, bandsOf, caseName } from "./bands";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "./SweepStatus";
 import { moment } from "../ui/format";
+import { ConfirmButton } from "../ui/ConfirmButton";
 import { NotFound } from "../ui/NotFound";
 import { NameField } from "../run/RunLabels";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
@@ -43,7 +44,7 @@ export function SweepPage({ id, query }: Props) {
         <a href="/">{text.runs}</a>
       </nav>
       {error && value && <p class="banner wrong">{error}</p>}
-      {error && !value && <NotFound what={text.noSuchSweep} reason={error} />}
+      {error && !value && <NotFound what={text.noSuchSweep} reason={error} id={id} />}
       {!value && !error && <p class="quiet loading">{text.loadingSweep}</p>}
       {value && <LoadedSweep {...{ value, query, each }} />}
     </main>
@@ -75,7 +76,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
         )}
         <CaseCurves {...{ shown, query }} curves={each ? curves : null} />
       </section>
-      <Finals cases={summary.cases.map(shownOf)} />
+      <Finals cases={summary.cases.map(shownOf)} generation={summary.generation} />
       <Members cases={summary.cases.map(shownOf)} />
     </>
   );
@@ -150,7 +151,14 @@ function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
   if (total === 0) return null;
   return (
     <span class="actions" role="group" aria-label={text.allRuns}>
-      {paused > 0 && <button onClick={() => void sendSweepCommand(id, "resume")}>{text.resumeAll}</button>}
+      {paused > 0 && (
+        <ConfirmButton
+          verb={text.resumeAll}
+          what={title}
+          queues={text.resumes(paused)}
+          onConfirm={() => sendSweepCommand(id, "resume")}
+        />
+      )}
       {going > 0 && <button onClick={() => void sendSweepCommand(id, "pause")}>{text.pauseAll}</button>}
       {going + paused > 0 && (
         <button class="danger" onClick={() => cancelSweepWithUndo(id, title)}>

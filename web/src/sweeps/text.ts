@@ -7,7 +7,10 @@ export const text = {
   bestFitness: "Best fitness",
   evaluations: "Evaluations",
   figures: "Figures",
-  figuresAbout: "median, with the quartiles below; newest generation of each run",
+  figuresAbout: (generation: number | null) =>
+    generation === null
+      ? "median, with the quartiles below"
+      : `median, with the quartiles below; compared at generation ${generation}`,
   figuresOfCases: "Figures of the cases",
   case: "Case",
   runs: "Runs",
@@ -48,4 +51,5 @@ export const text = {
   lowerQuartile: (name: string) => `${name}, lower quartile`,
   oneCase: "all runs",
   seed: (seed: number) => `seed ${seed}`,
+  resumes: (paused: number) => `Queues ${paused} paused ${paused === 1 ? "run" : "runs"} again.`,
 };

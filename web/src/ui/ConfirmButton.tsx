@@ -1,4 +1,4 @@
-/** A button for an action that cannot be undone: it asks for confirmation in place. */
+/** A button for an action that destroys or queues something: it asks for confirmation in place. */
 
 import { useDisclosure } from "./disclosure";
 import { text } from "./text";
@@ -7,31 +7,39 @@ interface Props {
   /** The action and its object. */
   verb: string;
   what: string;
+  /** What the action queues. Without it, the action cannot be undone. */
+  queues?: string;
   onConfirm: () => Promise<void>;
 }
 
-export function ConfirmButton({ verb, what, onConfirm: onDo }: Props) {
+export function ConfirmButton({ verb, what, queues, onConfirm }: Props) {
   const { open, setOpen, button, first } = useDisclosure<HTMLButtonElement>();
-  const keep = () => setOpen(false);
+  const close = () => setOpen(false);
+  const kind = queues ? "" : "slim danger";
   if (!open) {
     return (
-      <button ref={button} class="slim danger" aria-label={`${verb} ${what}`} onClick={() => setOpen(true)}>
+      <button ref={button} class={kind} aria-label={`${verb} ${what}`} onClick={() => setOpen(true)}>
         {verb}
       </button>
     );
   }
   return (
-    <span class="actions" onKeyDown={(event) => event.key === "Escape" && keep()}>
+    <span class="actions" role="group" onKeyDown={(event) => event.key === "Escape" && close()}>
+      {queues && (
+        <span class="quiet small confirm" role="status">
+          {queues}
+        </span>
+      )}
       <button
         ref={first}
-        class="slim danger"
+        class={queues ? "primary" : kind}
         aria-label={text.confirm(verb, what)}
-        onClick={() => void onDo().finally(keep)}
+        onClick={() => void onConfirm().finally(close)}
       >
         {text.confirmShort(verb)}
       </button>
-      <button class="slim plain" onClick={keep}>
-        {text.keep}
+      <button class={queues ? "plain" : "slim plain"} onClick={close}>
+        {queues ? text.cancel : text.keep}
       </button>
     </span>
   );

@@ -2,13 +2,16 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { text } from "./text";
+import { prefersStillness } from "./theme";
 import "./guide.css";
 
 export interface Step {
   title: string;
   text: string;
-  /** CSS selector of the part that the step explains. */
+  /** Name of the part that the step explains, which is highlighted. */
   about: string;
+  /** CSS selector of that part, which is scrolled into view. */
+  selector: string;
 }
 
 interface Props {
@@ -24,7 +27,10 @@ export function Guide({ steps, asked, onStep, onEnd }: Props) {
   const panel = useRef<HTMLElement>(null);
   const step = steps[number]!;
   const last = number === steps.length - 1;
-  useEffect(() => onStep(step), [number]);
+  useEffect(() => {
+    onStep(step);
+    reveal(document.querySelector(step.selector));
+  }, [number]);
   useEffect(() => {
     if (!asked) return;
     const before = document.activeElement as HTMLElement | null;
@@ -58,4 +64,13 @@ export function Guide({ steps, asked, onStep, onEnd }: Props) {
       </p>
     </aside>
   );
+}
+
+/** Scroll to the middle of the window unless the whole element is visible above the panel. */
+function reveal(element: Element | null): void {
+  if (!element) return;
+  const { top, bottom } = element.getBoundingClientRect();
+  const visible = top >= 0 && bottom <= window.innerHeight;
+  const behavior = prefersStillness() ? "instant" : "smooth";
+  if (!visible) element.scrollIntoView({ block: "center", behavior });
 }

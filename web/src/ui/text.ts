@@ -4,6 +4,7 @@ export const text = {
   confirm: (verb: string, what: string) => `${verb} now: ${what}`,
   confirmShort: (verb: string) => `${verb} now`,
   keep: "Keep",
+  cancel: "Cancel",
   dropCreature: "Drop a creature file to open it",
   openCreature: "Open creature",
   file: "file",
@@ -49,4 +50,5 @@ export const text = {
   loading: "Loading …",
   notLoaded: "This part of the page could not be loaded. Reload the page.",
   reload: "Reload",
+  unknownId: (id: string) => `Nothing has the id “${id}”. Check the address.`,
 };

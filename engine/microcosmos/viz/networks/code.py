@@ -3,6 +3,8 @@
 import inspect
 import re
 from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
 from math import isfinite
 from textwrap import wrap
 
@@ -14,6 +16,8 @@ from .graph import order, reached
 from .network import Network
 
 TOLERANCE = 1e-12
+PROVED_STEPS = 4
+"""Steps of a recurrent network in the check: more of them compute the same, longer."""
 
 
 def messages(*values):
@@ -28,13 +32,17 @@ def kept(old, new, *sources):
 def numpy_code(network: Network) -> str:
     """The text of a module with a function `network(inputs)`, (input, …) to (output, …).
 
-    Checked: carried out on random inputs, it gives what the network gives, or `ValueError`.
+    Checked over a few steps: on random inputs it gives what the network gives, or `ValueError`.
     """
+    few = replace(network, steps=network.steps and min(network.steps, PROVED_STEPS))
+    require_same(few, _module(few))
+    return _module(network)
+
+
+def _module(network: Network) -> str:
     body = _recurrent(network) if network.steps else _feed_forward(network)
     function = _function(network, body)
-    text = "\n".join([_head(network, "\n".join(function)), *function, ""])
-    require_same(network, text)
-    return text
+    return "\n".join([_head(network, "\n".join(function)), *function, ""])
 
 
 def require_same(network: Network, text: str) -> None:
@@ -51,11 +59,17 @@ def require_same(network: Network, text: str) -> None:
         )
 
 
+@cache
+def _sources() -> dict[str, str]:
+    """The texts of all functions by name, read once: a sandbox cannot open files later."""
+    functions = (*ACTIVATIONS.values(), *AGGREGATIONS.values(), messages, kept)
+    return {one.__name__: inspect.getsource(one) for one in functions}
+
+
 def _head(network: Network, body: str) -> str:
     """What the module is, and the functions that it uses."""
-    functions = {f.__name__: f for f in (*ACTIVATIONS.values(), *AGGREGATIONS.values())}
-    functions |= {"messages": messages, "kept": kept}
-    used = [name for name in functions if re.search(rf"\b{name}\(", body)]
+    sources = _sources()
+    used = [name for name in sources if re.search(rf"\b{name}\(", body)]
     if "mean" in used and "total" not in used:
         used.insert(0, "total")
     lines = [
@@ -71,7 +85,7 @@ def _head(network: Network, body: str) -> str:
         "",
     ]
     for name in used:
-        lines += ["", *inspect.getsource(functions[name]).splitlines(), ""]
+        lines += ["", *sources[name].splitlines(), ""]
     return "\n".join(lines)
 
 

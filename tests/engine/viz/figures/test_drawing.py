@@ -13,6 +13,8 @@ from microcosmos.build import local
 from microcosmos.cli import app
 from microcosmos.viz.figures import drawing, motions, reading
 
+pytestmark = pytest.mark.long
+
 TINY = {
     "experiment": "quality-diversity",
     "world": {"width": 32, "height": 32},
@@ -120,8 +122,6 @@ def test_a_map_is_drawn_without_jax(archive, tmp_path):
 import sys
 from pathlib import Path
 from microcosmos.viz.figures import drawing
-
-pytestmark = pytest.mark.long
 drawing.archive(Path({str(archive)!r}), Path({str(tmp_path / "map.pdf")!r}), drawing.Print(),
                 None, "fitness")
 assert "jax" not in sys.modules

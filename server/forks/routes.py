@@ -1,0 +1,58 @@
+"""Add generations to a run, and fork it."""
+
+from uuid import UUID
+
+from fastapi import APIRouter, Response
+
+from ..auth.authorize import Writer
+from ..core.uploads import json_route
+from ..creatures.initial import named
+from ..queue.order import requeue
+from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, current, submitted
+from ..runs.deps import OwnRunId, find_run
+from ..runs.idempotency import earlier
+from ..runs.schemas import Extension, Fork, RunRead
+from ..runs.submission import refuse_too_large, submit
+from ..services.deps import ServicesDep
+from ..specs import parsing
+from . import extending, forking
+
+router = APIRouter(prefix="/runs/{run_id}", tags=["runs"], route_class=json_route(SPEC_BYTES))
+
+
+@router.post("/extend", status_code=202)
+def extend_run(run_id: OwnRunId, services: ServicesDep, sent: Extension) -> RunRead:
+    """Add generations to a finished run; it ends as if it had had them from the start."""
+    with services.sessions.read() as session:
+        run = find_run(session, run_id)
+    spec = extending.longer(run, sent.generations)
+    refuse_too_large(services, spec)
+    longer = changed(services, run_id, lambda session, _: extending.extend(session, run, spec))
+    requeue(services.sessions, services.jobs, run_id)
+    return longer
+
+
+@router.post("/fork", status_code=202)
+def fork_run(
+    principal: Writer,
+    run_id: UUID,
+    services: ServicesDep,
+    response: Response,
+    sent: Fork,
+    idempotency_key: IdempotencyKey = None,
+) -> RunRead:
+    """Create a run that starts from creatures of this one; a merge patch changes its spec.
+
+    The same key with the same request gives the same run, even if the archive has changed.
+    """
+    request = {"fork": str(run_id), **sent.model_dump(mode="json")}
+    if known := earlier(services, idempotency_key, principal.token, request):
+        return submitted(response, current(services, known.run_id), new=False)
+    with services.sessions.read() as session, parsing.parsing(services) as parse:
+        spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
+    refuse_too_large(services, spec)
+    columns = {"name": sent.name or None, "forked_from": run_id, "n_initial": len(named(spec))}
+    run, new = submit(
+        services, spec, idempotency_key, request, owner=principal.token, **columns
+    )
+    return submitted(response, run, new)
