@@ -89,7 +89,7 @@ def choose_what_is_shown(page: Page) -> None:
 
 def read_the_shape_over_time(page: Page) -> None:
     picture = page.get_by_role(
-        "application", name=re.compile("^Rest angles \(applied\) over 40 steps")
+        "application", name=re.compile(r"^Rest angles \(applied\) over 40 steps")
     )
     box = picture.bounding_box()
     assert box
