@@ -9,6 +9,9 @@ INSTALLED := $(VENV)/installed-$(LOCK)
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print) docs/glossary.md
 
+# Tests start hundreds of processes, which need not read all sources anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: run install web test test-all test-long mutants check peers bench acceptance validate pictures docs texts \
 	release-check lock
 
@@ -63,7 +66,7 @@ test-long: install web
 	$(call part,long server,$(SERVER) -m long)
 	@cat $(TIMES)
 
-ENGINE = $(BIN)/pytest -q -n auto --maxprocesses 4
+ENGINE = $(BIN)/pytest -q -p no:schemathesis -n auto --maxprocesses 4
 BITS = MICROCOSMOS_TEST_OPTIMISED=1 $(ENGINE) tests/engine
 SERVER = $(BIN)/pytest -q -n 3 --ignore=tests/engine --ignore=tests/examples
 TIMES := $(VENV)/times

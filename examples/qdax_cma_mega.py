@@ -31,7 +31,7 @@ def main(generations: int = 20, batch: int = 32, step: float = 0.5, **changes: A
     plan = build.build_plan(spec)
     keys = jax.random.split(jax.random.PRNGKey(0), batch + 2)
     first = jax.vmap(lambda key: plan.encoding.newcomer(key=key).values)(keys[2:])
-    centroids = jnp.asarray(plan.niches.centres)
+    centroids = jnp.asarray(plan.cells.centres)
     emitter = CMAMEGAEmitter(
         scoring_function=jax.jit(microcosmos.scoring_function(spec, slopes=True)),
         batch_size=batch,

@@ -40,7 +40,7 @@ def main(generations: int = 20, batch: int = 32, **changes: Any) -> Any:
         emitter=MixingEmitter(lambda genes, key: genes, variation, 1.0, batch),
         metrics_function=lambda repertoire: {},
     )
-    centroids = jnp.asarray(plan.niches.centres)
+    centroids = jnp.asarray(plan.cells.centres)
     repertoire, state, _ = search.init(first, centroids, keys[0])
     for key in jax.random.split(keys[1], generations - 1):
         repertoire, state, _ = search.update(repertoire, state, key)

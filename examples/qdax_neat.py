@@ -35,7 +35,7 @@ def main(generations: int = 20, batch: int = 32, **changes: Any) -> Any:
         emitter=NeatEmitter(neat),
         metrics_function=lambda repertoire: {},
     )
-    repertoire, state, _ = search.init(first, jnp.asarray(plan.niches.centres), keys[0])
+    repertoire, state, _ = search.init(first, jnp.asarray(plan.cells.centres), keys[0])
     update = jax.jit(search.update)
     for key in jax.random.split(keys[1], generations - 1):
         repertoire, state, _ = update(repertoire, state, key)

@@ -16,6 +16,7 @@ from .auth import bootstrap
 from .auth import routes as tokens_api
 from .auth.authenticate import Authenticator
 from .auth.authorize import MAY_READ, PUBLIC
+from .auth.capability import HEADER
 from .auth.middleware import PrincipalMiddleware
 from .auth.tokens import watch
 from .core import errors, nowhere, page, request_log
@@ -26,6 +27,7 @@ from .creatures import network_routes as networks_api
 from .creatures import routes as creatures_api
 from .creatures.sandbox import sandbox
 from .deletion import routes as deletion_api
+from .estimates import routes as queue_api
 from .events import routes as events_api
 from .events.fanout import Hub
 from .forks import routes as forks_api
@@ -34,18 +36,13 @@ from .maintenance.metrics import Counting, Requests
 from .maintenance.reconcile import reconciling
 from .renderings import measurement_routes as measurements_api
 from .renderings import routes as renderings_api
-from .runs import curve_routes as generations_api
-from .runs import log_routes as journal_api
-from .runs import queue_routes as queue_api
+from .runs import detail_routes as details_api
 from .runs import routes as runs_api
-from .runs import tag_routes as tags_api
-from .runs import target_routes as targets_api
 from .services.services import Services, connect
 from .settings import Settings
-from .shares import archive_routes as shared_archives_api
-from .shares import creature_routes as shared_api
 from .shares import page as share_page
 from .shares import routes as shares_api
+from .shares.capability import open_share
 from .specs import routes as experiments_api
 from .sweeps import routes as sweeps_api
 from .tables import migrations
@@ -69,11 +66,15 @@ def create_app(services: Services) -> FastAPI:
     )
     app.state.services = services
     errors.install(app)
-    request_log.discreet()
+    request_log.install()
     describe(app)
     app.state.authenticator = authenticator = Authenticator(services)
-    app.add_middleware(PrincipalMiddleware, authenticator=authenticator)
-    app.add_middleware(Discretion)
+    app.add_middleware(
+        PrincipalMiddleware,
+        authenticator=authenticator,
+        open_share=partial(open_share, services),
+    )
+    app.add_middleware(Discretion, share_header=HEADER)
     app.state.requests = requests = Requests()
     app.add_middleware(Counting, requests=requests)
     api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
@@ -83,22 +84,17 @@ def create_app(services: Services) -> FastAPI:
         forks_api,
         deletion_api,
         sweeps_api,
-        generations_api,
-        journal_api,
+        details_api,
         archives_api,
         results_api,
-        targets_api,
         creatures_api,
         networks_api,
         renderings_api,
         measurements_api,
         shares_api,
-        shared_api,
-        shared_archives_api,
         events_api,
         workers_api,
         queue_api,
-        tags_api,
         tokens_api,
     ):
         api.include_router(noun.router)

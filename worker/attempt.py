@@ -11,9 +11,9 @@ from uuid import UUID
 
 from sqlalchemy.exc import OperationalError
 
+from microcosmos.archive.report import Report
 from server.attempts.begin import claim
-from server.attempts.claim import CheckpointUnavailable, Claim, Fenced
-from server.attempts.report import Report
+from server.attempts.claim import CheckpointUnavailable, Claim, ClaimLost
 from server.services.services import Services
 from server.settings import Settings
 from server.tables import CANCELLED, PAUSED
@@ -38,17 +38,17 @@ def claimed(services: Services, run_id: UUID, worker: str) -> Iterator["Attempt 
     held = claim(services, run_id, worker)
     try:
         yield Attempt(held) if held else None
-    except Fenced as error:
+    except ClaimLost as error:
         log.warning("Lost %s", error)
     except CheckpointUnavailable as error:
         log.error("Run %s: %s", run_id, error)
         if held:
-            with suppress(Fenced):
+            with suppress(ClaimLost):
                 Attempt(held).set_aside(str(error))
     except Exception:
         log.exception("Run %s failed", run_id)
         if held:
-            with suppress(Fenced):
+            with suppress(ClaimLost):
                 held.fail(traceback.format_exc())
 
 
@@ -77,9 +77,9 @@ class Attempt:
     def restore(self) -> bytes | None:
         return persist(self._claim.restore)
 
-    def origin(self) -> list[dict[str, Any]]:
+    def initial(self) -> list[dict[str, Any]]:
         """The files of the creatures that the run begins from."""
-        return persist(self._claim.origin)
+        return persist(self._claim.initial)
 
     @property
     def other_device(self) -> bool:

@@ -42,9 +42,9 @@ def compute(attempt: Attempt) -> None:
     """Go on from the last checkpoint to the end, or to where it is to stop."""
     data = attempt.restore()
     # A file has what its run began from.
-    origin = [] if data else attempt.origin()
+    initial = [] if data else attempt.initial()
     spec = parse(attempt.spec)
-    experiment = build(spec, origin) if origin else build(spec)
+    experiment = build(spec, initial) if initial else build(spec)
     try:
         state = (
             experiment.restore(data, other_device=attempt.other_device)

@@ -128,7 +128,7 @@ def _ours(side: int, *, donate: bool) -> Peer:
         return search.Elites(
             occupied=jnp.ones(ROWS, bool),
             fitness=jnp.asarray(fitness),
-            features=jnp.asarray(places),
+            measures=jnp.asarray(places),
             generation=jnp.arange(ROWS, dtype=jnp.int32),
             slot=jnp.arange(ROWS, dtype=jnp.int32),
             genotypes=genomes.Vector(jnp.asarray(genes)),

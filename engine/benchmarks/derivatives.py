@@ -67,7 +67,7 @@ def score(fitness: np.ndarray) -> tuple[float, float]:
 def ours(function: Function, seed: int) -> np.ndarray:
     """The elites' fitness; our genes run from −1 to 1."""
     axes = tuple(search.Axis(i, 0.0, 1.0, BINS, False) for i in range(2))
-    niches, key = search.Grid(axes), jax.random.key(seed)
+    cells, key = search.Grid(axes), jax.random.key(seed)
     emitter = search.emitters.CmaMega(BATCH, newcomer, outputs=3, step=STEP / LIMIT)
 
     def generation(carry: Any, number: jax.Array) -> tuple[Any, None]:
@@ -85,16 +85,16 @@ def ours(function: Function, seed: int) -> np.ndarray:
         found = search.Elites(
             occupied=jnp.ones(BATCH, bool),
             fitness=fitness,
-            features=places,
+            measures=places,
             generation=jnp.full(BATCH, number, jnp.int32),
             slot=jnp.arange(BATCH, dtype=jnp.int32),
             genotypes=children.genotypes,
         )
-        archive, inserted = search.insert(archive, found, niches)
+        archive, inserted = search.insert(archive, found, cells)
         outcome = search.Outcome(
             genotypes=found.genotypes,
             fitness=fitness,
-            features=places,
+            measures=places,
             sound=found.occupied,
             cell=inserted.cell,
             entered=inserted.entered,
@@ -103,7 +103,7 @@ def ours(function: Function, seed: int) -> np.ndarray:
         )
         return (archive, emitter.tell(state, outcome)), None
 
-    nobody = search.no_elites(niches.count, 2, genomes.Vector(jnp.zeros(GENES)))
+    nobody = search.no_elites(cells.count, 2, genomes.Vector(jnp.zeros(GENES)))
     first = (nobody, emitter.init(key=key))
     run = jax.jit(lambda carry: jax.lax.scan(generation, carry, jnp.arange(GENERATIONS))[0])
     archive, _ = run(first)

@@ -49,7 +49,7 @@ def cells(count: int = CELLS) -> search.Voronoi:
 def ours(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATCH) -> float:
     """The QD score that our emitters and archive reach."""
     emitter = search.emitters.IsoLine(batch, newcomer, 2 * ISO, LINE)
-    niches, key = cells(), jax.random.key(seed)
+    archive_cells, key = cells(), jax.random.key(seed)
     evaluate = jax.vmap(FUNCTIONS[name])
 
     def generation(archive: search.Elites, number: jax.Array) -> tuple[search.Elites, None]:
@@ -62,14 +62,14 @@ def ours(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATC
         found = search.Elites(
             occupied=jnp.ones(batch, bool),
             fitness=fitness,
-            features=places,
+            measures=places,
             generation=jnp.full(batch, number, jnp.int32),
             slot=jnp.arange(batch, dtype=jnp.int32),
             genotypes=children.genotypes,
         )
-        return search.insert(archive, found, niches)[0], None
+        return search.insert(archive, found, archive_cells)[0], None
 
-    nobody = search.no_elites(niches.count, 2, genomes.Vector(jnp.zeros(GENES)))
+    nobody = search.no_elites(archive_cells.count, 2, genomes.Vector(jnp.zeros(GENES)))
     run = jax.jit(lambda a: jax.lax.scan(generation, a, jnp.arange(generations))[0])
     archive = run(nobody)
     return score(np.asarray(archive.fitness)[np.asarray(archive.occupied)], name)

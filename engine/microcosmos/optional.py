@@ -4,7 +4,7 @@ from importlib import import_module
 from typing import Any
 
 
-def needed(module: str) -> Any:
+def require(module: str) -> Any:
     """A module of an optional library."""
     try:
         return import_module(module)

@@ -18,7 +18,7 @@ COLUMNS = (
 
 
 def ever(run: Run, names: Sequence[str] = ()) -> Select[*tuple[Any, ...]]:
-    """A run's elites, past ones too, and their features by name."""
+    """A run's elites, past ones too, and their measures by name."""
     columns = [measures.column(name) for name in names]
     statement = select(*COLUMNS, *columns).where(until_now(run))
     return statement.join(Creature, Creature.sha256 == Elite.creature) if names else statement

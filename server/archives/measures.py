@@ -9,7 +9,7 @@ from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import Own, used
-from microcosmos.spec.measures import FEATURES
+from microcosmos.spec.measures import MEASURES
 
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
@@ -40,7 +40,7 @@ def recorded(session: Session, run: Run) -> list[Measure]:
     """What was measured of the run's elites; of a run without any, what will be."""
     one = select(Creature.measured).join(Elite, Elite.creature == Creature.sha256)
     measured = session.scalars(one.where(Elite.run_id == run.id).limit(1)).first()
-    names = measured["features"] if measured else list(FEATURES)
+    names = measured["measures"] if measured else list(MEASURES)
     mine = {one.name: one.own for one in used(run.spec)}
     ends = {axis.name: axis for axis in axes(run)}
     return [
@@ -55,8 +55,8 @@ def _own_axes(run: Run) -> list[str]:
 
 
 def _told(name: str, own: Own | None, axis: Axis | None) -> Measure:
-    """A feature under its title; one that is not known any more is told by its name."""
-    known = FEATURES.get(name)
+    """A measure under its title; one that is not known any more is told by its name."""
+    known = MEASURES.get(name)
     if own is not None:
         low, high = (axis.low, axis.high) if axis else (None, None)
         scale = axis.scale if axis else "linear"
@@ -70,13 +70,13 @@ def _told(name: str, own: Own | None, axis: Axis | None) -> Measure:
 
 
 def column(name: str) -> ColumnElement[float | None]:
-    """A feature of a creature, read by the database: most of what was measured stays there."""
-    return Creature.measured["features", name].as_float()
+    """A measure of a creature, read by the database: most of what was measured stays there."""
+    return Creature.measured["measures", name].as_float()
 
 
 def refuse_unknown(names: Sequence[str], known: Sequence[Measure]) -> None:
     """Raise `ProblemError` where a name is of nothing that was recorded."""
-    there = [feature.name for feature in known]
+    there = [measure.name for measure in known]
     if wrong := [name for name in names if name not in there]:
         needed = f"names among {', '.join(there)}"
         detail = f"`measures` must be {needed}; got {', '.join(map(repr, wrong))}."

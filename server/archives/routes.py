@@ -11,7 +11,8 @@ from sqlalchemy.orm import Session
 from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
-from ..auth.authorize import MAY_READ
+from ..auth.authorize import MAY_READ_SHARED
+from ..auth.capability import SharedViewDep
 from ..core.errors import ProblemError
 from ..runs.deps import RunDep
 from ..services.deps import ServicesDep, SessionDep
@@ -31,7 +32,7 @@ HISTORY_ENTRIES = 400_000
 """About 50 MB."""
 
 
-@router.get("/archive", dependencies=[MAY_READ])
+@router.get("/archive", dependencies=[MAY_READ_SHARED])
 def read_archive(
     run: RunDep,
     session: SessionDep,
@@ -61,7 +62,7 @@ def read_archive(
     )
 
 
-@router.get("/archive/history", dependencies=[MAY_READ])
+@router.get("/archive/history", dependencies=[MAY_READ_SHARED])
 def read_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
     """Every elite that ever entered: the archive of each generation can be told from it."""
     _refuse_without(run)
@@ -72,7 +73,7 @@ def read_history(run: RunDep, session: SessionDep, measures: str = "") -> Histor
     return HistoryRead(generation=run.generation, **columns)
 
 
-@router.get("/archive/centroids", dependencies=[MAY_READ])
+@router.get("/archive/centroids", dependencies=[MAY_READ_SHARED])
 def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> CentroidsRead:
     """The cells of a CVT archive; null until its first checkpoint is there."""
     _refuse_without(run)
@@ -129,12 +130,18 @@ def _refuse_without(run: Run) -> None:
         raise ProblemError(404, "No archive", detail)
 
 
-@router.get("/archive.h5", response_class=Response, responses=binary, dependencies=[MAY_READ])
+@router.get(
+    "/archive.h5", response_class=Response, responses=binary, dependencies=[MAY_READ_SHARED]
+)
 def download_archive(
-    request: Request, run: RunDep, session: SessionDep, services: ServicesDep
+    request: Request,
+    run: RunDep,
+    share: SharedViewDep,
+    session: SessionDep,
+    services: ServicesDep,
 ) -> Response:
     """The last checkpoint's file; of a run without an archive it holds the table."""
-    artifact = _checkpoint(session, run)
+    artifact = share.archive(session) if share else _checkpoint(session, run)
     headers = {**attachment(run, "h5"), "Cache-Control": "no-cache"}
     return ranges.file(request, services.artifacts, artifact, headers)
 
@@ -143,12 +150,15 @@ def download_archive(
     "/archive.csv",
     response_class=Response,
     responses={200: {"content": {"text/csv": {}}}},
-    dependencies=[MAY_READ],
+    dependencies=[MAY_READ_SHARED],
 )
-def download_table(run: RunDep, session: SessionDep, services: ServicesDep) -> Response:
+def download_table(
+    run: RunDep, share: SharedViewDep, session: SessionDep, services: ServicesDep
+) -> Response:
     """The last checkpoint's archive in the columns of pyribs."""
     _refuse_without(run)
-    table = export.csv(services.artifacts.read(_checkpoint(session, run).path))
+    artifact = share.archive(session) if share else _checkpoint(session, run)
+    table = export.csv(services.artifacts.read(artifact.path))
     return Response(table, headers=attachment(run, "csv"), media_type="text/csv")
 
 

@@ -8,7 +8,8 @@ from sqlalchemy.orm import Session
 
 from ..core.database import clock
 from ..runs import log
-from ..runs.lifecycle import announce, change, lost, release
+from ..runs.announce import announce
+from ..runs.lifecycle import change, lost, release
 from ..services.services import Services
 from ..tables import OVERRIDE_ALLOWED, QUEUED, RUNNING, Run, Worker
 from ..workers import plugins

@@ -10,10 +10,13 @@ from uuid import UUID
 from sqlalchemy import case, func
 from sqlalchemy.orm import Session
 
+from microcosmos.archive.report import Report
+
 from ..core.database import clock
 from ..creatures import initial
 from ..runs import log
-from ..runs.lifecycle import announce, change, hand_back, release
+from ..runs.announce import announce
+from ..runs.lifecycle import change, hand_back, release
 from ..runs.log import UNSAVED, Level, note
 from ..services.services import Services
 from ..storage.artifacts import Stored, checkpoint_path
@@ -29,7 +32,6 @@ from ..tables import (
 )
 from . import recording
 from .checkpoints import checkpoints, fall_back, point_at
-from .report import Report
 
 logger = logging.getLogger(__name__)
 
@@ -41,7 +43,7 @@ class CheckpointUnavailable(Exception):
     """The store lacks a sound file of a checkpoint that the run has."""
 
 
-class Fenced(Exception):
+class ClaimLost(Exception):
     """The run is another attempt's by now, or was ended."""
 
 
@@ -66,9 +68,9 @@ class Claim:
         """Say which kind of device computes."""
         self._end(f"Computing on {device}.", device=device)
 
-    def origin(self) -> list[dict[str, Any]]:
+    def initial(self) -> list[dict[str, Any]]:
         """The files of the creatures that the run begins from."""
-        names = self.spec.get("search", {}).get("origin", [])
+        names = self.spec.get("search", {}).get("initial", [])
         with self.services.sessions.read() as session:
             return initial.files(session, names)
 
@@ -112,7 +114,7 @@ class Claim:
             f"the run resumes from generation {sound.generation}."
         )
         with self.services.sessions.write.begin() as session:
-            run = self._prove(session, warning=text)
+            run = self._assert_current(session, warning=text)
             fall_back(session, run, sound, damaged)
             note(session, run, text, "warning")
         logger.warning("run %s: %s (%s)", self.run_id, text, ", ".join(damaged))
@@ -126,9 +128,9 @@ class Claim:
         rows = recording.rows_of(report, total)
         with self.services.sessions.write.begin() as session:
             # After an outage nobody knows whether the same write was committed before it.
-            new = self._prove(session).generation != rows.curve["generation"]
+            new = self._assert_current(session).generation != rows.curve["generation"]
             standing = {**recording.standing(report), "seconds": total}
-            requested = self._prove(session, **standing).requested_state
+            requested = self._assert_current(session, **standing).requested_state
             if new:
                 recording.write(session, self.run_id, rows)
         self.seconds = total
@@ -138,7 +140,7 @@ class Claim:
     def requested(self) -> str | None:
         """Return the state that a person requests, `paused` or `cancelled`, if any."""
         with self.services.sessions.write.begin() as session:
-            return self._prove(session).requested_state
+            return self._assert_current(session).requested_state
 
     def save(self, generation: int, data: bytes) -> None:
         """Write the file of a recorded generation and make it the checkpoint.
@@ -151,7 +153,7 @@ class Claim:
     def point(self, generation: int, stored: Stored) -> None:
         """Make a written file the checkpoint; files that nothing needs any more are deleted."""
         with self.services.sessions.write.begin() as session:
-            before = self._prove(session)
+            before = self._assert_current(session)
             if generation > before.generation:
                 raise ValueError(
                     "`generation` of a checkpoint must be recorded, that is at most "
@@ -159,7 +161,7 @@ class Claim:
                 )
             superfluous = point_at(session, self.run_id, generation, stored)
             if generation > before.checkpoint_generation:
-                self._prove(
+                self._assert_current(
                     session,
                     checkpoint_generation=generation,
                     attempts_without_checkpoint=0,
@@ -204,7 +206,7 @@ class Claim:
     def requeue(self) -> None:
         """Hand the run back in good order, as on SIGTERM: not one of the three chances."""
         with self.services.sessions.write.begin() as session:
-            self._prove(session)
+            self._assert_current(session)
             hand_back(session, self.run_id)
         announce(self.services, self.run_id)
 
@@ -212,7 +214,7 @@ class Claim:
         """Keep the traceback; the run is queued for another attempt unless none is left."""
         with self.services.sessions.write.begin() as session:
             if not release(session, self.run_id, Run.attempt == self.attempt, error=error):
-                raise Fenced(f"run {self.run_id}, attempt {self.attempt}")
+                raise ClaimLost(f"run {self.run_id}, attempt {self.attempt}")
         announce(self.services, self.run_id)
 
     def _end(
@@ -220,19 +222,19 @@ class Claim:
     ) -> None:
         """Change the run, and say in its journal why and how it stands."""
         with self.services.sessions.write.begin() as session:
-            run = self._prove(session, **values)
+            run = self._assert_current(session, **values)
             if text is not None:
                 note(session, run, text, level, kind)
             if run.status != RUNNING:
                 log.note_standing(session, run)
         announce(self.services, self.run_id)
 
-    def _prove(self, session: Session, **values: Any) -> Run:
+    def _assert_current(self, session: Session, **values: Any) -> Run:
         """Change the row if this attempt is the current one, and hold it until the end."""
         mine = (Run.status == RUNNING, Run.attempt == self.attempt)
         run = change(session, self.run_id, *mine, **(values or {"attempt": self.attempt}))
         if run is None:
-            raise Fenced(f"run {self.run_id}, attempt {self.attempt}")
+            raise ClaimLost(f"run {self.run_id}, attempt {self.attempt}")
         return run
 
     def _tell(self, rows: recording.Rows) -> None:

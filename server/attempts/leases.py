@@ -5,7 +5,8 @@ from uuid import UUID
 
 from ..core.database import Sessions, clock
 from ..queue.order import requeue
-from ..runs.lifecycle import announce, change, hand_back, release
+from ..runs.announce import announce
+from ..runs.lifecycle import change, hand_back, release
 from ..services.services import Services
 from ..tables import QUEUED, RUNNING, Run
 

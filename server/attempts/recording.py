@@ -9,12 +9,13 @@ from uuid import UUID
 from sqlalchemy import func, insert, select
 from sqlalchemy.orm import Session
 
+from microcosmos.archive import report
 from microcosmos.archive.creature import LICENCE
+from microcosmos.archive.report import Report
 
 from ..creatures.insertion import creature_columns, insert_and_lock, link
 from ..services.event_stream import finite
 from ..tables import Elite, Generation, Result
-from .report import NewElite, NewRow, Report
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ def generation_row(report: Report, seconds: float) -> dict[str, Any]:
     return {**figures(report), "mean": finite(report.mean), "seconds": seconds}
 
 
-def elite_row(elite: NewElite) -> dict[str, Any]:
+def elite_row(elite: report.Elite) -> dict[str, Any]:
     return {
         "cell": int(elite.cell),
         "generation": int(elite.generation),
@@ -75,7 +76,7 @@ def elite_row(elite: NewElite) -> dict[str, Any]:
     }
 
 
-def result_row(generation: int, row: NewRow) -> dict[str, Any]:
+def result_row(generation: int, row: report.Row) -> dict[str, Any]:
     return {
         "generation": int(generation),
         "values": plain(row.values),

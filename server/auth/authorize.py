@@ -11,7 +11,7 @@ from ..core.errors import ProblemError
 from ..services.services import Services
 from ..tables import Owned
 from . import tokens
-from .principal import ADMIN, READ, WRITE, Principal
+from .principal import ADMIN, READ, SHARE, WRITE, Principal
 
 BEARER = HTTPBearer(
     scheme_name="token", description="Where the server needs a token.", auto_error=False
@@ -39,6 +39,8 @@ async def public() -> None:
     """Mark a route that needs no token."""
 
 
+MAY_READ_SHARED = Security(authorize, scopes=[SHARE])
+"""Also for the holder of a share, within what it shows."""
 MAY_READ = Security(authorize, scopes=[READ])
 MAY_WRITE = Security(authorize, scopes=[WRITE])
 MAY_ADMINISTER = Security(authorize, scopes=[ADMIN])

@@ -13,7 +13,9 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from ..core.errors import ProblemError, answer, unavailable
 from ..settings import LOOPBACK
 from .authenticate import Authenticator, Credentials
+from .capability import HEADER, SharedView
 from .cookies import remember, remembered
+from .principal import SHARE_HOLDER
 
 SAFE = ("GET", "HEAD")
 METRICS = "/metrics"
@@ -29,8 +31,13 @@ class PrincipalMiddleware:
     sites, also those whose name resolves to this machine.
     """
 
-    def __init__(self, app: ASGIApp, authenticator: Authenticator):
-        self.app, self.authenticator = app, authenticator
+    def __init__(
+        self,
+        app: ASGIApp,
+        authenticator: Authenticator,
+        open_share: Callable[[str], SharedView],
+    ):
+        self.app, self.authenticator, self.open_share = app, authenticator, open_share
         self.needs_token = authenticator.services.settings.needs_token
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -50,9 +57,13 @@ class PrincipalMiddleware:
             _refuse_foreign_host(request.headers)
             _refuse_foreign_origin(request.headers)
         path, method = request.scope["path"], request.scope["method"]
-        request.state.principal = None
+        request.state.principal = request.state.share = None
         if not path.startswith("/api/") and path != METRICS:
             return await self._page(request)
+        if slug := request.headers.get(HEADER):
+            request.state.share = await run_in_threadpool(self.open_share, slug)
+            request.state.principal = SHARE_HOLDER
+            return None
         bearer = _bearer(request.headers)
         if self.needs_token and bearer is None and method not in SAFE:
             # A browser sends cookies by itself, also for a page of another site.

@@ -8,9 +8,13 @@ from uuid import UUID
 from ..tables.tokens import SCOPES
 
 Scope = Literal["read", "write", "admin"]
+Rank = Literal["share", "read", "write", "admin"]
+"""The holder of a share may do less than any token allows."""
 READ: Scope = "read"
 WRITE: Scope = "write"
 ADMIN: Scope = "admin"
+SHARE: Rank = "share"
+RANKS = (SHARE, *SCOPES)
 
 
 @dataclass(frozen=True)
@@ -18,15 +22,16 @@ class Principal:
     """The holder of a token, or the user of this machine, who has no token of the table."""
 
     name: str
-    scope: Scope
+    scope: Rank
     token: UUID | None = None
     expires_at: datetime | None = None
 
     def may(self, scope: str) -> bool:
-        return SCOPES.index(self.scope) >= SCOPES.index(scope)
+        return RANKS.index(self.scope) >= RANKS.index(scope)
 
 
 LOCAL = Principal("local", ADMIN)
 """The user of this machine, where no token is needed."""
 ENVIRONMENT = Principal("MICROCOSMOS_TOKEN", ADMIN)
 """The holder of the token that the environment sets."""
+SHARE_HOLDER = Principal("the holder of a share", SHARE)

@@ -1,5 +1,6 @@
 """Routes of tokens and of the session."""
 
+from typing import cast
 from uuid import UUID
 
 from fastapi import APIRouter, Request, Response
@@ -11,7 +12,7 @@ from .authenticate import Authenticator, Credentials
 from .authorize import MAY_ADMINISTER, PUBLIC, Reader
 from .cookies import forget, remember
 from .middleware import address
-from .principal import Principal
+from .principal import Principal, Scope
 from .schemas import PrincipalRead, SignIn, TokenCreate, TokenCreated, TokenRead
 
 BYTES = 1 << 12
@@ -67,7 +68,7 @@ async def sign_out(request: Request, response: Response) -> None:
 def _read(principal: Principal, needed: bool) -> PrincipalRead:
     return PrincipalRead(
         name=principal.name,
-        scope=principal.scope,
+        scope=cast(Scope, principal.scope),
         token=principal.token,
         expires_at=principal.expires_at,
         needed=needed,

@@ -1,23 +1,26 @@
-"""The log of requests names no share: whoever knows its name may see what was shared."""
+"""Log requests without query parameters, and without the names of shares in paths."""
 
 import logging
 import re
 
-SLUG = re.compile(r"(?<=/s/)[^/?]+|(?<=/shares/)[^/?]+|(?<=[?&]cursor=)[^&]+")
-KEPT = 4
-"""Characters by which requests for the same share can still be told."""
+SLUG = re.compile(r"(?<=/s/)[^/]+|(?<=/shares/)[^/]+")
+SLUG_PREVIEW = 4
+"""Characters of a slug in the log, by which requests for the same share are recognised."""
 
 
-def discreet() -> None:
+def install() -> None:
     """Have uvicorn log requests so from now on."""
     logging.getLogger("uvicorn.access").addFilter(_shorten)
 
 
 def _shorten(record: logging.LogRecord) -> bool:
     if isinstance(record.args, tuple):
-        record.args = tuple(map(_without_slug, record.args))
+        record.args = tuple(map(_redacted, record.args))
     return True
 
 
-def _without_slug(said: object) -> object:
-    return SLUG.sub(lambda slug: f"{slug[0][:KEPT]}…", said) if isinstance(said, str) else said
+def _redacted(argument: object) -> object:
+    if not isinstance(argument, str):
+        return argument
+    path = argument.partition("?")[0]
+    return SLUG.sub(lambda slug: f"{slug[0][:SLUG_PREVIEW]}…", path)

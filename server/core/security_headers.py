@@ -2,7 +2,7 @@
 
 import re
 
-from starlette.datastructures import MutableHeaders
+from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 SHARED = re.compile(r"(/s/|/api/v1/shares/).+")
@@ -22,14 +22,15 @@ class Discretion:
     not shared is of no use to other sites, not even as a picture that loads or does not.
     """
 
-    def __init__(self, app: ASGIApp):
-        self.app = app
+    def __init__(self, app: ASGIApp, share_header: str):
+        self.app, self.header = app, share_header
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        shared = SHARED.fullmatch(scope["path"]) is not None
+        path, named = scope["path"], Headers(scope=scope).get(self.header) is not None
+        shared = named or SHARED.fullmatch(path) is not None
 
         async def discreetly(message: Message) -> None:
             if message["type"] == "http.response.start":
@@ -39,11 +40,19 @@ class Discretion:
                 headers["Cross-Origin-Resource-Policy"] = (
                     "cross-origin" if shared else "same-origin"
                 )
+                if path.startswith("/api/"):
+                    headers.add_vary_header(self.header)
                 if shared:
-                    _confide(headers, scope.get("state", {}).get("listed", False))
+                    _confide(headers, _listed(scope))
             await send(message)
 
         await self.app(scope, receive, discreetly)
+
+
+def _listed(scope: Scope) -> bool:
+    """Return whether the share of a request is listed for everybody."""
+    state = scope.get("state", {})
+    return state.get("listed", False) or getattr(state.get("share"), "listed", False)
 
 
 def _confide(headers: MutableHeaders, listed: bool) -> None:

@@ -6,6 +6,7 @@ from typing import Annotated
 from fastapi import Depends, Path
 from sqlalchemy.orm import Session
 
+from ..auth.capability import SharedView, SharedViewDep
 from ..core.errors import ProblemError
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Creature
@@ -13,15 +14,18 @@ from ..tables import Creature
 Sha = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
 
 
-def find_creature(session: Session, sha: str) -> Creature:
+def find_creature(session: Session, sha: str, share: SharedView | None) -> Creature:
+    """Return the row; raise `ProblemError` where it is missing or not in the share."""
+    if share:
+        share.refuse_unless_holds(session, sha)
     found = session.get(Creature, sha)
     if found is None:
         raise ProblemError(404, "Not found", f"No creature has the name {sha}.")
     return found
 
 
-def creature(sha: Sha, session: SessionDep) -> Creature:
-    return find_creature(session, sha)
+def creature(sha: Sha, session: SessionDep, share: SharedViewDep) -> Creature:
+    return find_creature(session, sha, share)
 
 
 @dataclass(frozen=True)
@@ -32,9 +36,9 @@ class Identity:
     json: bytes
 
 
-def identity(sha: Sha, services: ServicesDep) -> Identity:
+def identity(sha: Sha, services: ServicesDep, share: SharedViewDep) -> Identity:
     with services.sessions.read() as session:
-        return Identity(sha, find_creature(session, sha).identity)
+        return Identity(sha, find_creature(session, sha, share).identity)
 
 
 CreatureDep = Annotated[Creature, Depends(creature)]

@@ -15,7 +15,7 @@ from ..core.database import insert_missing
 from ..tables import Creature, InitialCreature
 from .storage import document
 
-DECISIVE: Any = {"control": True, "genome": True, "body": True, "search": {"origin"}}
+DECISIVE: Any = {"control": True, "genome": True, "body": True, "search": {"initial"}}
 """The parts of a spec that decide whether it can begin from creatures."""
 
 
@@ -24,10 +24,10 @@ def check(session: Session, spec: Spec) -> None:
 
     Creatures never change: nobody who wants to write has to wait for it.
     """
-    if isinstance(spec, Evolution) and spec.search.origin:
-        rows = {row["sha256"]: row for row in files(session, spec.search.origin)}
+    if isinstance(spec, Evolution) and spec.search.initial:
+        rows = {row["sha256"]: row for row in files(session, spec.search.initial)}
         _refuse_lacking(spec, rows)
-        genes_of(spec, [rows[name] for name in spec.search.origin])
+        genes_of(spec, [rows[name] for name in spec.search.initial])
 
 
 def keep(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> None:
@@ -46,7 +46,7 @@ def keep(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> None:
 def named(spec: Spec) -> Sequence[str]:
     """The creatures that a spec names."""
     if isinstance(spec, Evolution):
-        return spec.search.origin
+        return spec.search.initial
     return [spec.creature["sha256"]] if isinstance(spec, Refinement) else []
 
 
@@ -69,4 +69,4 @@ def _refuse_lacking(spec: Spec, there: Container[str]) -> None:
     lacking = [name for name in named(spec) if name not in there]
     if lacking and isinstance(spec, Evolution):
         needed = "names of creatures that are here (import it first)"
-        raise CreatureError("search.origin", needed, lacking[0])
+        raise CreatureError("search.initial", needed, lacking[0])

@@ -6,7 +6,7 @@ from typing import Any
 from fastapi import APIRouter
 from fastapi.responses import Response
 
-from ..auth.authorize import MAY_READ
+from ..auth.authorize import MAY_READ_SHARED
 from . import networks
 from .deps import IdentityDep
 from .routes import FOR_EVER
@@ -41,6 +41,9 @@ def _reader(form: str, media_type: str) -> Callable[..., Response]:
 for form, (media_type, _) in networks.FORMS.items():
     answers: dict[int | str, dict[str, Any]] = {200: {"content": {media_type: {}}}, 404: {}}
     route = router.get(
-        f"/network.{form}", response_class=Response, responses=answers, dependencies=[MAY_READ]
+        f"/network.{form}",
+        response_class=Response,
+        responses=answers,
+        dependencies=[MAY_READ_SHARED],
     )
     route(_reader(form, media_type))

@@ -8,7 +8,8 @@ from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
 
-from ..auth.authorize import MAY_READ, MAY_WRITE
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
+from ..auth.capability import SharedViewDep
 from ..core.uploads import limited
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Creature
@@ -40,19 +41,23 @@ async def file_sent(request: Request) -> dict[str, Any]:
     return await run_in_threadpool(sandbox().creature, sent)
 
 
-@router.get("/{sha}", responses={200: {"model": dict[str, Any]}}, dependencies=[MAY_READ])
+@router.get(
+    "/{sha}", responses={200: {"model": dict[str, Any]}}, dependencies=[MAY_READ_SHARED]
+)
 def read_creature(
     request: Request,
     row: CreatureDep,
     session: SessionDep,
+    share: SharedViewDep,
     download: bool = False,
     ancestors: bool = False,
 ) -> Response:
     """The creature file; with `ancestors` those that are kept of them come along."""
-    if ancestors:
-        whole = creatures.with_ancestors(session, row)
+    if share or ancestors:
+        file = creatures.with_ancestors(session, row) if ancestors else creatures.document(row)
         headers = named(row) if download else {}
-        return JSONResponse(whole, headers={"Cache-Control": "no-cache", **headers})
+        headers["Cache-Control"] = "no-cache"
+        return JSONResponse(share.licensed(file) if share else file, headers=headers)
     etag = f'"{row.sha256}"'
     headers = {"Cache-Control": FOR_EVER, "ETag": etag}
     if request.headers.get("if-none-match") == etag:
@@ -72,20 +77,21 @@ def named(row: Creature) -> dict[str, str]:
     "/{sha}/creature.h5",
     response_class=Response,
     responses={200: {"content": {H5: {}}}},
-    dependencies=[MAY_READ],
+    dependencies=[MAY_READ_SHARED],
 )
-def read_creature_h5(row: CreatureDep) -> Response:
+def read_creature_h5(row: CreatureDep, share: SharedViewDep) -> Response:
     """The creature file as HDF5, with its body and genes as arrays."""
     name = f"creature-{row.sha256[:12]}.h5"
     headers = {
         "Cache-Control": "no-cache",
         "Content-Disposition": f'attachment; filename="{name}"',
     }
-    data = creature_h5.dump(creature.parse(creatures.document(row)))
+    file = creatures.document(row)
+    data = creature_h5.dump(creature.parse(share.licensed(file) if share else file))
     return Response(data, headers=headers, media_type=H5)
 
 
-@router.get("/{sha}/ancestors", dependencies=[MAY_READ])
+@router.get("/{sha}/ancestors", dependencies=[MAY_READ_SHARED])
 def read_ancestors(
     row: CreatureDep, session: SessionDep, depth: Annotated[int, Query(ge=1, le=32)] = 3
 ) -> Ancestors:

@@ -1,7 +1,10 @@
 """What a run will need, before it is one."""
 
+from datetime import datetime
+
 from ..core.schemas import Wire
 from ..specs.schemas import DrawingRead
+from ..workers.schemas import RunBrief
 
 
 class MeasuredSpeed(Wire):
@@ -35,3 +38,18 @@ class EstimateRead(Wire):
     """What the seconds rest on."""
     queue: QueueAhead
     drawing: DrawingRead
+
+
+class QueuedRun(RunBrief):
+    waiting_reason: str
+    """Why it waits, in words."""
+    queued_at: datetime
+    memory_bytes: int | None
+    """What it needs, as far as can be said."""
+
+
+class QueueRead(Wire):
+    total: int
+    """Among them those that a worker is about to begin."""
+    items: list[QueuedRun]
+    """The first ones, in the order in which they will be taken."""

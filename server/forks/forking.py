@@ -7,7 +7,7 @@ from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Evolution, Spec
-from microcosmos.spec.search import ORIGINS
+from microcosmos.spec.search import MAX_INITIAL
 
 from ..archives import elites, measures
 from ..core.errors import FieldError, ProblemError, brief
@@ -27,7 +27,7 @@ def spec_of(session: Session, run: Run, sent: Fork, parse: Parse) -> Spec:
         needed = f"one of {', '.join(SEARCHES)}"
         raise refused("experiment", needed, document.get("experiment"))
     names = chosen(session, run, sent.start, sent.generation)
-    document = {**document, "search": {**search, "origin": names}}
+    document = {**document, "search": {**search, "initial": names}}
     return parse(emptied(document, run.spec, sent.spec, parse))
 
 
@@ -85,8 +85,8 @@ def chosen(session: Session, run: Run, start: Beginning, generation: int | None)
     within = _place(run, start)
     names = sorted({elite.creature for elite in living if within(elite)})
     _refuse_empty(start, {elite.cell for elite in living}, names)
-    if len(names) > ORIGINS:
-        needed = f"at most {ORIGINS:,} creatures (a `region`, or some `cells`)"
+    if len(names) > MAX_INITIAL:
+        needed = f"at most {MAX_INITIAL:,} creatures (a `region`, or some `cells`)"
         raise refused("from", needed, len(names))
     return names
 

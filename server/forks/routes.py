@@ -8,7 +8,7 @@ from ..auth.authorize import Writer
 from ..core.uploads import json_route
 from ..creatures.initial import named
 from ..queue.order import requeue
-from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, submitted
+from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, current, submitted
 from ..runs.deps import OwnRunId, find_run
 from ..runs.idempotency import earlier
 from ..runs.schemas import Extension, Fork, RunRead
@@ -47,7 +47,7 @@ def fork_run(
     """
     request = {"fork": str(run_id), **sent.model_dump(mode="json")}
     if known := earlier(services, idempotency_key, principal.token, request):
-        return submitted(services, response, known.run_id, new=False)
+        return submitted(response, current(services, known.run_id), new=False)
     with services.sessions.read() as session, parsing.parsing(services) as parse:
         spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
     refuse_too_large(services, spec)
@@ -55,4 +55,4 @@ def fork_run(
     run, new = submit(
         services, spec, idempotency_key, request, owner=principal.token, **columns
     )
-    return submitted(services, response, run.id, new)
+    return submitted(response, run, new)

@@ -15,7 +15,8 @@ from sqlalchemy.exc import SQLAlchemyError
 from ..core.database import ago
 from ..deletion.purge import purge
 from ..queue.order import in_order
-from ..runs.lifecycle import announce, lost, release, yield_up
+from ..runs.announce import announce
+from ..runs.lifecycle import lost, release, yield_up
 from ..runs.log import note
 from ..services.services import Services
 from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker

@@ -5,14 +5,15 @@ from typing import Any
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from ..auth.authorize import MAY_READ, MAY_WRITE
+from ..auth.authorize import MAY_READ_SHARED, MAY_WRITE
+from ..auth.capability import SharedViewDep
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
 from ..creatures.schemas import Measurement, Rendering
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import MEASUREMENT
 from . import storage as renderings
-from .routes import kept, ordered
+from .reading import kept, ordered
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
 Answers = dict[int | str, dict[str, Any]]
@@ -35,13 +36,19 @@ def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
 @router.get(
     "/measurement",
     responses={200: {"model": Measurement}, **UNDERWAY, **NEVER},
-    dependencies=[MAY_READ],
+    dependencies=[MAY_READ_SHARED],
 )
 def read_measurement(
-    request: Request, row: CreatureDep, session: SessionDep, services: ServicesDep
+    request: Request,
+    row: CreatureDep,
+    share: SharedViewDep,
+    session: SessionDep,
+    services: ServicesDep,
 ) -> Response:
     """What came of it; 202 while it is measured, 204 where nobody has asked for it."""
     if found := kept(request, row, session, services, MEASUREMENT):
         return found
+    if share:
+        return Response(status_code=204)
     job = services.jobs.find(services.jobs.rendering_id(row.sha256, MEASUREMENT))
     return ordered(services, row.sha256, MEASUREMENT) if job else Response(status_code=204)

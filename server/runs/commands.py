@@ -9,8 +9,8 @@ from sqlalchemy.orm import Session
 
 from ..services.services import Services
 from ..tables import Run
+from .announce import announce
 from .deps import find_run
-from .lifecycle import announce
 from .overview import read_run
 from .schemas import RunRead
 
@@ -34,20 +34,21 @@ def changed(
     """
     with services.sessions.write.begin() as session:
         change(session, find_run(session, run_id, deleted))
-    announce(services, run_id)
-    return current(services, run_id)
+    return announced(services, run_id)
 
 
-def submitted(
-    services: Services, response: Response, run_id: UUID | None, new: bool
-) -> RunRead:
+def submitted(response: Response, run: RunRead, new: bool) -> RunRead:
     """Answer a request for a run: 202 with a new one, 200 with the one that its key names."""
-    assert run_id is not None  # No request for a run is one for a sweep.
     response.status_code = 202 if new else 200
-    response.headers["Location"] = f"/api/v1/runs/{run_id}"
-    return current(services, run_id)
+    response.headers["Location"] = f"/api/v1/runs/{run.id}"
+    return run
 
 
-def current(services: Services, run_id: UUID) -> RunRead:
+def announced(services: Services, run_id: UUID) -> RunRead:
+    """Announce a run and return it as announced."""
+    return next(iter(announce(services, run_id)), None) or current(services, run_id)
+
+
+def current(services: Services, run_id: UUID | None) -> RunRead:
     with services.sessions.read() as session:
         return read_run(services, session, session.get_one(Run, run_id))

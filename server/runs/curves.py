@@ -51,3 +51,18 @@ def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
         for name, value in summary.items()
         if isinstance(value, int | float) and not isinstance(value, bool)
     }
+
+
+def species(session: Session, run_id: UUID, wanted: list[int]) -> dict[str, list[Any]]:
+    """Return numbers and members of the species, for the generations that have any."""
+    mine = (Generation.run_id == run_id) & Generation.generation.in_(wanted)
+    rows = select(Generation.generation, Generation.summary).where(mine)
+    columns: dict[str, list[Any]] = {"generation": [], "number": [], "members": []}
+    for generation, summary in session.execute(rows.order_by(Generation.generation)):
+        told = (summary or {}).get("species")
+        if isinstance(told, str):
+            pairs = [pair.partition(":") for pair in told.split()]
+            columns["generation"].append(generation)
+            columns["number"].append([int(number) for number, _, _ in pairs])
+            columns["members"].append([int(members) for _, _, members in pairs])
+    return columns

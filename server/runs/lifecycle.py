@@ -4,17 +4,14 @@ Every change is one guarded UPDATE, so that of two that come at once only one ha
 """
 
 import logging
-from collections.abc import Collection, Sequence
 from typing import Any, NoReturn
 from uuid import UUID
 
-from sqlalchemy import case, func, or_, select, update
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy import case, func, or_, update
 from sqlalchemy.orm import Session
 
 from ..core.database import ago, clock
 from ..core.errors import ProblemError
-from ..services.services import Services
 from ..tables import (
     CANCELLED,
     FAILED,
@@ -26,19 +23,11 @@ from ..tables import (
     Run,
 )
 from .log import note, note_standing
-from .overview import read_runs
-from .schemas import RunRead
 
 log = logging.getLogger(__name__)
 
 KEPT = Run.deleted_at.is_(None)
 """The condition that a run does not lie in the bin."""
-
-FIGURES = {
-    *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "diverged"),
-    *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting_reason"),
-}
-"""What may be another each time that a run is read; events of generations tell it too."""
 
 ATTEMPTS = 3
 """So many attempts without a new checkpoint end a run."""
@@ -172,37 +161,3 @@ def hand_back(session: Session, run_id: UUID, *where: Any) -> Run | None:
 def lost(session: Session, lease: float) -> Any:
     """The condition that nobody has spoken for a run as long as a lease."""
     return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
-
-
-def announce(services: Services, *run_ids: UUID, without: Collection[str] = ()) -> None:
-    """Tell everybody how some runs stand, after what changed them was committed.
-
-    Said again and again, it is said `without` what never changes and may be long.
-
-    Who reads first may speak last, of what is past by then. So whoever has spoken looks again,
-    and tells what has changed meanwhile: the last word on a run is how it stands.
-
-    What changed stands even where nobody can be told: an event is a courtesy.
-    """
-    said: dict[UUID, dict[str, Any]] = {}
-    try:
-        while news := [
-            run for run in _read(services, run_ids) if _facts(run) != said.get(run.id)
-        ]:
-            for run in news:
-                data = run.model_dump(mode="json", exclude=set(without))
-                services.events.publish("run", run.id, data)
-                said[run.id] = _facts(run)
-    except SQLAlchemyError as error:
-        log.warning("no event of runs %s: %s", ", ".join(map(str, run_ids)), error)
-
-
-def _read(services: Services, run_ids: Sequence[UUID]) -> list[RunRead]:
-    with services.sessions.read() as session:
-        runs = session.scalars(select(Run).where(Run.id.in_(run_ids))).all()
-        return read_runs(services, session, runs)
-
-
-def _facts(run: RunRead) -> dict[str, Any]:
-    """What no event but a run's own tells."""
-    return run.model_dump(exclude=FIGURES)

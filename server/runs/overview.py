@@ -24,9 +24,12 @@ def evenly(last: int, points: int) -> list[int]:
     return sorted({1 + round(i * (last - 1) / (points - 1)) for i in range(points)})
 
 
-def read_runs(services: Services, session: Session, runs: Sequence[Run]) -> list[RunRead]:
+def read_runs(
+    services: Services, session: Session, runs: Sequence[Run], queue: bool = True
+) -> list[RunRead]:
+    """Read runs for the API; without the `queue`, queued ones have no reason for waiting."""
     curves = _curves(session, runs)
-    reasons = position.reasons(services, session, runs)
+    reasons = position.reasons(services, session, runs) if queue else {}
     named = tokens.names(session, (run.owner for run in runs))
     return [
         _read(run, curves[run.id], reasons.get(run.id), named.get(run.owner)) for run in runs

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
-from ..auth.authorize import MAY_READ, Writer
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Writer
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..core.uploads import json_route
@@ -23,7 +23,7 @@ from ..specs import parsing
 from ..specs.drawings import drawing_read
 from ..tables import Run, Status
 from . import lifecycle, listing
-from .commands import SPEC_BYTES, IdempotencyKey, changed, submitted
+from .commands import SPEC_BYTES, IdempotencyKey, changed, current, submitted
 from .deps import AnyRunDep, OwnRunId
 from .idempotency import earlier
 from .overview import read_run, read_runs
@@ -67,10 +67,10 @@ def create_run(
     if known := earlier(
         services, idempotency_key, principal.token, spec.model_dump(mode="json")
     ):
-        return submitted(services, response, known.run_id, new=False)
+        return submitted(response, current(services, known.run_id), new=False)
     refuse_too_large(services, spec)
     run, new = submit(services, spec, idempotency_key, owner=principal.token, name=name or None)
-    return submitted(services, response, run.id, new)
+    return submitted(response, run, new)
 
 
 @router.post("/estimate", dependencies=[MAY_READ])
@@ -130,7 +130,7 @@ def _refuse_unknown(experiments: list[str]) -> None:
             raise ProblemError(422, "Invalid input", f"experiment: {message}", [error])
 
 
-@router.get("/{run_id}", dependencies=[MAY_READ])
+@router.get("/{run_id}", dependencies=[MAY_READ_SHARED])
 def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
     return read_run(services, session, run)
 

@@ -8,7 +8,6 @@ from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from ..core.schemas import Wire
 from ..tables import Status
-from ..workers.schemas import RunBrief
 
 NAME = 200
 
@@ -204,18 +203,3 @@ class TagRead(Wire):
     tag: str
     runs: int
     """How many have it."""
-
-
-class QueuedRun(RunBrief):
-    waiting_reason: str
-    """Why it waits, in words."""
-    queued_at: datetime
-    memory_bytes: int | None
-    """What it needs, as far as can be said."""
-
-
-class QueueRead(Wire):
-    total: int
-    """Among them those that a worker is about to begin."""
-    items: list[QueuedRun]
-    """The first ones, in the order in which they will be taken."""

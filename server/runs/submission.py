@@ -14,11 +14,12 @@ from microcosmos.version import VERSION
 from ..core.errors import FieldError, ProblemError
 from ..creatures import initial
 from ..services.services import Services
-from ..tables import Idempotency, Run
+from ..tables import Run
 from ..workers import plugins, registry
 from . import idempotency
-from .lifecycle import announce
+from .commands import announced, current
 from .log import note
+from .schemas import RunRead
 
 OF_SEARCHES = ("search.block", "search.batch", "archive")
 DECISIVE = {
@@ -94,12 +95,11 @@ def submit(
     request: Any = None,
     *,
     owner: UUID | None = None,
-    **said: Any,
-) -> tuple[Run, bool]:
-    """The run of a spec and whether it is new; the same key with the same request is one run.
+    **columns: Any,
+) -> tuple[RunRead, bool]:
+    """Create and enqueue a run; return it and whether it is new.
 
-    Of what is asked for by its spec alone, that is the request. What else is `said` of a new
-    run are columns of its row.
+    The same key with the same request gives the same run. Without a `request` it is the spec.
     """
     document = spec.model_dump(mode="json")
     request = document if request is None else request
@@ -110,7 +110,7 @@ def submit(
         generations=spec.generations,
         version=VERSION,
         owner=owner,
-        **said,
+        **columns,
     )
     with services.sessions.read() as session:
         initial.check(session, spec)
@@ -125,13 +125,7 @@ def submit(
         known = idempotency.earlier(services, key, owner, request)
         if known is None:
             raise
-        return _made(services, known), False
+        return current(services, known.run_id), False
     # Committed before it is enqueued: the worker must find the row.
     services.jobs.enqueue([run])
-    announce(services, run.id)
-    return run, True
-
-
-def _made(services: Services, known: Idempotency) -> Run:
-    with services.sessions.read() as session:
-        return session.get_one(Run, known.run_id)
+    return announced(services, run.id), True

@@ -48,10 +48,10 @@ def described(session: Session, share: Share) -> str:
 
 
 def _told(measured: dict[str, Any] | None) -> str:
-    features = (measured or {}).get("features", {})
-    if "displacement" not in features:
+    measures = (measured or {}).get("measures", {})
+    if "displacement" not in measures:
         return "A creature of Microcosmos."
-    return f"An evolved swimmer that goes {features['displacement']:.3g} cells."
+    return f"An evolved swimmer that goes {measures['displacement']:.3g} cells."
 
 
 def tags(base: str, share: Share, description: str) -> dict[str, str]:

@@ -3,7 +3,7 @@
 import logging
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from redis import RedisError
 from sqlalchemy import Select, and_, or_, select
 from sqlalchemy.orm import Session
@@ -13,10 +13,12 @@ from ..auth.principal import ADMIN
 from ..core.database import clock
 from ..core.errors import ProblemError
 from ..core.uploads import json_route
+from ..creatures.schemas import Rendering
+from ..renderings import reading
 from ..renderings import storage as renderings
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
-from ..tables import PREVIEW, Share
+from ..tables import PREVIEW, Creature, Share
 from . import archive_files, publishing
 from .schemas import ShareAsked, SharePage, ShareRead
 
@@ -58,6 +60,46 @@ def _prepare(services: Services, cover: str) -> None:
                 renderings.order(services, cover, PREVIEW)
     except (RedisError, renderings.RenderingFailed) as error:
         log.warning("The preview of %s is left to who wants to see it: %s", cover, error)
+
+
+Slug = Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")]
+
+
+def share(
+    request: Request,
+    slug: Slug,
+    session: SessionDep,
+) -> Share:
+    found = publishing.opened(session, slug)
+    request.state.listed = found.listed
+    return found
+
+
+ShareDep = Annotated[Share, Depends(share)]
+PNG: dict[int | str, dict[str, Any]] = {
+    200: {"content": {"image/png": {}}},
+    202: {"model": Rendering},
+}
+
+
+@router.get("/shares/{slug}", dependencies=[PUBLIC])
+def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareRead:
+    return told(request, session, share)
+
+
+@router.get(
+    "/shares/{slug}/preview.png",
+    response_class=Response,
+    responses=PNG,
+    dependencies=[PUBLIC],
+)
+def read_preview(
+    request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
+) -> Response:
+    """Return a picture of the creature, or of the best of the archive; 202 while it is made."""
+    cover = session.get_one(Creature, share.cover)
+    there = reading.kept(request, cover, session, services, PREVIEW)
+    return there or reading.ordered(services, share.cover, PREVIEW, patient=True)
 
 
 Limit = Annotated[int, Query(ge=1, le=200)]

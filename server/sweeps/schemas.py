@@ -174,11 +174,14 @@ class CaseSummary(Wire):
     coverage: Quantiles
     best: Quantiles
     finals: dict[str, Final]
-    """The newest value of each figure."""
+    """Each figure at the sweep's common generation."""
 
 
 class SweepSummary(Wire):
     id: UUID
+    generation: int | None
+    """The generation at which `finals` compares the runs: all active ones have reached it.
+    None before the first."""
     cases: list[CaseSummary]
 
 

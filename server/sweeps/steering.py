@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 from ..auth import tokens
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
-from ..runs import lifecycle
+from ..runs.announce import announce as announce_runs
 from ..runs.lifecycle import KEPT, Conflict
 from ..runs.overview import progress
 from ..services.services import Services
@@ -121,7 +121,7 @@ def steer(
                     changed.append(change(session, run).id)
                 except Conflict as refusal:
                     skipped.append(_skipped(session, run, refusal))
-        lifecycle.announce(services, *(run_id for run_id in some if run_id in changed))
+        announce_runs(services, *(run_id for run_id in some if run_id in changed))
     announce(services, sweep_id)
     return changed, skipped
 

@@ -3,15 +3,16 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+from uuid import UUID
 
 import numpy as np
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from ..runs.curves import numbers
 from ..runs.lifecycle import KEPT
 from ..runs.overview import evenly
 from ..tables import Generation, Run, Sweep
+from .comparison import FIGURES, common_generation, figures_at
 from .schemas import (
     CaseSummary,
     Final,
@@ -23,13 +24,12 @@ from .schemas import (
 )
 from .steering import combinations
 
-FIGURES = ("qd_score", "coverage", "best")
 QUANTILES = {"median": 0.5, "low": 0.25, "high": 0.75, "min": 0.0, "max": 1.0}
 POINTS = 400_000
 """Values of each figure that are looked at for one answer."""
 NAMED = 10_000
 """Generations that one question to the database names."""
-OF_RUNS = ("id", "sweep_index", "status", "generation", "generations", "evaluations")
+OF_RUNS = ("id", "sweep_index", "status", "generation", "generations")
 
 Told = Any
 """A row of the columns that were asked for."""
@@ -51,7 +51,7 @@ class Recorded:
 
 def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
     """All generations, or about so many, and fewer where all would be too much."""
-    columns = [getattr(Run, name) for name in (*OF_RUNS, *FIGURES, "summary")]
+    columns = [getattr(Run, name) for name in OF_RUNS]
     mine = select(*columns).where(Run.sweep == sweep.id, KEPT).order_by(Run.sweep_index)
     runs = session.execute(mine).all()
     last = max((run.generation for run in runs), default=0)
@@ -100,23 +100,23 @@ def summary(session: Session, sweep: Sweep, points: int | None) -> SweepSummary:
     of_case = np.array([run.sweep_index for run in found.runs], int) % len(values)
     seeds = [seed for seed in sweep.seeds or [None] for _ in values]
     members = [_member(run, seeds[run.sweep_index]) for run in found.runs]
-    searched = "search" in sweep.spec
+    common = common_generation(found.runs)
+    figures = figures_at(session, found.runs, common, "search" in sweep.spec)
     cases = [
-        _case(found, np.flatnonzero(of_case == number), members, searched, told)
+        _case(found, np.flatnonzero(of_case == number), members, figures, told)
         for number, told in enumerate(values)
     ]
-    return SweepSummary(id=sweep.id, cases=cases)
+    return SweepSummary(id=sweep.id, generation=common, cases=cases)
 
 
 def _case(
     found: Recorded,
     mine: Any,
     members: Sequence[SweepRun],
-    searched: bool,
+    figures: Mapping[UUID, Mapping[str, float]],
     values: dict[str, Any],
 ) -> CaseSummary:
     """What some of the runs say together, as far as any of them has got."""
-    runs = [found.runs[row] for row in mine]
     counts = found.reached[mine].sum(0)
     there = counts > 0
     bands = {
@@ -129,7 +129,7 @@ def _case(
         generation=[g for g, told in zip(found.generation, there, strict=True) if told],
         runs=counts[there].tolist(),
         **bands,
-        finals=finals(runs, searched),
+        finals=finals([figures.get(members[row].run, {}) for row in mine]),
     )
 
 
@@ -169,17 +169,10 @@ def told(column: Values) -> list[float | None]:
     return [None if value != value else value for value in column.tolist()]
 
 
-def finals(runs: Sequence[Told], searched: bool) -> dict[str, Final]:
-    """The newest figures of runs; where their result is a table, those in its summary too."""
-    known = [_figures(run, searched) for run in runs]
-    names = dict.fromkeys(name for figures in known for name in figures)
-    return {name: _final([figures.get(name) for figures in known]) for name in names}
-
-
-def _figures(run: Told, searched: bool) -> dict[str, float]:
-    fixed = {name: getattr(run, name) for name in (*FIGURES, "evaluations")}
-    of_table = {} if searched else numbers(run.summary or {})
-    return {k: v for k, v in {**fixed, **of_table}.items() if v is not None}
+def finals(figures: Sequence[Mapping[str, float]]) -> dict[str, Final]:
+    """Each figure of some runs, with its quantiles."""
+    names = dict.fromkeys(name for one in figures for name in one)
+    return {name: _final([one.get(name) for one in figures]) for name in names}
 
 
 def _final(values: Iterable[float | None]) -> Final:

@@ -92,7 +92,7 @@ def fork_the_chosen(page: Page, address: str, run: str) -> None:
     text = chosen(page).inner_text().removesuffix(" selected")
     page.locator(".chosen-bar").get_by_role("link", name="Fork").click()
     beginning = page.locator(".base-bar")
-    expect(beginning).to_contain_text(f"Begins from {text} of run {run[:8]}.", timeout=FAST)
+    expect(beginning).to_contain_text(f"Starts from {text} of run {run[:8]}.", timeout=FAST)
     assert "cells=" in page.url
     expect(page.get_by_label("Estimate")).to_be_visible(timeout=FAST)
     beginning.get_by_role("link", name=text).click()
@@ -105,7 +105,7 @@ def fork_the_past(page: Page, address: str, run: str) -> None:
     expect(bar).to_contain_text(re.compile(r"^\d+ creatures? of generation 1"))
     bar.get_by_role("link", name="Fork").click()
     expect(page.locator(".base-bar")).to_contain_text(
-        f"of run {run[:8]}, as they were after generation 1.", timeout=FAST
+        f"of run {run[:8]}, taken after generation 1.", timeout=FAST
     )
 
 
@@ -115,7 +115,7 @@ def fork_an_elite_in_another_viscosity(page: Page, address: str, run: str) -> st
     map_of(page).focus()
     page.keyboard.press("ArrowRight")
     page.locator("#map-reading").get_by_role("link", name="Fork").click()
-    expect(page.locator(".base-bar")).to_contain_text("Begins from 1 creature", timeout=FAST)
+    expect(page.locator(".base-bar")).to_contain_text("Starts from 1 creature", timeout=FAST)
     world = page.get_by_role("group", name="World", exact=True)
     world.get_by_label("Viscosity", exact=True).fill(str(VISCOSITY))
     page.get_by_label("Name of the run").fill(NAME)

@@ -29,7 +29,7 @@ def submit_a_small_population(page: Page, address: str) -> None:
     again.check()
     search.get_by_label("Every", exact=False).fill("4")
     search.get_by_label("Evaluations", exact=False).fill("128")
-    page.get_by_role("button", name="Start the run").click()
+    page.get_by_role("button", name="Start run").click()
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
 
 
@@ -38,7 +38,7 @@ def watch_it_end(page: Page) -> None:
     expect(ended).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("heading", name="Neuroevolution")).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("Into empty cells over"))).to_be_visible()
-    scores = page.get_by_role("img", name=re.compile("QD score .* evaluated again [0-9]"))
+    scores = page.get_by_role("img", name=re.compile("QD score .* re-evaluated [0-9]"))
     expect(scores).to_be_visible()
 
 

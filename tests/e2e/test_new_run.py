@@ -92,11 +92,11 @@ def test_a_spec_is_begun_changed_refused_kept_and_a_run_started(new: Page, idle)
 def every_experiment_shows_its_body_and_cost(page: Page) -> None:
     for kind, nodes in KINDS.items():
         choose(page, kind)
-        expect(beginning(page)).to_contain_text("As in preset “demo”", timeout=FAST)
+        expect(beginning(page)).to_contain_text("Same as preset “demo”", timeout=FAST)
         drawing = page.locator(".body-drawing")
         expect(drawing).to_contain_text(nodes, timeout=FAST)
         assert page.locator(".filament").first.get_attribute("d")
-        expect(page.get_by_label("What it will cost")).to_contain_text("No worker is running")
+        expect(page.get_by_label("Estimated cost")).to_contain_text("No worker is running")
     choose(page, "Folding")
     expect(page.get_by_role("img", name=re.compile("^Picture"))).to_have_count(2, timeout=FAST)
     choose(page, "Refinement")
@@ -112,7 +112,7 @@ def a_wrong_value_is_named(page: Page) -> None:
     expect(page.get_by_text(re.compile("World.width must be at least 75"))).to_be_visible(
         timeout=FAST
     )
-    page.get_by_role("button", name="Start the run").click()
+    page.get_by_role("button", name="Start run").click()
     expect(page.get_by_text("Some values cannot be used")).to_be_visible(timeout=FAST)
     assert page.url.endswith("/new?preset=quality-diversity%2Fdemo")
     page.get_by_role("group", name="Body", exact=True).get_by_label("Builder").select_option(
@@ -129,23 +129,23 @@ def changes_are_counted_kept_and_undone(page: Page) -> None:
     expect(beginning(page)).to_contain_text("Your draft is back", timeout=FAST)
     expect(beginning(page)).to_contain_text(text)
     expect(field(page, "Task", "Steps")).to_have_value("120")
-    page.get_by_role("button", name="back to 100", exact=True).click()
+    page.get_by_role("button", name="Reset to 100", exact=True).click()
     expect(field(page, "Task", "Steps")).to_have_value("100")
     page.get_by_role("button", name="Discard draft").click()
-    expect(beginning(page)).to_contain_text("As in preset “demo”")
+    expect(beginning(page)).to_contain_text("Same as preset “demo”")
     page.get_by_role("button", name="Undo", exact=True).click()
     expect(page.locator(".body-drawing")).to_contain_text("Ring", timeout=FAST)
 
 
 def json_and_form_stay_in_step(page: Page) -> None:
     page.get_by_role("button", name="JSON", exact=True).click()
-    area = page.get_by_label("The spec as JSON")
+    area = page.get_by_label("Spec as JSON")
     spec = json.loads(area.input_value())
     spec["seed"] = 7
     area.fill(json.dumps(spec))
     area.press("End")
     area.type(" nonsense")
-    expect(page.get_by_text("What is written as JSON cannot be used.")).to_be_visible()
+    expect(page.get_by_text("The JSON is not a valid spec.")).to_be_visible()
     area.fill(json.dumps(spec))
     page.get_by_role("button", name="Form", exact=True).click()
     expect(field(page, "General", "Seed")).to_have_value("7")
@@ -156,9 +156,9 @@ def json_and_form_stay_in_step(page: Page) -> None:
 
 def a_spec_is_pasted_and_what_is_none_is_refused(page: Page, address: str) -> None:
     page.goto(f"{address}/new?preset=scaling/demo")
-    expect(beginning(page)).to_contain_text("As in preset “demo”", timeout=FAST)
+    expect(beginning(page)).to_contain_text("Same as preset “demo”", timeout=FAST)
     paste(page, SPEC)
-    expect(beginning(page)).to_contain_text("As in what was pasted", timeout=FAST)
+    expect(beginning(page)).to_contain_text("Same as the pasted spec", timeout=FAST)
     expect(page.locator(".body-drawing")).to_contain_text("Cilia 88 nodes", timeout=FAST)
     expect(field(page, "General", "Cycles")).to_have_value("3")
     paste(page, '{"experiment": "astrology"}')
@@ -170,10 +170,10 @@ def a_spec_is_pasted_and_what_is_none_is_refused(page: Page, address: str) -> No
 def a_run_is_cloned(page: Page, address: str) -> None:
     run = page.request.post(f"{address}/api/v1/runs", data={**SPEC, "cycles": 5}).json()
     page.goto(f"{address}/new?from={run['id']}")
-    expect(beginning(page)).to_contain_text(f"As in run {run['id'][:8]}", timeout=FAST)
+    expect(beginning(page)).to_contain_text(f"Same as run {run['id'][:8]}", timeout=FAST)
     expect(field(page, "General", "Cycles")).to_have_value("5")
     drop(page, "run.json", json.dumps(run))
-    expect(beginning(page)).to_contain_text(f"As in run {run['id'][:8]}")
+    expect(beginning(page)).to_contain_text(f"Same as run {run['id'][:8]}")
     page.goto(f"{address}/new?preset=gaits/nothing")
     expect(page.get_by_role("alert")).to_contain_text("“preset” in the address must be one of")
 
@@ -182,7 +182,7 @@ def a_creature_gives_its_world(page: Page, address: str) -> None:
     file = creature_file()
     name = file["sha256"]
     drop(page, "creature.json", json.dumps(file))
-    expect(beginning(page)).to_contain_text(f"As in creature {name[:8]}", timeout=FAST)
+    expect(beginning(page)).to_contain_text(f"Same as creature {name[:8]}", timeout=FAST)
     expect(field(page, "Task", "Steps")).to_have_value("60")
     page.get_by_role("button", name="Open this creature instead").click()
     page.wait_for_url(f"{address}/creatures/{name}", timeout=FAST)
@@ -192,14 +192,14 @@ def a_creature_gives_its_world(page: Page, address: str) -> None:
 
 def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
     new.goto(f"{address}/new?preset=quality-diversity/demo")
-    expect(beginning(new)).to_contain_text("As in preset “demo”", timeout=FAST)
+    expect(beginning(new)).to_contain_text("Same as preset “demo”", timeout=FAST)
     reach(new, "radio", "Quality-diversity")
     new.keyboard.press("ArrowRight")
-    expect(beginning(new)).to_contain_text("As in preset “demo”")
+    expect(beginning(new)).to_contain_text("Same as preset “demo”")
     expect(new.get_by_role("radio", name=re.compile("^Neuro"))).to_be_checked()
     reach(new, "button", "Standard")
     new.keyboard.press("Enter")
-    expect(beginning(new)).to_contain_text("As in preset “standard”")
+    expect(beginning(new)).to_contain_text("Same as preset “standard”")
     reach(new, "button", "Close the section General")
     new.keyboard.press("Enter")
     expect(field(new, "General", "Seed")).to_be_hidden()

@@ -107,9 +107,9 @@ def choose_how_curves_are_drawn(page: Page) -> None:
     raw = pixels(page)
     curves.get_by_label("Log scale").check()
     page.wait_for_function(CHANGED, arg=raw)
-    curves.get_by_label("Smooth").select_option("5")
+    curves.get_by_label("Smoothing").select_option("5")
     expect(score).to_have_attribute("aria-label", re.compile("now 102"))
-    curves.get_by_role("combobox", name=re.compile("^Over")).select_option("evaluations")
+    curves.get_by_role("combobox", name=re.compile("^X axis")).select_option("evaluations")
     expect(score).to_have_attribute("aria-label", re.compile("^QD score over evaluations"))
     for word in ("log=1", "smooth=5", "over=evaluations"):
         assert word in page.url
@@ -135,9 +135,9 @@ def lay_another_run_beside(page: Page, other: Written) -> None:
 
 def see_what_differs_in_the_spec(page: Page, other: Written) -> None:
     card = page.get_by_role("region", name="Spec", exact=True)
-    expect(card).to_contain_text("One field differs from the preset Demo")
-    card.get_by_role("button", name="Difference to a run").click()
-    card.get_by_label("Difference to a run").select_option(str(other.id))
+    expect(card).to_contain_text("1 field differs from preset Demo")
+    card.get_by_role("button", name="Compare specs").click()
+    card.get_by_label("Compare specs").select_option(str(other.id))
     card.get_by_role("button", name="Compare", exact=True).click()
     found = card.get_by_role("table", name=re.compile("1 field"))
     expect(found.get_by_role("row", name=re.compile("Seed"))).to_have_text("Seed87")
@@ -148,11 +148,11 @@ def come_back_by_the_address(page: Page, other: Written) -> None:
     page.reload()
     curves = page.get_by_role("region", name="Curves")
     expect(curves.get_by_label("Log scale")).to_be_checked(timeout=FAST)
-    expect(curves.get_by_label("Smooth")).to_have_value("5")
+    expect(curves.get_by_label("Smoothing")).to_have_value("5")
     expect(curves.get_by_role("link", name=re.compile(str(other.id)[:8]))).to_be_visible()
     curves.get_by_role("button", name=re.compile("^Remove")).click()
     assert "with=" not in page.url
-    page.get_by_role("button", name="Close the difference").click()
+    page.get_by_role("button", name="Close differences").click()
     assert "against=" not in page.url
 
 
@@ -165,10 +165,10 @@ def walk_by_keyboard(page: Page) -> None:
     parts.get_by_role("link", name="Spec", exact=True).focus()
     page.keyboard.press("Enter")
     page.keyboard.press("Tab")
-    difference = page.get_by_role("button", name="Difference to a run")
+    difference = page.get_by_role("button", name="Compare specs")
     expect(difference).to_be_focused()
     page.keyboard.press("Enter")
-    choice = page.get_by_role("combobox", name="Difference to a run")
+    choice = page.get_by_role("combobox", name="Compare specs")
     expect(choice).to_be_focused(timeout=FAST)
     expect(choice.get_by_role("option")).not_to_have_count(1, timeout=FAST)
     page.keyboard.press("ArrowDown")  # Of a closed list this takes one, which is no decision.

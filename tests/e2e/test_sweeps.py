@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 from small import TINY
 from sqlalchemy import insert
 
-from server.runs import lifecycle
+from server.runs.announce import announce
 from server.tables import FINISHED, Generation, Run
 
 FAST = 10_000
@@ -27,7 +27,7 @@ def compute(services: Any, run: str, qd_scores: list[float]) -> None:
             for name, figure in (known | told).items():
                 setattr(row, name, figure)
         row.status = FINISHED
-    lifecycle.announce(services, UUID(run))
+    announce(services, UUID(run))
 
 
 @pytest.mark.e2e
@@ -36,15 +36,15 @@ def test_seeds_and_a_grid_make_a_sweep_that_is_summed_up_while_it_is_computed(
 ):
     page, address = idle_page, idle.product.url
     page.goto(f"{address}/new?view=json")
-    page.get_by_label("The spec as JSON").fill(json.dumps(TINY))
+    page.get_by_label("Spec as JSON").fill(json.dumps(TINY))
     card = page.get_by_role("region", name="Seeds and sweep")
-    card.get_by_label("How many seeds").fill("3")
+    card.get_by_label("Number of seeds").fill("3")
     card.get_by_role("button", name="Sweep over a field").click()
     values = card.get_by_label("Values of world.viscosity")
     values.fill("0.05, thick")
     expect(card.get_by_role("alert")).to_have_text("Needs a number, got “thick”.")
     values.fill("0.05, 0.1")
-    expect(card.get_by_role("status")).to_have_text("6 runs in all")
+    expect(card.get_by_role("status")).to_have_text("6 runs in total")
     card.get_by_label("Name of the sweep").fill("Thick and thin")
     expect(page.get_by_label("Estimate")).to_contain_text("Time of 6 runs", timeout=FAST)
     page.get_by_role("button", name="Start 6 runs").click()

@@ -91,8 +91,8 @@ def test_a_task_of_ones_own_evolves_and_its_file_says_which_version_it_is(tmp_pa
     path = module.main(tmp_path / "own.h5", task={"steps": 20}, search=search)
     source = sha256((EXAMPLES / "own_task.py").read_bytes()).hexdigest()
     with h5py.File(path) as file:  # Without the module.
-        spec, names = (json.loads(bytes(file.attrs[name])) for name in ("spec", "features"))
-        rows, fitness = file["archive/features"][:], file["archive/fitness"][:]
+        spec, names = (json.loads(bytes(file.attrs[name])) for name in ("spec", "measures"))
+        rows, fitness = file["archive/measures"][:], file["archive/fitness"][:]
         sway = file["archive/descriptors"][:, 0]
     for part in (spec["task"], spec["body"], spec["archive"]["descriptors"][0]):
         assert part["own"]["source"] == source

@@ -44,7 +44,7 @@ def forage(
         for fitness in ("displacement+energy", "displacement"):
             run = carry_out(place, spec(seed, fitness), f"{fitness}, seed {seed}")
             best = fittest(place, run["id"])
-            found[fitness].append(best["measured"]["features"]["energy"])
+            found[fitness].append(best["measured"]["measures"]["energy"])
             if fitness == "displacement+energy":
                 found["blind"].append(collected(blinded(best)))
     middle = {kind: statistics.median(values) for kind, values in found.items()}

@@ -100,7 +100,7 @@ def test_it_is_refused_then_evolves_where_it_is_and_waits_where_it_is_not(
     spec = json.loads(attributes["spec"])
     assert spec == done["spec"]
     assert spec["task"]["own"]["source"] == sha256(EXAMPLE.read_bytes()).hexdigest()
-    assert json.loads(attributes["features"])[-2:] == ["own_task.straight", "own_task.sway"]
+    assert json.loads(attributes["measures"])[-2:] == ["own_task.straight", "own_task.sway"]
     archive = own_place.http.get(
         f"/api/v1/runs/{run}/archive", params={"measures": "own_task.straight"}
     ).json()

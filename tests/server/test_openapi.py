@@ -75,14 +75,14 @@ def checkpoint(spec: dict[str, Any]) -> bytes:
     """The file of an archive with one elite."""
     archive = {
         "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
-        "features": np.array([[0.01, 1.0]]),
+        "measures": np.array([[0.01, 1.0]]),
         "fitness": np.array([2.5]),
         "generation": np.array([2]),
         "creature": np.zeros((1, 32), np.uint8),
         "cell": np.array([1]),
     }
-    features = json.dumps(["bending_effort", "stretching_effort"])
-    told = {"format": file.FORMAT, "spec": json.dumps(spec), "features": features}
+    measures = json.dumps(["bending_effort", "stretching_effort"])
+    told = {"format": file.FORMAT, "spec": json.dumps(spec), "measures": measures}
     return file.dump({"archive": archive}, told)
 
 

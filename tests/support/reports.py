@@ -71,12 +71,12 @@ def report(
     generation: int,
     elites: dict[int, float] | None = None,
     descriptors: tuple[float, ...] = (0.25, 0.5),
-    features: dict[str, float] | None = None,
+    measures: dict[str, float] | None = None,
     summary: dict[str, Any] | None = None,
 ) -> Any:
     """The report of a generation: new elites by cell, with their fitness."""
     found = [
-        elite(generation, *item, descriptors, features or {}) for item in (elites or {}).items()
+        elite(generation, *item, descriptors, measures or {}) for item in (elites or {}).items()
     ]
     return SimpleNamespace(
         generation=generation,
@@ -97,7 +97,7 @@ def elite(
     cell: int,
     fitness: float,
     descriptors: tuple[float, ...],
-    features: dict[str, float],
+    measures: dict[str, float],
 ) -> Any:
     found = identity(1000 * generation + cell)
     return SimpleNamespace(
@@ -110,11 +110,11 @@ def elite(
         measured={
             "fitness": fitness,
             "descriptors": {"bending_effort": 0.25, "stretching_effort": 0.5},
-            "features": {
+            "measures": {
                 "displacement": fitness,
                 "bending_effort": 0.25,
                 "stretching_effort": 0.5,
-                **features,
+                **measures,
             },
             "block": 16,
             "room": [24, 64],

@@ -93,7 +93,7 @@ attempt = SimpleNamespace(
     settings=Settings(),
     use=lambda device: None,
     restore=lambda: None,
-    origin=lambda: [],
+    initial=lambda: [],
     set_aside=lambda text: said.update(aside=text),
     refuse=lambda text: said.update(refused=text),
 )

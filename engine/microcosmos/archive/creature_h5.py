@@ -44,7 +44,7 @@ def _tree(file: Mapping[str, Any]) -> Tree:
     if measured:
         tree["measured"] = {
             "fitness": measured["fitness"],
-            **{group: _by_link(measured[group]) for group in ("descriptors", "features")},
+            **{group: _by_link(measured[group]) for group in ("descriptors", "measures")},
         }
     return tree
 

@@ -24,7 +24,7 @@ def to_pandas(archive: Source) -> Any:
 
 
 def to_ribs(archive: Source) -> Any:
-    """A `GridArchive` or `CVTArchive` of pyribs' with our elites and every feature as a field.
+    """A `GridArchive` or `CVTArchive` of pyribs' with our elites and every measure as a field.
 
     Ranges of a grid are on the axes' own scales, around centroids from 0 to 1 on those.
 

@@ -24,7 +24,7 @@ def csv(data: bytes) -> str:
 
 
 def columns(data: bytes) -> Columns:
-    """`solution_i`, `objective`, `measures_i`, `threshold`, features, `generation`, `creature`,
+    """`solution_i`, `objective`, `measures_i`, `threshold`, measures, `generation`, `creature`,
     what repeated evaluations have shown if there were any, and `index`, an entry an elite.
 
     A solution is the genome's arrays side by side, in the order of their names; a measure
@@ -37,15 +37,15 @@ def columns(data: bytes) -> Columns:
     arrays = [genomes[name].astype(np.float32) for name in sorted(genomes)]
     solution = np.concatenate([x.reshape(len(x), -1) for x in arrays], axis=1)
     axes = json.loads(attributes["spec"])["archive"]["descriptors"]
-    features = json.loads(attributes["features"])
+    names = json.loads(attributes["measures"])
     place = unit if "centroids" in archive else scaled
-    measures = [place(archive["features"][:, features.index(a["name"])], a) for a in axes]
+    places = [place(archive["measures"][:, names.index(a["name"])], a) for a in axes]
     fitness = archive["fitness"]
     found: Columns = {f"solution_{i}": solution[:, i] for i in range(solution.shape[1])}
     found |= {"objective": fitness}
-    found |= {f"measures_{i}": values for i, values in enumerate(measures)}
+    found |= {f"measures_{i}": values for i, values in enumerate(places)}
     found |= {"threshold": fitness}
-    found |= {name: archive["features"][:, i] for i, name in enumerate(features)}
+    found |= {name: archive["measures"][:, i] for i, name in enumerate(names)}
     found |= {"generation": archive["generation"]}
     found |= {"creature": [bytes(row).hex() for row in archive["creature"]]}
     return found | repeated(archive) | {"index": archive["cell"]}

@@ -118,7 +118,7 @@ def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Gene
                 break
     if step * max(1, len(families)) >= MOST:
         needed = f"creatures whose genes have numbers below {MOST // max(1, len(families)):,}"
-        raise CreatureError("search.origin", needed, step - 1)
+        raise CreatureError("search.initial", needed, step - 1)
     return found
 
 

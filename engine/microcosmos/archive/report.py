@@ -15,7 +15,7 @@ class Elite:
     fitness: float
     descriptors: tuple[float, ...]
     """In raw units, in the order of the archive's axes."""
-    features: dict[str, float]
+    measures: dict[str, float]
     creature: str
     identity: bytes
     parents: tuple[str, ...]

@@ -26,7 +26,7 @@ def gradient(
 ) -> tuple[dict[str, float], dict[str, dict[str, np.ndarray]]]:
     """Measures of a creature, and for each its derivatives by parts of the creature.
 
-    Names are those of `search.gradients.parts` and of the features. With `horizon` the life
+    Names are those of `search.gradients.parts` and of the measures. With `horizon` the life
     ends after so many steps; with `segment` so many steps are kept in memory at once and the
     others done twice. Raises `creature.CreatureError` for a file that is not sound and
     `ValueError` for unknown names.

@@ -82,12 +82,14 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     back, _ = _follow(tireless(scene, body), reciprocal(rest))
     rows = [
         *_soundness(scene, nominal),
-        _again("refined", "at twice the resolution and half the step", nominal, refined, 0.5),
-        _again("delta", f"with the delta {other_delta(scene)}", nominal, other, 1.0),
+        _remeasured(
+            "refined", "at twice the resolution and half the step", nominal, refined, 0.5
+        ),
+        _remeasured("delta", f"with the delta {other_delta(scene)}", nominal, other, 1.0),
         _reciprocal(back),
     ]
     reasons = [row["note"] for row in rows if row["passed"] is False]
-    survives = all(row["passed"] is not False for row in rows if row["name"] in DECISIVE)
+    survives = all(row["passed"] is not False for row in rows if row["name"] in VERDICT_ROWS)
     return {
         "creature": file["sha256"],
         "verdict": {"survives": survives, "reasons": reasons},
@@ -96,7 +98,7 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-DECISIVE = ("refined", "delta", "impulse")
+VERDICT_ROWS = ("refined", "delta", "impulse")
 """Rows without which it is not swimming."""
 
 
@@ -194,7 +196,9 @@ def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
     ]
 
 
-def _again(name: str, how: str, nominal: Found, again: Found, scale: float) -> dict[str, Any]:
+def _remeasured(
+    name: str, how: str, nominal: Found, again: Found, scale: float
+) -> dict[str, Any]:
     """How far the same gait goes the same way in another simulation."""
     along = float(again.way @ nominal.way) * scale / max(nominal.distance, 1e-12)
     share = along / max(nominal.distance, 1e-12)

@@ -27,7 +27,7 @@ def measurement(file: Mapping[str, Any]) -> dict[str, Any]:
         "exact": found.exact,
         "device": device_kind(),
         "recorded_device": file["measured"]["device"],
-        "fitness": _again("fitness", fitness, repeated),
+        "fitness": _compared("fitness", fitness, repeated),
         "figures": differing(found.recorded, found.repeated),
     }
 
@@ -37,7 +37,7 @@ def differing(recorded: Mapping[str, float], repeated: Mapping[str, float]) -> l
     both = {name: (value, repeated.get(name, np.nan)) for name, value in recorded.items()}
     wrong = [name for name, (value, other) in both.items() if value != other]
     wrong.sort(key=lambda name: (-_share(*both[name]), name))
-    return [_again(name, *both[name]) for name in wrong]
+    return [_compared(name, *both[name]) for name in wrong]
 
 
 def _share(recorded: float, repeated: float) -> float:
@@ -46,6 +46,6 @@ def _share(recorded: float, repeated: float) -> float:
     return abs(repeated - recorded) / max(abs(recorded), 1e-30)
 
 
-def _again(name: str, recorded: float, repeated: float) -> dict[str, Any]:
+def _compared(name: str, recorded: float, repeated: float) -> dict[str, Any]:
     finite = float(repeated) if np.isfinite(repeated) else None
     return {"name": name, "recorded": float(recorded), "measured": finite}

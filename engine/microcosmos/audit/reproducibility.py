@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import search
 from ..archive import creature
-from ..build import build_block, build_point, build_stroke_block, features_of
+from ..build import build_block, build_point, build_stroke_block, measures_of
 from ..device import device_kind
 from ..spec import Gait
 from ..viz.replay import actuator_of
@@ -38,7 +38,7 @@ def check(file: Mapping[str, Any]) -> Check:
         raise creature.CreatureError("measured", "what was measured, to compare with", None)
     repeated = _repeat(file)
     return Check(
-        recorded=file["measured"]["features"],
+        recorded=file["measured"]["measures"],
         repeated=repeated,
         same_device=file["measured"]["device"] == device_kind(),
     )
@@ -49,10 +49,10 @@ def _repeat(file: Mapping[str, Any]) -> dict[str, float]:
     if isinstance(scene.control, Gait):
         program, point = build_stroke_block(scene), build_point(scene)
         found = search.evaluate_blocks(program, _alone(point), block=block)
-        return dict(zip(search.STROKE_FEATURES, found.features[0].tolist(), strict=True))
+        return dict(zip(search.STROKE_MEASURES, found.measures[0].tolist(), strict=True))
     genotype = actuator_of(file, scene)
     found = search.evaluate_blocks(build_block(scene), _alone(genotype), block=block)
-    return dict(zip(features_of(scene), found.features[0].tolist(), strict=True))
+    return dict(zip(measures_of(scene), found.measures[0].tolist(), strict=True))
 
 
 def _alone(item: Any) -> Any:

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import bodies, build, search, spec, world
-from ..bodies.reach import reach
+from ..bodies.extent import extent
 from ..filaments import Rest
 from ..genomes import Drive
 
@@ -77,7 +77,7 @@ def refine(
     angle = np.tile(half.body.rest_angle, (2 * len(rest.angle), 1))
     angle[:, half.joints] = _between(np.asarray(rest.angle))
     length = _between(np.asarray(rest.length))[:, half.edges]
-    task = search.Task(box, start, None, length=2 * reach(body))
+    task = search.Task(box, start, None, length=2 * extent(body))
     return task, Rest(jnp.asarray(angle, jnp.float32), jnp.asarray(length, jnp.float32))
 
 

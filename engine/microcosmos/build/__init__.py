@@ -1,13 +1,13 @@
 """From a spec to the objects that carry it out: the only place where pydantic meets JAX."""
 
-from .cells import build_axes, build_niches
+from .cells import build_axes, build_cells
 from .creatures import build_block, build_point, build_stroke_block, frame
 from .emitters import build_emitters, build_rates
 from .encodings import build_controls, build_encoding
 from .experiments import build, build_plan
 from .folding import build_descent, build_pictures
 from .peers import scoring_function, to_repertoire
-from .plugins import build_measures, features_of
+from .plugins import build_measures, measures_of
 from .scene import (
     build_energy,
     build_limits,
@@ -23,6 +23,7 @@ __all__ = [
     "build",
     "build_axes",
     "build_block",
+    "build_cells",
     "build_controls",
     "build_crowd",
     "build_descent",
@@ -32,7 +33,6 @@ __all__ = [
     "build_gaits",
     "build_limits",
     "build_measures",
-    "build_niches",
     "build_pictures",
     "build_plan",
     "build_point",
@@ -44,8 +44,8 @@ __all__ = [
     "build_stroke_block",
     "build_task",
     "build_world",
-    "features_of",
     "frame",
+    "measures_of",
     "scoring_function",
     "to_repertoire",
 ]

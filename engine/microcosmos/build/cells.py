@@ -3,11 +3,11 @@
 from .. import search, spec
 
 
-def build_niches(
-    archive: spec.Archive, features: tuple[str, ...] = search.FEATURES
+def build_cells(
+    archive: spec.Archive, measures: tuple[str, ...] = search.MEASURES
 ) -> search.Cells:
-    """The archive's cells over recorded features."""
-    axes = build_axes(archive, features)
+    """The archive's cells over recorded measures."""
+    axes = build_axes(archive, measures)
     if archive.centroids is None:
         return search.Grid(axes)
     found = search.cvt.centroids(archive.centroids, len(axes), archive.seed)
@@ -15,12 +15,12 @@ def build_niches(
 
 
 def build_axes(
-    archive: spec.Archive, features: tuple[str, ...] = search.FEATURES
+    archive: spec.Archive, measures: tuple[str, ...] = search.MEASURES
 ) -> tuple[search.Axis, ...]:
-    """The archive's descriptors among recorded features."""
+    """The archive's descriptors among recorded measures."""
     return tuple(
         search.Axis(
-            feature=features.index(axis.name),
+            measure=measures.index(axis.name),
             low=axis.low,
             high=axis.high,
             bins=axis.bins,

@@ -8,8 +8,8 @@ from ..genomes import Encoding
 from ..search import emitters, qdax, tensorneat
 from ..search.emitters.tensorneat import TensorNeat
 from ..spec import emitters as words
-from .cells import build_niches
-from .plugins import features_of
+from .cells import build_cells
+from .plugins import measures_of
 
 
 def build_emitters(chosen: spec.Evolution, encoding: Encoding) -> tuple[search.Emitter, ...]:
@@ -73,8 +73,8 @@ def _(emitter: words.CmaMaeEmitter, slots, chosen, encoding):
 
 @_build.register
 def _(emitter: words.CmaMeEmitter, slots, chosen, encoding):
-    niches, asked = build_niches(chosen.archive, features_of(chosen.scene)), emitter.emitters
-    return qdax.cma_me(slots, encoding.newcomer, niches, step=emitter.step, emitters=asked)
+    cells, asked = build_cells(chosen.archive, measures_of(chosen.scene)), emitter.emitters
+    return qdax.cma_me(slots, encoding.newcomer, cells, step=emitter.step, emitters=asked)
 
 
 @_build.register

@@ -15,24 +15,24 @@ from ..archive.initial import counters, genes_of
 from ..experiments import Experiment, reevaluation
 from ..experiments.evolution import Evolution, Programs
 from ..experiments.learning import Lessons
-from ..experiments.state import Again, Limits, Origin, Plan
+from ..experiments.state import InitialCreatures, Limits, Plan, Reevaluation
 from ..search.emitters.tensorneat import TensorNeat
-from .cells import build_niches
+from .cells import build_cells
 from .creatures import build_block, build_disturbed_block, frame
 from .emitters import build_emitters
 from .folding import build_folding
-from .plugins import features_of, own_of
+from .plugins import measures_of, own_of
 from .refinement import build_refinement
 from .scene import build_encoding, build_task
 from .tables import build_gaits, build_scaling
 
 
 @singledispatch
-def build(chosen: spec.Spec, origin: Sequence[Mapping[str, Any]] = ()) -> Experiment:
+def build(chosen: spec.Spec, initial: Sequence[Mapping[str, Any]] = ()) -> Experiment:
     """The experiment that a spec describes, its programs ready to be compiled.
 
-    `origin` are the creature files that `search.origin` names; a run that is taken up from its
-    file does without.
+    `initial` are the creature files that `search.initial` names; a run resumed from its file
+    needs none.
     """
     raise TypeError(f"`spec` must be an experiment's, got {type(chosen).__name__}")
 
@@ -45,10 +45,10 @@ build.register(build_scaling)
 
 @build.register
 def build_evolution(
-    chosen: spec.Evolution, origin: Sequence[Mapping[str, Any]] = ()
+    chosen: spec.Evolution, initial: Sequence[Mapping[str, Any]] = ()
 ) -> Evolution:
     """A search with an archive."""
-    plan = begun(build_plan(chosen), chosen, origin)
+    plan = begun(build_plan(chosen), chosen, initial)
     emitters, key = plan.emitters, plan.key
     hosted = any(isinstance(emitter, TensorNeat) for emitter in emitters)
     compiled = (lambda program: program) if hosted else jax.jit
@@ -88,11 +88,13 @@ def build_lessons(
 
 def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs | None:
     """What evaluates elites again, where they are."""
-    asked = plan.again
+    asked = plan.reevaluation
     if asked is None:
         return None
     return reevaluation.Programs(
-        disturb=jax.jit(lambda g, s: reevaluation.disturb(asked, plan.key, plan.cells, g, s)),
+        disturb=jax.jit(
+            lambda g, s: reevaluation.disturb(asked, plan.key, plan.cell_count, g, s)
+        ),
         evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
         add=jax.jit(search.reevaluation.add),
         correct=jax.jit(search.reevaluation.corrected),
@@ -111,16 +113,16 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         generations=chosen.search.generations,
         block=chosen.search.block,
         descriptors=tuple(axis.name for axis in chosen.archive.descriptors),
-        niches=build_niches(chosen.archive, features_of(scene)),
+        cells=build_cells(chosen.archive, measures_of(scene)),
         encoding=encoding,
         emitters=build_emitters(chosen, encoding),
         names=names_of(chosen.emitters),
         counters=neat.first_counters(*fixed),
         device=device.device_kind(),
         limits=build_limits(chosen.search.stop),
-        again=build_again(chosen),
+        reevaluation=build_reevaluation(chosen),
         force_free=chosen.coupling.force_free,
-        features=features_of(scene),
+        measures=measures_of(scene),
         own=own_of(scene),
     )
 
@@ -130,17 +132,17 @@ def begun(plan: Plan, chosen: spec.Evolution, files: Sequence[Mapping[str, Any]]
     if not files:
         return plan
     given = {file["sha256"]: file for file in files}
-    if lacking := [name for name in chosen.search.origin if name not in given]:
+    if lacking := [name for name in chosen.search.initial if name not in given]:
         raise ValueError(
-            f"`search.origin` needs the file of each creature; got none of {lacking[0]}"
+            f"`search.initial` needs the file of each creature; got none of {lacking[0]}"
         )
-    genomes = genes_of(chosen, [given[name] for name in chosen.search.origin])
+    genomes = genes_of(chosen, [given[name] for name in chosen.search.initial])
     genotypes = [plan.encoding.read(genome) for genome in genomes]
-    names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.origin]
+    names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.initial]
     rows = jax.tree.map(lambda *parts: np.stack(parts), *genotypes)
     return replace(
         plan,
-        origin=Origin(np.stack(names), rows),
+        initial=InitialCreatures(np.stack(names), rows),
         counters=_counters(plan, genomes),
     )
 
@@ -162,7 +164,7 @@ def build_limits(stop: spec.Stop) -> Limits:
     return Limits(**given)
 
 
-def build_again(chosen: spec.Evolution) -> Again | None:
+def build_reevaluation(chosen: spec.Evolution) -> Reevaluation | None:
     """When elites are evaluated again, and under which conditions."""
     asked = chosen.search.reevaluation
     if asked is None:
@@ -171,7 +173,7 @@ def build_again(chosen: spec.Evolution) -> Again | None:
         asked.phase, asked.pose, asked.viscosity, asked.energy and bool(chosen.world.energy)
     )
     size = (chosen.world.width, chosen.world.height)
-    return Again(asked.every, asked.samples, spread, size)
+    return Reevaluation(asked.every, asked.samples, spread, size)
 
 
 def names_of(emitters: tuple[spec.Emitter, ...]) -> tuple[str, ...]:

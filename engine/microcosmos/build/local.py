@@ -21,17 +21,17 @@ def evolve(
     tell: Callable[[Report], None] = lambda report: None,
     checkpoint_seconds: float = 60.0,
     other_device: bool = False,
-    origin: Sequence[Mapping[str, Any]] = (),
+    initial: Sequence[Mapping[str, Any]] = (),
 ) -> bool:
     """Carry a run on until it is done or `stop()` says so; whether it is done.
 
     The archive file is the checkpoint: where it exists, the run goes on from it and ends
     with the same bytes as without the interruption. The best creature is written beside
-    it. `origin` are the creature files that `search.origin` names; to go on takes none.
+    it. `initial` are the creature files that `search.initial` names; to go on takes none.
     Raises `ValueError` where the file is of another spec or, without `other_device`, of
     another kind of device.
     """
-    experiment = build(spec, origin) if origin else build(spec)
+    experiment = build(spec, initial) if initial else build(spec)
     if archive.exists():
         state = experiment.restore(archive.read_bytes(), other_device=other_device)
     else:

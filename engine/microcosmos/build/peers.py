@@ -10,9 +10,9 @@ from .. import search, spec
 from ..archive.file import load
 from ..genomes import Genotype
 from ..search import qdax
-from .cells import build_niches
+from .cells import build_cells
 from .experiments import build_evolution, room_of
-from .plugins import features_of
+from .plugins import measures_of
 from .scene import build_task
 
 
@@ -33,8 +33,8 @@ def scoring_function(chosen: spec.Evolution, *, slopes: bool = False) -> Callabl
     def derive(genotypes: Genotype) -> search.Slopes:
         return search.mapped(lambda one: search.slopes(task, one, descriptors), genotypes)
 
-    niches = build_niches(chosen.archive, features_of(chosen.scene))
-    return qdax.scoring_function(evaluate, niches, derive if slopes else None)
+    cells = build_cells(chosen.archive, measures_of(chosen.scene))
+    return qdax.scoring_function(evaluate, cells, derive if slopes else None)
 
 
 def to_repertoire(archive: bytes | str | os.PathLike) -> Any:
@@ -44,4 +44,4 @@ def to_repertoire(archive: bytes | str | os.PathLike) -> Any:
     if not isinstance(chosen, spec.Evolution):
         raise ValueError(f"`archive` must be a search's, got {chosen.experiment}'s")
     state = build_evolution(chosen).restore(data, other_device=True)
-    return qdax.to_repertoire(state.elites, state.niches)
+    return qdax.to_repertoire(state.elites, state.cells)

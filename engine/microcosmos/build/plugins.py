@@ -11,7 +11,7 @@ from ..bodies import swimmers
 
 
 def build_measures(scene: spec.Scene) -> tuple[search.Measure, ...]:
-    """What is measured of a scene's creatures beside the usual features, by name."""
+    """What is measured of a scene's creatures beside the usual measures, by name."""
     task, found = scene.task, dict(scene.own)
     kinds = dict.fromkeys(found, "descriptor")
     if task.own is not None:
@@ -19,9 +19,9 @@ def build_measures(scene: spec.Scene) -> tuple[search.Measure, ...]:
     return tuple(_measure(kinds[name], name, found[name]) for name in sorted(found))
 
 
-def features_of(scene: spec.Scene) -> tuple[str, ...]:
+def measures_of(scene: spec.Scene) -> tuple[str, ...]:
     """What is recorded of a scene's creatures, in this order."""
-    return search.FEATURES + tuple(measure.name for measure in build_measures(scene))
+    return search.MEASURES + tuple(measure.name for measure in build_measures(scene))
 
 
 def own_of(scene: spec.Scene) -> dict[str, Any]:

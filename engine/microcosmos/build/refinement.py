@@ -10,9 +10,9 @@ from .. import device, search, spec
 from ..archive import creature
 from ..experiments import refinement
 from ..spec.refinement import parsed
-from .cells import build_niches
+from .cells import build_cells
 from .creatures import build_block, frame
-from .plugins import features_of, own_of
+from .plugins import measures_of, own_of
 from .scene import build_task
 
 
@@ -29,17 +29,17 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         genotype=jax.tree.map(lambda x: np.asarray(x)[None], genotype),
         slopes=search.slopes_program(task, names, chosen.segment, options),
         evaluate_block=build_block(scene, room),
-        niches=build_niches(chosen.archive, features_of(scene)),
+        cells=build_cells(chosen.archive, measures_of(scene)),
         names=names,
         steps=chosen.steps,
         length=chosen.length,
         block=chosen.block,
         frame=frame(scene),
         encoding=task.encoding,
-        origin=found["sha256"],
+        parent=found["sha256"],
         provenance=found["provenance"],
         device=device.device_kind(),
-        features=features_of(scene),
+        measures=measures_of(scene),
         own=own_of(scene),
     )
 

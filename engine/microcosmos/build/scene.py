@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import bodies, coupling, fields, filaments, fluid, groups, search, spec, world
-from ..bodies.reach import reach
+from ..bodies.extent import extent
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
 
@@ -47,7 +47,7 @@ def build_task(
         start,
         encoding,
         build_goal(scene.task),
-        reach(body),
+        extent(body),
         placements=build_placements(scene.world),
         own=build_measures(scene),
     )

@@ -7,7 +7,7 @@ from typing import Any
 import jax.numpy as jnp
 
 from .. import bodies, device, filaments, spec, units, world
-from ..bodies.reach import reach
+from ..bodies.extent import extent
 from ..experiments import gaits, scaling, timing
 from ..spec.scaling import SPACING
 from .creatures import build_point, build_stroke_block, frame
@@ -52,7 +52,7 @@ def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:
     scenes = [chosen.scene(form, swimmer, viscosity) for viscosity in chosen.viscosities]
     body = spec.shape(scenes[0].body)
     spacing = float(body.rest_length.max())
-    joints = max(1, round(reach(body) / spacing) - 1)
+    joints = max(1, round(extent(body) / spacing) - 1)
     return gaits.Stroke(
         form=form,
         swimmer=swimmer,

@@ -10,7 +10,7 @@ from typer.core import TyperGroup
 from ..archive.creature import parse
 from ..archive.file import HDF5, load
 from ..viz.figures import drawing, experiments
-from ..viz.files import export
+from ..viz.files import check, export
 from .app import CACHE, app, console, fail
 from .modules import Modules, load_modules
 
@@ -207,6 +207,7 @@ def _draw(file: Path, out: Path) -> None:
         experiments.save(experiments.of(data), out)
         return
 
+    check(out)
     if data[:1] == b"{":
         from ..device import prepare
         from ..viz.replay import record

@@ -1,4 +1,4 @@
-"""What a run begins from: creatures in files, as `search.origin` names them."""
+"""What a run begins from: creatures in files, as `search.initial` names them."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -40,11 +40,13 @@ def begun(spec: Spec, paths: Sequence[Path]) -> tuple[Spec, list[CreatureFile]]:
     if not isinstance(spec, Evolution):
         fail(f"--from needs a search's spec, got {spec.experiment}")
     found = {file["sha256"]: file for path in paths for file in creatures(path)}
-    named = spec.search.origin or sorted(found)
+    named = spec.search.initial or sorted(found)
     if lacking := [name for name in named if name not in found]:
-        fail(f"--from needs the creatures that `search.origin` names; got none of {lacking[0]}")
+        fail(
+            f"--from needs the creatures that `search.initial` names; got none of {lacking[0]}"
+        )
     try:
-        search = {**spec.search.model_dump(mode="json"), "origin": named}
+        search = {**spec.search.model_dump(mode="json"), "initial": named}
         chosen = parse_spec({**spec.model_dump(mode="json"), "search": search})
         assert isinstance(chosen, Evolution)
         files = [found[name] for name in named]
@@ -58,9 +60,9 @@ def begun(spec: Spec, paths: Sequence[Path]) -> tuple[Spec, list[CreatureFile]]:
 
 def refuse_without_files(spec: Spec, files: Sequence[CreatureFile], archive: Path) -> None:
     """Fail if the files of the initial creatures are missing."""
-    named = spec.search.origin if isinstance(spec, Evolution) else ()
+    named = spec.search.initial if isinstance(spec, Evolution) else ()
     if named and not files and not archive.exists():
-        fail(f"`search.origin` names {len(named)} creatures: --from needs the files with them")
+        fail(f"`search.initial` names {len(named)} creatures: --from needs the files with them")
 
 
 def creatures(path: Path) -> list[CreatureFile]:

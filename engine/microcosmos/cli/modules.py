@@ -35,5 +35,5 @@ def show(module: Modules = None) -> None:
         one = plugin.declaration
         unit = f" in {one.unit}" if one.unit else ""
         print(
-            f"{one.name}  {one.kind}  {one.title}{unit}  ({one.source[:12]}, {plugin.origin})"
+            f"{one.name}  {one.kind}  {one.title}{unit}  ({one.source[:12]}, {plugin.location})"
         )

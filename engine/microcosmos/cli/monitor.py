@@ -41,8 +41,8 @@ def runs(
     sort: Annotated[
         str, typer.Option(help="created, name, best, qd_score …; with - in front: descending.")
     ] = "-created",
-    most: Annotated[
-        int, typer.Option("--most", "-n", min=1, help="Number of runs to list at most.")
+    limit: Annotated[
+        int, typer.Option("--limit", "-n", min=1, help="Number of runs to list at limit.")
     ] = 20,
     json: Json = False,
     url: Url = None,
@@ -59,13 +59,13 @@ def runs(
             deleted=deleted,
             sort=sort,
         )
-        records = [run.record for run in islice(like, most + 1)]
+        records = [run.record for run in islice(like, limit + 1)]
     if json:
-        show(records[:most])
+        show(records[:limit])
         return
-    shown(COLUMNS, map(_row, records[:most]))
-    if len(records) > most:
-        say(f"More runs exist: --most {10 * most} lists them.")
+    shown(COLUMNS, map(_row, records[:limit]))
+    if len(records) > limit:
+        say(f"More runs exist: --limit {10 * limit} lists them.")
 
 
 @app.command(rich_help_panel=RUNS)

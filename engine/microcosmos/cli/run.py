@@ -20,7 +20,8 @@ from ..spec import Spec, estimate
 from .app import CACHE, app, console, fail
 from .fork import From, begun, refuse_without_files
 from .modules import Modules, load_modules
-from .specs import lasting, presets, read_spec
+from .specs import changed, lasting, presets, read_spec
+from .submit import Set
 
 
 @app.command()
@@ -35,6 +36,7 @@ def evolve(
             help="Total number of generations; extends a finished archive. Default: the spec's."
         ),
     ] = None,
+    settings: Set = None,
     checkpoint_seconds: Annotated[float, typer.Option(min=0.0)] = 60.0,
     other_device: Annotated[
         bool, typer.Option(help="Continue a run that another kind of device started.")
@@ -44,7 +46,7 @@ def evolve(
 ) -> None:
     """Carry out a run. If the archive file exists, continue it."""
     load_modules(module)
-    chosen = read_spec(spec)
+    chosen = changed(read_spec(spec), settings or [])
     if generations is not None:
         chosen = lasting(chosen, generations)
     path = archive or Path(spec.replace("/", "-") if spec in presets() else spec).with_suffix(
@@ -54,10 +56,10 @@ def evolve(
 
     evaluations = evaluations_of(chosen, path)
     prepare(cache=CACHE)
-    chosen, origin = begun(chosen, begin_from or ())
-    refuse_without_files(chosen, origin, path)
+    chosen, initial = begun(chosen, begin_from or ())
+    refuse_without_files(chosen, initial, path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
-    if not carry_on(chosen, path, checkpoint_seconds, other_device, origin):
+    if not carry_on(chosen, path, checkpoint_seconds, other_device, initial):
         console.print(f"Stopped. The same command goes on from {path}.")
         raise typer.Exit(130)
     best = path.with_suffix(".best.json")
@@ -65,9 +67,14 @@ def evolve(
 
 
 def evaluations_of(spec: Spec, path: Path) -> int:
-    """Return the number of evaluations; fail if the folder or the memory is missing."""
-    if not path.parent.is_dir():
-        fail(f"--out needs an existing folder; got {path.parent}")
+    """Make the folder of the file and return the number of evaluations.
+
+    Fails where the folder cannot be made or the memory does not suffice.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        fail(f"--out needs a folder that can be made: {error}")
     need = estimate(spec)
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if need.memory_bytes > memory:
@@ -80,7 +87,7 @@ def carry_on(
     archive: Path,
     checkpoint_seconds: float,
     other_device: bool,
-    origin: Sequence[Mapping[str, Any]] = (),
+    initial: Sequence[Mapping[str, Any]] = (),
 ) -> bool:
     """Carry out the run with a progress bar; the first Ctrl-C asks it to stop."""
     from .. import experiments
@@ -115,7 +122,7 @@ def carry_on(
                 tell=tell,
                 checkpoint_seconds=checkpoint_seconds,
                 other_device=other_device,
-                origin=origin,
+                initial=initial,
             )
         except experiments.OtherDevice as error:
             progress.stop()

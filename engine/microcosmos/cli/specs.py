@@ -1,7 +1,7 @@
 """Specs from files, or presets by name."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from ..spec import EXPERIMENTS, Evolution, Spec, field_path, parse
 from .app import fail
+from .overrides import applied
 
 
 def read_spec(name: str) -> Spec:
@@ -30,6 +31,16 @@ def lasting(spec: Spec, generations: int) -> Spec:
         return parse({**spec.model_dump(mode="json"), "search": search})
     except ValidationError as error:
         fail("\n".join(f"--generations: {said(found)}" for found in error.errors()))
+
+
+def changed(spec: Spec, settings: Sequence[str]) -> Spec:
+    """Return the spec with the fields of `--set` applied."""
+    if not settings:
+        return spec
+    try:
+        return parse(applied(spec.model_dump(mode="json"), settings))
+    except ValidationError as error:
+        fail("\n".join(f"--set: {said(found)}" for found in error.errors()))
 
 
 def presets() -> dict[str, Spec]:

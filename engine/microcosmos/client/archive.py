@@ -32,7 +32,7 @@ class Archive:
         self.elite_generation = np.array(document["elite_generation"], np.int32)
         """When each of them arose."""
         self.creature: list[str] = document["creature"]
-        self.features = {
+        self.measures = {
             name: columns.array(values).astype(np.float32)
             for name, values in document["measures"].items()
         }
@@ -84,7 +84,7 @@ class Archive:
             for i, axis in enumerate(self.axes)
         }
         found = {"objective": self.fitness, **measures, "threshold": self.fitness}
-        found |= self.features
+        found |= self.measures
         found |= {"generation": self.elite_generation, "creature": self.creature}
         return found | {"index": self.cell}
 

@@ -55,7 +55,7 @@ class Creature:
 
     @property
     def measured(self) -> dict[str, Any] | None:
-        """What was found when it was evaluated: `fitness`, `descriptors`, `features` …"""
+        """What was found when it was evaluated: `fitness`, `descriptors`, `measures` …"""
         return self.file["measured"]
 
     @property

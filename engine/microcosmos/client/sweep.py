@@ -20,7 +20,8 @@ class Sweep(Record):
 
     def __repr__(self) -> str:
         name = f" {self.name!r}" if self.name else ""
-        return f"<Sweep {self.id[:8]}{name}: {self.total} runs, {told(self.status_counts)}>"
+        counts = counts_as_text(self.status_counts)
+        return f"<Sweep {self.id[:8]}{name}: {self.total} runs, {counts}>"
 
     @property
     def cases(self) -> list[dict[str, Any]]:
@@ -121,6 +122,6 @@ class Summary:
         return frame(self.rows())
 
 
-def told(standing: Mapping[str, int]) -> str:
+def counts_as_text(standing: Mapping[str, int]) -> str:
     """How many runs are in which state, in words."""
     return ", ".join(f"{count} {status}" for status, count in standing.items() if count)

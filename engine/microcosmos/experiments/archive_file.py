@@ -19,13 +19,24 @@ from ..archive import file
 from ..genomes import Genotype
 from ..version import VERSION
 from .resume_check import OtherDevice, devices_of
-from .state import CURVES, ENDS, FATES, Diverged, Lineage, Origin, Plan, State, prolonged, start
+from .state import (
+    CURVES,
+    ENDS,
+    OUTCOMES,
+    Diverged,
+    InitialCreatures,
+    Lineage,
+    Plan,
+    State,
+    prolonged,
+    start,
+)
 
 __all__ = ["OtherDevice", "restore", "save"]
 
 Module = TypeVar("Module", bound=eqx.Module)
 
-ROWS = ("fitness", "features", "generation", "slot")
+ROWS = ("fitness", "measures", "generation", "slot")
 """Columns of elites that are written as they are."""
 
 
@@ -37,17 +48,17 @@ def save(plan: Plan, state: State) -> bytes:
     tree = {
         "archive": {
             "cell": cells.astype(np.int32),
-            "descriptors": elites.features[:, [axis.feature for axis in plan.axes]],
+            "descriptors": elites.measures[:, [axis.measure for axis in plan.axes]],
             "creature": state.creatures[cells],
             "operator": state.operators[cells],
-            "device": state.origins[cells],
+            "device": state.device_of[cells],
             "genomes": _columns(elites.genotypes),
             "repeats": _columns(jax.tree.map(lambda x: x[cells], state.repeats)),
             **{name: getattr(elites, name) for name in ROWS},
-            **_centroids(state.niches),
+            **_centroids(state.cells),
         },
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
-        "emitters": {name: state.fates[:, :, i] for i, name in enumerate(FATES)},
+        "emitters": {name: state.outcomes[:, :, i] for i, name in enumerate(OUTCOMES)},
         "lineage": _columns(state.lineage),
         "diverged": _columns(state.quarantine)
         | {"genotypes": _columns(state.quarantine.genotypes)},
@@ -58,14 +69,14 @@ def save(plan: Plan, state: State) -> bytes:
             "ended": np.int64(state.ended),
             **_clock(plan, state),
             "counters": _columns(state.counters),
-            "kin": state.kin,
+            "nearest_ancestors": state.nearest_ancestors,
             "emitters": leaves(state.emitters),
             **_unrepeated(state, cells),
         },
     }
-    if state.origin is not None:
-        genes = _columns(state.origin.genotypes)
-        tree["origin"] = {"creature": state.origin.creature, "genomes": genes}
+    if state.initial is not None:
+        genes = _columns(state.initial.genotypes)
+        tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
     return file.dump(tree, _attributes(plan, state))
 
 
@@ -83,9 +94,9 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
     state, archive, loop = start(plan), tree["archive"], tree["loop"]
     cells = archive["cell"]
     rows = {"occupied": np.ones(len(cells), bool), "genotypes": archive["genomes"], **archive}
-    creatures, operators, origins = state.creatures, state.operators, state.origins
+    creatures, operators, device_of = state.creatures, state.operators, state.device_of
     creatures[cells], operators[cells] = archive["creature"], archive["operator"]
-    origins[cells] = archive["device"]
+    device_of[cells] = archive["device"]
     repeats = _placed(state.repeats, cells, archive["repeats"])
     before = "unrepeated" in loop and _placed(state.repeats, cells, loop["unrepeated"])
     diverged = tree["diverged"]
@@ -94,24 +105,24 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
         diverged=int(loop["diverged"]),
-        niches=_niches(plan, archive),
+        cells=_cells_of(plan, archive),
         elites=_placed(state.elites, cells, rows),
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         emitters=filled(state.emitters, loop["emitters"]),
-        kin=loop["kin"],
+        nearest_ancestors=loop["nearest_ancestors"],
         repeats=repeats,
         creatures=creatures,
         operators=operators,
-        origins=origins,
+        device_of=device_of,
         curves=np.stack([tree["curves"][name] for name in CURVES], 1),
-        fates=np.stack([tree["emitters"][name] for name in FATES], 2),
+        outcomes=np.stack([tree["emitters"][name] for name in OUTCOMES], 2),
         ended=int(loop["ended"]),
         device_seconds=float(loop.get("device_seconds", 0.0)),
         lineage=Lineage(**tree["lineage"]),
         quarantine=Diverged(**diverged, genotypes=genotypes),
         devices=devices,
         unrepeated=before or None,
-        origin=_origin(state, tree.get("origin")),
+        initial=_initial(state, tree.get("initial")),
     )
     return prolonged(taken) if taken.generation < plan.generations else taken
 
@@ -122,7 +133,7 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
         "version": VERSION,
         "device": json.dumps(state.devices),
         "spec": plan.spec,
-        "features": json.dumps(plan.features),
+        "measures": json.dumps(plan.measures),
         "force_free": json.dumps(plan.force_free),
         "operators": json.dumps(search.OPERATORS),
         "statuses": json.dumps(search.STATUSES),
@@ -130,15 +141,15 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
     }
 
 
-def _centroids(niches: search.Cells) -> dict[str, Any]:
+def _centroids(cells: search.Cells) -> dict[str, Any]:
     """What cells are around, where they are not a grid's."""
-    return {"centroids": niches.centroids} if isinstance(niches, search.Voronoi) else {}
+    return {"centroids": cells.centroids} if isinstance(cells, search.Voronoi) else {}
 
 
-def _niches(plan: Plan, archive: dict[str, Any]) -> search.Cells:
+def _cells_of(plan: Plan, archive: dict[str, Any]) -> search.Cells:
     """The run's own cells: another machine may have found slightly other centroids."""
     if "centroids" not in archive:
-        return plan.niches
+        return plan.cells
     return search.voronoi(plan.axes, archive["centroids"])
 
 
@@ -179,10 +190,10 @@ def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Modul
     return replace(module, **{n: placed(x, columns[n]) for n, x in vars(module).items()})
 
 
-def _origin(state: State, group: file.Tree | None) -> Origin | None:
+def _initial(state: State, group: file.Tree | None) -> InitialCreatures | None:
     if group is None:
         return None
-    return Origin(group["creature"], _genotypes(state, group["genomes"]))
+    return InitialCreatures(group["creature"], _genotypes(state, group["genomes"]))
 
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:

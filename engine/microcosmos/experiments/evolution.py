@@ -16,10 +16,10 @@ import numpy as np
 from .. import search
 from ..archive.report import Report
 from ..genomes import Genotype
-from . import archive_file, lineage, offspring, reevaluation
-from .offspring import Programs
-from .state import CURVES, ENDS, KEPT, Diverged, Plan, State, start
-from .summary import told
+from . import archive_file, lineage, reevaluation
+from .offspring import Programs, next_offspring, refuse_lacking
+from .state import CURVES, ENDS, MAX_DIVERGED, Diverged, Plan, State, start
+from .summary import summary
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ class Evolution:
     """What evaluates elites again, if they are."""
 
     def init(self) -> State:
-        """Before the first generation; raises `ValueError` where origins are lacking."""
-        offspring.refuse_lacking(self.plan)
+        """Before the first generation; raises `ValueError` where device_of are lacking."""
+        refuse_lacking(self.plan)
         return start(self.plan)
 
     def done(self, state: State) -> bool:
@@ -52,20 +52,22 @@ class Evolution:
         Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
         """
         programs, spent = self.programs, state.device_seconds
-        brood = offspring.born(self.plan, programs, state, stop)
-        children, taught, began = brood.children, brood.taught, brood.began
+        offspring = next_offspring(self.plan, programs, state, stop)
+        children, taught, began = offspring.children, offspring.taught, offspring.began
         evaluation = search.evaluate_blocks(
             programs.evaluate_block, children.genotypes, block=self.plan.block, stop=stop
         )
         seconds = (time.monotonic() - began) * jax.local_device_count()
         candidates = _candidates(state.generation + 1, children, evaluation)
-        elites, inserted = programs.insert(state.elites, candidates, state.niches)
-        emitters = brood.kept(programs.tell(brood.emitters, _outcome(candidates, inserted)))
+        elites, inserted = programs.insert(state.elites, candidates, state.cells)
+        emitters = offspring.kept(
+            programs.tell(offspring.emitters, _outcome(candidates, inserted))
+        )
         inserted = jax.device_get(inserted)
-        clipped = search.clipped(candidates, state.niches)
+        clipped = search.clipped(candidates, state.cells)
         slots = np.flatnonzero(inserted.entered)
         news = lineage.record(
-            self.plan, state, children, evaluation, inserted.cell[slots], slots, brood.names
+            self.plan, state, children, evaluation, inserted.cell[slots], slots, offspring.names
         )
         state = replace(
             state,
@@ -73,15 +75,15 @@ class Evolution:
             evaluations=state.evaluations + taught.simulated + len(evaluation.fitness),
             diverged=state.diverged + int(np.count_nonzero(evaluation.status)),
             elites=elites,
-            counters=brood.counters,
+            counters=offspring.counters,
             emitters=emitters,
             repeats=programs.forget(state.repeats, inserted.cell, inserted.entered),
-            fates=np.concatenate([state.fates, self._fates(inserted)[None]]),
+            outcomes=np.concatenate([state.outcomes, self._outcomes(inserted)[None]]),
             device_seconds=state.device_seconds + seconds,
-            kin=news.kin,
+            nearest_ancestors=news.nearest_ancestors,
             creatures=news.creatures,
             operators=news.operators,
-            origins=news.origins,
+            device_of=news.device_of,
             lineage=news.lineage,
             quarantine=_set_apart(state, children.genotypes, np.asarray(evaluation.status)),
         )
@@ -93,14 +95,14 @@ class Evolution:
         row = np.array([*_figures(state), clipped, *corrected])
         state = replace(state, curves=np.concatenate([state.curves, row[None]]))
         report = _report(state, news.elites)
-        summary = told(
+        summarised = summary(
             self.plan,
             state,
             dict(zip(CURVES, row.tolist(), strict=True)),
             state.device_seconds - spent,
             np.asarray(evaluation.status),
         )
-        return state, replace(report, summary={**summary, **taught.told()})
+        return state, replace(report, summary={**summarised, **taught.summary()})
 
     def creature(self, state: State, cell: int) -> dict[str, Any]:
         """The creature file of a cell's elite."""
@@ -127,8 +129,8 @@ class Evolution:
         """
         return archive_file.restore(self.plan, data, other_device=other_device)
 
-    def _fates(self, inserted: search.Inserted) -> np.ndarray:
-        """The row of `FATES` of each emitter."""
+    def _outcomes(self, inserted: search.Inserted) -> np.ndarray:
+        """The row of `OUTCOMES` of each emitter."""
         slots = [emitter.slots for emitter in self.plan.emitters]
         ends = np.cumsum(slots)[:-1]
         fresh = np.split(np.asarray(inserted.entered & inserted.fresh), ends)
@@ -145,7 +147,7 @@ def _candidates(
     return search.Elites(
         occupied=jnp.asarray(evaluation.status == 0),
         fitness=jnp.asarray(evaluation.fitness),
-        features=jnp.asarray(evaluation.features),
+        measures=jnp.asarray(evaluation.measures),
         generation=jnp.full(batch, generation, jnp.int32),
         slot=jnp.arange(batch, dtype=jnp.int32),
         genotypes=children.genotypes,
@@ -156,7 +158,7 @@ def _outcome(candidates: search.Elites, inserted: search.Inserted) -> search.Out
     return search.Outcome(
         genotypes=candidates.genotypes,
         fitness=candidates.fitness,
-        features=candidates.features,
+        measures=candidates.measures,
         sound=candidates.occupied,
         cell=inserted.cell,
         entered=inserted.entered,
@@ -173,7 +175,9 @@ def _set_apart(state: State, genotypes: Genotype, status: np.ndarray) -> Diverge
         status=status[failed].astype(np.int32),
         genotypes=jax.tree.map(lambda x: np.asarray(x)[failed], genotypes),
     )
-    return jax.tree.map(lambda a, b: np.concatenate([a, b])[-KEPT:], state.quarantine, new)
+    return jax.tree.map(
+        lambda a, b: np.concatenate([a, b])[-MAX_DIVERGED:], state.quarantine, new
+    )
 
 
 def _ended(plan: Plan, state: State) -> int:

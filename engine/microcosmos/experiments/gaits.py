@@ -81,24 +81,24 @@ class Gaits:
         """There is none: points do not compete."""
 
     def _row(self, stroke: Stroke, point: int, found: search.Evaluation) -> Row:
-        names, values = search.STROKE_FEATURES, found.features[point].tolist()
-        features: dict[str, float] = dict(zip(names, values, strict=True))
+        names, values = search.STROKE_MEASURES, found.measures[point].tolist()
+        measures: dict[str, float] = dict(zip(names, values, strict=True))
         status = search.STATUSES[int(found.status[point])]
         ok = status != "non-finite"
         said = units.warnings(
-            mach=features["mach"], limited=features["limited"], spacing=stroke.spacing
+            mach=measures["mach"], limited=measures["limited"], spacing=stroke.spacing
         )
         row = {
             "form": stroke.form,
             "swimmer": stroke.swimmer,
             "viscosity": stroke.viscosities[point],
-            "displacement": features["cycle"] if ok else None,
-            "direction": features["direction"] if ok else None,
-            "reynolds": features["reynolds"] if ok else None,
+            "displacement": measures["cycle"] if ok else None,
+            "direction": measures["direction"] if ok else None,
+            "reynolds": measures["reynolds"] if ok else None,
             "sperm": stroke.sperm[point],
-            "mach": features["mach"] if ok else None,
-            "limited": features["limited"] if ok else None,
-            "impulse": features["impulse"] if ok else None,
+            "mach": measures["mach"] if ok else None,
+            "limited": measures["limited"] if ok else None,
+            "impulse": measures["impulse"] if ok else None,
             "status": status,
             "force_free": stroke.force_free,
             "warnings": "; ".join(said) if ok else "the simulation did not stay finite",
@@ -107,9 +107,9 @@ class Gaits:
             return Row(row)
         identity = stroke.identities[point]
         measured = {
-            "fitness": features["displacement"],
+            "fitness": measures["displacement"],
             "descriptors": {},
-            "features": features,
+            "measures": measures,
             "block": self.block,
             "room": None,
             "device": self.device,

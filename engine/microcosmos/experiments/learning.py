@@ -34,12 +34,12 @@ class Taught:
     norms: tuple[float, ...] = ()
     """Lengths of the sound slopes of fitness."""
 
-    def told(self) -> dict[str, float]:
+    def summary(self) -> dict[str, float]:
         """For the record of a generation; nothing where nobody learnt."""
         if not self.simulated:
             return {}
-        told = {"slopes: sound": self.sound / self.simulated}
-        return told | ({"slopes: length": float(np.median(self.norms))} if self.norms else {})
+        found = {"slopes: sound": self.sound / self.simulated}
+        return found | ({"slopes: length": float(np.median(self.norms))} if self.norms else {})
 
     def and_of(self, slopes: search.Slopes) -> "Taught":
         """With those of one more lesson."""
@@ -64,22 +64,22 @@ def teach(
     """Children and emitters' states after all lessons; `lessons` and `slots` are of each
     emitter.
     """
-    broods, kept, taught, first = [], [], Taught(), 0
-    for own, count, state in zip(lessons, slots, states, strict=True):
-        brood = jax.tree.map(lambda x, a=first, b=first + count: x[a:b], children)
-        for _ in range(own.number if own else 0):
-            assert own is not None
-            asked = jax.device_get(own.asks(state, brood))
+    taught_offspring, kept, taught, first = [], [], Taught(), 0
+    for lesson, count, state in zip(lessons, slots, states, strict=True):
+        offspring = jax.tree.map(lambda x, a=first, b=first + count: x[a:b], children)
+        for _ in range(lesson.number if lesson else 0):
+            assert lesson is not None
+            asked = jax.device_get(lesson.asks(state, offspring))
             number = len(jax.tree.leaves(asked)[0])
             found = search.evaluate_blocks(
-                own.slopes, asked, block=min(block, number), stop=stop
+                lesson.slopes, asked, block=min(block, number), stop=stop
             )
-            brood, state = own.learn(state, brood, found)
+            offspring, state = lesson.learn(state, offspring, found)
             taught = taught.and_of(found)
-        broods.append(jax.device_get(brood))
+        taught_offspring.append(jax.device_get(offspring))
         kept.append(state)
         first += count
     if not taught.simulated:
         return children, states, taught
-    whole = jax.tree.map(lambda *parts: np.concatenate(parts), *broods)
+    whole = jax.tree.map(lambda *parts: np.concatenate(parts), *taught_offspring)
     return whole, tuple(kept), taught

@@ -24,8 +24,8 @@ class News:
     elites: tuple[Elite, ...]
     creatures: np.ndarray
     operators: np.ndarray
-    origins: np.ndarray
-    kin: np.ndarray
+    device_of: np.ndarray
+    nearest_ancestors: np.ndarray
     lineage: Lineage
 
 
@@ -44,16 +44,16 @@ def record(
     """
     generation = state.generation + 1
     operator = np.asarray(children.operator)[slots]
-    forebears = _forebears(names, state.kin, np.asarray(children.parents))
+    forebears = _forebears(names, state.nearest_ancestors, np.asarray(children.parents))
     parents = forebears[slots]
-    fitness, features = np.asarray(evaluation.fitness)[slots], np.asarray(evaluation.features)
-    features = features[slots]
+    fitness, measures = np.asarray(evaluation.fitness)[slots], np.asarray(evaluation.measures)
+    measures = measures[slots]
     elites = tuple(
         _elite(
             plan,
             take(children.genotypes, slot),
             float(fitness[i]),
-            features[i],
+            measures[i],
             cell=int(cells[i]),
             generation=generation,
             operator=int(operator[i]),
@@ -65,8 +65,8 @@ def record(
     parents[[not elite.parents for elite in elites]] = 0
     own = [np.frombuffer(bytes.fromhex(elite.creature), np.uint8) for elite in elites]
     creatures, operators = state.creatures.copy(), state.operators.copy()
-    origins = state.origins.copy()
-    operators[cells], origins[cells] = operator, len(state.devices) - 1
+    device_of = state.device_of.copy()
+    operators[cells], device_of[cells] = operator, len(state.devices) - 1
     new = Lineage(
         creature=np.array(own, np.uint8).reshape(-1, 32),
         parents=parents,
@@ -74,14 +74,14 @@ def record(
         generation=np.full(len(slots), generation, np.int32),
         cell=cells.astype(np.int32),
         fitness=fitness,
-        descriptors=features[:, [axis.feature for axis in plan.axes]],
+        descriptors=measures[:, [axis.measure for axis in plan.axes]],
     )
     creatures[cells] = new.creature
-    kin = forebears.copy()
-    kin[slots] = 0
-    kin[slots, 0] = new.creature
+    nearest_ancestors = forebears.copy()
+    nearest_ancestors[slots] = 0
+    nearest_ancestors[slots, 0] = new.creature
     lineage = jax.tree.map(lambda a, b: np.concatenate([a, b]), state.lineage, new)
-    return News(elites, creatures, operators, origins, kin, lineage)
+    return News(elites, creatures, operators, device_of, nearest_ancestors, lineage)
 
 
 def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
@@ -92,12 +92,12 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
         plan,
         elites.genotypes,
         float(elites.fitness),
-        elites.features,
+        elites.measures,
         cell=cell,
         generation=int(elites.generation),
         operator=int(state.operators[cell]),
         parents=state.lineage.parents[entry],
-        device=state.devices[state.origins[cell]],
+        device=state.devices[state.device_of[cell]],
     )
     return naming.document(json.loads(elite.identity), elite.measured, elite.provenance)
 
@@ -109,17 +109,19 @@ def identity(
     return {**frame, "genome": {**frame["genome"], **encoding.write(genotype)}}
 
 
-def _forebears(names: np.ndarray, kin: np.ndarray, parents: np.ndarray) -> np.ndarray:
+def _forebears(
+    names: np.ndarray, nearest_ancestors: np.ndarray, parents: np.ndarray
+) -> np.ndarray:
     """Recorded creatures (slot, 2, 32) that the children of parents (slot, 2) descend from.
 
     A parent in the archive is recorded itself; one of the last generation may not be: then
     it is the nearest of its own forebears that is.
     """
-    nearest = np.concatenate([names, kin[:, 0], NOBODY[None]])
+    nearest = np.concatenate([names, nearest_ancestors[:, 0], NOBODY[None]])
     found = nearest[parents]  # −1, for no parent, finds nobody.
     alone = (parents[:, 1] == search.NO_PARENT) & (parents[:, 0] >= len(names))
     # An only parent that was not recorded passes both of its own forebears on.
-    found[alone] = kin[parents[alone, 0] - len(names)]
+    found[alone] = nearest_ancestors[parents[alone, 0] - len(names)]
     same = (found[:, 0] == found[:, 1]).all(-1)
     found[same, 1] = 0
     return found
@@ -138,8 +140,8 @@ def _elite(
     device: str,
 ) -> Elite:
     whole = identity(plan.frame, plan.encoding, genotype)
-    features: dict[str, float] = dict(zip(plan.features, values.tolist(), strict=True))
-    descriptors = {name: features[name] for name in plan.descriptors}
+    measures: dict[str, float] = dict(zip(plan.measures, values.tolist(), strict=True))
+    descriptors = {name: measures[name] for name in plan.descriptors}
     creature = naming.name(whole)
     named = tuple(bytes(parent).hex() for parent in parents if parent.any())
     if search.OPERATORS[operator] == "fork":  # In its own world it is itself, not its child.
@@ -147,7 +149,7 @@ def _elite(
     measured = {
         "fitness": fitness,
         "descriptors": descriptors,
-        "features": features,
+        "measures": measures,
         "block": plan.block,
         "room": list(plan.encoding.room) if plan.encoding.room else None,
         "device": device,
@@ -160,7 +162,7 @@ def _elite(
         cell=cell,
         fitness=fitness,
         descriptors=tuple(descriptors.values()),
-        features=features,
+        measures=measures,
         creature=creature,
         identity=naming.canonical(whole),
         parents=named,

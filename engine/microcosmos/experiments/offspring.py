@@ -1,7 +1,7 @@
-"""How the children of a generation arise; the first ones may be creatures of before.
+"""Offspring: the creatures of the next generation, before they are evaluated.
 
-A search with an origin evaluates those creatures first, a batch of them at a time. What is left
-of the last such batch are children of them.
+A search with initial creatures evaluates those first, a batch at a time. Their children fill
+the rest of the last such batch.
 """
 
 import json
@@ -18,7 +18,7 @@ from .. import neat, search
 from ..genomes import Genotype
 from ..search.emitters.population import Population
 from .learning import Lessons, Taught, teach
-from .state import Origin, Plan, State
+from .state import InitialCreatures, Plan, State
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Programs:
 
 
 @dataclass(frozen=True)
-class Brood:
+class Offspring:
     """Children that are not evaluated yet."""
 
     children: search.Children
@@ -59,22 +59,24 @@ class Brood:
 
 def refuse_lacking(plan: Plan) -> None:
     """Raise `ValueError` where the spec names creatures that are not there."""
-    named = json.loads(plan.spec)["search"].get("origin", [])
-    if named and plan.origin is None:
+    named = json.loads(plan.spec)["search"].get("initial", [])
+    if named and plan.initial is None:
         raise ValueError(
-            f"`search.origin` names {len(named)} creatures, whose files are needed to begin"
+            f"`search.initial` names {len(named)} creatures, whose files are needed to begin"
         )
 
 
-def born(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> Brood:
+def next_offspring(
+    plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]
+) -> Offspring:
     """The next generation's children."""
-    first, origin = state.generation * plan.batch, state.origin
-    if origin is None or first >= len(origin.creature):
+    first, initial = state.generation * plan.batch, state.initial
+    if initial is None or first >= len(initial.creature):
         return _emitted(plan, programs, state, state.elites, state.creatures, stop)
-    found, names = _gathered(plan, state, origin)
-    brood = _emitted(plan, programs, state, found, names, stop)
-    places = np.arange(first, min(first + plan.batch, len(origin.creature)))
-    return _replaced(plan, state, brood, origin, places)
+    found, names = _gathered(plan, state, initial)
+    offspring = _emitted(plan, programs, state, found, names, stop)
+    places = np.arange(first, min(first + plan.batch, len(initial.creature)))
+    return _replaced(plan, state, offspring, initial, places)
 
 
 def _emitted(
@@ -84,7 +86,7 @@ def _emitted(
     elites: search.Elites,
     names: np.ndarray,
     stop: Callable[[], bool],
-) -> Brood:
+) -> Offspring:
     """What emitters make of an archive."""
     children, emitters, counters = programs.emit(
         state.emitters, elites, state.counters, jnp.asarray(state.generation)
@@ -94,32 +96,38 @@ def _emitted(
     children, emitters, taught = teach(
         programs.lessons, slots, children, emitters, block=plan.block, stop=stop
     )
-    return Brood(children, emitters, counters, taught, began, names)
+    return Offspring(children, emitters, counters, taught, began, names)
 
 
-def _gathered(plan: Plan, state: State, origin: Origin) -> tuple[search.Elites, np.ndarray]:
+def _gathered(
+    plan: Plan, state: State, initial: InitialCreatures
+) -> tuple[search.Elites, np.ndarray]:
     """An archive that holds what the search begins from, and the names by cell."""
-    count = min(plan.cells, len(origin.creature))
-    nobody = search.no_elites(plan.cells, len(search.FEATURES), plan.genotype)
+    count = min(plan.cell_count, len(initial.creature))
+    nobody = search.no_elites(plan.cell_count, len(search.MEASURES), plan.genotype)
     genotypes = jax.tree.map(
-        lambda none, x: none.at[:count].set(x[:count]), nobody.genotypes, origin.genotypes
+        lambda none, x: none.at[:count].set(x[:count]), nobody.genotypes, initial.genotypes
     )
     occupied = nobody.occupied.at[:count].set(True)
-    lacking = np.zeros((max(0, plan.cells - count), 32), np.uint8)
-    names = np.concatenate([origin.creature, lacking])
+    lacking = np.zeros((max(0, plan.cell_count - count), 32), np.uint8)
+    names = np.concatenate([initial.creature, lacking])
     return replace(nobody, occupied=occupied, genotypes=genotypes), names
 
 
 def _replaced(
-    plan: Plan, state: State, brood: Brood, origin: Origin, places: np.ndarray
-) -> Brood:
-    """The brood with creatures of before in its first slots."""
-    children, count = brood.children, len(places)
+    plan: Plan,
+    state: State,
+    offspring: Offspring,
+    initial: InitialCreatures,
+    places: np.ndarray,
+) -> Offspring:
+    """The offspring with creatures of before in its first slots."""
+    children, count = offspring.children, len(places)
 
     def put(values: Any, new: Any) -> np.ndarray:
         return np.concatenate([np.asarray(new), np.asarray(values)[count:]])
 
-    own = jax.tree.map(lambda x: x[places], origin.genotypes)
+    own = jax.tree.map(lambda x: x[places], initial.genotypes)
     parents = np.stack([places, np.full(count, search.NO_PARENT)], 1).astype(np.int32)
     code = np.full(count, search.OPERATORS.index("fork"), np.int32)
     old, form = jax.tree.flatten(children)
@@ -133,4 +141,4 @@ def _replaced(
         (kept,) if first < count and not isinstance(kept, Population) else None
         for kept, first in pairs
     )
-    return replace(brood, children=whole, untold=untold)
+    return replace(offspring, children=whole, untold=untold)

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray
 
 from .. import search
 from ..search.reevaluation import Disturbance, Repeats, disturbance
-from .state import Again, Plan, State
+from .state import Plan, Reevaluation, State
 
 SAMPLES = 2**30
 """Numbers from here on stand for samples where keys are derived, below it for slots."""
@@ -29,41 +29,49 @@ class Programs:
 
 
 def disturb(
-    again: Again, key: PRNGKeyArray, cells: int, generation: Int[Array, ""], sample: int
+    reevaluation: Reevaluation,
+    key: PRNGKeyArray,
+    cells: int,
+    generation: Int[Array, ""],
+    sample: int,
 ) -> Disturbance:
     """The conditions in every cell, derived from seed, generation, sample and cell."""
     turn = jax.random.fold_in(jax.random.fold_in(key, generation), SAMPLES + sample)
     keys = jax.vmap(lambda cell: jax.random.fold_in(turn, cell))(jnp.arange(cells))
-    return jax.vmap(lambda own: disturbance(again.spread, again.size, key=own))(keys)
+    return jax.vmap(lambda key: disturbance(reevaluation.spread, reevaluation.size, key=key))(
+        keys
+    )
 
 
 def due(plan: Plan, state: State) -> bool:
     """Whether elites are evaluated again after the state's generation."""
     last = bool(state.ended) or state.generation >= plan.generations
-    return plan.again is not None and (last or state.generation % plan.again.every == 0)
+    return plan.reevaluation is not None and (
+        last or state.generation % plan.reevaluation.every == 0
+    )
 
 
 def early(plan: Plan, state: State) -> bool:
     """Whether it would not be due yet if the run had more generations."""
-    assert plan.again is not None
-    return not state.ended and state.generation % plan.again.every != 0
+    assert plan.reevaluation is not None
+    return not state.ended and state.generation % plan.reevaluation.every != 0
 
 
 def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> State:
     """The state with every elite evaluated again; raises `Stopped` as `advance` does."""
-    assert plan.again is not None
+    assert plan.reevaluation is not None
     began = time.monotonic()
     done = np.asarray(state.elites.occupied)
     cells, repeats = np.flatnonzero(done), state.repeats
     genotypes = jax.tree.map(lambda x: np.asarray(x)[cells], state.elites.genotypes)
-    for sample in range(plan.again.samples):
+    for sample in range(plan.reevaluation.samples):
         changed = programs.disturb(jnp.asarray(state.generation), jnp.asarray(sample))
         changed = jax.tree.map(lambda x: np.asarray(x)[cells], changed)
         found = search.evaluate_blocks(
             programs.evaluate_block, (genotypes, changed), block=plan.block, stop=stop
         )
-        everywhere = jax.tree.map(lambda x: _spread(x, cells, plan.cells), found)
-        repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.niches)
+        everywhere = jax.tree.map(lambda x: _spread(x, cells, plan.cell_count), found)
+        repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.cells)
     seconds = (time.monotonic() - began) * jax.local_device_count()
     before = state.repeats if early(plan, state) else None
     spent = state.device_seconds + seconds
@@ -75,7 +83,7 @@ def figures(programs: Programs, state: State) -> tuple[float, float, float]:
     count = np.asarray(state.repeats.count)
     if not count.any():
         return np.nan, np.nan, np.nan
-    corrected = programs.correct(state.elites, state.repeats, state.niches)
+    corrected = programs.correct(state.elites, state.repeats, state.cells)
     corrected = np.asarray(corrected, np.float64)
     there = corrected[np.isfinite(corrected)]
     hits = np.asarray(state.repeats.hits).sum() / count.sum()

@@ -45,7 +45,7 @@ class Refinement:
     """The creature's, a batch of one."""
     slopes: Callable[[Genotype], search.Slopes]
     evaluate_block: Callable[[Genotype], search.Evaluation]
-    niches: search.Cells
+    cells: search.Cells
     names: tuple[str, ...]
     """Descriptors."""
     steps: int
@@ -53,14 +53,14 @@ class Refinement:
     block: int
     frame: Mapping[str, Any]
     encoding: Encoding
-    origin: str
+    parent: str
     """The creature's name."""
     provenance: Mapping[str, Any] | None
     """How it came to be, if that is known."""
     device: str
-    features: tuple[str, ...] = search.FEATURES
+    measures: tuple[str, ...] = search.MEASURES
     own: Mapping[str, Any] = field(default_factory=dict)
-    """Versions of the measures of one's own among the features."""
+    """Versions of the measures of one's own among the measures."""
 
     def init(self) -> State:
         """Before the creature is measured."""
@@ -88,7 +88,7 @@ class Refinement:
         )
         best = self._best(state, found)
         if best is None:
-            row, length = _again(state), state.length / SHRINK
+            row, length = _unchanged(state), state.length / SHRINK
         else:
             row = self._row(state, found, best, tried.genes[best])
             longest = 0 < tried.lengths[best] == tried.lengths[0]
@@ -141,7 +141,7 @@ class Refinement:
 
     def _best(self, state: State, found: search.Evaluation) -> int | None:
         """The fittest sound trial in the creature's cell, if it is fitter than before."""
-        cells = np.asarray(self.niches.of(jnp.asarray(found.features)))
+        cells = np.asarray(self.cells.of(jnp.asarray(found.measures)))
         home = self._home(state) if state.table.rows else cells[0]
         fitness = np.where((found.status == 0) & (cells == home), found.fitness, -np.inf)
         best = int(np.argmax(fitness))
@@ -154,17 +154,17 @@ class Refinement:
     def _home(self, state: State) -> int:
         measured = state.table.rows[0].measured
         assert measured is not None
-        features = np.array([[measured["features"][name] for name in self.features]])
-        return int(self.niches.of(jnp.asarray(features, jnp.float32))[0])
+        measures = np.array([[measured["measures"][name] for name in self.measures]])
+        return int(self.cells.of(jnp.asarray(measures, jnp.float32))[0])
 
     def _identity(self, genes: np.ndarray) -> dict[str, Any]:
         return identity(self.frame, self.encoding, take(self._genotypes(genes[None]), 0))
 
     def _row(self, state: State, found: search.Evaluation, best: int, genes: np.ndarray) -> Row:
-        features: dict[str, float] = dict(
-            zip(self.features, found.features[best].tolist(), strict=True)
+        measures: dict[str, float] = dict(
+            zip(self.measures, found.measures[best].tolist(), strict=True)
         )
-        descriptors = {name: features[name] for name in self.names}
+        descriptors = {name: measures[name] for name in self.names}
         first = not state.table.rows
         values = {
             "step": state.table.generation,
@@ -174,7 +174,7 @@ class Refinement:
         measured = {
             "fitness": float(found.fitness[best]),
             "descriptors": descriptors,
-            "features": features,
+            "measures": measures,
             "block": self.block,
             "room": list(self.encoding.room) if self.encoding.room else None,
             "device": self.device,
@@ -183,7 +183,7 @@ class Refinement:
         refined = naming.provenance(
             "refinement",
             generation=state.table.generation,
-            parents=[self.origin],
+            parents=[self.parent],
             seed=(self.provenance or {}).get("seed", 0),
         )
         provenance = self.provenance if first else refined
@@ -202,7 +202,7 @@ class Refinement:
         )
 
 
-def _again(state: State) -> Row:
+def _unchanged(state: State) -> Row:
     """Nothing better was found: the creature as it was."""
     if not state.table.rows:
         raise ValueError("`creature` must be one whose simulation stays finite.")

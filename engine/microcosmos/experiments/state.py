@@ -30,10 +30,10 @@ CURVES = (
 """Columns of the record of generations, in this order; the last three are NaN until elites
 are evaluated again."""
 
-AGAIN = 3
+N_CORRECTED = 3
 """So many of them."""
 
-FATES = ("children", "inserted", "improved")
+OUTCOMES = ("children", "inserted", "improved")
 """What becomes of an emitter's children: how many there were, entered an empty cell, and
 replaced an elite."""
 
@@ -43,7 +43,7 @@ ENDS = ("", "evaluations", "fitness", "device_hours")
 BEFORE = 2**32 - 1
 """Stands for the generation before the first where keys are derived."""
 
-KEPT = 256
+MAX_DIVERGED = 256
 """How many diverged creatures are kept, the newest."""
 
 
@@ -57,7 +57,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Again:
+class Reevaluation:
     """When elites are evaluated again, and under which conditions."""
 
     every: int
@@ -67,7 +67,7 @@ class Again:
     """Of the world, in cells."""
 
 
-class Origin(eqx.Module):
+class InitialCreatures(eqx.Module):
     """Creatures that a search begins from, in the order of their names."""
 
     creature: UInt8[np.ndarray, "row 32"]
@@ -87,35 +87,35 @@ class Plan:
     generations: int
     block: int
     descriptors: tuple[str, ...]
-    niches: search.Cells
+    cells: search.Cells
     encoding: Encoding
     emitters: tuple[search.Emitter, ...]
     counters: neat.Counters
     """Numbers after the genes of newcomers."""
     device: str
     limits: Limits = Limits()
-    again: Again | None = None
+    reevaluation: Reevaluation | None = None
     force_free: bool = True
     """Whether bodies cannot push themselves; if not, their swimming may be the solver's."""
 
-    features: tuple[str, ...] = search.FEATURES
+    measures: tuple[str, ...] = search.MEASURES
     """What is recorded of every creature, in this order."""
     own: Mapping[str, Any] = field(default_factory=dict)
     """Versions of the measures of one's own among them."""
     names: tuple[str, ...] = ()
     """What the emitters are called, each by a name of its own."""
-    origin: Origin | None = None
+    initial: InitialCreatures | None = None
     """What it begins from; a file of the run has it too."""
 
     @property
     def axes(self) -> tuple[search.Axis, ...]:
         """The archive's descriptors."""
-        return self.niches.axes
+        return self.cells.axes
 
     @property
-    def cells(self) -> int:
-        """How many the archive has."""
-        return self.niches.count
+    def cell_count(self) -> int:
+        """Cells of the archive."""
+        return self.cells.count
 
     @property
     def batch(self) -> int:
@@ -162,23 +162,23 @@ class State(eqx.Module):
     """Generations completed."""
     evaluations: int
     diverged: int
-    niches: search.Cells
+    cells: search.Cells
     """The plan's, or as they were where the run began."""
     elites: search.Elites
     counters: neat.Counters
     emitters: tuple[PyTree[Array], ...]
     """What each emitter has learnt."""
-    kin: UInt8[np.ndarray, "slot 2 32"]
+    nearest_ancestors: UInt8[np.ndarray, "slot 2 32"]
     """Of each slot of the last generation, the recorded creatures nearest to it: itself where
     it entered, else its forebears; zeros where there are none."""
     repeats: search.reevaluation.Repeats
     creatures: UInt8[np.ndarray, "cell 32"]
     """The SHA-256 of each cell's elite."""
     operators: Int[np.ndarray, "cell"]
-    origins: Int[np.ndarray, "cell"]
+    device_of: Int[np.ndarray, "cell"]
     """Which of `devices` measured each cell's elite."""
     curves: Float[np.ndarray, "generation curve"]
-    fates: Int[np.ndarray, "generation emitter fate"]
+    outcomes: Int[np.ndarray, "generation emitter outcome"]
     ended: int
     """The place in `ENDS` of why the run ended."""
     device_seconds: float
@@ -189,7 +189,7 @@ class State(eqx.Module):
     """Kinds of device that computed the run, the present one last."""
     unrepeated: search.reevaluation.Repeats | None = None
     """Where elites were evaluated again only because the run ends: `repeats` before that."""
-    origin: Origin | None = None
+    initial: InitialCreatures | None = None
     """The plan's; creatures that it has room for in each generation are evaluated first."""
 
 
@@ -198,7 +198,7 @@ def prolonged(state: State) -> State:
     if state.unrepeated is None:
         return state
     curves = state.curves.copy()
-    curves[-1, -AGAIN:] = np.nan
+    curves[-1, -N_CORRECTED:] = np.nan
     return replace(state, curves=curves, repeats=state.unrepeated, unrepeated=None)
 
 
@@ -214,17 +214,17 @@ def start(plan: Plan) -> State:
         generation=0,
         evaluations=0,
         diverged=0,
-        niches=plan.niches,
-        elites=search.no_elites(plan.cells, len(plan.features), plan.genotype),
+        cells=plan.cells,
+        elites=search.no_elites(plan.cell_count, len(plan.measures), plan.genotype),
         counters=plan.counters,
         emitters=emitters,
-        kin=np.zeros((plan.batch, 2, 32), np.uint8),
-        repeats=search.reevaluation.no_repeats(plan.cells, len(plan.features)),
-        creatures=np.zeros((plan.cells, 32), np.uint8),
-        operators=np.zeros(plan.cells, np.int32),
-        origins=np.zeros(plan.cells, np.int32),
+        nearest_ancestors=np.zeros((plan.batch, 2, 32), np.uint8),
+        repeats=search.reevaluation.no_repeats(plan.cell_count, len(plan.measures)),
+        creatures=np.zeros((plan.cell_count, 32), np.uint8),
+        operators=np.zeros(plan.cell_count, np.int32),
+        device_of=np.zeros(plan.cell_count, np.int32),
         curves=np.zeros((0, len(CURVES))),
-        fates=np.zeros((0, len(plan.emitters), len(FATES)), np.int64),
+        outcomes=np.zeros((0, len(plan.emitters), len(OUTCOMES)), np.int64),
         ended=0,
         device_seconds=0.0,
         lineage=Lineage(
@@ -238,13 +238,13 @@ def start(plan: Plan) -> State:
         ),
         quarantine=Diverged(none, none, none, nobody),
         devices=(plan.device,),
-        origin=plan.origin,
+        initial=plan.initial,
     )
 
 
 def _founded(plan: Plan, emitter: search.Emitter, kept: PyTree[Array]) -> PyTree[Array]:
     """What an emitter keeps; a population begins with what the search begins from."""
-    if plan.origin is None or not isinstance(emitter, PopulationEmitter):
+    if plan.initial is None or not isinstance(emitter, PopulationEmitter):
         return kept
-    networks = jax.tree.map(jnp.asarray, plan.origin.genotypes)
+    networks = jax.tree.map(jnp.asarray, plan.initial.genotypes)
     return emitter.founded(kept, networks)

@@ -8,23 +8,23 @@ from .. import search
 from .state import ENDS, Plan, State
 
 
-def told(
+def summary(
     plan: Plan, state: State, values: dict[str, float], seconds: float, status: np.ndarray
 ) -> dict[str, Any]:
     """Of the generation that led to a state: its curves' `values`, what its evaluation took,
     and the status of each of its creatures.
     """
-    told: dict[str, Any] = {"device_seconds": seconds, "clipped": int(values["clipped"])}
+    found: dict[str, Any] = {"device_seconds": seconds, "clipped": int(values["clipped"])}
     for i, name in enumerate(plan.names):
-        _, inserted, improved = state.fates[-1, i].tolist()
-        told |= {f"{name}: inserted": inserted, f"{name}: improved": improved}
+        _, inserted, improved = state.outcomes[-1, i].tolist()
+        found |= {f"{name}: inserted": inserted, f"{name}: improved": improved}
     for name in ("corrected_qd_score", "corrected_coverage", "hit_rate"):
         if np.isfinite(values[name]):
-            told[name] = values[name]
-    told |= _divergences(status) | _species(state)
+            found[name] = values[name]
+    found |= _divergences(status) | _species(state)
     if state.ended:
-        told["ended"] = f"{ENDS[state.ended]} after generation {state.generation}"
-    return told
+        found["ended"] = f"{ENDS[state.ended]} after generation {state.generation}"
+    return found
 
 
 def _divergences(status: np.ndarray) -> dict[str, int]:

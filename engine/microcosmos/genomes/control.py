@@ -9,7 +9,7 @@ from jaxtyping import Array, PRNGKeyArray
 
 from ..world import State, World, sense
 from .cppn import CPPN, minimal
-from .development import OUTPUTS, Controls, Read, answered, played, reading
+from .development import OUTPUTS, Controls, Read, reading, rest_shape, rest_shapes
 from .encoding import Drive, Scalar, shifted
 from .genes import from_genes, to_genes
 from .recurrent import drive_recurrent
@@ -58,10 +58,10 @@ def drive_read(read: Read, controls: Controls, world: World, start: State) -> Dr
     """A world under a network without memory."""
     dtype = start.positions.dtype
     if not controls.senses:
-        return Drive(world, start, played(read, controls, dtype))
+        return Drive(world, start, rest_shapes(read, controls, dtype))
 
     def control(world: World, state: State, given: tuple[Array, Array]):
-        return answered(read, controls, given[0], given[1], sense(world, state))
+        return rest_shape(read, controls, given[0], given[1], sense(world, state))
 
     inputs = jnp.asarray(controls.timer.T, dtype), jnp.asarray(controls.ramp, dtype)
     return Drive(world, start, inputs, control)

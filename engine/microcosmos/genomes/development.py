@@ -14,7 +14,7 @@ from .cppn import CPPN, Points, evaluate
 OUTPUTS = 2
 """Rest angle and rest length; a network that grows the body has more behind them."""
 
-Said = Float[Array, "2 time node"]
+Outputs = Float[Array, "2 time node"]
 Read = Callable[[Points], Points]
 """A network: from inputs (input, point) to outputs (output, point)."""
 
@@ -58,7 +58,7 @@ def linear(steps: int, period: float) -> np.ndarray:
 
 def develop(network: CPPN, controls: Controls) -> Rest:
     """Rest angles (time, joint) and rest lengths (time, edge) that a CPPN asks for."""
-    return played(reading(network), controls, network.bias.dtype)
+    return rest_shapes(reading(network), controls, network.bias.dtype)
 
 
 def respond(
@@ -69,7 +69,7 @@ def respond(
     sensed: Float[Array, "node"],
 ) -> Rest:
     """Rest angles (joint,) and rest lengths (edge,) at one time, from what nodes sense."""
-    return answered(reading(network), controls, timer, ramp, sensed)
+    return rest_shape(reading(network), controls, timer, ramp, sensed)
 
 
 def reading(network: CPPN) -> Read:
@@ -77,16 +77,16 @@ def reading(network: CPPN) -> Read:
     return lambda inputs: evaluate(network, inputs, OUTPUTS)
 
 
-def played(read: Read, controls: Controls, dtype: Any) -> Rest:
+def rest_shapes(read: Read, controls: Controls, dtype: Any) -> Rest:
     """Rest shapes as applied at all times, in one batch."""
     steps, nodes = len(controls.ramp), len(controls.position)
     position = np.tile(controls.position, steps)[None]
     clock = jnp.repeat(jnp.asarray(controls.timer, dtype), nodes, 1)
-    said = read(jnp.concatenate([jnp.asarray(position, dtype), clock]))
-    return applied(said.reshape(OUTPUTS, steps, nodes), controls.ramp, controls)
+    outputs = read(jnp.concatenate([jnp.asarray(position, dtype), clock]))
+    return applied(outputs.reshape(OUTPUTS, steps, nodes), controls.ramp, controls)
 
 
-def answered(
+def rest_shape(
     read: Read,
     controls: Controls,
     timer: Float[Array, "input"],
@@ -94,11 +94,11 @@ def answered(
     sensed: Float[Array, "node"] | None,
 ) -> Rest:
     """The rest shape at one time."""
-    said = read(seen(controls, timer, sensed))
-    return at_once(said, ramp, controls)
+    outputs = read(network_inputs(controls, timer, sensed))
+    return rest_of_outputs(outputs, ramp, controls)
 
 
-def seen(
+def network_inputs(
     controls: Controls, timer: Float[Array, "input"], sensed: Float[Array, "node"] | None
 ) -> Points:
     """A network's inputs at all nodes at one time."""
@@ -108,19 +108,21 @@ def seen(
     return jnp.concatenate([position, clock, *([] if sensed is None else [sensed[None]])])
 
 
-def at_once(said: Points, ramp: Float[Array, ""], controls: Controls) -> Rest:
+def rest_of_outputs(outputs: Points, ramp: Float[Array, ""], controls: Controls) -> Rest:
     """The rest shape that outputs (output, node) of one time stand for."""
-    rest = applied(said[:, None], ramp[None], controls)
+    rest = applied(outputs[:, None], ramp[None], controls)
     return Rest(rest.angle[0], rest.length[0])
 
 
-def applied(said: Said, ramp: Float[Array, "time"] | np.ndarray, controls: Controls) -> Rest:
+def applied(
+    outputs: Outputs, ramp: Float[Array, "time"] | np.ndarray, controls: Controls
+) -> Rest:
     """The rest shapes that a network's outputs stand for.
 
     A joint takes the output at its node; an edge the mean of its two ends, so that a
     mirrored network makes a mirrored body.
     """
-    angle, length = jnp.tanh(said)
+    angle, length = jnp.tanh(outputs)
     length = 0.5 * (length[:, controls.edges[:, 0]] + length[:, controls.edges[:, 1]])
     return actuated(angle[:, controls.joint_nodes], length, ramp, controls)
 

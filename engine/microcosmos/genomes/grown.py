@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float, PRNGKeyArray
 from ..world import State, World
 from .control import drive_read, network_size
 from .cppn import CPPN, evaluate, minimal
-from .development import OUTPUTS, Controls, seen
+from .development import OUTPUTS, Controls, network_inputs
 from .encoding import Drive, Scalar, shifted
 from .genes import from_genes, to_genes
 from .shaping import Plan, Shaped, cut, shaped, within
@@ -56,7 +56,7 @@ class Grown:
         """The body that a network makes."""
         dtype = start.positions.dtype
         zero = jnp.zeros(len(self.controls.position), dtype) if self.controls.senses else None
-        inputs = seen(self.controls, jnp.zeros(len(self.controls.timer), dtype), zero)
+        inputs = network_inputs(self.controls, jnp.zeros(len(self.controls.timer), dtype), zero)
         said = evaluate(genotype, inputs, self.outputs)[OUTPUTS:]
         traits = {
             name: within(jnp.tanh(self._of(name, values)), bounds)

@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 
 from ..world import State, World, sense
 from .cppn import ACTIVATIONS, BOUND, CPPN, Points, matrix
-from .development import OUTPUTS, Controls, applied, at_once, seen
+from .development import OUTPUTS, Controls, applied, network_inputs, rest_of_outputs
 from .encoding import Drive
 
 
@@ -42,7 +42,7 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
     if not controls.senses:
 
         def step(values, timer):
-            values = advance(network, values, seen(controls, timer, None))
+            values = advance(network, values, network_inputs(controls, timer, None))
             return values, values[rows]
 
         _, said = jax.lax.scan(step, nothing, timer)
@@ -51,10 +51,12 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
     def remember(
         world: World, state: State, given: tuple[Array, Array]
     ) -> Float[Array, "row node"]:
-        return advance(network, state.memory, seen(controls, given[0], sense(world, state)))
+        return advance(
+            network, state.memory, network_inputs(controls, given[0], sense(world, state))
+        )
 
     def control(world: World, state: State, given: tuple[Array, Array]):
-        return at_once(state.memory[rows], given[1], controls)
+        return rest_of_outputs(state.memory[rows], given[1], controls)
 
     start = replace(start, memory=nothing)
     return Drive(world, start, (timer, ramp), control, remember)

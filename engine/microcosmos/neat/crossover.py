@@ -35,13 +35,13 @@ def crossover(
     )
     node = match(fitter.node_id, fitter.node_used, other.node_id, other.node_used)
     mean, swapped, taken = mean < average, swapped < HALF, gene < HALF
-    chance = left(jnp.where(taken, gene, gene - HALF), 0.0, HALF)
+    uniform = left(jnp.where(taken, gene, gene - HALF), 0.0, HALF)
     off = ~fitter.enabled | ((connection >= 0) & ~other.enabled[connection])
     return replace(
         fitter,
         activation=jnp.where(swapped & (node >= 0), other.activation[node], fitter.activation),
         bias=_mixed(fitter.bias, other.bias, node, swapped, mean),
-        enabled=fitter.connection_used & (~off | (chance >= disabled)),
+        enabled=fitter.connection_used & (~off | (uniform >= disabled)),
         weight=_mixed(fitter.weight, other.weight, connection, taken, mean),
     )
 

@@ -22,7 +22,7 @@ OPERATORS = ("copy", "mutation", "crossover", "crossover+mutation")
 """How a network of the next generation arose, by operator code."""
 
 
-class Brood(eqx.Module):
+class Offspring(eqx.Module):
     """From whom each network of the next generation comes, and how."""
 
     parent: Int[Array, "individual"]
@@ -72,8 +72,8 @@ def next_generation(
     able, species = allowed(species, now, settings, generation)
     share = shares(able, fitness, species, now, settings)
     sizes = allot(share, able, len(fitness), settings.min_size)
-    brood = breed(sizes, fitness, species, now, settings, key=parents_key)
-    children, novelty = bear(population, brood, settings, inputs, outputs, key=children_key)
+    offspring = breed(sizes, fitness, species, now, settings, key=parents_key)
+    children, novelty = bear(population, offspring, settings, inputs, outputs, key=children_key)
     children, novelty = apart((children, novelty))
     children, counters = apart(number(children, novelty, counters))
     species = _represented(population, species, sizes > 0, now, settings, key=species_key)
@@ -84,8 +84,8 @@ def next_generation(
         nearest=settings.representative == "nearest",
         generation=generation + 1,
     )
-    code = brood.mutated + 2 * (brood.other >= 0)
-    return children, species, counters, jnp.stack([brood.parent, brood.other], 1), code
+    code = offspring.mutated + 2 * (offspring.other >= 0)
+    return children, species, counters, jnp.stack([offspring.parent, offspring.other], 1), code
 
 
 def breed(
@@ -96,7 +96,7 @@ def breed(
     settings: Settings,
     *,
     key: PRNGKeyArray,
-) -> Brood:
+) -> Offspring:
     """Slots are given to species in turn: first their elites, then their children."""
     slot = jnp.arange(len(fitness))
     ends = jnp.cumsum(sizes)
@@ -106,23 +106,23 @@ def breed(
     copied = rank < jnp.minimum(elites, now.valid)[own]
     survivors = jnp.ceil(settings.survival * species.members).astype(now.valid.dtype)
     survivors = jnp.clip(survivors, 1, jnp.maximum(1, now.valid))
-    (chance,) = draws((len(slot), 6), key=key)
+    (uniform,) = draws((len(slot), 6), key=key)
 
-    def draw(of, chance):
-        return now.order[now.start[of] + below(survivors[of], chance)]
+    def draw(of, uniform):
+        return now.order[now.start[of] + below(survivors[of], uniform)]
 
-    abroad = chance[:, 3] < settings.interspecies
+    abroad = uniform[:, 3] < settings.interspecies
     breeding = jnp.argsort(sizes == 0, stable=True)
-    any_ = breeding[below(jnp.sum(sizes > 0), chance[:, 4])]
-    first, second = draw(own, chance[:, 0]), draw(jnp.where(abroad, any_, own), chance[:, 1])
-    crossed = ~copied & (chance[:, 2] < settings.crossover)
+    any_ = breeding[below(jnp.sum(sizes > 0), uniform[:, 4])]
+    first, second = draw(own, uniform[:, 0]), draw(jnp.where(abroad, any_, own), uniform[:, 1])
+    crossed = ~copied & (uniform[:, 2] < settings.crossover)
     fitter = jnp.where(fitness[first] >= fitness[second], first, second)
     lesser = jnp.where(fitness[first] >= fitness[second], second, first)
     elite = now.order[jnp.minimum(now.start[own] + rank, len(slot) - 1)]
     parent = jnp.where(copied, elite, jnp.where(crossed, fitter, first))
-    mutated = ~copied & (~crossed | (chance[:, 5] >= settings.crossover_only))
+    mutated = ~copied & (~crossed | (uniform[:, 5] >= settings.crossover_only))
     hopeless = jnp.sum(sizes) == 0
-    return Brood(
+    return Offspring(
         jnp.where(hopeless, slot, parent),
         jnp.where(crossed & ~hopeless, lesser, NONE),
         mutated & ~hopeless,
@@ -131,14 +131,14 @@ def breed(
 
 def bear(
     population: CPPN,
-    brood: Brood,
+    offspring: Offspring,
     settings: Settings,
     inputs: int,
     outputs: int,
     *,
     key: PRNGKeyArray,
 ) -> tuple[CPPN, Novelty]:
-    """The networks of a brood, without numbers for what is new in them."""
+    """The networks of a offspring, without numbers for what is new in them."""
 
     def child(one, other, crosses, mutated, keys):
         crossed = crossover(one, other, settings.average, settings.disabled, key=keys[0])
@@ -147,10 +147,10 @@ def bear(
         novelty = jax.tree.map(lambda row: jnp.where(mutated, row, NONE), novelty)
         return _either(mutated, varied, one), novelty
 
-    parents = jax.tree.map(lambda x: x[brood.parent], population)
-    others = jax.tree.map(lambda x: x[brood.other], population)
-    keys = jax.random.split(key, (len(brood.parent), 2))
-    return jax.vmap(child)(parents, others, brood.other >= 0, brood.mutated, keys)
+    parents = jax.tree.map(lambda x: x[offspring.parent], population)
+    others = jax.tree.map(lambda x: x[offspring.other], population)
+    keys = jax.random.split(key, (len(offspring.parent), 2))
+    return jax.vmap(child)(parents, others, offspring.other >= 0, offspring.mutated, keys)
 
 
 def _represented(
@@ -167,8 +167,8 @@ def _represented(
     species = replace(species, alive=breeding, threshold=_moved(species, settings))
     if settings.representative == "nearest":
         return species
-    (chance,) = draws(breeding.shape, key=key)
-    place = now.start + below(species.members, chance)
+    (uniform,) = draws(breeding.shape, key=key)
+    place = now.start + below(species.members, uniform)
     drawn = now.order[jnp.minimum(place, len(now.order) - 1)]
     return replace(species, representatives=jax.tree.map(lambda x: x[drawn], population))
 

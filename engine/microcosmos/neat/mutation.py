@@ -13,7 +13,7 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
 from .rates import Rates, bounded, one_of
-from .rng import Chance, draws, left
+from .rng import Uniform, draws, left
 from .rows import NONE, apart
 from .structure import add_connection, add_node, delete_connection, delete_node
 
@@ -80,7 +80,7 @@ def mutate(
 
 
 def mutate_values(
-    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, chance: Chance
+    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, uniform: Uniform
 ) -> CPPN:
     """Perturb or redraw weights, and the biases of nodes that are not inputs."""
     node = jnp.arange(network.node_used.shape[0])
@@ -88,37 +88,37 @@ def mutate_values(
     biases = network.node_used & (node >= inputs) & happens
     return replace(
         network,
-        weight=_vary(network.weight, weights, rates, chance[len(node) :]),
-        bias=_vary(network.bias, biases, rates, chance[: len(node)]),
+        weight=_vary(network.weight, weights, rates, uniform[len(node) :]),
+        bias=_vary(network.bias, biases, rates, uniform[: len(node)]),
     )
 
 
-def mutate_activations(network: CPPN, rates: Rates, inputs: int, chance: Chance) -> CPPN:
+def mutate_activations(network: CPPN, rates: Rates, inputs: int, uniform: Uniform) -> CPPN:
     """Redraw the activations of some nodes."""
     if not rates.activation:
         return network
     node = jnp.arange(network.node_used.shape[0])
-    chosen = (chance < rates.activation) & network.node_used & (node >= inputs)
-    drawn = one_of(rates.palette, left(chance, 0.0, rates.activation))
+    chosen = (uniform < rates.activation) & network.node_used & (node >= inputs)
+    drawn = one_of(rates.palette, left(uniform, 0.0, rates.activation))
     return replace(network, activation=jnp.where(chosen, drawn, network.activation))
 
 
-def toggle_connections(network: CPPN, rate: float, chance: Chance) -> CPPN:
+def toggle_connections(network: CPPN, rate: float, uniform: Uniform) -> CPPN:
     """Enable or disable some connections."""
     if not rate:
         return network
     return replace(
-        network, enabled=network.enabled ^ ((chance < rate) & network.connection_used)
+        network, enabled=network.enabled ^ ((uniform < rate) & network.connection_used)
     )
 
 
 def _vary(
-    values: Float[Array, "gene"], used: Bool[Array, "gene"], rates: Rates, chance: Chance
+    values: Float[Array, "gene"], used: Bool[Array, "gene"], rates: Rates, uniform: Uniform
 ) -> Float[Array, "gene"]:
     """A draw decides about each gene, and what it leaves is its step or its new value."""
     new, either = rates.replace, rates.replace + (1 - rates.replace) * rates.weight
-    again = jnp.where(chance < new, left(chance, 0.0, new), left(chance, new, either))
+    again = jnp.where(uniform < new, left(uniform, 0.0, new), left(uniform, new, either))
     drawn = rates.draw(again).astype(values.dtype)
-    varied = jnp.where(chance < either, values + rates.weight_step * drawn, values)
-    varied = jnp.where(chance < new, rates.new_step * drawn, varied)
+    varied = jnp.where(uniform < either, values + rates.weight_step * drawn, values)
+    varied = jnp.where(uniform < new, rates.new_step * drawn, varied)
     return jnp.where(used, bounded(varied, rates), values)

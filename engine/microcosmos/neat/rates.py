@@ -9,25 +9,25 @@ import numpy as np
 from jaxtyping import Array
 
 from ..genomes import ACTIVATIONS
-from .rng import LARGEST, Chance
+from .rng import LARGEST, Uniform
 
 Draw = Callable[[Array], Array]
 """Numbers that are equally likely between 0 and 1 → random numbers around zero."""
 
 
-def normal(chance: Chance) -> Array:
+def normal(uniform: Uniform) -> Array:
     """Numbers with mean 0 and deviation 1."""
-    return np.sqrt(2) * jax.lax.erf_inv(jnp.maximum(2 * chance - 1, -LARGEST))
+    return np.sqrt(2) * jax.lax.erf_inv(jnp.maximum(2 * uniform - 1, -LARGEST))
 
 
-def uniform(chance: Chance) -> Array:
+def uniform(uniform: Uniform) -> Array:
     """Numbers between −1 and 1, each equally likely."""
-    return 2 * chance - 1
+    return 2 * uniform - 1
 
 
-def one_of(palette: tuple[int, ...], chance: Chance) -> Array:
+def one_of(palette: tuple[int, ...], uniform: Uniform) -> Array:
     """Activations, each of the palette equally likely."""
-    place = jnp.floor(chance * len(palette)).astype(jnp.int32)
+    place = jnp.floor(uniform * len(palette)).astype(jnp.int32)
     return jnp.asarray(np.asarray(palette, np.int32))[place]
 
 

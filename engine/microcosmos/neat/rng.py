@@ -11,13 +11,13 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int, PRNGKeyArray, UInt32
 
-Chance = Float[Array, "..."]
+Uniform = Float[Array, "..."]
 """Numbers from 0 on below 1, multiples of 2⁻²⁴."""
 
 LARGEST = 1 - 2.0**-24
 
 
-def draws(*shapes: tuple[int, ...], key: PRNGKeyArray) -> list[Chance]:
+def draws(*shapes: tuple[int, ...], key: PRNGKeyArray) -> list[Uniform]:
     """Independent numbers, an array a shape."""
     ends, end = [], 0
     for shape in shapes:
@@ -25,8 +25,8 @@ def draws(*shapes: tuple[int, ...], key: PRNGKeyArray) -> list[Chance]:
         ends.append(end)
     words = jax.random.bits(key, (2,), "uint32")
     hashed = pcg3d(words[0], words[1], jnp.arange(end, dtype=jnp.uint32))
-    chance = (hashed >> 8).astype(jnp.float32) * 2.0**-24
-    parts = jnp.split(chance, ends[:-1])
+    uniform = (hashed >> 8).astype(jnp.float32) * 2.0**-24
+    parts = jnp.split(uniform, ends[:-1])
     return [part.reshape(shape) for part, shape in zip(parts, shapes, strict=True)]
 
 
@@ -37,15 +37,15 @@ def pcg3d(x: UInt32[Array, ""], y: UInt32[Array, ""], z: UInt32[Array, "place"])
     return _mixed(*(word ^ (word >> 16) for word in (x, y, z)))[2]
 
 
-def left(chance: Chance, low: float, high: float) -> Chance:
+def left(uniform: Uniform, low: float, high: float) -> Uniform:
     """What a draw that fell between two thresholds leaves: a draw again."""
-    return jnp.clip((chance - low) / max(high - low, 2.0**-24), 0, LARGEST)
+    return jnp.clip((uniform - low) / max(high - low, 2.0**-24), 0, LARGEST)
 
 
-def below(total: Int[Array, "..."], chance: Chance) -> Int[Array, "..."]:
+def below(total: Int[Array, "..."], uniform: Uniform) -> Int[Array, "..."]:
     """A whole number from 0 on below `total`, or 0 where that is 0."""
     most = jnp.maximum(0, total - 1)
-    return jnp.minimum(jnp.floor(chance * total).astype(most.dtype), most)
+    return jnp.minimum(jnp.floor(uniform * total).astype(most.dtype), most)
 
 
 def _mixed(x, y, z):

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Int
 
 from ..genomes import CPPN
-from .rng import Chance, below
+from .rng import Uniform, below
 
 NONE = -1
 """Stands for the row or the number of a gene that is not there."""
@@ -37,11 +37,11 @@ def connect(network: CPPN, row, source, target, weight) -> CPPN:
 
 
 def choose(
-    allowed: Bool[Array, "item"], chance: Chance
+    allowed: Bool[Array, "item"], uniform: Uniform
 ) -> tuple[Int[Array, ""], Bool[Array, ""]]:
     """One allowed item, each equally likely, and whether there is any."""
     total = jnp.sum(allowed)
-    return ranked(allowed, below(total, chance)), total > 0
+    return ranked(allowed, below(total, uniform)), total > 0
 
 
 def ranked(weights: Array, rank: Int[Array, ""]) -> Int[Array, ""]:

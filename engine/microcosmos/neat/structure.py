@@ -8,12 +8,12 @@ from jaxtyping import Array, Bool, Int
 from ..genomes import CPPN
 from . import acyclicity
 from .rates import Rates, bounded, one_of
-from .rng import Chance, below, left
+from .rng import Uniform, below, left
 from .rows import NONE, apart, choose, connect, drop_connection, drop_node, put, ranked
 
 
 def add_connection(
-    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, chance: Chance
+    network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, uniform: Uniform
 ) -> tuple[CPPN, Int[Array, ""]]:
     """Join two nodes that are not joined; also the new connection's row, or −1.
 
@@ -21,10 +21,10 @@ def add_connection(
     """
     if not rates.add_connection:
         return network, jnp.asarray(NONE)
-    source, target, exists = apart(_free_pair(network, rates, inputs, chance))
+    source, target, exists = apart(_free_pair(network, rates, inputs, uniform))
     row = jnp.sum(network.connection_used)
     row = jnp.where(happens & exists & (row < network.connection_used.shape[0]), row, NONE)
-    weight = bounded(rates.draw(chance[2]), rates).astype(network.weight.dtype)
+    weight = bounded(rates.draw(uniform[2]), rates).astype(network.weight.dtype)
     return connect(network, row, source, target, weight), row
 
 
@@ -33,7 +33,7 @@ def add_node(
     splittable: Bool[Array, "connection"],
     happens: Bool[Array, ""],
     rates: Rates,
-    chance: Chance,
+    uniform: Uniform,
 ) -> tuple[CPPN, Int[Array, ""], Int[Array, ""], Int[Array, ""]]:
     """Split a connection: it is disabled (or removed), and a new node takes its place.
 
@@ -41,13 +41,13 @@ def add_node(
     activation nothing would change. Also the row of the way in, the node's row, and the
     number of the connection that was split, or −1 each. Two draws decide.
     """
-    old, exists = apart(choose(splittable, chance[0]))
+    old, exists = apart(choose(splittable, uniform[0]))
     node, row = jnp.sum(network.node_used), jnp.sum(network.connection_used)
     row = row - rates.drop_split
     happens = happens & exists & (node < network.node_used.shape[0])
     happens = happens & (row + 1 < network.connection_used.shape[0])
     node_row, split_row = jnp.where(happens, node, NONE), jnp.where(happens, row, NONE)
-    activation = one_of(rates.palette, chance[1])
+    activation = one_of(rates.palette, uniform[1])
     one = jnp.ones((), network.weight.dtype)
     source, target, weight = network.source[old], network.target[old], network.weight[old]
     innovation = jnp.where(happens, network.innovation[old], NONE)
@@ -64,31 +64,31 @@ def add_node(
     return connect(network, second, node, target, weight), split_row, node_row, innovation
 
 
-def delete_connection(network: CPPN, rate: float, chance: Chance) -> CPPN:
+def delete_connection(network: CPPN, rate: float, uniform: Uniform) -> CPPN:
     """Remove a connection."""
-    row, exists = choose(network.connection_used, left(chance, 0.0, rate))
-    return drop_connection(network, jnp.where((chance < rate) & exists, row, NONE))
+    row, exists = choose(network.connection_used, left(uniform, 0.0, rate))
+    return drop_connection(network, jnp.where((uniform < rate) & exists, row, NONE))
 
 
-def delete_node(network: CPPN, rate: float, fixed: int, chance: Chance) -> CPPN:
+def delete_node(network: CPPN, rate: float, fixed: int, uniform: Uniform) -> CPPN:
     """Remove a hidden node and all its connections; the first `fixed` ones stay."""
     hidden = network.node_used & (jnp.arange(network.node_used.shape[0]) >= fixed)
-    node, exists = choose(hidden, left(chance, 0.0, rate))
-    return drop_node(network, jnp.where((chance < rate) & exists, node, NONE))
+    node, exists = choose(hidden, left(uniform, 0.0, rate))
+    return drop_node(network, jnp.where((uniform < rate) & exists, node, NONE))
 
 
 def _free_pair(
-    network: CPPN, rates: Rates, inputs: int, chance: Chance
+    network: CPPN, rates: Rates, inputs: int, uniform: Uniform
 ) -> tuple[Int[Array, ""], Int[Array, ""], Bool[Array, ""]]:
     """The source and target of a possible connection, and whether there is one."""
     free = apart(_free_sources(network, rates.recurrent))
     is_target = network.node_used & (jnp.arange(network.node_used.shape[0]) >= inputs)
     if rates.blind:
-        source, _ = choose(network.node_used, chance[0])
-        target, exists = choose(is_target, chance[1])
+        source, _ = choose(network.node_used, uniform[0])
+        target, exists = choose(is_target, uniform[1])
         return source, target, exists & acyclicity.held(free, target)[source]
     many = jnp.where(is_target, acyclicity.sizes(free), 0)
-    rank = below(jnp.sum(many), chance[0])
+    rank = below(jnp.sum(many), uniform[0])
     target = ranked(many, rank)
     before = jnp.sum(jnp.where(jnp.arange(len(many)) < target, many, 0))
     return ranked(acyclicity.held(free, target), rank - before), target, jnp.any(many > 0)

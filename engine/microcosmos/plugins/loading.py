@@ -73,7 +73,7 @@ def _taken(module: ModuleType, namespace: str, source: str) -> tuple[Declaration
     if not re.fullmatch(NAME, namespace):
         raise ValueError(f"a module's name must be of a-z, 0-9 and _, got {namespace!r}")
     file = str(module.__file__)
-    other = registry.origin_of(namespace)
+    other = registry.location_of(namespace)
     if other not in (None, file):
         raise ValueError(f"two modules are called {namespace!r}: {other} and {file}")
     found = [_plugin(*one, f"{namespace}.", source, file) for one in _declared(module)]
@@ -140,7 +140,7 @@ def _declared(module: ModuleType) -> list[tuple[Draft, Any]]:
     return [(getattr(one, MARK), one) for one in own]
 
 
-def _plugin(draft: Draft, function: Any, prefix: str, source: str, origin: str) -> Plugin:
+def _plugin(draft: Draft, function: Any, prefix: str, source: str, location: str) -> Plugin:
     model = draft.settings
     declaration = Declaration(
         kind=draft.kind,
@@ -154,4 +154,4 @@ def _plugin(draft: Draft, function: Any, prefix: str, source: str, origin: str) 
         settings=model.model_json_schema() if model else None,
         defaults=model().model_dump(mode="json") if model else {},
     )
-    return Plugin(declaration, function, model, origin)
+    return Plugin(declaration, function, model, location)

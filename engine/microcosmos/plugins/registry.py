@@ -27,7 +27,7 @@ class Plugin:
     declaration: Declaration
     function: Callable[..., Any]
     model: type[BaseModel] | None
-    origin: str
+    location: str
     """The file that it was loaded from."""
 
     def __call__(self, *given: Any, settings: Mapping[str, Any]) -> Any:
@@ -36,7 +36,7 @@ class Plugin:
             chosen = () if self.model is None else (self.model.model_validate(dict(settings)),)
             return self.function(*given, *chosen)
         except Exception as error:
-            what = f"{self.declaration.name} ({self.origin}{line_of(error, self.origin)})"
+            what = f"{self.declaration.name} ({self.location}{line_of(error, self.location)})"
             raise Broken(f"{what} failed with {type(error).__name__}: {error}") from error
 
 
@@ -111,7 +111,7 @@ def find(kinds: Iterable[str], name: str, source: str) -> Plugin:
     if found.declaration.source != source:
         raise Missing(
             f"{name} must be of version {source[:12]}, got version "
-            f"{found.declaration.source[:12]}: {found.origin} is not what it was"
+            f"{found.declaration.source[:12]}: {found.location} is not what it was"
         )
     return found
 
@@ -124,7 +124,7 @@ def replace(namespace: str, plugins: Iterable[Plugin]) -> None:
         _plugins[plugin.declaration.kind, plugin.declaration.name] = plugin
 
 
-def origin_of(namespace: str) -> str | None:
+def location_of(namespace: str) -> str | None:
     """The file of the module that has a namespace, if one has."""
     inside = (one for key, one in _plugins.items() if key[1].partition(".")[0] == namespace)
-    return next((one.origin for one in inside), None)
+    return next((one.location for one in inside), None)

@@ -21,17 +21,17 @@ from .evaluation import (
 )
 from .health import Health, gradient_health
 from .insertion import Elites, Inserted, clipped, digest, insert, insert_program, no_elites
-from .measures import FEATURES, Seen, motion, observe
+from .measures import MEASURES, Observations, motion, observe
 from .plugin_measures import Measure, Motion
 from .slopes import slopes, slopes_program
-from .strokes import STROKE_FEATURES, Conditions, Watched, impulse, stroke_program, swim, watch
+from .strokes import STROKE_MEASURES, Conditions, Watched, impulse, stroke_program, swim, watch
 
 __all__ = [
-    "FEATURES",
+    "MEASURES",
     "NO_PARENT",
     "OPERATORS",
     "STATUSES",
-    "STROKE_FEATURES",
+    "STROKE_MEASURES",
     "Actuator",
     "Axis",
     "Cells",
@@ -46,8 +46,8 @@ __all__ = [
     "Inserted",
     "Measure",
     "Motion",
+    "Observations",
     "Outcome",
-    "Seen",
     "Slopes",
     "Stopped",
     "Task",

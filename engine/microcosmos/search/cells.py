@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 from scipy.spatial import KDTree
 
-Features = Float[Array, "row feature"]
+Measures = Float[Array, "row measure"]
 Places = Float[Array, "row axis"]
 
 LISTED = 2**22
@@ -16,9 +16,9 @@ LISTED = 2**22
 
 
 class Axis(eqx.Module):
-    """One descriptor; `feature` is its column among the features, `bins` are a grid's."""
+    """One descriptor; `measure` is its column among the measures, `bins` are a grid's."""
 
-    feature: int = eqx.field(static=True)
+    measure: int = eqx.field(static=True)
     low: float = eqx.field(static=True)
     high: float = eqx.field(static=True)
     bins: int = eqx.field(static=True)
@@ -54,11 +54,11 @@ class Grid(eqx.Module):
         mesh = np.meshgrid(*ticks, indexing="ij")
         return np.stack([x.ravel() for x in mesh], 1).astype(np.float32)
 
-    def of(self, features: Features) -> Int[Array, "row"]:
+    def of(self, measures: Measures) -> Int[Array, "row"]:
         """The number of each row's cell."""
-        cell = jnp.zeros(features.shape[0], jnp.int32)
+        cell = jnp.zeros(measures.shape[0], jnp.int32)
         for axis in self.axes:
-            cell = cell * axis.bins + axis.bin(features[:, axis.feature])
+            cell = cell * axis.bins + axis.bin(measures[:, axis.measure])
         return cell
 
 
@@ -82,13 +82,13 @@ class Voronoi(eqx.Module):
         """The centroids."""
         return np.asarray(self.centroids)
 
-    def of(self, features: Features) -> Int[Array, "row"]:
+    def of(self, measures: Measures) -> Int[Array, "row"]:
         """The number of each row's cell."""
-        place = places(features, self.axes)
+        place = places(measures, self.axes)
         if self.near is None:
             return _first_least(place, lambda axis: self.centroids[None, :, axis])
         side = boxes(self.count, len(self.axes))
-        box = jnp.zeros(features.shape[0], jnp.int32)
+        box = jnp.zeros(measures.shape[0], jnp.int32)
         for axis in range(len(self.axes)):
             step = jnp.clip(jnp.floor(place[:, axis] * side), 0, side - 1)
             box = box * side + step.astype(jnp.int32)
@@ -113,14 +113,14 @@ def voronoi(axes: tuple[Axis, ...], centroids: Float[np.ndarray, "cell axis"]) -
     return Voronoi(axes, jnp.asarray(centroids), None if near is None else jnp.asarray(near))
 
 
-def places(features: Features, axes: tuple[Axis, ...]) -> Places:
+def places(measures: Measures, axes: tuple[Axis, ...]) -> Places:
     """Descriptors from 0 to 1 on the axes' own scales."""
-    return jnp.stack([axis.place(features[:, axis.feature]) for axis in axes], 1)
+    return jnp.stack([axis.place(measures[:, axis.measure]) for axis in axes], 1)
 
 
-def sound(features: Features, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
+def sound(measures: Measures, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
     """Whether all descriptors are finite."""
-    chosen = jnp.stack([features[:, axis.feature] for axis in axes], 1)
+    chosen = jnp.stack([measures[:, axis.measure] for axis in axes], 1)
     return jnp.all(jnp.isfinite(chosen), 1)
 
 

@@ -1,4 +1,4 @@
-"""Evaluation: from genomes to fitness, descriptors and features.
+"""Evaluation: from genomes to fitness, descriptors and measures.
 
 The unit is one compiled program for a fixed number of creatures. Rollouts are chaotic, so
 rounding counts, and a program of another shape rounds differently: whatever the batch,
@@ -19,8 +19,8 @@ from .. import units
 from ..filaments import Rest
 from ..genomes import Drive, Encoding, Genotype
 from ..world import Measures, State, World, flow, rollout
-from .measures import FEATURES, Seen, motion, observe
-from .plugin_measures import Measure, seen_as
+from .measures import MEASURES, Observations, motion, observe
+from .plugin_measures import Measure, motion_for_plugins
 
 STATUSES = ("ok", "non-finite", "supersonic")
 """Why an evaluation counts or does not, by status code."""
@@ -35,7 +35,7 @@ class Evaluation(eqx.Module):
     """What was measured of one creature (or of a block of them)."""
 
     fitness: Float[Array, "*block"]
-    features: Float[Array, "*block feature"]
+    measures: Float[Array, "*block measure"]
     status: Int[Array, "*block"]
 
 
@@ -63,12 +63,12 @@ class Task(eqx.Module):
     """Cells by which the energy is moved in each of the worlds in which a creature is measured;
     None: there is one, as it is."""
     own: tuple[Measure, ...] = eqx.field(static=True, default=())
-    """What is measured beside the usual features."""
+    """What is measured beside the usual measures."""
 
     @property
-    def features(self) -> tuple[str, ...]:
+    def measures(self) -> tuple[str, ...]:
         """What is recorded of every creature, in this order."""
-        return FEATURES + tuple(measure.name for measure in self.own)
+        return MEASURES + tuple(measure.name for measure in self.own)
 
 
 def evaluate(task: Task, genotype: Genotype) -> Evaluation:
@@ -83,7 +83,7 @@ def measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     found = jax.lax.map(
         lambda shift: _measured(task, genotype, elsewhere(driven, shift)), task.placements
     )
-    means = jnp.mean(found.fitness), jnp.mean(found.features, 0)
+    means = jnp.mean(found.fitness), jnp.mean(found.measures, 0)
     return Evaluation(*means, jnp.max(found.status))
 
 
@@ -97,13 +97,13 @@ def elsewhere(driven: Drive, shift: Int[Array, "2"]) -> Drive:
 def _measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     if task.encoding is None:
         raise ValueError("`task.encoding` must say what the genotype means; got None.")
-    end, seen = simulate(driven)
-    values = motion_of(task, driven, end, seen)
+    end, observed = simulate(driven)
+    values = motion_of(task, driven, end, observed)
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
-    dtype = seen.centre.dtype
-    features = jnp.stack([values[name].astype(dtype) for name in task.features])
+    dtype = observed.centre.dtype
+    measures = jnp.stack([values[name].astype(dtype) for name in task.measures])
     fitness = fitness_of(task, values)
-    return Evaluation(fitness.astype(dtype), features, status(driven.world, end, features))
+    return Evaluation(fitness.astype(dtype), measures, status(driven.world, end, measures))
 
 
 def drive(task: Task, actuator: Actuator) -> Drive:
@@ -118,18 +118,18 @@ def simulate(
     see: Callable[[State, Measures], Any] = observe,
     segment: int | None = None,
 ) -> tuple[State, Any]:
-    """The state at the end, and what was seen after each step."""
+    """The state at the end, and what was observed after each step."""
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, see)
 
 
-def motion_of(task: Task, driven: Drive, end: State, seen: Seen) -> dict[str, Any]:
+def motion_of(task: Task, driven: Drive, end: State, observed: Observations) -> dict[str, Any]:
     """What can be measured of any actuator's motion."""
     length = task.length if driven.length is None else driven.length
-    values = motion(driven.world, driven.start, end, seen, length)
+    values = motion(driven.world, driven.start, end, observed, length)
     if not task.own:
         return values
-    whole = seen_as(driven.world, driven.start, end, seen, values)
+    whole = motion_for_plugins(driven.world, driven.start, end, observed, values)
     return values | {measure.name: measure.of(whole) for measure in task.own}
 
 
@@ -147,12 +147,12 @@ def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
     return goal.displacement * displacement + goal.energy * energy
 
 
-def status(world: World, end: State, features: Float[Array, "feature"]) -> Int[Array, ""]:
+def status(world: World, end: State, measures: Float[Array, "measure"]) -> Int[Array, ""]:
     """0 where the numbers can be believed, else why they cannot."""
     u = flow(world, end)
     last = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
-    fastest = jnp.maximum(features[FEATURES.index("mach")], units.mach(last))
-    finite = jnp.all(jnp.isfinite(features)) & jnp.isfinite(fastest)
+    fastest = jnp.maximum(measures[MEASURES.index("mach")], units.mach(last))
+    finite = jnp.all(jnp.isfinite(measures)) & jnp.isfinite(fastest)
     # At the lattice's speed of sound the expansion in Mach number means nothing any more.
     return jnp.where(finite, jnp.where(fastest < 1, 0, 2), 1)
 

@@ -31,7 +31,7 @@ PARTS = ("genes", "rest_angle", "rest_length", "stretch", "shear", "bend", "visc
 """What a derivative can be taken by."""
 
 CONSTANT = ("hidden_nodes", "connections", "nodes", "limited")
-"""Features that no small change changes, or that count."""
+"""Measures that no small change changes, or that count."""
 
 Values = dict[str, Float[Array, "..."]]
 
@@ -94,7 +94,7 @@ def measures(
     horizon: int | None = None,
     segment: int | None = None,
 ) -> Float[Array, "output"]:
-    """Fitness and features of the creature with parts changed, after `horizon` steps.
+    """Fitness and measures of the creature with parts changed, after `horizon` steps.
 
     Raises `ValueError` for names that are none, or that have no derivative.
     """
@@ -103,8 +103,8 @@ def measures(
         driven = replace(driven, inputs=jax.tree.map(lambda x: x[:horizon], driven.inputs))
 
     def measure(driven: Drive) -> dict[str, Any]:
-        end, seen = simulate(driven, segment=segment)
-        found = motion_of(task, driven, end, seen)
+        end, observed = simulate(driven, segment=segment)
+        found = motion_of(task, driven, end, observed)
         return {**found, "fitness": fitness_of(task, found)}
 
     if task.placements is None:

@@ -19,7 +19,7 @@ from ..genomes import Drive
 from ..world import State
 from . import gradients
 from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
-from .measures import Seen
+from .measures import Observations
 from .reevaluation import Disturbance, Spread, disturbance, moved
 
 STEPS = {"float64": (1e-3, 1e-4, 1e-5, 1e-6), "float32": (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)}
@@ -95,7 +95,7 @@ def gradient_health(
     others = np.asarray(_from_other_starts(task, actuator, of, starts, seed)(values))
     size = np.abs(own) / max(np.abs(own).sum(), 1e-30)
     lengths = np.linalg.norm(others, axis=1) * _length(own)
-    end, seen = _simulated(driven)
+    end, observed = _simulated(driven)
     return Health(
         of=of,
         by=by,
@@ -105,11 +105,11 @@ def gradient_health(
         sign_agreement=float(((np.sign(others) == np.sign(own)) @ size).mean()),
         cosine=float((others @ own / np.maximum(lengths, 1e-30)).mean()),
         starts=starts,
-        limited=float(motion_of(task, driven, end, seen)["limited"]),
+        limited=float(motion_of(task, driven, end, observed)["limited"]),
     )
 
 
-def _simulated(driven: Drive) -> tuple[State, Seen]:
+def _simulated(driven: Drive) -> tuple[State, Observations]:
     return jax.jit(lambda: simulate(driven), compiler_options=compiler_options())()
 
 

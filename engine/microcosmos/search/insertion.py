@@ -21,18 +21,18 @@ class Elites(eqx.Module):
 
     occupied: Bool[Array, "row"]
     fitness: Float[Array, "row"]
-    features: Float[Array, "row feature"]
+    measures: Float[Array, "row measure"]
     generation: Int[Array, "row"]
     slot: Int[Array, "row"]
     genotypes: Genotype
 
 
-def no_elites(cells: int, features: int, genotype: Genotype) -> Elites:
+def no_elites(cells: int, measures: int, genotype: Genotype) -> Elites:
     """An archive without any elite, for genotypes shaped as the one given."""
     return Elites(
         occupied=jnp.zeros(cells, bool),
         fitness=jnp.zeros(cells, jnp.float32),
-        features=jnp.zeros((cells, features), jnp.float32),
+        measures=jnp.zeros((cells, measures), jnp.float32),
         generation=jnp.zeros(cells, jnp.int32),
         slot=jnp.zeros(cells, jnp.int32),
         genotypes=jax.tree.map(lambda x: jnp.zeros((cells, *x.shape), x.dtype), genotype),
@@ -55,7 +55,7 @@ def clipped(candidates: Elites, cells: Cells) -> int:
     """How many sound candidates lie beyond an end of an axis, and count in its last bin."""
     beyond = np.zeros(len(candidates.occupied), bool)
     for axis in cells.axes:
-        value = np.asarray(candidates.features)[:, axis.feature]
+        value = np.asarray(candidates.measures)[:, axis.measure]
         beyond |= (value < axis.low) | (value > axis.high)
     return int(np.count_nonzero(beyond & np.asarray(candidates.occupied)))
 
@@ -70,8 +70,8 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
     """
     count, rows = archive.occupied.shape[0], candidates.occupied.shape[0]
     able = candidates.occupied & jnp.isfinite(candidates.fitness)
-    able &= sound(candidates.features, cells.axes)
-    cell = jnp.where(able, cells.of(candidates.features), count)
+    able &= sound(candidates.measures, cells.axes)
+    cell = jnp.where(able, cells.of(candidates.measures), count)
     there = jnp.minimum(cell, count - 1)
     fresh = able & ~archive.occupied[there]
     entered = _winners(archive, candidates, cell, there, able)

@@ -1,4 +1,4 @@
-"""What is measured of a creature's motion; names, units and axes are in `spec.features`."""
+"""What is measured of a creature's motion; names, units and axes are in `spec.measures`."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ MOTION = (
     "straightness",
     "rotation",
 )
-FEATURES = (
+MEASURES = (
     *MOTION,
     "hidden_nodes",
     "connections",
@@ -41,7 +41,7 @@ Curvature = Float[Array, "time joint"]
 Scalar = Float[Array, ""]
 
 
-class Seen(eqx.Module):
+class Observations(eqx.Module):
     """What is observed in every step."""
 
     centre: Float[Array, "*time 2"]
@@ -54,9 +54,9 @@ class Seen(eqx.Module):
     power: Float[Array, "*time"]
 
 
-def observe(state: State, measures: Measures) -> Seen:
-    """What features are made of."""
-    return Seen(
+def observe(state: State, measures: Measures) -> Observations:
+    """What measures are made of."""
+    return Observations(
         centre=measures.centre,
         rest=measures.rest,
         speed=measures.speed,
@@ -69,33 +69,33 @@ def observe(state: State, measures: Measures) -> Seen:
 
 
 def motion(
-    world: World, start: State, end: State, seen: Seen, length: Scalar | float
+    world: World, start: State, end: State, observed: Observations, length: Scalar | float
 ) -> dict[str, Any]:
     """What can be measured of any actuator's motion; `length` is the body's, in cells."""
-    first, steps = centre(world, start), len(seen.pace)
-    moved = jnp.diff(jnp.concatenate([first[None], seen.centre]), axis=0)
-    displacement, path = _norm(seen.centre[-1] - first), jnp.sum(_norm(moved))
+    first, steps = centre(world, start), len(observed.pace)
+    moved = jnp.diff(jnp.concatenate([first[None], observed.centre]), axis=0)
+    displacement, path = _norm(observed.centre[-1] - first), jnp.sum(_norm(moved))
     edges, joints = edges_there(world), joints_there(world)
-    power = jnp.mean(seen.power)
+    power = jnp.mean(observed.power)
     nodes = len(start.positions) if world.present is None else jnp.sum(world.present)
-    heading = jnp.concatenate([mean(start.angles, edges)[None], seen.heading])
-    curved, spread = curvature(seen.curvature, joints)
+    heading = jnp.concatenate([mean(start.angles, edges)[None], observed.heading])
+    curved, spread = curvature(observed.curvature, joints)
     return {
         "displacement": displacement,
-        "bending_effort": effort(seen.rest.angle, joints),
-        "stretching_effort": effort(seen.rest.length, edges),
+        "bending_effort": effort(observed.rest.angle, joints),
+        "stretching_effort": effort(observed.rest.length, edges),
         "path_length": path,
         "straightness": displacement / jnp.maximum(path, 1e-12),
         "rotation": mean(end.angles - start.angles, edges),
         "energy": jnp.zeros(()) if end.collected is None else jnp.sum(end.collected),
-        "mach": units.mach(jnp.max(seen.speed)),
-        "limited": jnp.mean(seen.held),
-        "reynolds": units.reynolds(jnp.mean(seen.pace), length, world.viscosity),
+        "mach": units.mach(jnp.max(observed.speed)),
+        "limited": jnp.mean(observed.held),
+        "reynolds": units.reynolds(jnp.mean(observed.pace), length, world.viscosity),
         "mean_speed": path / steps,
         "turning": jnp.sum(jnp.abs(jnp.diff(heading))),
         "curvature_mean": curved,
         "curvature_spread": spread,
-        "symmetry": symmetry(seen.curvature, joints),
+        "symmetry": symmetry(observed.curvature, joints),
         "power": power,
         "efficiency": efficiency(displacement / steps, power, world.viscosity),
         "nodes": jnp.asarray(nodes),

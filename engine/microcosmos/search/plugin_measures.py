@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from ..filaments import Rest
 from ..world import State, World, centre, edges_there, mean
-from .measures import Seen
+from .measures import Observations
 
 Scalar = Float[Array, ""]
 
@@ -36,7 +36,7 @@ class Motion(eqx.Module):
     """And at the end."""
     viscosity: Scalar
     measures: dict[str, Scalar]
-    """What is measured of everybody, by the names of `spec.features`."""
+    """What is measured of everybody, by the names of `spec.measures`."""
 
 
 @dataclass(frozen=True)
@@ -47,18 +47,18 @@ class Measure:
     of: Callable[[Motion], Scalar]
 
 
-def seen_as(
-    world: World, start: State, end: State, seen: Seen, measures: dict[str, Any]
+def motion_for_plugins(
+    world: World, start: State, end: State, observed: Observations, measures: dict[str, Any]
 ) -> Motion:
     """A simulation as measures of one's own see it."""
     first = mean(start.angles, edges_there(world))
     return Motion(
-        path=jnp.concatenate([centre(world, start)[None], seen.centre]),
-        heading=jnp.concatenate([first[None], seen.heading]),
-        rest=seen.rest,
-        curvature=seen.curvature,
-        pace=seen.pace,
-        power=seen.power,
+        path=jnp.concatenate([centre(world, start)[None], observed.centre]),
+        heading=jnp.concatenate([first[None], observed.heading]),
+        rest=observed.rest,
+        curvature=observed.curvature,
+        pace=observed.pace,
+        power=observed.power,
         start=start.positions,
         end=end.positions,
         viscosity=world.viscosity,

@@ -57,15 +57,15 @@ class Repeats(eqx.Module):
     """Mean."""
     squares: Float[Array, "cell"]
     """Sum of squared deviations of fitness from its mean."""
-    features: Float[Array, "cell feature"]
+    measures: Float[Array, "cell measure"]
     """Means."""
 
 
-def no_repeats(cells: int, features: int) -> Repeats:
+def no_repeats(cells: int, measures: int) -> Repeats:
     """Nobody was evaluated again yet."""
     none = jnp.zeros(cells, jnp.int32)
     zeros = jnp.zeros(cells, jnp.float32)
-    return Repeats(none, none, none, zeros, zeros, jnp.zeros((cells, features), jnp.float32))
+    return Repeats(none, none, none, zeros, zeros, jnp.zeros((cells, measures), jnp.float32))
 
 
 def disturbance(spread: Spread, size: tuple[int, int], *, key: PRNGKeyArray) -> Disturbance:
@@ -135,16 +135,16 @@ def add(
     n = old.count - old.failed + sound
     share = jnp.where(sound, 1 / jnp.maximum(n, 1), 0.0)
     step = jnp.where(sound, found.fitness - old.fitness, 0.0)
-    strayed = jnp.where(sound[:, None], found.features - old.features, 0.0)
+    strayed = jnp.where(sound[:, None], found.measures - old.measures, 0.0)
     mean = old.fitness + share * step
     cell = jnp.arange(done.shape[0])
     return Repeats(
         count=old.count + done,
         failed=old.failed + (done & ~sound),
-        hits=old.hits + (sound & (cells.of(found.features) == cell)),
+        hits=old.hits + (sound & (cells.of(found.measures) == cell)),
         fitness=mean,
         squares=old.squares + jnp.where(sound, step * (found.fitness - mean), 0.0),
-        features=old.features + share[:, None] * strayed,
+        measures=old.measures + share[:, None] * strayed,
     )
 
 
@@ -156,6 +156,6 @@ def corrected(elites: Elites, repeats: Repeats, cells: Cells) -> Float[Array, "c
     """
     count = repeats.count.shape[0]
     known = elites.occupied & (repeats.count > repeats.failed)
-    place = jnp.where(known, cells.of(repeats.features), count)
+    place = jnp.where(known, cells.of(repeats.measures), count)
     best = jnp.full(count, -jnp.inf).at[place].max(repeats.fitness, mode="drop")
     return jnp.where(jnp.isfinite(best), best, jnp.nan)

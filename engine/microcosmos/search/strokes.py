@@ -12,9 +12,9 @@ from .. import units
 from ..filaments import Rest
 from ..world import Limits, Measures, State, World, centre, flow, rollout
 from .evaluation import Evaluation, Task, mapped
-from .measures import MOTION, Seen, motion, observe
+from .measures import MOTION, Observations, motion, observe
 
-STROKE_FEATURES = (
+STROKE_MEASURES = (
     *MOTION,
     "energy",
     "mach",
@@ -37,7 +37,7 @@ class Conditions(eqx.Module):
 class Watched(eqx.Module):
     """What is observed in every step where nothing may stay unseen."""
 
-    seen: Seen
+    observed: Observations
     mach: Float[Array, "*time"]
     """Of the fastest fluid anywhere."""
     force: Float[Array, "*time group 2"]
@@ -59,17 +59,24 @@ def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluat
     """Carry out a stroke under its conditions and measure its last cycle."""
     world = replace(task.world, viscosity=conditions.viscosity, limits=conditions.limits)
     end, watched = rollout(world, task.start, rest, partial(watch, world))
-    seen, values = watched.seen, motion(world, task.start, end, watched.seen, task.length)
-    before = seen.centre[-1 - period] if len(seen.pace) > period else centre(world, task.start)
-    cycle = seen.centre[-1] - before
+    observed, values = (
+        watched.observed,
+        motion(world, task.start, end, watched.observed, task.length),
+    )
+    before = (
+        observed.centre[-1 - period]
+        if len(observed.pace) > period
+        else centre(world, task.start)
+    )
+    cycle = observed.centre[-1] - before
     values["mach"] = jnp.max(watched.mach)
     values["cycle"] = jnp.sqrt(jnp.sum(cycle * cycle))
     values["direction"] = jnp.arctan2(cycle[1], cycle[0])
     values["impulse"] = impulse(watched)
-    features = jnp.stack([values[name] for name in STROKE_FEATURES])
-    finite = jnp.all(jnp.isfinite(features))
+    measures = jnp.stack([values[name] for name in STROKE_MEASURES])
+    finite = jnp.all(jnp.isfinite(measures))
     status = jnp.where(finite, jnp.where(values["mach"] < 1, 0, 2), 1)
-    return Evaluation(values["displacement"], features, status)
+    return Evaluation(values["displacement"], measures, status)
 
 
 def stroke_program(task: Task, rest: Rest, period: int, options: dict):

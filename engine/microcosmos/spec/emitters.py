@@ -181,7 +181,7 @@ BY_SLOPES = ("lamarckian", "cma-mega")
 """Operators that need derivatives of every descriptor."""
 
 WITHOUT_SLOPES = ("hidden_nodes", "connections", "nodes", "limited")
-"""Features that have none."""
+"""Measures that have none."""
 
 WITH_NUMBERS = ("direct", "weights")
 """Encodings whose genes are numbers; those of the others are networks."""

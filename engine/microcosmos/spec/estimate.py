@@ -73,10 +73,10 @@ def _(spec: Evolution) -> Estimate:
 @estimate.register
 def _(spec: Folding) -> Estimate:
     cells, count = spec.world.width * spec.world.height, len(shape(spec.body).positions)
-    at_once = spec.block * (fluid(cells) + nodes(count * spec.coupling.layers))
+    in_flight = spec.block * (fluid(cells) + nodes(count * spec.coupling.layers))
     updates = spec.updates * ceil(len(spec.targets) / spec.block) * spec.block
     return Estimate(
-        memory_bytes=at_once + spec.gradient_bytes + 64 * FLOAT * count * len(spec.targets),
+        memory_bytes=in_flight + spec.gradient_bytes + 64 * FLOAT * count * len(spec.targets),
         evaluations=spec.updates * len(spec.targets),
         cell_steps=updates * spec.steps * GRADIENT * (cells if spec.world.fluid else count),
     )
@@ -88,9 +88,9 @@ def _(spec: Refinement) -> Estimate:
     scene = scene_of(file)
     cells, steps = scene.world.width * scene.world.height, scene.task.steps
     nodes, _ = room(file) or (0, 0)
-    at_once = spec.block * simulation(scene, nodes)
+    in_flight = spec.block * simulation(scene, nodes)
     return Estimate(
-        memory_bytes=at_once + gradient(scene, spec.segment),
+        memory_bytes=in_flight + gradient(scene, spec.segment),
         evaluations=1 + spec.steps * (1 + spec.block),
         cell_steps=cells
         * steps

@@ -24,17 +24,17 @@ def refuse_crowd(
 ) -> None:
     """A population of its own must be able to hold all that the search begins from."""
     populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
-    if not search.origin or not populations:
+    if not search.initial or not populations:
         return
     if len(emitters) > 1 or populations[0].backend != "microcosmos":
         raise ValueError(
-            "`search.origin` must be empty for a population beside other emitters or with "
-            f"another program's backend, got {len(search.origin)} creatures"
+            "`search.initial` must be empty for a population beside other emitters or with "
+            f"another program's backend, got {len(search.initial)} creatures"
         )
-    if len(search.origin) > search.batch:
+    if len(search.initial) > search.batch:
         raise ValueError(
-            f"`search.origin` must have at most `search.batch` ({search.batch}) creatures of a "
-            f"population, got {len(search.origin)}"
+            f"`search.initial` must have at most `search.batch` ({search.batch}) creatures for "
+            f"a population, got {len(search.initial)}"
         )
 
 
@@ -65,7 +65,7 @@ class Evolution(Part, Generic[Name, How]):
         return self
 
     @model_validator(mode="after")
-    def check_origin(self) -> Self:
+    def check_initial(self) -> Self:
         refuse_crowd(self.emitters, self.search)
         return self
 

@@ -7,7 +7,7 @@ Scale = Literal["log10", "linear"]
 
 
 @dataclass(frozen=True)
-class Feature:
+class Measure:
     """A measure, its unit, and the ends of its axis."""
 
     title: str
@@ -41,27 +41,27 @@ Name = Literal[
 ]
 """In the order in which they are recorded."""
 
-FEATURES: dict[str, Feature] = {
-    "displacement": Feature("Displacement", "cells", 0.0, 20.0),
-    "bending_effort": Feature("Bending effort", "rad²", 1e-4, 1e2, "log10"),
-    "stretching_effort": Feature("Stretching effort", "cells²", 1e-4, 1e2, "log10"),
-    "path_length": Feature("Path length", "cells", 0.0, 40.0),
-    "straightness": Feature("Straightness", "", 0.0, 1.0),
-    "rotation": Feature("Rotation", "rad", -6.3, 6.3),
-    "hidden_nodes": Feature("Hidden nodes", "", 0.0, 20.0),
-    "connections": Feature("Connections", "", 0.0, 60.0),
-    "energy": Feature("Energy collected", "energy", 1e-2, 1e5, "log10"),
-    "mach": Feature("Largest Mach number", "", 1e-3, 1.0, "log10"),
-    "limited": Feature("Node steps at a limit", "share", 0.0, 1.0),
-    "reynolds": Feature("Reynolds number", "", 1e-2, 1e2, "log10"),
-    "mean_speed": Feature("Mean speed", "cells/step", 1e-5, 1e-1, "log10"),
-    "turning": Feature("Turning", "rad", 1e-3, 1e1, "log10"),
-    "curvature_mean": Feature("Mean curvature", "1/cells", 0.0, 0.5),
-    "curvature_spread": Feature("Spread of curvature", "1/cells", 0.0, 0.5),
-    "symmetry": Feature("Symmetry", "", -1.0, 1.0),
-    "power": Feature("Power", "mass · cells²/step³", 1e-7, 1.0, "log10"),
-    "efficiency": Feature("Efficiency", "", 1e-6, 1.0, "log10"),
-    "nodes": Feature("Nodes", "", 0.0, 64.0),
+MEASURES: dict[str, Measure] = {
+    "displacement": Measure("Displacement", "cells", 0.0, 20.0),
+    "bending_effort": Measure("Bending effort", "rad²", 1e-4, 1e2, "log10"),
+    "stretching_effort": Measure("Stretching effort", "cells²", 1e-4, 1e2, "log10"),
+    "path_length": Measure("Path length", "cells", 0.0, 40.0),
+    "straightness": Measure("Straightness", "", 0.0, 1.0),
+    "rotation": Measure("Rotation", "rad", -6.3, 6.3),
+    "hidden_nodes": Measure("Hidden nodes", "", 0.0, 20.0),
+    "connections": Measure("Connections", "", 0.0, 60.0),
+    "energy": Measure("Energy collected", "energy", 1e-2, 1e5, "log10"),
+    "mach": Measure("Largest Mach number", "", 1e-3, 1.0, "log10"),
+    "limited": Measure("Node steps at a limit", "share", 0.0, 1.0),
+    "reynolds": Measure("Reynolds number", "", 1e-2, 1e2, "log10"),
+    "mean_speed": Measure("Mean speed", "cells/step", 1e-5, 1e-1, "log10"),
+    "turning": Measure("Turning", "rad", 1e-3, 1e1, "log10"),
+    "curvature_mean": Measure("Mean curvature", "1/cells", 0.0, 0.5),
+    "curvature_spread": Measure("Spread of curvature", "1/cells", 0.0, 0.5),
+    "symmetry": Measure("Symmetry", "", -1.0, 1.0),
+    "power": Measure("Power", "mass · cells²/step³", 1e-7, 1.0, "log10"),
+    "efficiency": Measure("Efficiency", "", 1e-6, 1.0, "log10"),
+    "nodes": Measure("Nodes", "", 0.0, 64.0),
 }
 
-assert tuple(FEATURES) == get_args(Name)
+assert tuple(MEASURES) == get_args(Name)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from ..bodies.reach import reach
+from ..bodies.extent import extent
 from .base import Part, unit
 from .body import SUPPORT, Body, Chain, Swimmer, made_elsewhere, shape
 from .control import Control, Sight
@@ -110,7 +110,7 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
     """However it turns and unfolds, a stretched body and the delta's support must fit in."""
     if made_elsewhere(body):  # Whoever can make it looks.
         return
-    longest = reach(shape(body))
+    longest = extent(shape(body))
     needed = ceil(longest * (1 + stretch) + SUPPORT)
     side = "width" if world.width <= world.height else "height"
     if needed > getattr(world, side):

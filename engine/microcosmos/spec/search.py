@@ -9,7 +9,7 @@ from . import measures
 from .base import Part, unit
 from .emitters import BY_SLOPES, GROWING, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
 from .plugins import OR_OWN, MaybeOwn, Own, completed, left_out
-from .sources import AGAIN, CVT, MAP_ELITES, PAPER, after, source
+from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION, after, source
 
 Fitness = Literal["displacement", "energy", "displacement+energy"]
 
@@ -46,7 +46,7 @@ def _by_name(schema: dict[str, Any]) -> None:
 def _end(schema: dict[str, Any]) -> None:
     """An end of an axis; the unit too is the measure's."""
     _by_name(schema)
-    schema["units"] = {name: one.unit for name, one in measures.FEATURES.items()}
+    schema["units"] = {name: one.unit for name, one in measures.MEASURES.items()}
     schema["unit_of"] = "name"
 
 
@@ -72,7 +72,7 @@ class Descriptor(Part):
     def complete(cls, given: Any, info: ValidationInfo) -> Any:
         """What is left out is the measure's own."""
         given, declared = completed(given, ("descriptor",), "name", info)
-        known = isinstance(given, dict) and measures.FEATURES.get(str(given.get("name")))
+        known = isinstance(given, dict) and measures.MEASURES.get(str(given.get("name")))
         usual = declared.axis if declared else known
         if not usual:
             return given
@@ -173,7 +173,7 @@ class Stop(Part):
 class Reevaluation(Part):
     """Elites evaluated again under disturbed conditions, to see how much of them was luck."""
 
-    model_config = after(AGAIN)
+    model_config = after(REEVALUATION)
 
     every: int = Field(default=25, ge=1, le=1_000_000, json_schema_extra=unit("generations"))
     """After every so many generations, and after the last."""
@@ -189,7 +189,7 @@ class Reevaluation(Part):
     """Whether the packets of energy are moved, where there are any."""
 
 
-ORIGINS = 4096
+MAX_INITIAL = 4096
 """The most creatures that a search may begin from."""
 
 
@@ -200,7 +200,9 @@ def _in_order(names: tuple[str, ...]) -> tuple[str, ...]:
 
 Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
-Origins = Annotated[tuple[Digest, ...], Field(max_length=ORIGINS), AfterValidator(_in_order)]
+InitialCreatures = Annotated[
+    tuple[Digest, ...], Field(max_length=MAX_INITIAL), AfterValidator(_in_order)
+]
 
 
 class Generations(Part):
@@ -218,7 +220,7 @@ class Generations(Part):
     """When to end before the generations are through."""
     reevaluation: Reevaluation | None = None
     """How elites are evaluated again; none: they are not."""
-    origin: Origins = ()
+    initial: InitialCreatures = ()
     """Names (SHA-256) of creatures that the search begins from, in place of random ones."""
 
 

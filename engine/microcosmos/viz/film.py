@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..optional import needed
+from ..optional import require
 from .raster import frame
 from .replay_file import Replay
 
@@ -38,7 +38,7 @@ def gif(
         raise ValueError(f"`rate` must be from 1 to 50 frames a second, got {rate}.")
     if frames < 2:
         raise ValueError(f"`frames` must be at least 2, got {frames}.")
-    image = needed("PIL.Image")
+    image = require("PIL.Image")
     numbers = range(0, replay.frames, -(-replay.frames // frames))
     pictures = [frame(replay, k, width=width, **options) for k in numbers]
     palette = _palette(pictures)
@@ -72,12 +72,12 @@ def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> 
 def _palette(pictures: list[np.ndarray]) -> Any:
     """An image whose palette suits all pictures, so that still parts do not flicker."""
     some = pictures[:: -(-len(pictures) // SAMPLES)]
-    image = needed("PIL.Image")
+    image = require("PIL.Image")
     return image.fromarray(np.concatenate(some)).quantize(256, image.Quantize.MEDIANCUT)
 
 
 def _refuse_without_encoder() -> None:
-    if ENCODER not in needed("av").codecs_available:
+    if ENCODER not in require("av").codecs_available:
         raise RuntimeError(
             f"An MP4 needs PyAV with {ENCODER}, which this one was built without; "
             "make a GIF instead."
@@ -85,7 +85,7 @@ def _refuse_without_encoder() -> None:
 
 
 def _encode(pictures: Iterator[np.ndarray], path: Path, rate: int) -> None:
-    av = needed("av")
+    av = require("av")
     kept = {"movflags": "faststart", "fflags": "bitexact"}
     options = QUALITY | (X86 if machine() in ("x86_64", "AMD64") else {})
     with av.open(str(path), "w", options=kept) as film:

@@ -57,7 +57,7 @@ def record(file: Mapping[str, Any]) -> bytes:
     nodes, _ = creature.room(file) or (0, 0)
     every = interval(scene, nodes)
     program = _program(scene.model_dump_json(), every)
-    film, features = jax.device_get(program(actuator_of(file, scene)))
+    film, measures = jax.device_get(program(actuator_of(file, scene)))
     if not all(np.isfinite(x).all() for x in (film.positions, film.vorticity)):
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
@@ -79,7 +79,7 @@ def record(file: Mapping[str, Any]) -> bytes:
         "vorticity": {"scale": scales["vorticity"]},
         "velocity": {"scale": scales["velocity"]},
         "energy": {"scale": scales["energy"], "frames": len(film.energy)},
-        **_comparison(file, scene, features),
+        **_comparison(file, scene, measures),
         "force_free": scene.coupling.force_free,
         "device": device_kind(),
     }
@@ -94,10 +94,10 @@ def record(file: Mapping[str, Any]) -> bytes:
 
 
 def _comparison(
-    file: Mapping[str, Any], scene: Scene, features: Mapping[str, Any]
+    file: Mapping[str, Any], scene: Scene, measures: Mapping[str, Any]
 ) -> dict[str, Any]:
     """What was recorded when the creature was measured, and what this replay finds."""
-    replayed = {name: float(value) for name, value in features.items()}
+    replayed = {name: float(value) for name, value in measures.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
     told = creature.scene_of(file).task
@@ -203,7 +203,7 @@ class Film(eqx.Module):
 
 @lru_cache(maxsize=16)
 def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
-    """From an actuator to the film and the features.
+    """From an actuator to the film and the measures.
 
     Compiled programs are kept, so that the second creature of a run is shown at once.
     """

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..optional import needed
+from ..optional import require
 from .raster import frame, frame_number, theme_of
 from .replay_file import Replay
 
@@ -71,9 +71,9 @@ def _written(
     ink: tuple[int, int, int],
 ) -> np.ndarray:
     """The sheet with each text below and right of its corner (column, row)."""
-    image = needed("PIL.Image").fromarray(sheet)
-    font = needed("PIL.ImageFont").load_default(LETTERS)
-    draw = needed("PIL.ImageDraw").Draw(image)
+    image = require("PIL.Image").fromarray(sheet)
+    font = require("PIL.ImageFont").load_default(LETTERS)
+    draw = require("PIL.ImageDraw").Draw(image)
     for corner, text in zip(corners, texts, strict=True):
         draw.text(corner, text, fill=ink, font=font, anchor="lt")
     return np.asarray(image)
@@ -81,5 +81,5 @@ def _written(
 
 def encoded(picture: np.ndarray) -> bytes:
     out = io.BytesIO()
-    needed("PIL.Image").fromarray(picture).save(out, "PNG", optimize=True)
+    require("PIL.Image").fromarray(picture).save(out, "PNG", optimize=True)
     return out.getvalue()

@@ -154,7 +154,7 @@ def read_the_comparison(page: Page) -> None:
     expect(legend.get_by_role("link")).to_have_text(["Short one", "Long one"], timeout=FAST)
     plot = page.get_by_role("img", name=re.compile("^QD score over generations"))
     expect(plot).to_be_visible(timeout=FAST)
-    page.get_by_role("combobox", name="Over").select_option("evaluations")
+    page.get_by_role("combobox", name="X axis").select_option("evaluations")
     page.get_by_role("checkbox", name="Log scale").check()
     plot = page.get_by_role("img", name=re.compile("^QD score over evaluations"))
     expect(plot).to_be_visible(timeout=FAST)

@@ -120,11 +120,11 @@ def test_text_that_is_no_json_is_a_value_error():
 
 
 def measured(**changes):
-    features = {"displacement": 2.0, "bending_effort": 0.5}
+    measures = {"displacement": 2.0, "bending_effort": 0.5}
     whole = {
         "fitness": 2.0,
         "descriptors": {"bending_effort": 0.5},
-        "features": features,
+        "measures": measures,
         "block": 16,
         "room": [8, 16],
         "device": "cpu",
@@ -141,7 +141,7 @@ def test_a_measurement_is_kept(file):
     [
         {"fitness": 3.0},
         {"descriptors": {"bending_effort": 0.6}},
-        {"features": {}},
+        {"measures": {}},
         {"room": [-1, 16]},
         {"room": [10**30, 16]},
         {"block": 0},

@@ -53,7 +53,7 @@ def test_body_genes_and_figures_are_arrays(file):
         assert names == list(genome["nodes"]["activation"])
         measured = file["measured"]
         assert found["measured/fitness"][()] == measured["fitness"]
-        for group in ("features", "descriptors"):
+        for group in ("measures", "descriptors"):
             arrays = {name: item[()] for name, item in found[f"measured/{group}"].items()}
             assert arrays == measured[group]
 
@@ -73,27 +73,27 @@ NAMES = [
     "nul\0",
     "fitness",
 ]
-NAMES += ["features", "1/2 é", " ", "%2E", "x" * 100_000]
+NAMES += ["measures", "1/2 é", " ", "%2E", "x" * 100_000]
 
 
 def test_names_that_could_be_paths_are_names(file):
-    features = {name: float(number) for number, name in enumerate(NAMES)}
-    measured = {**file["measured"], "features": {**file["measured"]["features"], **features}}
+    measures = {name: float(number) for number, name in enumerate(NAMES)}
+    measured = {**file["measured"], "measures": {**file["measured"]["measures"], **measures}}
     named = creature.parse({**file, "measured": measured})
     data = creature_h5.dump(named)
     assert creature_h5.load(data) == named
     assert len({creature_h5.link(name) for name in NAMES}) == len(NAMES)
     with h5py.File(BytesIO(data), "r") as found:
         assert found["measured/fitness"][()] == file["measured"]["fitness"]
-        group = found["measured/features"]
-        assert {name: group[creature_h5.link(name)][()] for name in NAMES} == features
+        group = found["measured/measures"]
+        assert {name: group[creature_h5.link(name)][()] for name in NAMES} == measures
 
 
-def test_a_creature_has_a_limited_number_of_features(file):
-    many = {**file["measured"]["features"], **{f"f{i}": 0.0 for i in range(1000)}}
+def test_a_creature_has_a_limited_number_of_measures(file):
+    many = {**file["measured"]["measures"], **{f"f{i}": 0.0 for i in range(1000)}}
     with pytest.raises(creature.CreatureError, match="at most 1000") as caught:
-        creature.parse({**file, "measured": {**file["measured"], "features": many}})
-    assert caught.value.field == "measured.features"
+        creature.parse({**file, "measured": {**file["measured"], "measures": many}})
+    assert caught.value.field == "measured.measures"
 
 
 def test_what_was_never_measured_is_left_out(file):

@@ -34,7 +34,7 @@ def archive(request):
     tree = {
         "cell": np.array([1, 6, 11], np.int32),
         "fitness": np.array([1.5, 2.5, 0.5], np.float32),
-        "features": raw.astype(np.float32),
+        "measures": raw.astype(np.float32),
         "generation": np.array([1, 2, 2], np.int32),
         "creature": np.arange(96, dtype=np.uint8).reshape(3, 32),
         "genomes": {"weight": np.arange(6, dtype=np.float32).reshape(3, 2)},
@@ -49,7 +49,7 @@ def archive(request):
     if request.param == "cvt":
         tree["centroids"] = AROUND
     told = {"archive": {"descriptors": AXES, "centroids": None}}
-    attributes = {"format": file.FORMAT, "spec": json.dumps(told), "features": '["a", "b"]'}
+    attributes = {"format": file.FORMAT, "spec": json.dumps(told), "measures": '["a", "b"]'}
     return file.dump({"archive": tree}, attributes)
 
 

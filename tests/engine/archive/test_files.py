@@ -42,12 +42,12 @@ def test_the_table_has_the_columns_of_pyribs():
     archive = {
         "cell": np.array([3, 7], np.int32),
         "fitness": np.array([1.5, 2.5], np.float32),
-        "features": np.array([[0.01, 0.5], [1e5, 0.25]], np.float32),
+        "measures": np.array([[0.01, 0.5], [1e5, 0.25]], np.float32),
         "generation": np.array([1, 2], np.int32),
         "creature": np.arange(64, dtype=np.uint8).reshape(2, 32),
         "genomes": {"weight": np.ones((2, 3), np.float32)},
     }
-    attributes = {"format": file.FORMAT, "spec": spec, "features": '["a", "b"]'}
+    attributes = {"format": file.FORMAT, "spec": spec, "measures": '["a", "b"]'}
     rows = list(
         csv.DictReader(io.StringIO(export.csv(file.dump({"archive": archive}, attributes))))
     )

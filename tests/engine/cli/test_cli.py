@@ -6,10 +6,18 @@ import signal
 import subprocess
 import sys
 import time
+from importlib import import_module
+from io import StringIO
 
 import pytest
+from rich.console import Console
+from typer.testing import CliRunner
 
 from microcosmos.archive.table import read_table
+from microcosmos.cli import app, draw
+
+run_command = import_module("microcosmos.cli.run")
+cli_app = import_module("microcosmos.cli.app")
 
 SPEC = {
     "experiment": "quality-diversity",
@@ -68,14 +76,38 @@ def test_a_run_stopped_by_a_signal_goes_on_and_ends_with_the_same_bytes(run, tmp
     assert "must be at least the file's 13, got 12" in text
     text = finished(run("replay", "spec.best.json", "--check"))
     assert "The same, bit for bit." in text
-    text = finished(run("refine", "spec.best.json", "--out", "none/x.h5"), code=2)
-    assert "--out needs an existing folder" in text
+    text = finished(run("refine", "spec.best.json", "--out", "spec.json/x.h5"), code=2)
+    assert "--out needs a folder that can be made" in text
 
 
 def test_a_wrong_spec_is_refused_with_its_field(run, tmp_path):
     (tmp_path / "spec.json").write_text(json.dumps(SPEC | {"world": {"viscosity": -1}}))
     text = finished(run("evolve", "spec.json"), code=2)
     assert "world.viscosity" in text
+
+
+def test_evolve_sets_fields_and_makes_the_folder_of_its_file(tmp_path, monkeypatch):
+    carried = []
+    monkeypatch.setattr(run_command, "carry_on", lambda *given: carried.append(given) or True)
+    (tmp_path / "spec.json").write_text(json.dumps(SPEC))
+    out = tmp_path / "new" / "folder" / "x.h5"
+    command = ["evolve", str(tmp_path / "spec.json"), "--out", str(out)]
+    found = CliRunner().invoke(app, [*command, "--set", "world.viscosity=0.07"])
+    assert found.exit_code == 0, found.output
+    assert carried[0][0].world.viscosity == 0.07
+    assert out.parent.is_dir()
+    refused = CliRunner().invoke(app, [*command, "--set", "world.viscosity=-1"])
+    assert refused.exit_code == 2
+
+
+def test_a_film_without_its_library_is_refused_before_the_simulation(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "av", None)
+    (tmp_path / "creature.json").write_text("{}")
+    command = ["figure", str(tmp_path / "creature.json"), str(tmp_path / "x.mp4")]
+    monkeypatch.setattr(draw, "console", Console(file=(text := StringIO())))
+    monkeypatch.setattr(cli_app, "console", draw.console)
+    assert CliRunner().invoke(app, command).exit_code == 2
+    assert "microcosmos[figures]" in text.getvalue()
 
 
 def test_a_name_that_is_no_file_is_refused_with_the_presets(run):

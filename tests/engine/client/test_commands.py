@@ -9,7 +9,7 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from microcosmos.cli import app, overrides, remote, tables
-from microcosmos.client import Run
+from microcosmos.client import NotFound, Run
 from microcosmos.version import VERSION
 
 SHA = "ab" * 32

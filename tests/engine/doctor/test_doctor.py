@@ -159,7 +159,7 @@ def test_without_redis_it_is_said_who_needs_one(monkeypatch):
     [
         (None, "ok", "first start makes it"),
         ("newest", "ok", "tables of migration"),
-        ("0001", "warning", "is the newest"),
+        ("0000", "warning", "is the newest"),
         ("9999", "problem", "knows them up to"),
         (b"no database", "problem", "not a database"),
     ],

@@ -3,14 +3,16 @@
 import json
 from dataclasses import replace
 
+import equinox as eqx
 import numpy as np
 import pytest
 
 from microcosmos import naming
 from microcosmos.archive import creature, file
 from microcosmos.build import build
+from microcosmos.experiments import evolution
 from microcosmos.experiments.archive_file import OtherDevice
-from microcosmos.search import FEATURES
+from microcosmos.search import MEASURES
 
 
 def test_another_seed_gives_another_archive(small, course, experiment, finish):
@@ -126,9 +128,25 @@ def test_diverged_creatures_are_kept_apart_with_their_reason(small):
     assert experiment.save(restored) == experiment.save(state)
 
 
+def test_an_evaluation_that_cannot_be_trusted_is_no_elite(experiment, monkeypatch):
+    evaluate, fittest = evolution.search.evaluate_blocks, []
+
+    def too_fast(*given, **options):
+        found = evaluate(*given, **options)
+        fittest.append(int(np.argmax(found.fitness)))
+        status = np.where(np.arange(len(found.status)) == fittest[-1], 2, found.status)
+        return eqx.tree_at(lambda evaluation: evaluation.status, found, status)
+
+    monkeypatch.setattr(evolution.search, "evaluate_blocks", too_fast)
+    state, report = experiment.advance(experiment.init())
+    assert report.diverged == 1
+    assert state.quarantine.slot.tolist() == fittest
+    assert fittest[0] not in np.asarray(state.elites.slot)[np.asarray(state.elites.occupied)]
+
+
 def test_the_file_names_what_it_holds(experiment, course):
     tree, attributes = file.load(experiment.save(course[0][-1]))
-    assert json.loads(attributes["features"]) == list(FEATURES)
+    assert json.loads(attributes["measures"]) == list(MEASURES)
     assert json.loads(attributes["device"]) == [experiment.plan.device]
     count = len(tree["archive"]["cell"])
     assert all(len(v) == count for v in tree["archive"].values() if not isinstance(v, dict))

@@ -48,18 +48,18 @@ def test_a_check_of_a_row_repeats_every_number_exactly(course):
         result = check(file_of(row))
         assert result.same_device
         assert result.exact
-        assert set(result.repeated) == set(search.STROKE_FEATURES)
+        assert set(result.repeated) == set(search.STROKE_MEASURES)
 
 
 def test_rows_agree_with_what_was_measured_of_their_creature(course):
     for row in course[0][-1].rows:
         values, file = row.values, creature.parse(file_of(row))
-        features = file["measured"]["features"]
+        measures = file["measured"]["measures"]
         assert file["sha256"] == row.creature
         assert file["identity"]["world"]["viscosity"] == values["viscosity"]
-        assert values["displacement"] == features["cycle"]
-        assert features["cycle"] <= features["path_length"]
-        assert values["mach"] == features["mach"] < 1
+        assert values["displacement"] == measures["cycle"]
+        assert measures["cycle"] <= measures["path_length"]
+        assert values["mach"] == measures["mach"] < 1
         assert math.isfinite(values["sperm"])
 
 
@@ -81,7 +81,7 @@ def test_soft_actuators_have_a_larger_sperm_number(course):
 
 def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
     stroke = sweep.strokes[0]
-    names = search.STROKE_FEATURES
+    names = search.STROKE_MEASURES
     values = np.ones((3, len(names)), np.float32)
     values[1, names.index("mach")] = np.nan
     values[2, names.index("mach")] = 2.0

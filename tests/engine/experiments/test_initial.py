@@ -64,7 +64,7 @@ def test_the_command_begins_from_a_file_and_goes_on_from_its_own(small, evolve, 
     begin = ("--from", tmp_path / "best.json")
     evolve(small(search={"generations": 1}), *begin, "--out", out)
     tree, _ = file.load(out.read_bytes())
-    assert [bytes(name).hex() for name in tree["origin"]["creature"]] == [best["sha256"]]
+    assert [bytes(name).hex() for name in tree["initial"]["creature"]] == [best["sha256"]]
     evolve(small(search={"generations": 2}), *begin, "--out", whole)
     named, _ = begun(small(search={"generations": 2}), [tmp_path / "best.json"])
     evolve(named, "--out", out)  # Which can only go on: the creature's file is not given.
@@ -72,20 +72,20 @@ def test_the_command_begins_from_a_file_and_goes_on_from_its_own(small, evolve, 
     evolve(small(search={"generations": 2}), *begin, "--out", out)
     assert out.read_bytes() == whole.read_bytes()
     refused = evolve(named, "--out", tmp_path / "none.h5", code=2)
-    assert "`search.origin` names 1 creatures" in refused
+    assert "`search.initial` names 1 creatures" in refused
     assert "--from" in refused
 
 
 def test_a_spec_that_names_creatures_takes_only_those_of_the_files(
     small, archive, evolve, best
 ):
-    named = small(search={"origin": [best["sha256"]]})
+    named = small(search={"initial": [best["sha256"]]})
     chosen, files = begun(named, [archive])
     assert chosen == named
     assert [file["sha256"] for file in files] == [best["sha256"]]
-    other = small(search={"origin": ["0" * 64]})
+    other = small(search={"initial": ["0" * 64]})
     text = evolve(other, "--from", archive, code=2)
-    assert "--from needs the creatures that `search.origin` names; got none of 0000" in text
+    assert "--from needs the creatures that `search.initial` names; got none of 0000" in text
 
 
 def test_what_cannot_be_begun_from_is_refused(small, archive, evolve, tmp_path):

@@ -121,7 +121,7 @@ def test_a_population_begins_with_creatures_of_before(experiment, course, search
     cells = np.flatnonzero(state.elites.occupied).tolist()[:5]
     files = [creature.parse(experiment.creature(state, cell)) for cell in cells]
     names = sorted(file["sha256"] for file in files)
-    chosen = searching(origin=names, generations=3)
+    chosen = searching(initial=names, generations=3)
     text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
     plan = begun(replace(experiment.plan, spec=text, generations=3), chosen, files)
     fork = replace(experiment, plan=plan)

@@ -10,7 +10,7 @@ from microcosmos.archive import creature
 from microcosmos.archive.initial import counters, fitting, genes_of, renumbered
 from microcosmos.build import build
 from microcosmos.build.experiments import begun
-from microcosmos.experiments.offspring import born
+from microcosmos.experiments.offspring import next_offspring
 from microcosmos.naming import decode, encode
 from microcosmos.search import OPERATORS, never
 from microcosmos.spec import parse
@@ -35,7 +35,7 @@ def forked(small, files):
     """In another viscosity, from more creatures than a batch holds."""
     spec = small(
         world={"width": 32, "height": 32, "viscosity": 0.2},
-        search={"origin": names_of(files), "generations": 4},
+        search={"initial": names_of(files), "generations": 4},
     )
     return build(spec, files)
 
@@ -60,12 +60,12 @@ def test_all_that_it_begins_from_are_evaluated_first_each_once(forked, forking, 
 
 
 def test_whoever_comes_later_descends_from_it(forking, files):
-    born, origin = set(), set(names_of(files))
+    born, initial = set(), set(names_of(files))
     for report in forking[1]:
         for elite in report.elites:
             assert elite.operator in ("fork", "neat")
             assert elite.parents
-            assert set(elite.parents) <= born | origin
+            assert set(elite.parents) <= born | initial
         born |= {elite.creature for elite in report.elites}
 
 
@@ -73,19 +73,19 @@ def test_a_fork_taken_up_from_any_generation_ends_the_same(forked, forking, fini
     """Also where nobody has the creatures any more: the file does."""
     states, _ = forking
     whole = forked.save(states[-1])
-    alone = replace(forked, plan=replace(forked.plan, origin=None))
+    alone = replace(forked, plan=replace(forked.plan, initial=None))
     for state in states[:-1]:
         assert finish(alone, alone.restore(forked.save(state))) == whole
     shorter = lasting(forked, 1)
     assert finish(alone, alone.restore(finish(shorter, shorter.init()))) == whole
-    with pytest.raises(ValueError, match=r"`search.origin` names \d+ creatures"):
+    with pytest.raises(ValueError, match=r"`search.initial` names \d+ creatures"):
         alone.init()
 
 
 def test_in_its_own_world_a_creature_is_itself_and_not_its_child(
     small, experiment, files, finish
 ):
-    chosen = small(search={"origin": [files[3]["sha256"]], "generations": 2})
+    chosen = small(search={"initial": [files[3]["sha256"]], "generations": 2})
     text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
     plan = replace(experiment.plan, spec=text, generations=2)
     again = replace(experiment, plan=begun(plan, chosen, files))
@@ -102,7 +102,7 @@ def test_in_its_own_world_a_creature_is_itself_and_not_its_child(
 
 
 def test_new_genes_get_numbers_that_no_ancestor_has(small, files):
-    chosen = small(search={"origin": names_of(files)})
+    chosen = small(search={"initial": names_of(files)})
     after, _ = counters(genes_of(chosen, files))
     plan = begun(build_plan_of(chosen), chosen, files)
     assert int(plan.counters.innovation) == after > 6
@@ -187,7 +187,7 @@ def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish):
     state, _ = first.advance(first.init())
     best = creature.parse(first.best(state))
     chosen = small(
-        control=direct, search=search | {"origin": [best["sha256"]], "generations": 3}
+        control=direct, search=search | {"initial": [best["sha256"]], "generations": 3}
     )
     text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
     plan = replace(first.plan, spec=text, generations=3)
@@ -195,10 +195,10 @@ def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish):
     before = fork.init()
     after, report = fork.advance(before)
     assert str(after.emitters[0]) == str(before.emitters[0]), "it neither asked nor was told"
-    brood = born(fork.plan, fork.programs, before, never)
-    assert OPERATORS[brood.children.operator[0]] == "fork"
+    offspring = next_offspring(fork.plan, fork.programs, before, never)
+    assert OPERATORS[offspring.children.operator[0]] == "fork"
     np.testing.assert_array_equal(
-        brood.children.genotypes.values[0], fork.plan.origin.genotypes.values[0]
+        offspring.children.genotypes.values[0], fork.plan.initial.genotypes.values[0]
     )
     assert any(e.parents == (best["sha256"],) for e in report.elites)
     assert finish(fork, fork.restore(fork.save(after))) == finish(fork, fork.init())
@@ -207,17 +207,17 @@ def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish):
 def test_the_order_in_which_creatures_are_named_changes_nothing(small):
     names = [letter * 64 for letter in "cab"]
     one, other = (
-        small(search={"origin": order}) for order in (names, [*names[::-1], names[0]])
+        small(search={"initial": order}) for order in (names, [*names[::-1], names[0]])
     )
     assert one == other
-    assert one.search.origin == tuple(sorted(names))
-    with pytest.raises(ValueError, match="origin"):
-        small(search={"origin": ["nonsense"]})
+    assert one.search.initial == tuple(sorted(names))
+    with pytest.raises(ValueError, match="initial"):
+        small(search={"initial": ["nonsense"]})
 
 
 def test_a_population_holds_all_that_it_begins_from():
     names = [f"{number:064x}" for number in range(5)]
-    spec = {"experiment": "neuroevolution", "search": {"batch": 4, "origin": names}}
-    with pytest.raises(ValueError, match=r"`search.origin` must have at most `search.batch`"):
+    spec = {"experiment": "neuroevolution", "search": {"batch": 4, "initial": names}}
+    with pytest.raises(ValueError, match=r"`search.initial` must have at most `search.batch`"):
         parse(spec)
-    assert parse({**spec, "search": {"batch": 5, "origin": names}}).search.origin
+    assert parse({**spec, "search": {"batch": 5, "initial": names}}).search.initial

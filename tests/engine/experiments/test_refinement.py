@@ -11,8 +11,8 @@ from pydantic import ValidationError
 import microcosmos
 from microcosmos.archive import creature
 from microcosmos.audit.reproducibility import check
-from microcosmos.build import build_niches
-from microcosmos.search import FEATURES
+from microcosmos.build import build_cells
+from microcosmos.search import MEASURES
 from microcosmos.spec import parse
 
 
@@ -43,10 +43,10 @@ def test_the_first_row_is_the_creature_as_it_was_measured_in_its_search(spec, co
 
 
 def test_it_does_not_leave_its_cell(spec, course):
-    niches = build_niches(spec.archive)
-    features = [row.measured["features"] for row in course[0][-1].table.rows]
-    places = np.array([[one[name] for name in FEATURES] for one in features], np.float32)
-    assert len(set(niches.of(jnp.asarray(places)).tolist())) == 1
+    cells = build_cells(spec.archive)
+    measures = [row.measured["measures"] for row in course[0][-1].table.rows]
+    places = np.array([[one[name] for name in MEASURES] for one in measures], np.float32)
+    assert len(set(cells.of(jnp.asarray(places)).tolist())) == 1
 
 
 @pytest.mark.long

@@ -99,4 +99,4 @@ def test_genes_survive_the_file(networks):
 
 
 def test_minus_zero_is_written_as_zero():
-    assert encoding.encode(np.array([-0.0])) == encoding.encode(np.array([0.0]))
+    assert naming.encode(np.array([-0.0])) == naming.encode(np.array([0.0]))

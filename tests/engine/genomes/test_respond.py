@@ -59,7 +59,7 @@ def task(float64):
 
 
 def measured(task):
-    """A function from a network, and the energy at the start, to its features by name."""
+    """A function from a network, and the energy at the start, to its measures by name."""
 
     @jax.jit
     def found(network, energy):
@@ -69,7 +69,7 @@ def measured(task):
     def named(network, energy=task.start.energy):
         evaluation = found(network, energy)
         assert evaluation.status == 0
-        return dict(zip(search.FEATURES, np.asarray(evaluation.features), strict=True))
+        return dict(zip(search.MEASURES, np.asarray(evaluation.measures), strict=True))
 
     return named
 

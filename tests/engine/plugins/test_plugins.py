@@ -170,16 +170,16 @@ def test_what_cannot_be_is_refused_with_the_reason(part, value, words):
 
 def test_a_run_measures_selects_and_moves_as_the_module_says(course):
     experiment, state, reports = course
-    names = list(experiment.plan.features)
+    names = list(experiment.plan.measures)
     assert names[-2:] == ["own.ahead", "own.straight"]
-    rows = np.asarray(state.elites.features)[np.asarray(state.elites.occupied)]
+    rows = np.asarray(state.elites.measures)[np.asarray(state.elites.occupied)]
     fitness = np.asarray(state.elites.fitness)[np.asarray(state.elites.occupied)]
     np.testing.assert_allclose(fitness, 2 * rows[:, names.index("displacement")], rtol=1e-6)
     np.testing.assert_array_equal(fitness, rows[:, names.index("own.straight")])
     assert np.all(np.abs(rows[:, -2]) <= rows[:, names.index("displacement")] + 1e-6)
     assert len(np.unique(fitness)) > 1
     assert all(
-        elite.descriptors[0] == elite.features["own.ahead"] for elite in reports[0].elites
+        elite.descriptors[0] == elite.measures["own.ahead"] for elite in reports[0].elites
     )
 
 

@@ -9,8 +9,8 @@ from microcosmos import search
 from microcosmos.search import cells
 
 AXES = (
-    search.Axis(feature=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
-    search.Axis(feature=1, low=0.0, high=1.0, bins=4, logarithmic=False),
+    search.Axis(measure=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
+    search.Axis(measure=1, low=0.0, high=1.0, bins=4, logarithmic=False),
 )
 
 

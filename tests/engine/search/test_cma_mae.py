@@ -88,7 +88,7 @@ def outcome(fitness, cell, sound=None):
     return search.Outcome(
         genotypes=Vector(jnp.zeros((6, 2))),
         fitness=fitness,
-        features=jnp.zeros((6, 1)),
+        measures=jnp.zeros((6, 1)),
         sound=flags,
         cell=jnp.where(flags, cell, 4),
         entered=flags,

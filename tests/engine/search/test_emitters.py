@@ -121,7 +121,7 @@ def test_each_emitter_is_told_of_its_own_children_alone(archive):
     outcome = search.Outcome(
         genotypes=Vector(jnp.zeros((4, GENES))),
         fitness=jnp.arange(4.0),
-        features=jnp.zeros((4, 1)),
+        measures=jnp.zeros((4, 1)),
         sound=nobody == 0,
         cell=nobody,
         entered=nobody == 0,

@@ -8,8 +8,8 @@ import pytest
 from microcosmos import genomes, search
 
 AXES = (
-    search.Axis(feature=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
-    search.Axis(feature=1, low=0.0, high=1.0, bins=4, logarithmic=False),
+    search.Axis(measure=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
+    search.Axis(measure=1, low=0.0, high=1.0, bins=4, logarithmic=False),
 )
 AROUND = np.random.default_rng(1).random((24, 2)).astype(np.float32)
 CELLS = {"grid": search.Grid(AXES), "cvt": search.voronoi(AXES, AROUND)}
@@ -44,29 +44,30 @@ def genotypes(request):
 def candidates(genotypes, count, seed, generation=0, levels=4):
     """Random rows in which equal fitness and equal cells are common."""
     random = np.random.default_rng(seed)
-    features = np.stack(
+    measures = np.stack(
         [10 ** random.uniform(-5, 3, count), random.uniform(-0.2, 1.2, count)], 1
     )
     return search.Elites(
         occupied=jnp.asarray(random.random(count) < 0.9),
         fitness=jnp.asarray(random.integers(0, levels, count), jnp.float32),
-        features=jnp.asarray(features, jnp.float32),
+        measures=jnp.asarray(measures, jnp.float32),
         generation=jnp.full(count, generation, jnp.int32),
         slot=jnp.arange(count, dtype=jnp.int32),
         genotypes=genotypes(random, count),
     )
 
 
-def awkward(genotypes, count, seed):
+def awkward(genotypes, count, seed, generation=0):
     """The same with every kind of odd number in fitness and descriptors."""
-    random, rows = np.random.default_rng(seed), candidates(genotypes, count, seed)
-    fitness, features = np.array(rows.fitness), np.array(rows.features)
+    rows = candidates(genotypes, count, seed, generation)
+    random = np.random.default_rng(seed)
+    fitness, measures = np.array(rows.fitness), np.array(rows.measures)
     odd = random.random(count) < 0.6
     fitness[odd] = random.choice(AWKWARD, odd.sum())
     odd = random.random((count, 2)) < 0.4
-    features[odd] = random.choice(AWKWARD, odd.sum())
+    measures[odd] = random.choice(AWKWARD, odd.sum())
     return search.Elites(
-        **{**vars(rows), "fitness": jnp.asarray(fitness), "features": jnp.asarray(features)}
+        **{**vars(rows), "fitness": jnp.asarray(fitness), "measures": jnp.asarray(measures)}
     )
 
 
@@ -93,8 +94,8 @@ def by_dictionary(batches, cells):
     best = {}
     for rows in batches:
         digests = np.asarray(search.digest(rows.genotypes))
-        place, fitness = np.asarray(cells.of(rows.features)), np.asarray(rows.fitness, float)
-        sound = np.isfinite(rows.features).all(1) & np.isfinite(fitness)
+        place, fitness = np.asarray(cells.of(rows.measures)), np.asarray(rows.fitness, float)
+        sound = np.isfinite(rows.measures).all(1) & np.isfinite(fitness)
         for i in np.flatnonzero(np.asarray(rows.occupied) & sound):
             key = (
                 -fitness[i],
@@ -108,13 +109,13 @@ def by_dictionary(batches, cells):
 
 @pytest.mark.parametrize("kind", [candidates, awkward])
 def test_the_archive_holds_what_the_rule_says(cells, genotypes, kind):
-    batches = [kind(genotypes, 64, seed) for seed in range(6)]
+    batches = [kind(genotypes, 64, seed, generation=seed // 2) for seed in range(24)]
     archive = all_of(batches, cells, nothing(genotypes))
     expected = by_dictionary(batches, cells)
     assert set(np.flatnonzero(archive.occupied)) == set(expected)
     for cell, key in expected.items():
-        found = (-float(archive.fitness[cell]), int(archive.slot[cell]))
-        assert found == (key[0], key[-1])
+        place = (int(archive.generation[cell]), int(archive.slot[cell]))
+        assert (-float(archive.fitness[cell]), *place) == (key[0], *key[-2:])
 
 
 @pytest.mark.parametrize("kind", [candidates, awkward])
@@ -153,11 +154,11 @@ def test_of_rows_that_are_equal_in_everything_one_enters(cells, genotypes):
 def test_what_is_not_finite_never_touches_the_archive(cells, genotypes, odd, place):
     rows = candidates(genotypes, 32, 8)
     fitness = jnp.full(32, odd if place == "fitness" else 9.0, jnp.float32)
-    features = np.array(rows.features)
+    measures = np.array(rows.measures)
     if place != "fitness":
-        features[:, ("first", "second").index(place)] = odd
-    broken = {"occupied": jnp.ones(32, bool), "fitness": fitness, "features": features}
-    broken = search.Elites(**{**vars(rows), **broken, "features": jnp.asarray(features)})
+        measures[:, ("first", "second").index(place)] = odd
+    broken = {"occupied": jnp.ones(32, bool), "fitness": fitness, "measures": measures}
+    broken = search.Elites(**{**vars(rows), **broken, "measures": jnp.asarray(measures)})
     archive, _ = insert(nothing(genotypes), rows, cells)
     after, inserted = insert(archive, broken, cells)
     assert same(archive, after)

@@ -26,7 +26,7 @@ def mega(**changes):
 
 
 def archive(genotype, occupied):
-    none = search.no_elites(CELLS, len(search.FEATURES), genotype)
+    none = search.no_elites(CELLS, len(search.MEASURES), genotype)
     first = jax.tree.map(lambda x, one: x.at[0].set(one), none.genotypes, genotype)
     return replace(none, occupied=none.occupied.at[0].set(occupied), genotypes=first)
 
@@ -36,7 +36,7 @@ def outcome(children, fitness, entered):
     return search.Outcome(
         genotypes=children.genotypes,
         fitness=fitness,
-        features=jnp.zeros((SLOTS, len(search.FEATURES))),
+        measures=jnp.zeros((SLOTS, len(search.MEASURES))),
         sound=jnp.isfinite(fitness),
         cell=jnp.zeros(SLOTS, jnp.int32),
         entered=jnp.asarray(entered),
@@ -145,5 +145,5 @@ def test_both_are_learners_and_plain_neat_is_not(lamarckian):
     assert not isinstance(lamarckian.neat, emitters.Learner)
 
 
-def test_the_spec_knows_which_features_have_no_slope():
+def test_the_spec_knows_which_measures_have_no_slope():
     assert set(WITHOUT_SLOPES) == set(CONSTANT)

@@ -1,4 +1,4 @@
-"""Features against closed forms, and against plain NumPy on a simulated creature."""
+"""Measures against closed forms, and against plain NumPy on a simulated creature."""
 
 from typing import get_args
 
@@ -16,10 +16,10 @@ STEPS = 40
 
 @pytest.mark.fast
 def test_the_table_of_axes_names_what_is_recorded_in_the_same_order():
-    assert tuple(measures.FEATURES) == search.FEATURES == get_args(measures.Name)
-    for name, feature in measures.FEATURES.items():
+    assert tuple(measures.MEASURES) == search.MEASURES == get_args(measures.Name)
+    for name, measure in measures.MEASURES.items():
         axis = spec.Descriptor.model_validate({"name": name})
-        assert (axis.low, axis.high, axis.scale) == (feature.low, feature.high, feature.scale)
+        assert (axis.low, axis.high, axis.scale) == (measure.low, measure.high, measure.scale)
 
 
 @pytest.mark.fast
@@ -65,7 +65,7 @@ def test_no_power_is_no_efficiency(float64):
 
 @pytest.fixture
 def swum(immerse, float64):
-    """What was seen of a gait, every state of it, and the motion's features."""
+    """What was seen of a gait, every state of it, and the motion's measures."""
     body = bodies.chain(8, 1.0)
     box, start = immerse(body, float64, viscosity=0.1, size=(24, 24), layers=2)
     t, joint = np.arange(STEPS)[:, None], np.arange(6)[None]
@@ -83,7 +83,7 @@ def swum(immerse, float64):
     return start, *run()
 
 
-def test_features_are_what_numpy_makes_of_the_states(swum):
+def test_measures_are_what_numpy_makes_of_the_states(swum):
     start, _, states, measures, values = swum
     positions, angles = np.asarray(states.positions), np.asarray(states.angles)
     centres = np.concatenate([[start.positions.mean(0)], positions.mean(1)])

@@ -11,7 +11,7 @@ from microcosmos import neat, search, spec
 from microcosmos.build import build_task
 
 PLACE = {"width": 24, "height": 24, "energy": {"packets": 2, "width": 2.0, "placements": 3}}
-ENERGY = search.FEATURES.index("energy")
+ENERGY = search.MEASURES.index("energy")
 
 
 @pytest.fixture(scope="module")
@@ -42,10 +42,10 @@ def test_what_is_measured_is_the_mean_over_all_placements(task, network):
     found = jax.jit(lambda: search.evaluate(task, network))()
     one = jax.jit(lambda shift: search.evaluate(moved(task, shift), network))
     each = [one(shift) for shift in task.placements]
-    features = np.mean([e.features for e in each], 0)
-    np.testing.assert_allclose(found.features, features, rtol=1e-5, atol=1e-7)
+    measures = np.mean([e.measures for e in each], 0)
+    np.testing.assert_allclose(found.measures, measures, rtol=1e-5, atol=1e-7)
     np.testing.assert_allclose(found.fitness, np.mean([e.fitness for e in each]), rtol=1e-5)
-    assert np.ptp([e.features[ENERGY] for e in each]) > 0.01
+    assert np.ptp([e.measures[ENERGY] for e in each]) > 0.01
 
 
 def test_the_first_placement_is_the_world_as_it_is_and_all_differ(task):

@@ -19,9 +19,9 @@ pytestmark = [
 ]
 
 AXES = (
-    search.Axis(feature=1, low=1e-2, high=1e2, bins=3, logarithmic=True),
-    search.Axis(feature=0, low=-1.0, high=1.0, bins=4, logarithmic=False),
-    search.Axis(feature=2, low=0.0, high=2.0, bins=2, logarithmic=False),
+    search.Axis(measure=1, low=1e-2, high=1e2, bins=3, logarithmic=True),
+    search.Axis(measure=0, low=-1.0, high=1.0, bins=4, logarithmic=False),
+    search.Axis(measure=2, low=0.0, high=2.0, bins=2, logarithmic=False),
 )
 GRIDS = [search.Grid(AXES[:axes]) for axes in (1, 2, 3)]
 AROUND = search.voronoi(AXES[:2], np.random.default_rng(0).random((12, 2)).astype(np.float32))
@@ -35,13 +35,13 @@ def lenient():
 
 
 def filled(cells, count=40):
-    """An archive with some elites, vectors with their features."""
+    """An archive with some elites, vectors with their measures."""
     random = np.random.default_rng(3)
-    features = random.uniform(0.02, 1.0, (count, 3))
+    measures = random.uniform(0.02, 1.0, (count, 3))
     rows = search.Elites(
         occupied=jnp.ones(count, bool),
         fitness=jnp.asarray(random.normal(size=count), jnp.float32),
-        features=jnp.asarray(features, jnp.float32),
+        measures=jnp.asarray(measures, jnp.float32),
         generation=jnp.full(count, 7, jnp.int32),
         slot=jnp.arange(count, dtype=jnp.int32),
         genotypes=genomes.Vector(jnp.asarray(random.uniform(-1, 1, (count, 5)), jnp.float32)),
@@ -74,23 +74,23 @@ def test_our_grids_are_in_the_order_of_theirs(cells):
     assert np.array_equal(np.asarray(index)[there], np.flatnonzero(there))
 
 
-def test_features_of_their_own_elites_are_made_from_descriptors():
+def test_measures_of_their_own_elites_are_made_from_descriptors():
     repertoire = qdax.to_repertoire(filled(AROUND), AROUND).replace(extra_scores={})
     back = qdax.from_repertoire(repertoire, AROUND, 3)
     there = np.asarray(back.occupied)
-    expected = filled(AROUND).features[there]
-    np.testing.assert_allclose(back.features[there][:, :2], expected[:, :2], rtol=1e-5)
-    assert np.isnan(back.features[there][:, 2]).all()
+    expected = filled(AROUND).measures[there]
+    np.testing.assert_allclose(back.measures[there][:, :2], expected[:, :2], rtol=1e-5)
+    assert np.isnan(back.measures[there][:, 2]).all()
 
 
 def evaluated(genotypes):
     """A stand-in for simulation: some of it diverges."""
     x = genotypes.values
-    features = jnp.stack([x[:, 0], 10 ** x[:, 1], 1 + x[:, 2]], 1)
+    measures = jnp.stack([x[:, 0], 10 ** x[:, 1], 1 + x[:, 2]], 1)
     status = jnp.where(x[:, 3] > 0.8, 1, 0)
-    features = jnp.where(status[:, None] == 1, jnp.nan, features)
+    measures = jnp.where(status[:, None] == 1, jnp.nan, measures)
     return search.Evaluation(
-        jnp.where(status == 1, jnp.nan, -jnp.sum(x * x, 1)), features, status
+        jnp.where(status == 1, jnp.nan, -jnp.sum(x * x, 1)), measures, status
     )
 
 
@@ -131,7 +131,7 @@ def looped(generations, emitter, archive, state, begin=0):
         rows = search.Elites(
             occupied=found.status == 0,
             fitness=found.fitness,
-            features=found.features,
+            measures=found.measures,
             generation=jnp.full(emitter.slots, number, jnp.int32),
             slot=jnp.arange(emitter.slots, dtype=jnp.int32),
             genotypes=children.genotypes,
@@ -140,7 +140,7 @@ def looped(generations, emitter, archive, state, begin=0):
         outcome = search.Outcome(
             genotypes=children.genotypes,
             fitness=rows.fitness,
-            features=rows.features,
+            measures=rows.measures,
             sound=rows.occupied,
             cell=inserted.cell,
             entered=inserted.entered,
@@ -232,8 +232,8 @@ def test_our_map_elites_reaches_the_score_of_theirs(name, monkeypatch):
     functions = importlib.import_module("functions")
     monkeypatch.setattr(functions, "GENES", 6)
     functions.cells.cache_clear()
-    niches = functions.cells(128)
-    monkeypatch.setattr(functions, "cells", lambda: niches)
+    cells = functions.cells(128)
+    monkeypatch.setattr(functions, "cells", lambda: cells)
     ours = [functions.ours(name, seed, 60, 64) for seed in range(3)]
     theirs = [functions.theirs(name, seed, 60, 64) for seed in range(3)]
     spread = max(np.ptp(ours), np.ptp(theirs), 0.01 * np.mean(theirs))

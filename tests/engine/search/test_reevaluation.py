@@ -36,7 +36,7 @@ def network():
 
 @pytest.fixture(scope="module")
 def disturbed(task, network):
-    """A function from what is disturbed to the features by name."""
+    """A function from what is disturbed to the measures by name."""
     run = jax.jit(lambda changed: reevaluation.evaluate_disturbed(task, network, changed))
 
     def found(**changes):
@@ -47,16 +47,16 @@ def disturbed(task, network):
         }
         evaluation = run(Disturbance(**whole))
         assert evaluation.status == 0
-        features = np.asarray(evaluation.features)
-        return dict(zip(search.FEATURES, features.tolist(), strict=True))
+        measures = np.asarray(evaluation.measures)
+        return dict(zip(search.MEASURES, measures.tolist(), strict=True))
 
     return found
 
 
 @pytest.fixture(scope="module")
 def plain(task, network):
-    features = jax.jit(lambda: search.evaluate(task, network).features)()
-    return dict(zip(search.FEATURES, np.asarray(features).tolist(), strict=True))
+    measures = jax.jit(lambda: search.evaluate(task, network).measures)()
+    return dict(zip(search.MEASURES, np.asarray(measures).tolist(), strict=True))
 
 
 MOTION = ("displacement", "path_length", "bending_effort", "rotation")
@@ -92,8 +92,8 @@ def test_a_whole_period_ahead_is_no_change_and_half_a_period_is_one(disturbed, p
 
 def test_a_factor_of_viscosity_is_that_viscosity(disturbed, task, network):
     other = replace(task, world=replace(task.world, viscosity=1.05 * task.world.viscosity))
-    features = jax.jit(lambda: search.evaluate(other, network).features)()
-    expected = dict(zip(search.FEATURES, np.asarray(features).tolist(), strict=True))
+    measures = jax.jit(lambda: search.evaluate(other, network).measures)()
+    expected = dict(zip(search.MEASURES, np.asarray(measures).tolist(), strict=True))
     agree(disturbed(viscosity=1.05), expected)
 
 

@@ -20,10 +20,10 @@ def cells(one_axis):
 def found():
     """A function that makes evaluations, a row for each cell."""
 
-    def make(fitness, feature, status=(0, 0, 0, 0)):
+    def make(fitness, measure, status=(0, 0, 0, 0)):
         return search.Evaluation(
             jnp.asarray(fitness, jnp.float32),
-            jnp.asarray(feature, jnp.float32)[:, None],
+            jnp.asarray(measure, jnp.float32)[:, None],
             jnp.asarray(status),
         )
 
@@ -52,14 +52,14 @@ def test_what_diverged_is_counted_and_in_no_mean(cells, found):
     repeats = reevaluation.add(repeats, done, bad, cells)
     assert repeats.failed.tolist() == [1, 1, 0, 0]
     np.testing.assert_allclose(repeats.fitness, [1, 1, 2, 1])
-    np.testing.assert_allclose(repeats.features[:, 0], [0.1, 0.1, 0.2, 0.1], rtol=1e-6)
+    np.testing.assert_allclose(repeats.measures[:, 0], [0.1, 0.1, 0.2, 0.1], rtol=1e-6)
 
 
 def test_a_hit_is_a_repeat_in_the_elites_own_cell(cells, found):
     repeats = reevaluation.no_repeats(CELLS, 1)
     done = jnp.ones(CELLS, bool)
-    for feature in ([0.1, 0.3, 0.6, 0.9], [0.1, 0.1, 0.6, 0.6]):
-        repeats = reevaluation.add(repeats, done, found([1.0] * 4, feature), cells)
+    for measure in ([0.1, 0.3, 0.6, 0.9], [0.1, 0.1, 0.6, 0.6]):
+        repeats = reevaluation.add(repeats, done, found([1.0] * 4, measure), cells)
     assert repeats.hits.tolist() == [2, 1, 2, 1]
 
 

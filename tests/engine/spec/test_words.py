@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from microcosmos.spec import EXPERIMENTS
-from microcosmos.spec.measures import FEATURES
+from microcosmos.spec.measures import MEASURES
 
 pytestmark = pytest.mark.fast
 
@@ -85,4 +85,4 @@ def test_ends_of_an_axis_have_the_unit_of_what_is_measured():
     for end in ("low", "high"):
         field = parts["Descriptor"]["properties"][end]
         assert field["unit_of"] in parts["Descriptor"]["properties"]
-        assert field["units"] == {name: one.unit for name, one in FEATURES.items()}
+        assert field["units"] == {name: one.unit for name, one in MEASURES.items()}

@@ -42,11 +42,11 @@ def file(request):
     alone = jax.tree.map(lambda x: np.asarray(x)[None], genotype)
     found = search.evaluate_blocks(build_block(scene, ROOM), alone, block=2)
     assert found.status[0] == 0
-    features = dict(zip(search.FEATURES, found.features[0].tolist(), strict=True))
+    measures = dict(zip(search.MEASURES, found.measures[0].tolist(), strict=True))
     measured = {
         "fitness": float(found.fitness[0]),
-        "descriptors": {name: features[name] for name in ("hidden_nodes", "symmetry")},
-        "features": features,
+        "descriptors": {name: measures[name] for name in ("hidden_nodes", "symmetry")},
+        "measures": measures,
         "block": 2,
         "room": list(ROOM) if encoding.room else None,
         "device": device_kind(),
@@ -63,7 +63,7 @@ def test_a_creature_of_any_encoding_is_repeated_bit_for_bit(file):
 @pytest.mark.long
 def test_a_creature_of_any_encoding_is_watched_and_audited(file):
     replay = read_replay(record(file))
-    nodes = int(file["measured"]["features"]["nodes"])
+    nodes = int(file["measured"]["measures"]["nodes"])
     assert replay.header["nodes"] == nodes <= NODES
     assert replay.header["edges"] == [[i, i + 1] for i in range(nodes - 1)]
     recorded = file["measured"]["fitness"]

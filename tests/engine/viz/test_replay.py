@@ -86,7 +86,7 @@ def test_a_check_repeats_every_recorded_number_exactly(best):
     result = check(best)
     assert result.same_device
     assert result.exact
-    assert set(result.repeated) == set(search.FEATURES)
+    assert set(result.repeated) == set(search.MEASURES)
     told = measurement(best)
     assert (told["exact"], told["figures"]) == (True, [])
     assert told["fitness"]["measured"] == best["measured"]["fitness"]
@@ -96,13 +96,13 @@ def test_a_check_repeats_every_recorded_number_exactly(best):
 @pytest.mark.optimised
 def test_a_check_notices_a_wrong_record(best):
     changed = copy.deepcopy(best)
-    right = changed["measured"]["features"]["path_length"]
-    wrong = changed["measured"]["features"]["path_length"] = right * (1 + 1e-12)
+    right = changed["measured"]["measures"]["path_length"]
+    wrong = changed["measured"]["measures"]["path_length"] = right * (1 + 1e-12)
     assert not check(changed).exact
     (told,) = measurement(changed)["figures"]
     assert told == {"name": "path_length", "recorded": wrong, "measured": right}
-    # Older files know fewer features; what a file does not say is not compared.
-    del changed["measured"]["features"]["path_length"]
+    # Older files know fewer measures; what a file does not say is not compared.
+    del changed["measured"]["measures"]["path_length"]
     assert check(changed).exact
 
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from microcosmos.optional import needed
 from microcosmos.viz.raster import THEMES, frame
 from microcosmos.viz.strip import GAP, LETTERS, moments, png, strip
 

@@ -19,7 +19,7 @@ def h5(spec) -> bytes:
     """The file of an archive with one elite."""
     archive = {
         "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
-        "features": np.array([[0.01, 1.0]]),
+        "measures": np.array([[0.01, 1.0]]),
         "fitness": np.array([2.5]),
         "generation": np.array([3]),
         "creature": np.zeros((1, 32), np.uint8),
@@ -28,7 +28,7 @@ def h5(spec) -> bytes:
     attributes = {
         "format": file.FORMAT,
         "spec": json.dumps(spec),
-        "features": json.dumps(["bending_effort", "stretching_effort"]),
+        "measures": json.dumps(["bending_effort", "stretching_effort"]),
     }
     return file.dump({"archive": archive}, attributes)
 
@@ -141,16 +141,16 @@ def test_the_table_has_the_columns_of_pyribs(api, run_id, saved):
 SLIM = {"energy": 0.1 + 0.2, "turning": -1e-9}
 
 
-def test_an_archive_has_the_features_of_its_elites_that_are_asked_for(
+def test_an_archive_has_the_measures_of_its_elites_that_are_asked_for(
     api, services, run_id, report
 ):
     attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0}, features=SLIM), 1.0)
-    attempt.record(report(2, {3: 2.0}, features=dict.fromkeys(SLIM, 7.0)), 1.0)
+    attempt.record(report(1, {5: 1.0}, measures=SLIM), 1.0)
+    attempt.record(report(2, {3: 2.0}, measures=dict.fromkeys(SLIM, 7.0)), 1.0)
     found = api.get(f"runs/{run_id}/archive", params={"measures": "turning,energy"}).json()
     assert found["cell"] == [3, 5]
     assert found["measures"] == {"turning": [7.0, -1e-9], "energy": [7.0, 0.1 + 0.2]}
-    names = [feature["name"] for feature in found["recorded"]]
+    names = [measure["name"] for measure in found["recorded"]]
     assert names == ["displacement", "bending_effort", "stretching_effort", *SLIM]
     assert api.get(f"runs/{run_id}/archive").json()["measures"] == {}
     before = {"measures": "energy", "generation": 1}
@@ -161,9 +161,9 @@ def test_an_archive_has_the_features_of_its_elites_that_are_asked_for(
 @pytest.mark.postgresql
 def test_an_archive_tells_only_what_entered_after_a_generation(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 0.5}, features=SLIM), 1.0)
-    attempt.record(report(2, {5: 2.0, 7: 0.1}, features=SLIM), 1.0)
-    attempt.record(report(3, {5: 3.0}, features=SLIM), 1.0)
+    attempt.record(report(1, {5: 1.0, 3: 0.5}, measures=SLIM), 1.0)
+    attempt.record(report(2, {5: 2.0, 7: 0.1}, measures=SLIM), 1.0)
+    attempt.record(report(3, {5: 3.0}, measures=SLIM), 1.0)
 
     def read(**asked):
         found = api.get(f"runs/{run_id}/archive", params=asked | {"measures": "energy"}).json()
@@ -178,7 +178,7 @@ def test_an_archive_tells_only_what_entered_after_a_generation(api, services, ru
     assert api.get(f"runs/{run_id}/archive", params={"after": -1}).status_code == 422
 
 
-def test_features_that_were_not_recorded_are_refused_with_those_that_were(
+def test_measures_that_were_not_recorded_are_refused_with_those_that_were(
     api, services, run_id, report
 ):
     claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
@@ -223,10 +223,10 @@ def test_an_archive_says_what_its_cells_and_axes_are(
     assert all(axis["low"] < axis["high"] for axis in found["axes"])
 
 
-def test_a_feature_comes_with_title_unit_and_ends(api, services, run_id, report):
-    claim(services, run_id, "worker").record(report(1, {5: 1.0}, features={"old": 1.0}), 1.0)
+def test_a_measure_comes_with_title_unit_and_ends(api, services, run_id, report):
+    claim(services, run_id, "worker").record(report(1, {5: 1.0}, measures={"old": 1.0}), 1.0)
     recorded = api.get(f"runs/{run_id}/archive").json()["recorded"]
-    known = {feature.pop("name"): feature for feature in recorded}
+    known = {measure.pop("name"): measure for measure in recorded}
     assert known["bending_effort"]["title"] == "Bending effort"
     assert known["bending_effort"]["unit"] == "rad²"
     assert known["bending_effort"]["low"] < known["bending_effort"]["high"]
@@ -241,9 +241,9 @@ def test_a_feature_comes_with_title_unit_and_ends(api, services, run_id, report)
 
 def test_the_history_tells_the_archive_of_every_generation(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}, features={"turning": 0.5}), 1.0)
-    attempt.record(report(2, {5: 1.5}, features={"turning": 0.25}), 1.0)
-    attempt.record(report(3, {255: 0.5, 5: 4.0}, features={"turning": 1.0}), 1.0)
+    attempt.record(report(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.5}), 1.0)
+    attempt.record(report(2, {5: 1.5}, measures={"turning": 0.25}), 1.0)
+    attempt.record(report(3, {255: 0.5, 5: 4.0}, measures={"turning": 1.0}), 1.0)
     asked = {"measures": "turning"}
     history = api.get(f"runs/{run_id}/archive/history", params=asked).json()
     assert history["generation"] == 3

@@ -8,9 +8,9 @@ from sqlalchemy.exc import OperationalError
 
 from server.attempts import leases
 from server.attempts.begin import claim
-from server.attempts.claim import Claim, Fenced
+from server.attempts.claim import Claim, ClaimLost
 from server.core.database import ago
-from server.runs import lifecycle
+from server.runs import announce, lifecycle
 from server.tables import Elite, Generation, Run
 
 pytestmark = pytest.mark.postgresql
@@ -57,7 +57,7 @@ def test_a_silent_workers_run_is_taken_and_the_woken_one_is_fenced(services, run
         lambda: first.fail("error"),
     )
     for write in writes:
-        with pytest.raises(Fenced):
+        with pytest.raises(ClaimLost):
             write()
     assert second.record(report(1, {0: 1.0}), 1.0) is None
     assert count(services, Generation) == 1
@@ -164,7 +164,7 @@ def test_what_was_committed_stands_where_nobody_can_be_told(
         raise OperationalError("", {}, Exception("away"))
 
     attempt = claim(services, run_id, "worker")
-    monkeypatch.setattr(lifecycle, "read_runs", away)
+    monkeypatch.setattr(announce, "read_runs", away)
     attempt.record(report(1), 1.0)
     attempt.finish()
     assert row().status == "finished"

@@ -13,7 +13,7 @@ from microcosmos.spec import parse
 from server.app import create_app
 from server.auth import tokens
 from server.auth.authorize import authorize, public
-from server.auth.principal import ADMIN, READ, WRITE
+from server.auth.principal import ADMIN, READ, SHARE, WRITE
 from server.creatures import storage as creatures
 from server.runs.deps import own_run
 from server.runs.submission import submit
@@ -49,6 +49,8 @@ STRANGERS = {
     "DELETE /session",
 }
 """In the API, what is for everybody; and all that lies below a share."""
+SHARED = ("/runs/{run_id}", "/creatures/{sha}")
+"""Where that begins which the holder of a share may read, within what it shows."""
 HARMLESS = {"POST /runs/estimate", "POST /sweeps/estimate", "POST /session", "DELETE /session"}
 """What is no GET and yet changes nothing."""
 
@@ -56,12 +58,13 @@ IN, UNKNOWN, FORBIDDEN = "let in", 401, 403
 WHO = ("none", "expired", "revoked", "reader", "other", "owner", "admin")
 EXPECTED = {
     PUBLIC: dict.fromkeys(WHO, IN),
+    SHARE: dict.fromkeys(WHO, IN),
     READ: dict.fromkeys(WHO, IN),
     WRITE: dict.fromkeys(WHO, IN) | {"reader": FORBIDDEN},
     OWNER: dict.fromkeys(WHO, IN) | {"reader": FORBIDDEN, "other": FORBIDDEN},
     ADMIN: dict.fromkeys(WHO, FORBIDDEN) | {"admin": IN},
 }
-for need in (READ, WRITE, OWNER, ADMIN):
+for need in (SHARE, READ, WRITE, OWNER, ADMIN):
     EXPECTED[need] |= dict.fromkeys(("none", "expired", "revoked"), UNKNOWN)
 
 
@@ -113,7 +116,8 @@ def test_every_route_says_what_it_needs(route):
 def test_only_harmless_routes_go_without_leave_to_write(route):
     method, path = route.replace(ROOT, "").split()
     need = need_of(route)
-    shared = path.startswith("/shares/{slug}/")
+    shared = path == "/shares/{slug}/preview.png"
+    assert need != SHARE or (method == "GET" and path.startswith(SHARED))
     assert (need == PUBLIC) == (f"{method} {path}" in STRANGERS or shared)
     if method != "GET" and f"{method} {path}" not in HARMLESS:
         theirs = any(f"{{{name}}}" in path for name in OWNED) and not path.endswith("/fork")

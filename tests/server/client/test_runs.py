@@ -111,12 +111,12 @@ def test_curves_are_columns(run, services, run_id, report):
 
 def test_an_archive_is_columns_and_creatures(run, services, run_id, report):
     attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}, features={"turning": 0.25}), 1.0)
-    attempt.record(report(2, {5: 3.0}, features={"turning": 0.5}), 1.0)
+    attempt.record(report(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.25}), 1.0)
+    attempt.record(report(2, {5: 3.0}, measures={"turning": 0.5}), 1.0)
     archive = run.archive()
     assert archive.cell.tolist() == [3, 5]
     assert archive.fitness.tolist() == [2.0, 3.0]
-    assert archive.features["turning"].tolist() == [0.25, 0.5]
+    assert archive.measures["turning"].tolist() == [0.25, 0.5]
     assert archive.best().fitness == 3.0
     assert archive.elite(3) == archive.elite((0, 3))
     assert archive._repr_html_().count("<rect") == 2

@@ -64,7 +64,7 @@ def test_a_new_creature_is_kept_whole(api, file):
     file["measured"] = {
         "fitness": 1.5,
         "descriptors": {"bending_effort": 0.25},
-        "features": {"displacement": 1.5, "bending_effort": 0.25},
+        "measures": {"displacement": 1.5, "bending_effort": 0.25},
         "block": 16,
         "room": [24, 64],
         "device": "elsewhere",

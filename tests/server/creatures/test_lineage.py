@@ -159,12 +159,12 @@ def test_a_creature_as_hdf5_is_always_the_same_bytes_and_all_of_it(api, bring):
         assert weights[:] == [3.0]
 
 
-def test_features_of_any_name_come_back_from_everywhere(api, identity, bring):
-    features = {"displacement": 0.5, "": 1.0, ".": 2.0, "a": 3.0, "a/b": 4.0, "fitness": 5.0}
+def test_measures_of_any_name_come_back_from_everywhere(api, identity, bring):
+    measures = {"displacement": 0.5, "": 1.0, ".": 2.0, "a": 3.0, "a/b": 4.0, "fitness": 5.0}
     measured = {
         "fitness": 0.5,
         "descriptors": {"a": 3.0, "a/b": 4.0},
-        "features": {**features, "..": 6.0, "%": 7.0, "x" * 70_000: 8.0, "é\n": 9.0},
+        "measures": {**measures, "..": 6.0, "%": 7.0, "x" * 70_000: 8.0, "é\n": 9.0},
         "block": 16,
         "room": [24, 64],
         "device": "/",
@@ -187,10 +187,10 @@ def test_features_of_any_name_come_back_from_everywhere(api, identity, bring):
 
 
 @pytest.mark.parametrize(
-    "features", [{"a\0b": 1.0}, {"a": 10**400}, {"a": "1/"}, {str(i): 0 for i in range(1001)}]
+    "measures", [{"a\0b": 1.0}, {"a": 10**400}, {"a": "1/"}, {str(i): 0 for i in range(1001)}]
 )
-def test_features_that_cannot_be_kept_are_refused(api, identity, features):
+def test_measures_that_cannot_be_kept_are_refused(api, identity, measures):
     measured = {"fitness": 0.5, "descriptors": {}, "block": 16, "room": [24, 64], "device": ""}
-    measured["features"] = {"displacement": 0.5, **features}
+    measured["measures"] = {"displacement": 0.5, **measures}
     file = creature.document(identity(1), measured, None)
     assert api.post("creatures", json=file).status_code == 422

@@ -11,7 +11,7 @@ import pytest
 
 from server.attempts.begin import claim
 from server.events import fanout
-from server.runs import lifecycle
+from server.runs.announce import announce
 from server.services import event_stream as events
 
 
@@ -106,7 +106,7 @@ def test_the_last_word_on_a_run_is_how_it_stands(services, run_id, monkeypatch):
         publish(kind, run, data)
 
     monkeypatch.setattr(services.events, "publish", be_overtaken)
-    lifecycle.announce(services, run_id)
+    announce(services, run_id)
     assert told == ["running", "queued", "running"]
 
 
@@ -116,7 +116,7 @@ def test_what_has_not_changed_is_told_once(services, run_id, report, monkeypatch
     monkeypatch.setattr(services.events, "publish", lambda *event: told.append(event))
     attempt.record(report(1), 1.0)
     told.clear()
-    lifecycle.announce(services, run_id, without=["spec"])
+    announce(services, run_id, without=["spec"])
     assert len(told) == 1
 
 

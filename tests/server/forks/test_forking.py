@@ -51,7 +51,7 @@ def names(identity, *numbers):
 def test_it_begins_from_those_who_live_there(fork, identity, start, generation, numbers):
     answer = fork(start, **({} if generation is None else {"generation": generation}))
     assert answer.status_code == 202
-    assert answer.json()["spec"]["search"]["origin"] == names(identity, *numbers)
+    assert answer.json()["spec"]["search"]["initial"] == names(identity, *numbers)
     assert answer.json()["forked_from"]["creatures"] == len(numbers)
 
 
@@ -62,13 +62,13 @@ def test_the_rest_of_the_spec_is_the_other_runs_but_for_the_patch(
     run = fork({"cells": [1]}, spec=patch, name=" Thicker ").json()
     spec = api.get(f"runs/{ended}").json()["spec"]
     spec["world"]["viscosity"] = 0.2
-    spec["search"] |= {"batch": 8, "origin": names(identity, 1001)}
+    spec["search"] |= {"batch": 8, "initial": names(identity, 1001)}
     spec["search"]["stop"]["fitness"] = 5.0
     assert run["spec"] == spec
     assert (run["name"], run["status"]) == ("Thicker", "queued")
     assert run["forked_from"] == {"run": str(ended), "creatures": 1}
     assert api.get(f"runs/{ended}").json()["forked_from"] is None
-    (file,) = claim(services, UUID(run["id"]), "worker").origin()
+    (file,) = claim(services, UUID(run["id"]), "worker").initial()
     assert creature.parse(file)["sha256"] == names(identity, 1001)[0]
 
 
@@ -100,7 +100,7 @@ def test_null_is_none_where_there_can_be_none():
         ({"cells": [7]}, {}, "from.cells"),
         ({"region": {"turning": [0, 1]}}, {}, "from.region.turning"),
         ({"region": {"bending_effort": [7, 8]}}, {}, "from.region"),
-        ({"creatures": ["ab" * 32]}, {}, "search.origin"),
+        ({"creatures": ["ab" * 32]}, {}, "search.initial"),
         ({"archive": True}, {"world": {"viscosity": -1}}, "world.viscosity"),
         ({"archive": True}, {"control": {"timer": "linear"}}, "control: inputs"),
         ({"archive": True}, {"experiment": "gaits"}, "experiment"),
@@ -138,12 +138,12 @@ def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, services, run
 
 
 def test_a_spec_with_an_origin_can_be_submitted_as_it_is(api, ended, spec, identity):
-    origin = names(identity, 2000)
-    search = {**spec["search"], "origin": origin}
+    initial = names(identity, 2000)
+    search = {**spec["search"], "initial": initial}
     assert api.post("runs", json={**spec, "search": search}).status_code == 202
-    answer = api.post("runs", json={**spec, "search": {**search, "origin": ["cd" * 32]}})
+    answer = api.post("runs", json={**spec, "search": {**search, "initial": ["cd" * 32]}})
     assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == "search.origin"
+    assert answer.json()["errors"][0]["field"] == "search.initial"
 
 
 def test_what_a_fork_begins_from_outlives_the_run_that_it_was_in(
@@ -187,5 +187,5 @@ def test_a_fork_comes_back_from_the_bin_though_what_it_was_forked_from_is_gone(
     for_good(api, services, ended)
     api.post(f"runs/{forked}/restore")
     assert api.post(f"runs/{forked}/resume").json()["status"] == "queued"
-    (file,) = claim(services, forked, "worker").origin()
+    (file,) = claim(services, forked, "worker").initial()
     assert file["sha256"] == names(identity, 1001)[0]

@@ -6,7 +6,7 @@ from rq.registry import StartedJobRegistry
 from sqlalchemy import update
 
 from server.attempts.begin import claim
-from server.attempts.claim import Fenced
+from server.attempts.claim import ClaimLost
 from server.attempts.leases import job_died, job_stopped
 from server.core.database import ago
 from server.maintenance.reconcile import reconcile
@@ -75,7 +75,7 @@ def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, repo
     silence(services)
     reconcile(services)
     assert (row().status, enqueued(services)) == ("queued", [str(run_id)])
-    with pytest.raises(Fenced):
+    with pytest.raises(ClaimLost):
         attempt.record(report(1), 1.0)
 
 
@@ -106,7 +106,7 @@ def test_who_does_not_obey_a_cancellation_loses_the_run(services, api, run_id, r
     put(services, Run, requested_at=row().created_at.replace(year=2000))
     reconcile(services)
     assert row().status == "cancelled"
-    with pytest.raises(Fenced):
+    with pytest.raises(ClaimLost):
         attempt.requested()
 
 
@@ -127,7 +127,7 @@ def test_a_job_killed_because_its_worker_stops_is_no_lost_chance(services, run_i
         assert row().status == "running"
         job_stopped(services, run_id, "worker")
         assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
-        with pytest.raises(Fenced):
+        with pytest.raises(ClaimLost):
             attempt.requested()
     assert enqueued(services) == [str(run_id)]
 

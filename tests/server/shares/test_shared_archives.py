@@ -24,72 +24,74 @@ def archive(api, run_id, attempt) -> dict:
     return api.post("shares", json=sent).json()
 
 
-def test_an_archive_is_shared_as_it_was(api, archive, attempt, report, run_id):
-    under = f"shares/{archive['slug']}/runs/{run_id}"
-    before = api.get(f"{under}/archive").json()
+def test_an_archive_is_shared_as_it_was(through, archive, attempt, report, run_id):
+    slug, under = archive["slug"], f"runs/{run_id}"
+    before = through(slug, f"{under}/archive").json()
     assert (archive["generation"], before["generation"]) == (2, 2)
     later = report(3, {3: 9.0, 8: 9.0})
     attempt.record(later, 1.0)
-    assert api.get(f"{under}/archive").json() == before
-    assert api.get(f"{under}/archive", params={"generation": 3}).json() == before
+    assert through(slug, f"{under}/archive").json() == before
+    assert through(slug, f"{under}/archive", params={"generation": 3}).json() == before
     assert before["cell"] == [3, 7]
-    history = api.get(f"{under}/archive/history").json()
+    history = through(slug, f"{under}/archive/history").json()
     assert history["fitness"] == [1.0, 2.0, 1.5]
-    assert api.get(f"{under}/generations").json()["generation"] == [1, 2]
+    assert through(slug, f"{under}/generations").json()["generation"] == [1, 2]
     for sha in history["creature"]:
-        assert api.get(f"shares/{archive['slug']}/creatures/{sha}").status_code == 200
+        assert through(slug, f"creatures/{sha}").status_code == 200
     for elite in later.elites:
-        found = api.get(f"shares/{archive['slug']}/creatures/{elite.creature}")
+        found = through(slug, f"creatures/{elite.creature}")
         assert found.status_code == 404
 
 
-def test_a_shared_run_tells_nothing_that_its_owner_noted(api, archive, run_id):
+def test_a_shared_run_tells_nothing_that_its_owner_noted(api, through, archive, run_id):
     api.patch(f"runs/{run_id}", json={"name": "mine", "tags": ["a"], "note": "secret"})
-    told = api.get(f"shares/{archive['slug']}/runs/{run_id}")
+    told = through(archive["slug"], f"runs/{run_id}")
     assert "secret" not in told.text
     run = told.json()
     assert (run["name"], run["tags"], run["note"]) == ("Swimmers", [], None)
     assert (run["status"], run["generation"], run["best"]) == ("finished", 2, 2.0)
     other = "00000000-0000-4000-8000-000000000000"
-    assert api.get(f"shares/{archive['slug']}/runs/{other}").status_code == 404
+    assert through(archive["slug"], f"runs/{other}").status_code == 404
 
 
-def test_the_file_of_an_archive_carries_licence_and_credit(api, archive, attempt, run_id):
-    under = f"shares/{archive['slug']}/runs/{run_id}"
-    _, attributes = file.load(api.get(f"{under}/archive.h5").content)
+def test_the_file_of_an_archive_carries_licence_and_credit(
+    api, through, archive, attempt, run_id
+):
+    slug, under = archive["slug"], f"runs/{run_id}"
+    _, attributes = file.load(through(slug, f"{under}/archive.h5").content)
     assert (attributes["licence"], attributes["credit"]) == ("CC0-1.0", '["Ada"]')
     attempt.save(2, file.dump({"archive": {"cell": [1]}}, {"format": file.FORMAT}))
-    tree, _ = file.load(api.get(f"{under}/archive.h5").content)
+    tree, _ = file.load(through(slug, f"{under}/archive.h5").content)
     assert list(tree["archive"]["cell"]) == [3, 7], "as it was when it was shared"
     api.delete(f"shares/{archive['slug']}")
-    assert api.get(f"{under}/archive.h5").status_code == 410
+    assert through(slug, f"{under}/archive.h5").status_code == 410
 
 
-def test_a_past_generation_is_shared_without_a_file(api, run_id, attempt):
+def test_a_past_generation_is_shared_without_a_file(api, through, run_id, attempt):
     answer = api.post("shares", json={"run": str(run_id), "generation": 1})
     assert (answer.status_code, answer.json()["generation"]) == (201, 1)
-    under = f"shares/{answer.json()['slug']}/runs/{run_id}"
-    assert api.get(f"{under}/archive").json()["fitness"] == [1.0]
-    assert "No file was kept" in api.get(f"{under}/archive.h5").json()["detail"]
+    slug, under = answer.json()["slug"], f"runs/{run_id}"
+    assert through(slug, f"{under}/archive").json()["fitness"] == [1.0]
+    assert "No file was kept" in through(slug, f"{under}/archive.h5").json()["detail"]
     beyond = api.post("shares", json={"run": str(run_id), "generation": 3})
     assert beyond.json()["errors"][0]["field"] == "generation"
 
 
 def test_strangers_wait_behind_everybody_and_only_so_many_of_them(
-    api, services, archive, attempt, monkeypatch
+    through, services, archive, attempt, monkeypatch
 ):
     monkeypatch.setattr(renderings, "STRANGERS", 2)
     (cover,) = (job.args[0] for job in services.jobs.renderings.get_jobs())
-    names = api.get(f"shares/{archive['slug']}/runs/{archive['run']}/archive/history").json()
+    names = through(archive["slug"], f"runs/{archive['run']}/archive/history").json()
     for sha in names["creature"]:
-        answer = api.get(f"shares/{archive['slug']}/creatures/{sha}/motion")
+        answer = through(archive["slug"], f"creatures/{sha}/motion")
         assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
     jobs = services.jobs.renderings.get_jobs()
     assert [job.args for job in jobs] == [[cover, PREVIEW], [names["creature"][0], REPLAY]]
 
 
 def test_a_deleted_run_leaves_the_commons_and_comes_back_to_them(
-    api, services, attempt, run_id
+    api, through, services, attempt, run_id
 ):
     attempt.finish()
     sent = {"run": str(run_id), "title": "Swimmers", "listed": True}
@@ -98,15 +100,11 @@ def test_a_deleted_run_leaves_the_commons_and_comes_back_to_them(
     renderings.save(services, share["cover"], "film.gif", b"GIF")
     assert api.get("commons").json()["items"] == [share]
     assert api.delete(f"runs/{run_id}").status_code == 200
-    for path in (
-        "",
-        "/preview.png",
-        f"/runs/{run_id}",
-        f"/runs/{run_id}/archive.h5",
-        f"/{film}",
-    ):
+    for path in ("", "/preview.png"):
         assert api.get(under + path).status_code == 410, path
+    for path in (f"runs/{run_id}", f"runs/{run_id}/archive.h5", film):
+        assert through(share["slug"], path).status_code == 410, path
     assert api.get("commons").json()["items"] == []
     assert api.post(f"runs/{run_id}/restore").status_code == 200
     assert api.get("commons").json()["items"] == [share]
-    assert api.get(f"{under}/{film}").status_code == 200
+    assert through(share["slug"], film).status_code == 200

@@ -8,6 +8,7 @@ import pytest
 from pydantic import SecretStr
 
 from microcosmos.archive import creature
+from server.auth.capability import HEADER
 from server.renderings import storage as renderings
 from server.tables import PREVIEW, Share
 
@@ -84,39 +85,54 @@ def test_what_is_not_there_cannot_be_published(api, run_id, sweep_id):
     assert (early.status_code, early.json()["title"]) == (409, "Nothing to publish")
 
 
-def test_a_share_shows_its_creature_and_no_other(api, shared, known, other):
-    under = f"shares/{shared['slug']}"
-    document = api.get(f"{under}/creatures/{known}").json()
+def test_a_share_shows_its_creature_and_no_other(api, through, shared, known, other):
+    slug = shared["slug"]
+    document = through(slug, f"creatures/{known}").json()
     assert creature.parse(document)["sha256"] == known
     for path in ("", "/creature.h5", "/ancestors", "/network.svg", "/replay", "/motion"):
-        assert api.get(f"{under}/creatures/{known}{path}").status_code in (200, 202), path
-        assert api.get(f"{under}/creatures/{other}{path}").status_code == 404, path
-    assert api.get(f"{under}/creatures/{known}/children").status_code == 404
-    assert api.get(f"{under}/runs").status_code == 404
-    assert api.get(f"{under}/../runs").status_code in (200, 404)  # The client resolves it.
+        assert through(slug, f"creatures/{known}{path}").status_code in (200, 202), path
+        assert through(slug, f"creatures/{other}{path}").status_code == 404, path
+    for path in (f"creatures/{known}/children", f"creatures/{known}/audit", "runs", "workers"):
+        assert through(slug, path).status_code == 403, path
+    assert api.post(f"creatures/{known}/measure", headers={HEADER: slug}).status_code == 403
     assert api.get(f"shares/{'A' * 32}").status_code == 404
+    assert through("A" * 32, f"creatures/{known}").status_code == 404
 
 
-def test_what_is_taken_back_is_gone_for_everybody(api, shared, known):
+def test_caches_keep_the_answers_of_a_share_apart(api, through, shared, known):
+    for answer in (
+        api.get(f"creatures/{known}"),
+        through(shared["slug"], f"creatures/{known}"),
+    ):
+        assert HEADER in answer.headers["vary"]
+    assert answer.headers["cache-control"] == "no-cache"
+
+
+def test_what_is_taken_back_is_gone_for_everybody(api, through, shared, known):
     under = f"shares/{shared['slug']}"
     for _ in range(2):
         revoked = api.delete(under)
         assert (revoked.status_code, revoked.json()["state"]) == (200, "revoked")
-    for path in ("", f"/creatures/{known}", f"/creatures/{known}/replay", "/preview.png"):
-        answer = api.get(under + path)
+    slug = shared["slug"]
+    for answer in (
+        api.get(under),
+        api.get(f"{under}/preview.png"),
+        through(slug, f"creatures/{known}"),
+        through(slug, f"creatures/{known}/replay"),
+    ):
         assert answer.status_code == 410
         assert answer.json()["detail"] == "Whoever shared this has taken it back."
     assert api.delete(f"shares/{'A' * 32}").status_code == 404
 
 
-def test_what_has_expired_is_gone(api, services, known):
+def test_what_has_expired_is_gone(api, through, services, known):
     until = datetime.now(UTC) + timedelta(days=1)
     sent = {"creature": known, "listed": True, "expires_at": until.isoformat()}
     slug = api.post("shares", json=sent).json()["slug"]
     assert api.get(f"shares/{slug}").status_code == 200
     with services.sessions.write.begin() as session:
         session.get_one(Share, slug).expires_at = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
-    answer = api.get(f"shares/{slug}/creatures/{known}")
+    answer = through(slug, f"creatures/{known}")
     assert answer.status_code == 410
     assert answer.json()["detail"] == "This was shared until 02 January 2026, 03:04 UTC."
     assert api.get("commons").json()["items"] == []
@@ -136,9 +152,12 @@ def test_only_listed_shares_stand_in_the_commons_page_by_page(api, shared, known
     assert api.get("commons", params={"cursor": "x"}).status_code == 422
 
 
-def test_answers_keep_the_address_among_those_who_know_it(api, shared, known):
-    for path in ("", f"/creatures/{known}", "/creatures/none"):
-        headers = api.get(f"shares/{shared['slug']}{path}").headers
+def test_answers_keep_the_address_among_those_who_know_it(api, through, shared, known):
+    for headers in (
+        api.get(f"shares/{shared['slug']}").headers,
+        through(shared["slug"], f"creatures/{known}").headers,
+        through(shared["slug"], "creatures/none").headers,
+    ):
         assert headers["referrer-policy"] == "no-referrer"
         assert headers["x-robots-tag"] == "noindex"
         assert headers["cache-control"] == "no-cache"
@@ -154,8 +173,12 @@ def test_strangers_read_shares_and_nothing_else(serve, services, identity):
         known = client.post(f"{api}/creatures", json=sent, headers=bearer).json()["creature"]
         asked = {"creature": known}
         slug = client.post(f"{api}/shares", json=asked, headers=bearer).json()["slug"]
-        for path in (f"shares/{slug}", f"shares/{slug}/creatures/{known}", "commons"):
+        for path in (f"shares/{slug}", "commons"):
             assert client.get(f"{api}/{path}").status_code == 200, path
+        holder = {HEADER: slug}
+        assert client.get(f"{api}/creatures/{known}", headers=holder).status_code == 200
+        assert client.get(f"{api}/shares", headers=holder).status_code == 403
+        assert client.post(f"{api}/shares", json=asked, headers=holder).status_code == 403
         for path in ("shares", "shares/", f"creatures/{known}", "runs", f"shares/{slug}x"):
             assert client.get(f"{api}/{path}").status_code in (401, 404), path
         assert client.get(f"{api}/shares").status_code == 401
@@ -165,20 +188,23 @@ def test_strangers_read_shares_and_nothing_else(serve, services, identity):
         assert client.get(f"{address}/s/{slug}").status_code in (200, 503)
 
 
-def test_licence_and_credit_travel_with_the_file(api, known, serve):
+def test_licence_and_credit_travel_with_the_file(api, through, known):
     sent = {"creature": known, "licence": "CC0-1.0", "credit": ["Ada", "Bob"]}
     slug = api.post("shares", json=sent).json()["slug"]
-    document = api.get(f"shares/{slug}/creatures/{known}").json()
+    document = through(slug, f"creatures/{known}").json()
     assert (document["licence"], document["credit"]) == ("CC0-1.0", ["Ada", "Bob"])
     assert api.get(f"creatures/{known}").json()["credit"] == ["Ada"]
 
 
-def test_strangers_see_films_that_were_made_and_have_none_made(api, services, shared, known):
-    film = f"shares/{shared['slug']}/creatures/{known}/film.gif"
-    assert api.get(film).status_code == 404
-    assert api.get(film.replace("film.gif", "audit")).status_code == 404
+def test_strangers_see_films_that_were_made_and_have_none_made(
+    through, services, shared, known
+):
+    slug, film = shared["slug"], f"creatures/{known}/film.gif"
+    assert through(slug, film).status_code == 404
+    assert through(slug, film.replace("film.gif", "audit")).status_code == 403
+    assert through(slug, film.replace("film.gif", "measurement")).status_code == 204
     renderings.save(services, known, "film.gif", b"GIF")
-    assert api.get(film).content == b"GIF"
+    assert through(slug, film).content == b"GIF"
     assert len(services.jobs.renderings) == 1, "the preview alone"
 
 

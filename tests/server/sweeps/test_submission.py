@@ -173,7 +173,7 @@ def elite(claimed, services, run_id, report, identity):
 def test_what_a_sweep_begins_from_stays_as_long_as_its_runs(
     runs_of, claimed, api, services, post, spec, run_id, elite
 ):
-    spec["search"]["origin"] = [elite]
+    spec["search"]["initial"] = [elite]
     sweep = post(seeds=2, grid=VISCOSITIES).json()
     api.delete(f"runs/{run_id}")
     with services.sessions.write.begin() as session:
@@ -182,20 +182,20 @@ def test_what_a_sweep_begins_from_stays_as_long_as_its_runs(
     assert api.get(f"runs/{run_id}").status_code == 404
     assert api.get(f"creatures/{elite}").status_code == 200
     for run in runs_of(sweep):
-        (file,) = claimed(run).origin()
+        (file,) = claimed(run).initial()
         assert file["sha256"] == elite
 
 
 @pytest.mark.parametrize(
-    ("asked", "origin", "field"),
+    ("asked", "initial", "field"),
     [
-        ({}, "ab" * 32, "spec.search.origin"),
-        ({"grid": {"search.origin": [[], ["ab" * 32]]}}, None, "grid.search.origin[1]"),
+        ({}, "ab" * 32, "spec.search.initial"),
+        ({"grid": {"search.initial": [[], ["ab" * 32]]}}, None, "grid.search.initial[1]"),
         ({"grid": {"control.timer": ["linear"], **VISCOSITIES}}, None, "spec.control: inputs"),
     ],
 )
-def test_a_sweep_that_could_not_begin_is_refused(api, post, spec, elite, asked, origin, field):
-    spec["search"]["origin"] = [origin or elite]
+def test_a_sweep_that_could_not_begin_is_refused(api, post, spec, elite, asked, initial, field):
+    spec["search"]["initial"] = [initial or elite]
     answer = post(**asked)
     assert (answer.status_code, answer.json()["errors"][0]["field"]) == (422, field)
     assert len(api.get("runs").json()["items"]) == 1

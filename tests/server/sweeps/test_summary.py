@@ -1,11 +1,13 @@
 """The summary of a sweep: bands over its runs, and the figures at their ends."""
 
+from types import SimpleNamespace
 from uuid import UUID
 
 import numpy as np
 import pytest
 from sqlalchemy import event, insert, update
 
+from server.sweeps.comparison import common_generation
 from server.sweeps.summary import summary
 from server.tables import Generation, Run, Sweep
 
@@ -43,9 +45,10 @@ def test_bands_are_the_quartiles_of_the_runs_that_have_got_so_far(api, services,
     assert [member["seed"] for member in case["members"]] == [0, 1, 2, 3]
     assert [member["generation"] for member in case["members"]] == lengths
     final = case["finals"]["qd_score"]
-    last = [told[run][-1, 0] for run in told if len(told[run])]
-    assert final["values"] == [*last, None]
-    assert final["median"] == pytest.approx(np.median(last))
+    assert found["generation"] == 3, "the shortest of the runs that have begun"
+    common = [told[run][2, 0] for run in told if len(told[run])]
+    assert final["values"] == [*common, None]
+    assert final["median"] == pytest.approx(np.median(common))
     thin = api.get(f"sweeps/{sweep['id']}/summary", params={"points": 3}).json()["cases"][1]
     assert (thin["generation"], thin["runs"]) == ([1, 3, 5], [3, 3, 1])
     assert thin["best"]["max"] == [case["best"]["max"][i] for i in (0, 2, 4)]
@@ -136,3 +139,18 @@ def test_of_a_table_the_finals_are_the_figures_of_its_summary(
     assert "points" not in told[1]["finals"]
     refused = api.post("sweeps", json={"spec": sweep, "seeds": 2}).json()
     assert "`gaits` has no seed" in refused["detail"]
+
+
+@pytest.mark.parametrize(
+    ("runs", "common"),
+    [
+        ([("queued", 0)], None),
+        ([("running", 71), ("running", 68), ("queued", 0)], 68),
+        ([("running", 71), ("finished", 40), ("cancelled", 3)], 71),
+        ([("finished", 400), ("finished", 120), ("failed", 7)], 400),
+        ([("failed", 7), ("cancelled", 3)], 3),
+    ],
+)
+def test_runs_are_compared_at_a_generation_that_all_have_reached(runs, common):
+    rows = [SimpleNamespace(status=status, generation=last) for status, last in runs]
+    assert common_generation(rows) == common

@@ -1,6 +1,6 @@
 /** Every request of the page. Answers other than success are thrown as `Problem`. */
 
-import { sharedSlug } from "./address";
+import { SHARE_HEADER, sharedSlug } from "./address";
 import { ROOT, client, success, whenReady } from "./http";
 import type {
   Ancestors,
@@ -84,22 +84,22 @@ export async function readRun(id: string): Promise<Run> {
 }
 
 /**
- * The archive now or as of a generation, with columns of the features that are named; only what
+ * The archive now or as of a generation, with columns of the measures that are named; only what
  * entered later than `after`, where that is given.
  */
 export function readArchive(
   id: string,
-  features: string[] = [],
+  measures: string[] = [],
   { generation, after }: { generation?: number; after?: number } = {},
 ) {
-  const query = { ...(features.length > 0 && { measures: features.join(",") }), generation, after };
+  const query = { ...(measures.length > 0 && { measures: measures.join(",") }), generation, after };
   const params = { path: { run_id: id }, query };
   return success(client.GET(`${ROOT}/runs/{run_id}/archive`, { params }));
 }
 
-/** Every elite that ever entered, with columns of the features that are named. */
-export function readHistory(id: string, features: string[]) {
-  const query = features.length > 0 ? { measures: features.join(",") } : {};
+/** Every elite that ever entered, with columns of the measures that are named. */
+export function readHistory(id: string, measures: string[]) {
+  const query = measures.length > 0 ? { measures: measures.join(",") } : {};
   const params = { path: { run_id: id }, query };
   return success(client.GET(`${ROOT}/runs/{run_id}/archive/history`, { params }));
 }
@@ -266,9 +266,9 @@ export function revoke(slug: string): Promise<Share> {
 
 /** The motion of the creature whose picture stands for a share; null while it is made. */
 export function readCover({ slug, cover }: Share): Promise<ArrayBuffer | null> {
-  const params = { path: { slug, sha: cover } };
-  const path = `${ROOT}/shares/{slug}/creatures/{sha}/motion` as const;
-  return whenReady(client.GET(path, { params, parseAs: "arrayBuffer" }));
+  const params = { path: { sha: cover } };
+  const headers = { [SHARE_HEADER]: slug };
+  return whenReady(client.GET(`${ROOT}/creatures/{sha}/motion`, { params, headers, parseAs: "arrayBuffer" }));
 }
 
 /** Has a creature evaluated again by the program that measured it. */

@@ -1,5 +1,6 @@
 /** Ask whether a file is ready or exists, without reading it. */
 
+import { shareHeaders, sharedSlug } from "./address";
 import { problemOf } from "./problem";
 import { noteStatus } from "./signedOut";
 
@@ -15,9 +16,30 @@ export async function checkFile(url: string): Promise<void> {
 
 async function readHead(url: string): Promise<Response> {
   const stop = new AbortController();
-  const response = await fetch(url, { signal: stop.signal });
-  noteStatus(response.status);
-  if (!response.ok) throw problemOf(response.status, await response.json().catch(() => null));
+  const response = await request(url, stop.signal);
   stop.abort();
   return response;
+}
+
+async function request(url: string, signal?: AbortSignal): Promise<Response> {
+  const response = await fetch(url, { signal, headers: shareHeaders });
+  noteStatus(response.status);
+  if (!response.ok) throw problemOf(response.status, await response.json().catch(() => null));
+  return response;
+}
+
+/** Download a file under the name that the server gives it. Links cannot name a share: it is fetched. */
+export async function save(url: string): Promise<void> {
+  const link = document.createElement("a");
+  if (sharedSlug) {
+    const response = await request(url);
+    const named = /filename="([^"]*)"/.exec(response.headers.get("Content-Disposition") ?? "");
+    link.href = URL.createObjectURL(await response.blob());
+    link.download = named?.[1] ?? "";
+  } else {
+    link.href = url;
+    link.download = "";
+  }
+  link.click();
+  if (sharedSlug) setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }

@@ -1,15 +1,14 @@
-/** The HTTP client: requests below the share that is shown, and problems as exceptions. */
+/** The HTTP client: it names the share of the page, and throws problems. */
 
 import createClient from "openapi-fetch";
-import { belowShare, sharedSlug } from "./address";
+import { shareHeaders } from "./address";
 import { problemOf } from "./problem";
 import type { paths } from "./schema";
 import { noteStatus } from "./signedOut";
 
 export const ROOT = "/api/v1";
 
-export const client = createClient<paths>({ baseUrl: "" });
-if (sharedSlug) client.use({ onRequest: ({ request }) => new Request(belowShare(request.url), request) });
+export const client = createClient<paths>({ baseUrl: "", headers: shareHeaders });
 
 export interface Answer<T> {
   data?: T;

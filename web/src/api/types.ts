@@ -158,7 +158,7 @@ export interface Creature {
   measured: {
     fitness: number;
     descriptors: { [name: string]: number };
-    features: { [name: string]: number };
+    measures: { [name: string]: number };
     block: number;
     device: string;
   } | null;

@@ -26,8 +26,8 @@ function elite(fitness: number, ...descriptors: number[]): Elite {
 
 const NONE = new Map();
 
-const over = (archive: Archive, elites: Elites, names: [string, string], features = NONE) =>
-  project(elites, [axisOf(names[0], archive, elites, features), axisOf(names[1], archive, elites, features)]);
+const over = (archive: Archive, elites: Elites, names: [string, string], measures = NONE) =>
+  project(elites, [axisOf(names[0], archive, elites, measures), axisOf(names[1], archive, elites, measures)]);
 
 describe("the axes of a map", () => {
   it("are the archive's first two, and fitness where there is but one", () => {
@@ -145,13 +145,13 @@ describe("an archive on a map", () => {
     expect(through(0, 0)).toMatchObject({ cell: 3, behind: 0 });
   });
 
-  it("along a feature leaves out whom it is not known of", () => {
+  it("along a measure leaves out whom it is not known of", () => {
     const elites = new Map([
       [0, elite(1, 0, 1)],
       [1, elite(2, 0, 1)],
     ]);
-    const features = new Map([["turning", new Map([["c2", 0.5]])]]);
-    const { tiles } = over(archiveOf(2), elites, ["turning", "fitness"], features);
+    const measures = new Map([["turning", new Map([["c2", 0.5]])]]);
+    const { tiles } = over(archiveOf(2), elites, ["turning", "fitness"], measures);
     expect([...tiles.values()].map(({ cell }) => cell)).toEqual([1]);
   });
 

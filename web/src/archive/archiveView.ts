@@ -44,27 +44,27 @@ export function useArchiveView(
   const names = missingOf(archive, [x, y, colour]).filter((name) => name !== AGE);
   const now = useMeasures(run.id, names, live);
   const { value: past, error } = useHistory(run.id, names, at);
-  const features = at !== null && past ? past.features : now;
+  const measures = at !== null && past ? past.measures : now;
   const walk = useMemo(() => past && walkThrough(past.history), [past]);
   const elites = useMemo(() => (at !== null && walk ? walk(at) : live), [at, walk, live]);
   // Axes follow what is there now: they must not move while the past is played.
-  const axes = useMemo(() => axesOf([x, y], archive, live, features), [x, y, archive, live, features]);
+  const axes = useMemo(() => axesOf([x, y], archive, live, measures), [x, y, archive, live, measures]);
   const asked = hiddenAxes(archive, x, y)
     .map(({ name }) => query.get(`only.${name}`))
     .join();
   const slices = useMemo(
-    () => hiddenAxes(archive, x, y).map(({ name }) => sliceOf(axisOf(name, archive, live, features), query)),
-    [x, y, archive, live, features, asked],
+    () => hiddenAxes(archive, x, y).map(({ name }) => sliceOf(axisOf(name, archive, live, measures), query)),
+    [x, y, archive, live, measures, asked],
   );
   const cells = useCells(run.id, archive, [x, y]);
   const map = useMemo(() => project(elites, axes, slices, cells), [elites, axes, slices, cells]);
   const grid = useMemo(() => (cells ? project(elites, axes, slices) : map), [map, cells]);
   const generation = at ?? run.generation;
   const colouring = useMemo(() => {
-    const measure = colourMeasure(colour, archive, features, generation);
+    const measure = colourMeasure(colour, archive, measures, generation);
     const steady = at === null || colour === AGE ? map : project(live, axes, slices, cells);
     return colouringOf(measure, palette, steady.tiles);
-  }, [colour, palette, archive, features, generation, map]);
+  }, [colour, palette, archive, measures, generation, map]);
   const ready = at === null || past !== null;
   return { axes, slices, colour, palette, elites, generation, ready, error, map, grid, colouring };
 }
@@ -73,8 +73,8 @@ function colourOf(archive: Archive, asked: string | null): string {
   return coloursOf(archive).some(([name]) => name === asked) ? asked! : FITNESS;
 }
 
-function axesOf([x, y]: [string, string], archive: Archive, elites: Elites, features: Measures) {
-  const axis = (name: string) => axisOf(name, archive, elites, features);
+function axesOf([x, y]: [string, string], archive: Archive, elites: Elites, measures: Measures) {
+  const axis = (name: string) => axisOf(name, archive, elites, measures);
   return [axis(x), axis(y)] as const;
 }
 

@@ -6,7 +6,7 @@ import { words } from "../ui/format";
 import { roundStep } from "./geometry";
 import { text } from "./text";
 
-/** Columns of features by name: what was recorded of each creature. */
+/** Columns of measures by name: what was recorded of each creature. */
 export type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
 export const FITNESS = "fitness";
@@ -48,19 +48,19 @@ export interface Measure {
   valueOf: (elite: Elite) => number | null;
 }
 
-export function measureOf(name: string, archive: Archive, features: Measures): Measure {
+export function measureOf(name: string, archive: Archive, measures: Measures): Measure {
   const own = archive.axes.findIndex((axis) => axis.name === name);
-  const recorded = archive.recorded.find((feature) => feature.name === name);
+  const recorded = archive.recorded.find((measure) => measure.name === name);
   const scale = archive.axes[own]?.scale ?? recorded?.scale ?? "linear";
   const told = { name, title: recorded?.title ?? words(name), unit: recorded?.unit ?? "", scale };
   if (own >= 0) return { ...told, valueOf: ({ descriptors }) => descriptors[own] ?? null };
   if (name === FITNESS) return { ...told, valueOf: ({ fitness }) => fitness };
-  const column = features.get(name);
+  const column = measures.get(name);
   return { ...told, valueOf: ({ creature }) => column?.get(creature) ?? null };
 }
 
-export function axisOf(name: string, archive: Archive, elites: Elites, features: Measures): MapAxis {
-  const measure = measureOf(name, archive, features);
+export function axisOf(name: string, archive: Archive, elites: Elites, measures: Measures): MapAxis {
+  const measure = measureOf(name, archive, measures);
   const own = archive.axes.findIndex((axis) => axis.name === name);
   if (own >= 0) {
     const grid = archive.kind === "grid";
@@ -68,7 +68,7 @@ export function axisOf(name: string, archive: Archive, elites: Elites, features:
     const binOf = grid ? placeAlong(archive.axes, own) : null;
     return { ...archive.axes[own]!, ...measure, bins, binOf };
   }
-  const recorded = archive.recorded.find((feature) => feature.name === name);
+  const recorded = archive.recorded.find((measure) => measure.name === name);
   const values = [...elites.values()].map(measure.valueOf).filter((value) => value !== null);
   const [least, most] = [recorded?.low ?? 0, recorded?.high ?? 1];
   const [low, high, bins] = endsOf(values, measure.scale, least, most);
@@ -81,7 +81,7 @@ function placeAlong(axes: readonly Axis[], own: number): (cell: number) => numbe
   return (cell) => Math.floor(cell / after) % axes[own]!.bins;
 }
 
-/** Round ends around the values there are; the feature's own where there are none. */
+/** Round ends around the values there are; the measure's own where there are none. */
 function endsOf(
   values: readonly number[],
   scale: Axis["scale"],

@@ -26,8 +26,8 @@ function elite(fitness: number, ...descriptors: number[]): Elite {
 
 const NONE = new Map();
 
-const over = (archive: Archive, elites: Elites, names: [string, string], features = NONE) =>
-  project(elites, [axisOf(names[0], archive, elites, features), axisOf(names[1], archive, elites, features)]);
+const over = (archive: Archive, elites: Elites, names: [string, string], measures = NONE) =>
+  project(elites, [axisOf(names[0], archive, elites, measures), axisOf(names[1], archive, elites, measures)]);
 
 describe("the colours of a map", () => {
   const elites = new Map([
@@ -58,7 +58,7 @@ describe("the colours of a map", () => {
   });
 
   it("tell an unknown value from an empty cell and from any known one", () => {
-    const features = new Map([
+    const measures = new Map([
       [
         "turning",
         new Map([
@@ -67,7 +67,7 @@ describe("the colours of a map", () => {
         ]),
       ],
     ]);
-    const measure = colourMeasure("turning", archiveOf(2), features, 5);
+    const measure = colourMeasure("turning", archiveOf(2), measures, 5);
     const colours = binColours(tiles, 4, colouringOf(measure, "viridis", tiles), 7, 8);
     expect(colours[2]).toBe(8);
     expect(colours[3]).toBe(7);

@@ -25,10 +25,10 @@ export const coloursOf = (archive: Archive): [name: string, title: string][] => 
 export function colourMeasure(
   name: string,
   archive: Archive,
-  features: Measures,
+  measures: Measures,
   generation: number,
 ): Measure {
-  if (name !== AGE) return measureOf(name, archive, features);
+  if (name !== AGE) return measureOf(name, archive, measures);
   const valueOf: Measure["valueOf"] = (elite) => generation - elite.generation;
   return { name, title: text.age, unit: "generations", scale: "linear", valueOf };
 }

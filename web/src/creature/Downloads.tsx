@@ -1,13 +1,14 @@
 /** Downloads of a creature; films are rendered on request. */
 
 import { useEffect, useState } from "preact/hooks";
-import { renderingReady } from "../api/files";
+import { renderingReady, save } from "../api/files";
 import { type PictureFormat, creatureFileUrl, creatureH5Url, pictureUrl } from "../api/urls";
 import { sharedSlug } from "../api/address";
+import { messageOf } from "../api/problem";
 import { poll } from "../store/polling";
 import { showToast } from "../store/toasts";
 import { copyText } from "../ui/clipboard";
-import { FileLink, save } from "../ui/FileLink";
+import { FileLink } from "../ui/FileLink";
 import { text } from "./text";
 
 const KINDS: [PictureFormat, string][] = [
@@ -25,14 +26,7 @@ export function Downloads({ sha }: { sha: string }) {
           {text.copyLink}
         </button>
       )}
-      <a
-        class="button"
-        href={creatureFileUrl(sha)}
-        download={`creature-${sha.slice(0, 12)}.json`}
-        title={text.jsonAbout}
-      >
-        JSON
-      </a>
+      <FileLink url={creatureFileUrl(sha)} name="JSON" title={text.jsonAbout} />
       <FileLink url={creatureH5Url(sha)} name="HDF5" />
       {(sharedSlug ? [] : KINDS).map(([kind, title]) => (
         <Download key={kind} url={pictureUrl(sha, kind)} title={title} />
@@ -49,7 +43,7 @@ function Download({ url, title }: { url: string; title: string }) {
     return poll(() => renderingReady(url), {
       value: () => {
         setBusy(false);
-        save(url);
+        save(url).catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
       },
       note: () => {},
       error: (message) => {

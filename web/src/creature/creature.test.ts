@@ -63,7 +63,7 @@ describe("a family tree", () => {
 describe("facts", () => {
   const creature = {
     identity: { genome: { encoding: "fold" }, world: { fluid: false, coupling: { layers: 1 } } },
-    measured: { fitness: 1, descriptors: {}, features: { displacement: 2, mach: 0.1, connections: 4 } },
+    measured: { fitness: 1, descriptors: {}, measures: { displacement: 2, mach: 0.1, connections: 4 } },
   } as unknown as Creature;
 
   it("stand in groups, each once", () => {

@@ -28,7 +28,7 @@ describe("a creature file", () => {
   });
 
   it("with figures shows each of them, zeros too", () => {
-    const measured = { fitness: 0, descriptors: { speed: 0.5 }, features: {}, block: 1, device: "cpu" };
+    const measured = { fitness: 0, descriptors: { speed: 0.5 }, measures: {}, block: 1, device: "cpu" };
     const provenance = { parents: [], operator: "random", generation: 0, seed: 0, version: "1" };
     const facts = told({ ...bare, measured, provenance });
     expect(facts).toMatchObject({ Fitness: "0", Speed: "0.5", Generation: "0", "Random seed": "0" });
@@ -39,7 +39,7 @@ describe("a creature file", () => {
     const measured = {
       fitness: 2,
       descriptors: {},
-      features: { cycle: 2, reynolds: 12.5, limited: 0.25 },
+      measures: { cycle: 2, reynolds: 12.5, limited: 0.25 },
       block: 1,
       device: "cpu",
     };

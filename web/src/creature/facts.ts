@@ -11,7 +11,7 @@ const NOT_MEASURED = text.notMeasured;
 type Row = [name: string, value: string];
 
 /** Titles and units of measures. */
-const FEATURES: Record<string, [name: string, write: (value: number) => string]> = {
+const MEASURES: Record<string, [name: string, write: (value: number) => string]> = {
   displacement: [text.displacement, (value) => `${number(value, 6)} cells`],
   cycle: [text.lastCycle, (value) => `${number(value, 6)} cells`],
   direction: [text.direction, (value) => `${number(value)} rad`],
@@ -33,13 +33,13 @@ const FEATURES: Record<string, [name: string, write: (value: number) => string]>
 
 export function measurementsOf({ identity, measured }: Creature): Row[] {
   if (!measured) return [[text.fitness, NOT_MEASURED]];
-  const figures = Object.entries({ ...measured.descriptors, ...measured.features });
+  const figures = Object.entries({ ...measured.descriptors, ...measured.measures });
   const gait = identity.genome.encoding === "gait";
   return [
     ...(gait ? [] : [[text.fitness, number(measured.fitness, 6)] as Row]),
     ...figures.map(([name, value]): Row => {
       const own = ownOf({ identity, measured })[name];
-      const [title, write] = FEATURES[name] ?? [own?.title ?? words(name), (x: number) => number(x, 6)];
+      const [title, write] = MEASURES[name] ?? [own?.title ?? words(name), (x: number) => number(x, 6)];
       return [title, own?.unit ? `${write(value)} ${own.unit}` : write(value)];
     }),
   ];
@@ -88,10 +88,10 @@ const GROUPS: [title: string, names: string[]][] = [
 export function groupsOf(creature: Creature): Group[] {
   const { measured, identity } = creature;
   if (!measured) return [{ title: text.resultGroup, rows: measurementsOf(creature) }];
-  const figures = { ...measured.descriptors, ...measured.features };
+  const figures = { ...measured.descriptors, ...measured.measures };
   const among = (names: string[], inside: boolean) => {
     const some = Object.entries(figures).filter(([name]) => names.includes(name) === inside);
-    return { ...measured, descriptors: {}, features: Object.fromEntries(some) };
+    return { ...measured, descriptors: {}, measures: Object.fromEntries(some) };
   };
   const named = GROUPS.flatMap(([, names]) => names);
   const first = {

@@ -1,4 +1,4 @@
-/** What the spec was begun from, what was changed since, and the ways back. */
+/** The base of the spec, the number of changes, and undo. */
 
 import { importCreature } from "../api/client";
 import { messageOf } from "../api/problem";
@@ -11,8 +11,9 @@ import { equalPreset } from "./form/changes";
 import { count, short } from "../ui/format";
 import { titleOfBase } from "./sources";
 import type { DraftState } from "./draftState";
+import { text } from "./text";
 
-/** A creature that came as a file, which this server need not know. */
+/** A creature from a file, which may be unknown to this server. */
 export interface CreatureFile {
   sha: string;
   text: string;
@@ -32,35 +33,34 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
   return (
     <p class="base-bar" role="status">
       <span>
-        {draft.restored && "Your draft is back: "}
-        {size === 0 ? "As in " : `${size} ${size === 1 ? "change" : "changes"} from `}
-        <BaseName base={base} />
-        {base.kind === "creature" && " with its world, body, coupling, controller and task"}
-        {equal && `, the same as preset “${equal.name}”`}.
+        {draft.restored && text.restoredDraft}
+        {text.changes(size)} <BaseName base={base} />
+        {base.kind === "creature" && text.ofCreature}
+        {equal && text.equalPreset(equal.name)}.
       </span>
       {base.fork && (
         <span class="base-fork">
           <ForkSourceText fork={base.fork} />
           <button type="button" class="plain" onClick={draft.dropFork}>
-            Begin from random ones instead
+            {text.startRandom}
           </button>
         </span>
       )}
       {size > 0 && (
         <button type="button" class="plain" onClick={draft.reset}>
-          {draft.restored ? "Discard draft" : "Undo all changes"}
+          {draft.restored ? text.discardDraft : text.undoAll}
         </button>
       )}
       {file && base.name === file.sha && (
         <button type="button" class="plain" onClick={() => void open(file)}>
-          Open this creature instead
+          {text.openCreature}
         </button>
       )}
     </p>
   );
 }
 
-/** Whom the run begins from, with a way to them. */
+/** The creatures that the run starts from, with links. */
 function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { fork: ForkSource }) {
   const then = new URLSearchParams({
     ...(cells && { cells: formatCells(cells) }),
@@ -70,18 +70,18 @@ function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { for
   const which = creature ? ` ${short(creature)}` : "";
   return (
     <span>
-      Begins from{" "}
+      {text.startsFrom}{" "}
       <a href={place}>
-        {creatures === 1 ? "1 creature" : `${count(creatures)} creatures`}
+        {text.creatures(creatures)}
         {which}
       </a>
       {run && (
         <>
           {" "}
-          of <a href={`/runs/${run}`}>run {short(run)}</a>
+          {text.of} <a href={`/runs/${run}`}>{text.runOf(short(run))}</a>
         </>
       )}
-      {at !== null && `, as they were after generation ${count(at)}`}.
+      {at !== null && text.afterGeneration(count(at))}.
     </span>
   );
 }

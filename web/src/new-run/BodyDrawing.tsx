@@ -1,9 +1,10 @@
-/** What a spec is about, in scale: bodies at rest in their periodic worlds, and pictures. */
+/** A scale drawing of a spec: bodies at rest in their worlds, and target pictures. */
 
 import { useEffect, useRef } from "preact/hooks";
 import type { Drawing, DrawnBody, DrawnPicture } from "../api/types";
 import { GRID, branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
 import { count, words } from "../ui/format";
+import { text } from "./text";
 
 interface Props {
   drawing: Drawing | null;
@@ -13,7 +14,7 @@ export function BodyDrawing({ drawing }: Props) {
   if (!drawing) {
     return (
       <div class="body-drawing">
-        <p class="quiet">Drawn here once every value can be used.</p>
+        <p class="quiet">{text.noDrawing}</p>
       </div>
     );
   }
@@ -26,28 +27,26 @@ export function BodyDrawing({ drawing }: Props) {
         ))}
       </div>
       {pictures.length > 0 && (
-        <div class="targets" role="group" aria-label="Pictures to fold into">
+        <div class="targets" role="group" aria-label={text.targets}>
           {pictures.map((picture) => (
             <Target key={picture.name} picture={picture} />
           ))}
         </div>
       )}
-      <figcaption class="quiet small">
-        {count(width)} × {count(height)} cells, periodic; a grid line every {GRID}
-      </figcaption>
+      <figcaption class="quiet small">{text.worldScale(count(width), count(height), GRID)}</figcaption>
     </figure>
   );
 }
 
 function World({ body, drawing }: { body: DrawnBody; drawing: Drawing }) {
   const { width, height, picture_size: side } = drawing;
-  // A hair's breadth on the screen, in cells.
+  // A thin line on the screen, in cells.
   const thin = (Math.max(width, height) / 300) * Math.min(2, drawing.bodies.length);
   const clip = `world-${body.name.replace(/\W/g, "-")}`;
-  const text = `${words(body.name)}: ${caption(body)}`;
+  const label = `${words(body.name)}: ${caption(body)}`;
   return (
     <div class="world">
-      <svg viewBox={`0 0 ${width} ${height}`} role="img" aria-label={text}>
+      <svg viewBox={`0 0 ${width} ${height}`} role="img" aria-label={label}>
         <defs>
           <pattern id={`${clip}-grid`} width={GRID} height={GRID} patternUnits="userSpaceOnUse">
             <path class="grid" d={`M0 0H${GRID}M0 0V${GRID}`} stroke-width={thin} />
@@ -97,7 +96,7 @@ function Filaments({ body, x, y, thin }: { body: DrawnBody; x: number; y: number
 }
 
 function caption({ nodes, edges, whole }: DrawnBody): string {
-  return `${count(nodes)} nodes${whole ? "" : `; ${count(edges.length)} filaments drawn`}`;
+  return text.caption(count(nodes), whole ? null : count(edges.length));
 }
 
 function Target({ picture }: { picture: DrawnPicture }) {
@@ -110,5 +109,5 @@ function Target({ picture }: { picture: DrawnPicture }) {
     for (let i = 0; i < ink.length; i++) image.data[4 * i + 3] = ink.charCodeAt(i);
     context.putImageData(image, 0, 0);
   }, [pixels, width, height]);
-  return <canvas ref={canvas} width={width} height={height} role="img" aria-label={`Picture ${name}`} />;
+  return <canvas ref={canvas} width={width} height={height} role="img" aria-label={text.picture(name)} />;
 }

@@ -15,6 +15,7 @@ import { Outline } from "./form/Outline";
 import { SpecForm, partsOf } from "./form/SpecForm";
 import { isSweep } from "./sweep";
 import { SweepCard, goToSweep } from "./SweepCard";
+import { text } from "./text";
 import "./form/form.css";
 
 type View = "form" | "json";
@@ -48,8 +49,8 @@ export function Editor(props: Props) {
       }}
     >
       <div class="new-columns">
-        <aside class="new-side" aria-label="The run at a glance">
-          <section class={`card ${check.estimate ? "" : "stale"}`} aria-label="Body">
+        <aside class="new-side" aria-label={text.overview}>
+          <section class={`card ${check.estimate ? "" : "stale"}`} aria-label={text.body}>
             <BodyDrawing drawing={check.drawing} />
           </section>
           {check.estimate && <CostDetails estimate={check.estimate} />}
@@ -85,11 +86,11 @@ function SpecView({ editor, illegible, onProblem, draft, current, view, show, ta
   return (
     <>
       <div class="spec-bar">
-        <Segments label="How the spec is shown" choices={VIEWS} value={view} onChoose={show} />
+        <Segments label={text.specView} choices={VIEWS} value={view} onChoose={show} />
         {view === "form" && <Outline parts={parts} state={state} />}
         {!forking && (
           <button type="button" class="plain wide-only" onClick={goToSweep}>
-            Several runs
+            {text.severalRuns}
           </button>
         )}
       </div>
@@ -109,8 +110,8 @@ function SpecView({ editor, illegible, onProblem, draft, current, view, show, ta
 }
 
 const VIEWS = [
-  ["form", "Form"],
-  ["json", "JSON"],
+  ["form", text.form],
+  ["json", text.json],
 ] as const;
 
 interface SubmitProps {
@@ -125,14 +126,15 @@ function SubmitBar({ editor, illegible, refusal }: SubmitProps) {
   return (
     <div class="submit-bar">
       <div class="submit-inner">
-        <Costs
-          {...{ estimate, runs }}
-          problem={illegible ? "What is written as JSON cannot be used." : problem}
-        />
+        <Costs {...{ estimate, runs }} problem={illegible ? text.invalidJson : problem} />
         <span class="submit-how">
-          {refusal ? <span class="quiet">{refusal}</span> : <kbd class="quiet wide-only">Ctrl + Enter</kbd>}
+          {refusal ? (
+            <span class="quiet">{refusal}</span>
+          ) : (
+            <kbd class="quiet wide-only">{text.submitKey}</kbd>
+          )}
           <button class="primary" type="submit" disabled={submission.busy || refusal !== null}>
-            {submission.busy ? "Starting …" : startLabel(wanted)}
+            {submission.busy ? text.starting : startLabel(wanted)}
           </button>
         </span>
       </div>
@@ -140,8 +142,7 @@ function SubmitBar({ editor, illegible, refusal }: SubmitProps) {
   );
 }
 
-const startLabel = (runs: number) =>
-  runs <= 1 ? "Start the run" : `Start ${runs.toLocaleString("en")} runs`;
+const startLabel = (runs: number) => (runs <= 1 ? text.start : text.startRuns(runs.toLocaleString("en")));
 
 /** Control or Command with Enter submits, wherever the focus is. */
 function useSubmitKey(form: { current: HTMLFormElement | null }): void {

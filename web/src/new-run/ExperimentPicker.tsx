@@ -1,8 +1,9 @@
-/** Which experiment, and which preset of it to begin with. */
+/** The choice of an experiment and a preset. */
 
 import type { Estimate, Experiment, Preset } from "../api/types";
 import { about } from "./costText";
 import { bytes, words } from "../ui/format";
+import { text } from "./text";
 
 interface Props {
   experiments: Experiment[];
@@ -18,7 +19,7 @@ export function ExperimentPicker({ experiments, chosen, preset, estimates, onExp
   return (
     <>
       <fieldset class="experiments">
-        <legend class="unseen">Experiment</legend>
+        <legend class="unseen">{text.experiment}</legend>
         {experiments.map((one) => {
           const [name, sentence] = one.title.split(": ") as [string, string?];
           return (
@@ -50,11 +51,7 @@ export function ExperimentPicker({ experiments, chosen, preset, estimates, onExp
             <span class="preset-cost">{costOf(estimates.get(each))}</span>
           </button>
         ))}
-        {chosen.presets.length === 0 && (
-          <p class="quiet needs-creature">
-            It begins at a creature: drop or open a creature file here, or press Refine on a creature’s page.
-          </p>
-        )}
+        {chosen.presets.length === 0 && <p class="quiet needs-creature">{text.needsCreature}</p>}
       </fieldset>
     </>
   );
@@ -62,5 +59,5 @@ export function ExperimentPicker({ experiments, chosen, preset, estimates, onExp
 
 function costOf(estimate: Estimate | undefined): string {
   if (!estimate) return " ";
-  return `${about(estimate) ?? "time unknown yet"} · ${bytes(estimate.memory_bytes)}`;
+  return `${about(estimate) ?? text.timeUnknown} · ${bytes(estimate.memory_bytes)}`;
 }

@@ -1,6 +1,7 @@
-/** What a fork is called, and what the server says of the creatures that it begins from. */
+/** The name of a fork, and errors about its initial creatures. */
 
 import type { FieldError } from "../api/types";
+import { text } from "./text";
 
 interface Props {
   /** Null where it cannot be given one yet. */
@@ -13,20 +14,17 @@ export function ForkCard({ name, errors, onName }: Props) {
   const wrong = errors.filter(({ field }) => isForkField(field));
   return (
     <section class="card sweep-card" aria-labelledby="fork-title">
-      <h2 id="fork-title">Fork</h2>
-      <p class="help">
-        The creatures are evaluated first, as they are, in this spec’s world, body and task; all others come
-        of them.
-      </p>
+      <h2 id="fork-title">{text.fork}</h2>
+      <p class="help">{text.forkAbout}</p>
       {name !== null && (
         <div class="sweep-entries">
           <label class="sweep-name-field">
-            <span>Name of the run</span>
+            <span>{text.runName}</span>
             <input
               type="text"
               maxLength={200}
               value={name}
-              placeholder="may be left empty"
+              placeholder={text.optional}
               onInput={(event) => onName(event.currentTarget.value)}
             />
           </label>
@@ -41,5 +39,6 @@ export function ForkCard({ name, errors, onName }: Props) {
   );
 }
 
-/** Such complaints are of no field that the form shows. */
-export const isForkField = (field: string): boolean => /^(from|name|generation|search\.origin)\b/.test(field);
+/** True for errors of fields that the form does not show. */
+export const isForkField = (field: string): boolean =>
+  /^(from|name|generation|search\.initial)\b/.test(field);

@@ -13,6 +13,7 @@ import { usePresetCosts } from "./estimate";
 import { ofFound, ofPreset, completeSpec } from "./sources";
 import { OpenFileButton, useDocumentDrop } from "./OpenDocument";
 import { type DraftState, useDraft } from "./draftState";
+import { text } from "./text";
 import "./new-run.css";
 
 export function NewRunPage({ query }: { query: URLSearchParams }) {
@@ -20,7 +21,7 @@ export function NewRunPage({ query }: { query: URLSearchParams }) {
   return (
     <main>
       {error && <p class="banner wrong">{error}</p>}
-      {!experiments && !error && <p class="quiet loading">Loading …</p>}
+      {!experiments && !error && <p class="quiet loading">{text.loading}</p>}
       {experiments && <NewRunForm experiments={experiments} query={query} />}
     </main>
   );
@@ -65,7 +66,7 @@ function NewRunForm({ experiments, query }: NewRunProps) {
           one.presets[0] ? draft.startFrom(ofPreset(one.presets[0], one)) : setPicked(one)
         }
       />
-      {!current && <p class="quiet loading">Loading …</p>}
+      {!current && <p class="quiet loading">{text.loading}</p>}
       {current && own && (
         <>
           <BaseBar {...{ draft, current, experiments, file }} />
@@ -109,12 +110,12 @@ function useDocument(
 function Header({ take, onPaste }: { take: Take; onPaste: () => void }) {
   return (
     <header class="page-head">
-      <h1>New run</h1>
+      <h1>{text.newRun}</h1>
       <span class="spring" />
-      <span class="quiet small wide-only">Paste or drop a spec, a run or a creature file, or</span>
+      <span class="quiet small wide-only">{text.dropHint}</span>
       <span class="actions">
         <button type="button" onClick={onPaste}>
-          Paste a spec
+          {text.pasteSpec}
         </button>
         <OpenFileButton take={take} />
       </span>

@@ -1,25 +1,26 @@
-/** Documents that come from outside: pasted anywhere on the page, dropped, or opened. */
+/** Documents that are pasted, dropped or opened. */
 
 import { useEffect, useRef } from "preact/hooks";
 import { showToast } from "../store/toasts";
 import { FileButton, useFileDrop } from "../ui/DropTarget";
+import { text } from "./text";
 
 type Take = (text: string, file: string) => string | null;
 
-/** Passes on what is pasted outside of fields, and what is dropped. */
+/** Handle text pasted outside fields, and dropped files. */
 export function useDocumentDrop(take: Take): void {
   const latest = useRef(take);
   latest.current = take;
-  useFileDrop("Drop a spec, a run or a creature file to begin from it", (file) => {
+  useFileDrop(text.dropDocument, (file) => {
     void readFile(latest.current, file);
   });
   useEffect(() => {
     const paste = (event: ClipboardEvent) => {
       if ((event.target as Element).closest?.("input, textarea, select")) return;
-      const text = event.clipboardData?.getData("text") ?? "";
-      if (!text.trim()) return;
+      const pasted = event.clipboardData?.getData("text") ?? "";
+      if (!pasted.trim()) return;
       event.preventDefault();
-      showProblem(latest.current(text, ""), "Pasted");
+      showProblem(latest.current(pasted, ""), text.pasted);
     };
     document.addEventListener("paste", paste);
     return () => document.removeEventListener("paste", paste);
@@ -36,8 +37,8 @@ function showProblem(problem: string | null, what: string): void {
 
 export function OpenFileButton({ take }: { take: Take }) {
   return (
-    <FileButton name="Spec, run or creature file" take={(file) => void readFile(take, file)}>
-      Open a file
+    <FileButton name={text.documentFile} take={(file) => void readFile(take, file)}>
+      {text.openFile}
     </FileButton>
   );
 }

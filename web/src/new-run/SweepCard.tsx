@@ -1,4 +1,4 @@
-/** Seeds and a grid over fields: asked for in the form of a new run. */
+/** Seeds and a grid of field values for several runs. */
 
 import type { FieldError, Json } from "../api/types";
 import { number } from "../ui/format";
@@ -6,6 +6,7 @@ import { valueAt } from "./form/document";
 import type { Leaf } from "./form/fields";
 import { nameOf } from "./sweepGrid";
 import { type SweepForm, isSweep, complaintsOf } from "./sweep";
+import { text } from "./text";
 import "./sweep.css";
 
 interface Props {
@@ -24,11 +25,8 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
   };
   return (
     <section class="card sweep-card" aria-labelledby="sweep-title">
-      <h2 id="sweep-title">Seeds and sweep</h2>
-      <p class="help">
-        Several runs at once: the same spec with other seeds, or with other values of any fields. They are
-        summed up on one page, with median and spread.
-      </p>
+      <h2 id="sweep-title">{text.sweep}</h2>
+      <p class="help">{text.sweepAbout}</p>
       <Entries sweeping={sweeping} />
       <Wrong said={[problems.seeds, ...complaintsOf(errors, "seeds")]} />
       {axes.map((axis, i) => (
@@ -46,11 +44,11 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
       <Wrong said={[problems.total, ...complaintsOf(errors, "grid")]} />
       <p class="sweep-foot">
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
-          Sweep over {axes.length > 0 ? "another" : "a"} field
+          {text.addAxis(axes.length === 0)}
         </button>
         {isSweep(sweeping) && (
           <span role="status" class="quiet">
-            {total === 1 ? "1 run" : `${total.toLocaleString("en")} runs in all`}
+            {text.totalRuns(total)}
           </span>
         )}
       </p>
@@ -65,7 +63,7 @@ function Entries({ sweeping }: { sweeping: SweepForm }) {
     <div class="sweep-entries">
       {seeded && (
         <label class="sweep-seeds">
-          <span>How many seeds</span>
+          <span>{text.seeds}</span>
           <input
             type="text"
             inputMode="numeric"
@@ -77,12 +75,12 @@ function Entries({ sweeping }: { sweeping: SweepForm }) {
       )}
       {isSweep(sweeping) && (
         <label class="sweep-name-field">
-          <span>Name of the sweep</span>
+          <span>{text.sweepName}</span>
           <input
             type="text"
             maxLength={200}
             value={name}
-            placeholder="may be left empty"
+            placeholder={text.optional}
             onInput={(event) => change({ name: event.currentTarget.value })}
           />
         </label>
@@ -100,7 +98,7 @@ export function goToSweep(): void {
 const textOf = (value: Json): string =>
   value === null || typeof value === "object" ? "" : typeof value === "number" ? plain(value) : String(value);
 
-/** As one would type it. */
+/** A number as one types it. */
 const plain = (value: number) => (Math.abs(value) >= 1e-4 ? String(value) : number(value, 6));
 
 interface RowProps {
@@ -113,13 +111,13 @@ interface RowProps {
   onRemove: () => void;
 }
 
-function Row({ fields, path, text, said, taken, onChange, onRemove }: RowProps) {
+function Row({ fields, path, text: typed, said, taken, onChange, onRemove }: RowProps) {
   const known = fields.some((field) => field.path === path);
   const field = fields.find((one) => one.path === path);
   return (
-    <div class="sweep-axis" role="group" aria-label={`Sweep over ${path}`}>
+    <div class="sweep-axis" role="group" aria-label={text.sweepOver(path)}>
       <select
-        aria-label="Field"
+        aria-label={text.field}
         value={path}
         onChange={(event) => onChange({ path: event.currentTarget.value, text: "" })}
       >
@@ -134,13 +132,13 @@ function Row({ fields, path, text, said, taken, onChange, onRemove }: RowProps) 
       </select>
       <input
         type="text"
-        aria-label={`Values of ${path}`}
+        aria-label={text.valuesOf(path)}
         placeholder={hintOf(field)}
-        value={text}
+        value={typed}
         aria-invalid={said.some(Boolean)}
         onInput={(event) => onChange({ path, text: event.currentTarget.value })}
       />
-      <button type="button" class="plain" aria-label={`Do not sweep over ${path}`} onClick={onRemove}>
+      <button type="button" class="plain" aria-label={text.removeAxis(path)} onClick={onRemove}>
         ✕
       </button>
       <Wrong said={said} />
@@ -150,9 +148,9 @@ function Row({ fields, path, text, said, taken, onChange, onRemove }: RowProps) 
 
 function hintOf(field: Leaf | undefined): string {
   if (field?.kind === "choice") return field.options.join(", ");
-  if (field?.kind === "flag") return "on, off";
-  if (field?.kind === "number") return "values, with commas between them";
-  return "a JSON list of values";
+  if (field?.kind === "flag") return text.flagValues;
+  if (field?.kind === "number") return text.commaValues;
+  return text.jsonValues;
 }
 
 function Wrong({ said }: { said: (string | null)[] }) {

@@ -1,39 +1,39 @@
-/** What a run will cost, in words. */
+/** Texts of the estimated cost. */
 
 import type { Estimate } from "../api/types";
+import { text } from "./text";
 
-/** A time as one says it of what is not known well. */
+/** A rounded duration. */
 export function rough(seconds: number): string {
   if (seconds < 10) return "10 s";
   if (seconds < 90) return `${5 * Math.round(seconds / 5)} s`;
   if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
   if (seconds < 36 * 3600) return `${Math.round((10 * seconds) / 3600) / 10} h`;
-  return seconds < 365 * 86400 ? `${Math.round(seconds / 86400)} days` : "more than a year";
+  return seconds < 365 * 86400 ? text.days(Math.round(seconds / 86400)) : text.overAYear;
 }
 
-/** How long, in short; null where nothing is known. */
+/** The estimated time in short; null if unknown. */
 export function about({ seconds }: Pick<Estimate, "seconds">): string | null {
   if (seconds === null) return null;
-  return seconds < 10 ? "a few seconds" : `about ${rough(seconds)}`;
+  return seconds < 10 ? text.fewSeconds : text.about(rough(seconds));
 }
 
-/** From how much the fastest and the slowest judge may differ before it is worth telling. */
+/** The range is shown if the slowest and the fastest earlier run differ by this factor. */
 const WIDE = 1.5;
 
-/** What the time rests on. */
+/** The basis of the estimated time. */
 export function basis({ speed }: Estimate): string {
-  if (!speed) return "unknown until a first run of this kind has been measured here";
-  const judges = `judged by ${speed.runs} earlier ${speed.runs === 1 ? "run" : "runs"}`;
+  if (!speed) return text.noPace;
   const [low, high] = [rough(speed.low), rough(speed.high)];
   const wide = speed.high > WIDE * speed.low && low !== high;
-  const range = wide ? `; at their paces ${low} to ${high}` : "";
-  return `on ${speed.device}, ${judges}${range}`;
+  const range = wide ? text.paceRange(low, high) : "";
+  return text.basis(speed.device, text.basedOn(speed.runs), range);
 }
 
-/** What it will wait for. */
+/** What the run will wait for. */
 export function wait({ queue }: Estimate): string {
   const { runs_ahead, workers, idle_workers } = queue;
-  if (workers === 0) return "No worker is running: it will wait until one is.";
-  if (runs_ahead > 0) return `${runs_ahead} queued ${runs_ahead === 1 ? "run goes" : "runs go"} before it.`;
-  return idle_workers > 0 ? "A worker is free: it starts at once." : "It starts when a worker is free.";
+  if (workers === 0) return text.noWorker;
+  if (runs_ahead > 0) return text.queued(runs_ahead);
+  return idle_workers > 0 ? text.workerFree : text.workerBusy;
 }

@@ -18,6 +18,7 @@ import { setQuery } from "../store/router";
 import { changedPaths } from "./form/changes";
 import { withInitial } from "./initialCreatures";
 import { addressed, load, ofPreset } from "./sources";
+import { text } from "./text";
 
 export interface DraftState {
   current: Draft | null;
@@ -60,11 +61,11 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]): Dra
     setRevision((count) => count + 1);
     setProblem(null);
   };
-  const replace = (next: Draft, text: string) => {
-    if (current && (changed.size > 0 || current.base.fork)) offerUndo(text, () => put(current));
+  const replace = (next: Draft, note: string) => {
+    if (current && (changed.size > 0 || current.base.fork)) offerUndo(note, () => put(current));
     put(next);
   };
-  const startFrom = (base: Base) => replace({ base, spec: base.spec }, "Begun anew without your changes.");
+  const startFrom = (base: Base) => replace({ base, spec: base.spec }, text.replaced);
   useBase(wanted, shown, current !== null, experiments, startFrom, setProblem);
   useKept(current, changed);
   return {
@@ -75,9 +76,9 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]): Dra
     problem,
     change: (next) => setCurrent((now) => now && { ...now, spec: next(now.spec) }),
     startFrom,
-    reset: () => current && replace({ ...current, spec: current.base.spec }, "Changes taken back."),
+    reset: () => current && replace({ ...current, spec: current.base.spec }, text.undone),
     dropFork: () => {
-      if (current?.base.fork) replace(withoutFork(current), "It begins from random creatures.");
+      if (current?.base.fork) replace(withoutFork(current), text.random);
     },
   };
 }
@@ -127,11 +128,11 @@ function useKept(current: Draft | null, changed: ReadonlySet<string>): void {
 
 let undoToast = 0;
 
-function offerUndo(text: string, undo: () => void): void {
+function offerUndo(note: string, undo: () => void): void {
   const run = () => {
     dismissToast(undoToast);
     undo();
   };
   dismissToast(undoToast);
-  undoToast = showToast({ kind: "note", text, action: { label: "Undo", run } });
+  undoToast = showToast({ kind: "note", text: note, action: { label: text.undo, run } });
 }

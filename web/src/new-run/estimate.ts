@@ -1,17 +1,18 @@
-/** What a spec will cost, and what the server finds wrong with it. */
+/** The estimated cost of a spec, and the errors that the server finds. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { Problem, messageOf } from "../api/problem";
 import type { Drawing, Estimate, Experiment, FieldError, Preset, Spec } from "../api/types";
+import { text } from "./text";
 
 const SETTLED_MS = 350;
 
-export const HAS_ERRORS = "Some values cannot be used; see beside them.";
+export const HAS_ERRORS = text.hasErrors;
 
 export interface Check {
   estimate: Estimate | null;
-  /** What was last drawn; it stays while values are being typed. */
+  /** The last drawing; it stays while values are typed. */
   drawing: Drawing | null;
   errors: FieldError[];
   problem: string | null;
@@ -19,7 +20,7 @@ export interface Check {
 
 const UNCHECKED: Check = { estimate: null, drawing: null, errors: [], problem: null };
 
-/** Asks once typing has settled, and not for what the form itself finds wrong. */
+/** Ask the server after a pause in typing, unless the form finds errors itself. */
 export function useEstimate(spec: Spec | null, slips: FieldError[]): Check {
   const [check, setCheck] = useState(UNCHECKED);
   useEffect(() => {
@@ -48,7 +49,7 @@ export function useEstimate(spec: Spec | null, slips: FieldError[]): Check {
   return check;
 }
 
-/** What each preset of an experiment would cost; asked anew whenever the page is opened. */
+/** The estimated cost of each preset of an experiment. */
 export function usePresetCosts({ presets }: Experiment): ReadonlyMap<Preset, Estimate> {
   const [known, setKnown] = useState<ReadonlyMap<Preset, Estimate>>(new Map());
   useEffect(() => {

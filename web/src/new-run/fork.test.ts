@@ -123,8 +123,8 @@ describe("a fork", () => {
     const sent = forkOf({ base: { ...base, fork: ALL }, spec: withInitial(spec, [SHA]) }, "");
     expect(sent).toMatchObject({ fork: { spec: { world: { viscosity: 0.3 } } } });
     const form = formOf(SEARCH.schema);
-    const places = placesOf(form, spec).filter((path) => path !== "search.origin");
-    expect(placesOf(form, spec)).toContain("search.origin");
+    const places = placesOf(form, spec).filter((path) => path !== "search.initial");
+    expect(placesOf(form, spec)).toContain("search.initial");
     expect(placesOf(withoutInitial(form), spec)).toEqual(places);
   });
 
@@ -166,7 +166,7 @@ describe("a fork", () => {
     expect(addressOf({ ...base, fork })).toEqual(address);
   });
 
-  it.each(["from", "from.region.speed", "search.origin", "name", "generation"])(
+  it.each(["from", "from.region.speed", "search.initial", "name", "generation"])(
     "shows %s beside it",
     (field) => {
       expect(isForkField(field)).toBe(true);
@@ -185,7 +185,7 @@ describe("what an address of a fork names", () => {
   it("is the run's spec, with how many creatures live there", async () => {
     const base = await load([["fork", RUN]], EXPERIMENTS);
     expect(base.fork).toEqual(ALL);
-    expect((base.spec.search as Spec).origin).toEqual([]);
+    expect((base.spec.search as Spec).initial).toEqual([]);
   });
 
   it("is whoever lives in the cells, each once, and not later than there are generations", async () => {
@@ -193,14 +193,16 @@ describe("what an address of a fork names", () => {
       (await load([["fork", RUN], ...words], EXPERIMENTS)).fork;
     expect(await some(["cells", "0-2,8-9"])).toEqual({ ...ALL, cells: [2, 9], creatures: 1 });
     expect(await some(["at", "99"])).toEqual({ ...ALL, at: 8 });
-    await expect(some(["cells", "4,6-8"])).rejects.toThrow("nobody lives there");
-    await expect(some(["at", "0"])).rejects.toThrow("nobody lives there");
+    await expect(some(["cells", "4,6-8"])).rejects.toThrow("hold no elites");
+    await expect(some(["at", "0"])).rejects.toThrow("hold no elites");
     await expect(some(["at", "then"])).rejects.toThrow("“at” must be a generation; got then.");
   });
 
   it("is of no more creatures than the schema has room for", () => {
     const { fields } = formOf(SEARCH.schema).fields.find(({ path }) => path === "search") as Section;
-    expect(JSON.stringify(fields.find(({ path }) => path === "search.origin"))).toContain(`${MAX_CREATURES}`);
+    expect(JSON.stringify(fields.find(({ path }) => path === "search.initial"))).toContain(
+      `${MAX_CREATURES}`,
+    );
   });
 
   it("is the creature's own world where its run was no search", async () => {
@@ -212,7 +214,7 @@ describe("what an address of a fork names", () => {
       EXPERIMENTS,
     );
     expect(base).toMatchObject({ kind: "creature", fork: { run: null, creature: SHA } });
-    expect(base.spec).toMatchObject({ world: { width: 96 }, search: { origin: [SHA] } });
-    await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("fills no archive");
+    expect(base.spec).toMatchObject({ world: { width: 96 }, search: { initial: [SHA] } });
+    await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("has no archive");
   });
 });

@@ -10,14 +10,14 @@ export const isSearch = (spec: Spec): boolean => isObject(spec.search);
 /** The spec of a search that begins from the creatures of these names. */
 export const withInitial = (spec: Spec, names: string[]): Spec => ({
   ...spec,
-  search: { ...(spec.search as Spec), origin: names },
+  search: { ...(spec.search as Spec), initial: names },
 });
 
 /** The form without the names of creatures, which are chosen elsewhere. */
 export const withoutInitial = (form: Section): Section => ({
   ...form,
   fields: form.fields
-    .filter(({ path }) => path !== "search.origin")
+    .filter(({ path }) => path !== "search.initial")
     .map((field) => (field.kind === "section" ? withoutInitial(field) : field)),
 });
 

@@ -73,18 +73,18 @@ describe("costs in words", () => {
   it("tells what a time rests on, and a range where it is wide", () => {
     expect(about(estimate({}))).toBe("about 11 min");
     expect(about(estimate({ seconds: 2 }))).toBe("a few seconds");
-    expect(basis(estimate({}))).toBe("on a CPU, judged by 3 earlier runs");
+    expect(basis(estimate({}))).toBe("on a CPU, based on 3 earlier runs");
     expect(basis(estimate({ speed: { ...speed, runs: 1, high: 1300 } }))).toBe(
-      "on a CPU, judged by 1 earlier run; at their paces 10 min to 22 min",
+      "on a CPU, based on 1 earlier run; range 10 min to 22 min",
     );
     expect(about(estimate({ seconds: null }))).toBeNull();
-    expect(basis(estimate({ speed: null }))).toMatch(/^unknown until a first run/);
+    expect(basis(estimate({ speed: null }))).toMatch(/^unknown until this server/);
   });
 
   it.each([
     [{ workers: 0 }, /No worker/],
-    [{ runs_ahead: 2 }, /2 queued runs go/],
-    [{}, /at once/],
+    [{ runs_ahead: 2 }, /2 queued runs are ahead/],
+    [{}, /immediately/],
     [{ idle_workers: 0 }, /when a worker is free/],
   ])("says what a run waits for with %j", (changes, words) =>
     expect(wait(estimate({ queue: { ...queue, ...changes } }))).toMatch(words),

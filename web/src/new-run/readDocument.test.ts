@@ -37,7 +37,7 @@ describe("what is pasted or dropped", () => {
   });
 
   it.each([
-    ["{", /this is no JSON/],
+    ["{", /Not valid JSON/],
     ["[1]", /got a list/],
     ["7", /got number 7/],
     ["{}", /“experiment” must name the experiment; got nothing/],
@@ -46,7 +46,7 @@ describe("what is pasted or dropped", () => {
     ["\ufffdHDF", /HDF5/],
   ])("is refused as %j, told what was needed", (text, words) => {
     expect(() => readText(text)).toThrow(words);
-    expect(() => readText(text)).toThrow(/a spec, a run as the API gives it, or a creature file/);
+    expect(() => readText(text)).toThrow(/a spec, a run from the API, or a creature file/);
   });
 });
 

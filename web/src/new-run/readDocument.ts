@@ -1,35 +1,36 @@
-/** What a person pastes or drops: a spec, a run that has one, a creature that lived by one. */
+/** Read a pasted or dropped document: a spec, a run, or a creature. */
 
 import type { Creature, Json, Spec, Gait } from "../api/types";
+import { text } from "./text";
 
 export type Found =
   | { kind: "spec"; spec: Spec }
   | { kind: "run"; spec: Spec; id: string }
   | { kind: "creature"; spec: Spec; creature: Creature };
 
-export const TAKEN = "a spec, a run as the API gives it, or a creature file, all of them JSON";
+export const TAKEN = text.accepted;
 
 const HDF5 = "\u0089HDF";
 
-/** Reads a text; throws an `Error` that says what was needed and what came. */
-export function readText(text: string, refine = false): Found {
-  if (text.startsWith(HDF5) || text.startsWith("\ufffdHDF")) {
-    throw new Error(`An archive or checkpoint (HDF5) cannot be read here. Needs ${TAKEN}.`);
+/** Read a text; throw an `Error` that says what is accepted. */
+export function readText(document: string, refine = false): Found {
+  if (document.startsWith(HDF5) || document.startsWith("\ufffdHDF")) {
+    throw new Error(text.noHdf5(TAKEN));
   }
-  return readDocument(parsed(text), refine);
+  return readDocument(parsed(document), refine);
 }
 
-function parsed(text: string): Json {
+function parsed(document: string): Json {
   try {
-    return JSON.parse(text);
+    return JSON.parse(document);
   } catch (error) {
-    throw new Error(`Needs ${TAKEN}; this is no JSON (${(error as Error).message}).`);
+    throw new Error(text.noJson(TAKEN, (error as Error).message));
   }
 }
 
-/** Which of the three a document is; a creature becomes the spec of a search, or of its refinement. */
+/** Tell which kind a document is; a creature becomes the spec of a search or a refinement. */
 export function readDocument(document: Json, refine = false): Found {
-  if (!isObject(document)) throw new Error(`Needs ${TAKEN}; got ${named(document)}.`);
+  if (!isObject(document)) throw new Error(text.notADocument(TAKEN, named(document)));
   const { identity, spec, id } = document;
   if (isObject(identity)) {
     const creature = document as unknown as Creature;
@@ -42,12 +43,12 @@ export function readDocument(document: Json, refine = false): Found {
 
 function known(spec: Spec, field: string): Spec {
   if (typeof spec.experiment === "string") return spec;
-  throw new Error(`“${field}” must name the experiment; got ${named(spec.experiment)}. Needs ${TAKEN}.`);
+  throw new Error(text.noExperiment(field, named(spec.experiment), TAKEN));
 }
 
 function named(value: Json | undefined): string {
-  if (value === undefined) return "nothing";
-  if (Array.isArray(value)) return "a list";
+  if (value === undefined) return text.nothing;
+  if (Array.isArray(value)) return text.list;
   return value === null ? "null" : `${typeof value} ${JSON.stringify(value).slice(0, 40)}`;
 }
 
@@ -55,7 +56,7 @@ export function isObject(value: Json | undefined): value is Spec {
   return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
-/** Whose genes are numbers, which NEAT's mutations do not vary. */
+/** Encodings with numeric genes, which NEAT's mutations do not vary. */
 const NUMBERS = ["direct", "weights"];
 
 /** A run in a creature's world, with its body, coupling, controller and task. */
@@ -79,10 +80,10 @@ export function specOf(creature: Creature): Spec {
   };
 }
 
-/** Names of users' own have a dot. */
+/** Names of plug-ins contain a dot. */
 const isOwn = (name: string) => name.includes(".");
 
-/** What networks had room for where the creature was evaluated. */
+/** The network sizes for which the creature was evaluated. */
 function roomOf({ measured }: Creature): Spec | null {
   const room = (measured as { room?: [number, number] | null } | null)?.room;
   return room ? { max_nodes: room[0], max_connections: room[1] } : null;

@@ -1,4 +1,4 @@
-/** What a new run can begin from, as the address names it. */
+/** Sources of a new run, as the address names them. */
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
@@ -9,8 +9,9 @@ import { completed } from "./form/defaults";
 import { isSearch, withInitial } from "./initialCreatures";
 import { type Found, specOf } from "./readDocument";
 import { count, short } from "../ui/format";
+import { text } from "./text";
 
-/** Creatures that a run can begin from; `search.origin` in the schemas has the same. */
+/** Creatures that a run can begin from; `search.initial` in the schemas has the same. */
 export const MAX_CREATURES = 4096;
 
 export function addressed(query: URLSearchParams): Address | null {
@@ -25,7 +26,7 @@ export function ofPreset(preset: Preset, { experiment }: Experiment): Base {
   return { kind: "preset", name: `${experiment}/${preset.name}`, spec: preset.spec };
 }
 
-/** What the address names; throws what a person can read where there is no such thing. */
+/** Load the source that the address names; throw a readable error if there is none. */
 export async function load(address: Address, experiments: Experiment[]): Promise<Base> {
   const [word, name] = address[0]!;
   if (word === "preset") return named(name, experiments);
@@ -39,19 +40,19 @@ export async function load(address: Address, experiments: Experiment[]): Promise
     const run = await api.readRun(name);
     return { kind: "run", name, spec: completeSpec(run.spec, experiments) };
   } catch (error) {
-    throw new Error(`“${word}” in the address names ${name}: ${messageOf(error)}`);
+    throw new Error(text.badAddress(word, name, messageOf(error)));
   }
 }
 
-/** A search that begins from one creature, in its world. */
+/** A search that starts from one creature, in its world. */
 async function runSource(sha: string, experiments: Experiment[]): Promise<Base> {
   const spec = completeSpec(specOf(await api.readCreature(sha)), experiments);
-  if (!isSearch(spec)) throw new Error("no search can begin from it.");
+  if (!isSearch(spec)) throw new Error(text.notEvolvable);
   const fork = { run: null, creature: sha, cells: null, at: null, creatures: 1 };
   return { kind: "creature", name: sha, spec: withInitial(spec, [sha]), fork };
 }
 
-/** A run's spec, to begin from one creature or from its elites: all, or those of some cells. */
+/** The spec of a run, starting from one creature or from elites: all, or those of some cells. */
 async function forkOf(
   id: string,
   { creature, cells, at }: Record<string, string>,
@@ -60,7 +61,7 @@ async function forkOf(
   const run = await api.readRun(id);
   if (!isSearch(run.spec)) {
     if (creature) return runSource(creature, experiments);
-    throw new Error("it fills no archive to begin from.");
+    throw new Error(text.noArchive);
   }
   const spec = withInitial(completeSpec(run.spec, experiments), []);
   const one = { run: id, creature: creature ?? null, cells: null, at: null, creatures: 1 };
@@ -68,16 +69,15 @@ async function forkOf(
   return { kind: "run", name: id, spec, fork };
 }
 
-/** The elites that live in some cells, or in all, or lived there after a generation. */
+/** The elites of some or all cells, now or after a generation. */
 async function elitesOf(run: string, cells: string | null, at: number | null): Promise<ForkSource> {
   const { cell, creature, generation } = await api.readArchive(run, [], { generation: at ?? undefined });
   const chosen = cells === null ? () => true : parseCells(cells);
   const places = [...cell.keys()].filter((i) => chosen(cell[i]!));
-  if (places.length === 0) throw new Error("nobody lives there to begin from.");
+  if (places.length === 0) throw new Error(text.noElites);
   const creatures = new Set(places.map((i) => creature[i]!)).size;
   if (creatures > MAX_CREATURES) {
-    const least = `at most ${count(MAX_CREATURES)} creatures can begin a run; there live ${count(creatures)}.`;
-    throw new Error(`${least} Choose some of them on the map of the archive.`);
+    throw new Error(text.tooMany(count(MAX_CREATURES), count(creatures)));
   }
   const named = cells === null ? null : places.map((i) => cell[i]!);
   return { run, creature: null, cells: named, at: at === null ? null : generation, creatures };
@@ -86,7 +86,7 @@ async function elitesOf(run: string, cells: string | null, at: number | null): P
 function generationOf(at: string | undefined): number | null {
   if (at === undefined) return null;
   if (/^\d+$/.test(at)) return Number(at);
-  throw new Error(`“at” must be a generation; got ${at}.`);
+  throw new Error(text.badGeneration(at));
 }
 
 function named(name: string, experiments: Experiment[]): Base {
@@ -94,18 +94,18 @@ function named(name: string, experiments: Experiment[]): Base {
   const found = all.find((base) => base.name === name);
   if (found) return found;
   const known = all.map((base) => base.name).join(", ");
-  throw new Error(`“preset” in the address must be one of ${known}; got ${name}.`);
+  throw new Error(text.badPreset(known, name));
 }
 
-/** The spec with the defaults of what it leaves out. */
+/** The spec with defaults for missing fields. */
 export function completeSpec(spec: Spec, experiments: Experiment[]): Spec {
   const own = experiments.find(({ experiment }) => experiment === spec.experiment);
   if (own) return completed(own.schema, spec);
   const known = experiments.map(({ experiment }) => experiment).join(", ");
-  throw new Error(`“experiment” must be one of ${known}; got ${String(spec.experiment)}.`);
+  throw new Error(text.badExperiment(known, String(spec.experiment)));
 }
 
-/** What was pasted or dropped, as something to begin from. */
+/** The source for a pasted or dropped document. */
 export function ofFound(found: Found, file: string, experiments: Experiment[]): Base {
   const given = { spec: completeSpec(found.spec, experiments), foreign: true };
   if (found.kind === "creature") return { ...given, kind: "creature", name: found.creature.sha256 };
@@ -114,8 +114,8 @@ export function ofFound(found: Found, file: string, experiments: Experiment[]): 
 }
 
 export function titleOfBase({ kind, name }: Base): string {
-  if (kind === "preset") return `preset “${name.split("/")[1]}”`;
-  if (kind === "run") return `run ${short(name)}`;
-  if (kind === "creature") return `creature ${short(name)}`;
-  return name || "what was pasted";
+  if (kind === "preset") return text.preset(name.split("/")[1]);
+  if (kind === "run") return text.runOf(short(name));
+  if (kind === "creature") return text.creature(short(name));
+  return name || text.pastedSpec;
 }

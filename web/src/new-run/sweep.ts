@@ -1,4 +1,4 @@
-/** Many runs by one request: how many seeds, and which fields a grid runs over. */
+/** The state of a sweep: seeds, and fields of the grid. */
 
 import { useEffect, useMemo, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -6,6 +6,7 @@ import { Problem, messageOf } from "../api/problem";
 import type { Experiment, FieldError, Spec, SweepEstimate, SweepRequest } from "../api/types";
 import type { Leaf, Section } from "./form/fields";
 import { type Axis, MOST, hasSeed, readSeeds, readValues, sweepable } from "./sweepGrid";
+import { text } from "./text";
 
 const SETTLED_MS = 350;
 
@@ -32,7 +33,7 @@ interface Typed {
 
 const SINGLE: Typed = { seeds: "1", axes: [], name: "" };
 
-/** What was typed is kept while the spec changes; fields that it has no more are complained of. */
+/** Keep typed values while the spec changes; report fields that no longer exist. */
 export function useSweepForm(form: Section, spec: Spec, experiment: Experiment): SweepForm {
   const [typed, setTyped] = useState(SINGLE);
   useEffect(() => setTyped(SINGLE), [experiment]);
@@ -44,12 +45,12 @@ export function useSweepForm(form: Section, spec: Spec, experiment: Experiment):
 function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   const fields = sweepable(form, spec);
   const { seeds, problem } = seeded ? readSeeds(typed.seeds) : { seeds: 1, problem: null };
-  const readings = typed.axes.map(({ path, text }) => {
+  const readings = typed.axes.map(({ path, text: typed }) => {
     const field = fields.find((one) => one.path === path);
-    return field ? readValues(field, text) : { values: [], problem: "The spec has it no more." };
+    return field ? readValues(field, typed) : { values: [], problem: text.fieldGone };
   });
   const total = readings.reduce((product, { values }) => product * values.length, seeds);
-  const many = total > MOST ? `At most ${MOST.toLocaleString("en")} runs; these are ${total}.` : null;
+  const many = total > MOST ? text.tooManyRuns(MOST.toLocaleString("en"), total) : null;
   const problems = { seeds: problem, axes: readings.map((one) => one.problem), total: many };
   const right = !problem && !many && readings.every((one) => one.problem === null);
   const grid = Object.fromEntries(typed.axes.map(({ path }, i) => [path, readings[i]!.values]));
@@ -58,7 +59,7 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   return { seeded, fields, problems, total, sent };
 }
 
-/** Whether a sweep was begun, right or wrong. */
+/** True if more than one run is asked for, valid or not. */
 export const isSweep = ({ seeds, axes }: SweepForm) => axes.length > 0 || seeds.trim() !== "1";
 
 export interface SweepCheck {
@@ -69,7 +70,7 @@ export interface SweepCheck {
 
 const UNCHECKED: SweepCheck = { estimate: null, errors: [], problem: null };
 
-/** What all runs together will cost, asked once typing has settled. */
+/** The estimated cost of all runs, requested after a pause in typing. */
 export function useSweepEstimate(sent: SweepRequest | null): SweepCheck {
   const [check, setCheck] = useState(UNCHECKED);
   useEffect(() => {
@@ -93,7 +94,7 @@ export function useSweepEstimate(sent: SweepRequest | null): SweepCheck {
   return check;
 }
 
-/** The server's complaints of one value of the grid, or of the seeds. */
+/** Errors of the server for one field of the grid, or for the seeds. */
 export function complaintsOf(errors: readonly FieldError[], path: string): string[] {
   const mine = errors.filter(({ field }) => field === path || field.startsWith(`${path}[`));
   return mine.map(({ message }) => message);

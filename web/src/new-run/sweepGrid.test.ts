@@ -51,10 +51,10 @@ describe("the fields of a grid", () => {
     ["world.viscosity", "", "Needs values"],
     ["world.viscosity", "0.1, thick", "Needs a number, got “thick”"],
     ["world.viscosity", "0.1, 3", "Needs at most 2"],
-    ["world.viscosity", "0.1, 0.10", "Has 0.1 more than once"],
+    ["world.viscosity", "0.1, 0.10", "0.1 appears more than once"],
     ["world.width", "32, 32.5", "Needs a whole number"],
     ["world.fluid", "on, maybe", "Needs on or off"],
-    ["world.magic", "fixd", "Needs any of capped, fixed, got “fixd”"],
+    ["world.magic", "fixd", "Needs one of capped, fixed, got “fixd”"],
     ["world.viscosity", "[0.1", "Needs a JSON list"],
     ["targets", "1, 2", "Needs a JSON list"],
   ])("say what is wrong with %s as %j", (path, text, words) => {

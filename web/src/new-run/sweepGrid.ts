@@ -4,6 +4,7 @@ import type { Experiment, Json, Spec } from "../api/types";
 import { words } from "../ui/format";
 import { complaint, leavesOf, typed } from "./form/document";
 import type { Leaf, Section } from "./form/fields";
+import { text } from "./text";
 
 /** One field of a grid, and what was typed for it. */
 export interface Axis {
@@ -30,13 +31,13 @@ export interface Reading {
 }
 
 /** Values between commas or blanks; a JSON list stands for itself. */
-export function readValues(field: Leaf, text: string): Reading {
-  const values = valuesOf(field, text.trim());
-  if (values === null) return { values: [], problem: "Needs a JSON list of values." };
-  if (values.length === 0) return { values, problem: "Needs values, with commas between them." };
+export function readValues(field: Leaf, input: string): Reading {
+  const values = valuesOf(field, input.trim());
+  if (values === null) return { values: [], problem: text.needsList };
+  if (values.length === 0) return { values, problem: text.needsValues };
   const wrong = values.map((value) => wrongWith(field, value)).find((said) => said !== null);
   const twice = values.find((value, i) => values.findIndex((one) => same(one, value)) < i);
-  const repeated = twice === undefined ? null : `Has ${JSON.stringify(twice)} more than once.`;
+  const repeated = twice === undefined ? null : text.repeated(JSON.stringify(twice));
   return { values, problem: wrong ?? repeated };
 }
 
@@ -80,20 +81,20 @@ function valueOf(field: Leaf, word: string): Json {
 
 function wrongWith(field: Leaf, value: Json): string | null {
   if (field.kind === "number") return complaint(field, value);
-  if (field.kind === "flag" && typeof value !== "boolean") return `Needs on or off, got “${value}”.`;
+  if (field.kind === "flag" && typeof value !== "boolean") return text.needsFlag(value);
   if (field.kind !== "choice" || value === null) return null;
   const known = field.options.includes(value);
-  return known ? null : `Needs any of ${field.options.join(", ")}, got “${String(value)}”.`;
+  return known ? null : text.needsOption(field.options.join(", "), String(value));
 }
 
 const same = (one: Json, other: Json) => JSON.stringify(one) === JSON.stringify(other);
 
 /** How many runs: a number of seeds, as typed, else what is wrong with it. */
-export function readSeeds(text: string): { seeds: number; problem: string | null } {
-  const seeds = typed(text);
+export function readSeeds(input: string): { seeds: number; problem: string | null } {
+  const seeds = typed(input);
   const whole = typeof seeds === "number" && Number.isInteger(seeds);
   if (whole && seeds >= 1 && seeds <= MOST) return { seeds, problem: null };
-  return { seeds: 1, problem: `Needs a whole number from 1 to ${MOST.toLocaleString("en")}.` };
+  return { seeds: 1, problem: text.needsSeeds(MOST.toLocaleString("en")) };
 }
 
 /** Runs that one request may ask for. */

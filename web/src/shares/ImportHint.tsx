@@ -1,5 +1,6 @@
 /** How to import a shared creature into another installation. */
 
+import { SHARE_HEADER } from "../api/address";
 import { creatureFileUrl } from "../api/urls";
 import type { Share } from "../api/types";
 import { copyText } from "../ui/clipboard";
@@ -7,7 +8,7 @@ import { text } from "./text";
 
 export function ImportHint({ share, sha }: { share: Share; sha: string }) {
   const file = new URL(creatureFileUrl(sha), share.url).href;
-  const command = `curl -sf '${file}' | curl -sf -H 'Content-Type: application/json' --data-binary @- http://127.0.0.1:8000/api/v1/creatures`;
+  const command = `curl -sf -H '${SHARE_HEADER}: ${share.slug}' '${file}' | curl -sf -H 'Content-Type: application/json' --data-binary @- http://127.0.0.1:8000/api/v1/creatures`;
   return (
     <section class="card import-hint" aria-labelledby="taking-title">
       <div class="card-head">

@@ -98,13 +98,13 @@ export function useMeasures(id: string, names: string[], elites: Elites): Measur
   const asked = names.join(",");
   const present = useThrottled(asked ? elites : null);
   const of = `${id} ${epoch} ${asked}`;
-  const known = useRef<{ of: string; after?: number; features: Measures }>({ of, features: NO_MEASURES });
+  const known = useRef<{ of: string; after?: number; measures: Measures }>({ of, measures: NO_MEASURES });
   const { value } = useFetched(async () => {
     if (!asked) return NO_MEASURES;
-    const { after, features } = known.current.of === of ? known.current : { features: NO_MEASURES };
+    const { after, measures } = known.current.of === of ? known.current : { measures: NO_MEASURES };
     const archive = await api.readArchive(id, asked.split(","), { after });
-    known.current = { of, after: archive.generation, features: mergeMeasures(features, measuresOf(archive)) };
-    return known.current.features;
+    known.current = { of, after: archive.generation, measures: mergeMeasures(measures, measuresOf(archive)) };
+    return known.current.measures;
   }, [of, present]);
   return value ?? NO_MEASURES;
 }
@@ -131,7 +131,7 @@ function measuresOf({ creature, measures }: Pick<Archive, "creature" | "measures
 
 interface Past {
   history: History;
-  features: Measures;
+  measures: Measures;
 }
 
 /**
@@ -146,7 +146,7 @@ export function useHistory(id: string, names: string[], at: number | null): Load
   const loaded = useFetched(async () => {
     if (!wanted) return null;
     const history = await api.readHistory(id, asked ? asked.split(",") : []);
-    return { history, features: measuresOf(history) };
+    return { history, measures: measuresOf(history) };
   }, [id, epoch, asked, wanted, turn]);
   const outgrown = wanted && loaded.value !== null && at > loaded.value.history.generation;
   useEffect(() => {

@@ -45,14 +45,14 @@ const figuresOf = (cases: ShownCase[]) => [
   ...new Set(cases.flatMap(({ summary }) => Object.keys(summary.finals))),
 ];
 
-/** The newest figures: of each case the median, and between what the middle half lies. */
-export function Finals({ cases }: { cases: ShownCase[] }) {
+/** Figures at the common generation: the median of each case, and its quartiles. */
+export function Finals({ cases, generation }: { cases: ShownCase[]; generation: number | null }) {
   const figures = figuresOf(cases);
   return (
     <section class="card" aria-labelledby="finals">
       <div class="card-head">
         <h2 id="finals">{text.figures}</h2>
-        <span class="quiet small">{text.figuresAbout}</span>
+        <span class="quiet small">{text.figuresAbout(generation)}</span>
       </div>
       <div class="wide-table" tabIndex={0} role="region" aria-label={text.figuresOfCases}>
         <table>

@@ -76,7 +76,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
         )}
         <CaseCurves {...{ shown, query }} curves={each ? curves : null} />
       </section>
-      <Finals cases={summary.cases.map(shownOf)} />
+      <Finals cases={summary.cases.map(shownOf)} generation={summary.generation} />
       <Members cases={summary.cases.map(shownOf)} />
     </>
   );

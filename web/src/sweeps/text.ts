@@ -7,7 +7,10 @@ export const text = {
   bestFitness: "Best fitness",
   evaluations: "Evaluations",
   figures: "Figures",
-  figuresAbout: "median, with the quartiles below; newest generation of each run",
+  figuresAbout: (generation: number | null) =>
+    generation === null
+      ? "median, with the quartiles below"
+      : `median, with the quartiles below; compared at generation ${generation}`,
   figuresOfCases: "Figures of the cases",
   case: "Case",
   runs: "Runs",

@@ -54,7 +54,7 @@ class Outcome(eqx.Module):
 
     genotypes: Genotype
     fitness: Float[Array, "slot"]
-    features: Float[Array, "slot feature"]
+    measures: Float[Array, "slot measure"]
     sound: Bool[Array, "slot"]
     """Whether the evaluation counts."""
     cell: Int[Array, "slot"]
@@ -120,14 +120,16 @@ def emit(
     batch = sum(emitter.slots for emitter in emitters)
     turn = jax.random.fold_in(key, generation)
     keys = jax.vmap(lambda slot: jax.random.fold_in(turn, slot))(jnp.arange(batch))
-    broods, kept, first = [], [], 0
+    taught_offspring, kept, first = [], [], 0
     for emitter, state in zip(emitters, states, strict=True):
         own = keys[first : first + emitter.slots]
-        brood, state, counters = emitter.emit(state, archive, counters, generation, keys=own)
-        broods.append(brood)
+        offspring, state, counters = emitter.emit(
+            state, archive, counters, generation, keys=own
+        )
+        taught_offspring.append(offspring)
         kept.append(state)
         first += emitter.slots
-    children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *broods)
+    children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *taught_offspring)
     return children, tuple(kept), counters
 
 

@@ -85,7 +85,7 @@ class QdaxEmitter:
             state,
             genes=outcome.genotypes.values,
             fitness=outcome.fitness,
-            place=places(outcome.features, self.cells.axes),
+            place=places(outcome.measures, self.cells.axes),
             sound=outcome.sound & jnp.isfinite(outcome.fitness),
         )
 
@@ -162,7 +162,7 @@ class NeatEmitter:
         archive = Elites(
             occupied=jnp.isfinite(fitness),
             fitness=fitness,
-            features=repertoire.descriptors,
+            measures=repertoire.descriptors,
             generation=nothing,
             slot=nothing,
             genotypes=repertoire.genotypes,

@@ -20,7 +20,7 @@ from ..emitters.learner import Slopes, unit
 from ..evaluation import Evaluation
 from ..insertion import Elites
 
-KEPT = ("features", "generation", "slot")
+EXTRA_SCORES = ("measures", "generation", "slot")
 """Columns of elites that a repertoire holds as extra scores."""
 
 
@@ -53,8 +53,8 @@ def scoring_function(
         found = evaluate(genotypes)
         sound = (found.status == 0) & jnp.isfinite(found.fitness)
         fitness = jnp.where(sound, found.fitness, -jnp.inf)
-        place = jnp.where(sound[:, None], places(found.features, cells.axes), 0.0)
-        extra = {"features": found.features, "status": found.status}
+        place = jnp.where(sound[:, None], places(found.measures, cells.axes), 0.0)
+        extra = {"measures": found.measures, "status": found.status}
         if slopes is not None:
             known = slopes(genotypes)
             rows = jnp.where(known.sound[:, None, None], unit(known.rows), 0.0)
@@ -77,21 +77,21 @@ def to_repertoire(elites: Elites, cells: Cells) -> Any:
     rows = order(cells)
     there, genotypes = elites.occupied[rows], elites.genotypes
     genes = genotypes.values if isinstance(genotypes, Vector) else genotypes
-    place = places(elites.features, cells.axes)[rows]
+    place = places(elites.measures, cells.axes)[rows]
     return needed("core.containers.mapelites_repertoire").MapElitesRepertoire(
         genotypes=jax.tree.map(lambda x: x[rows], genes),
         fitnesses=jnp.where(there, elites.fitness[rows], -jnp.inf)[:, None],
         descriptors=jnp.where(there[:, None], place, 0.0),
         centroids=jnp.asarray(cells.centres[rows]),
-        extra_scores={name: getattr(elites, name)[rows] for name in KEPT},
-        keys_extra_scores=KEPT,
+        extra_scores={name: getattr(elites, name)[rows] for name in EXTRA_SCORES},
+        keys_extra_scores=EXTRA_SCORES,
     )
 
 
-def from_repertoire(repertoire: Any, cells: Cells, features: int) -> Elites:
+def from_repertoire(repertoire: Any, cells: Cells, measures: int) -> Elites:
     """Our elites of a repertoire over the same cells.
 
-    Where it holds no features of ours as extra scores, those that are descriptors are made
+    Where it holds no measures of ours as extra scores, those that are descriptors are made
     from its descriptors and the others are NaN.
     """
     rows, genes, told = np.argsort(order(cells)), repertoire.genotypes, repertoire.extra_scores
@@ -99,27 +99,27 @@ def from_repertoire(repertoire: Any, cells: Cells, features: int) -> Elites:
     genotypes = jax.tree.map(lambda x: x[rows], Vector(jnp.asarray(genes)) if plain else genes)
     fitness = jnp.reshape(repertoire.fitnesses, -1)[rows]
     there, none = jnp.isfinite(fitness), jnp.zeros(cells.count, jnp.int32)
-    known = told.get("features")
+    known = told.get("measures")
     if known is None:
-        known = _features(repertoire.descriptors, cells.axes, features)
+        known = _measures(repertoire.descriptors, cells.axes, measures)
     return Elites(
         occupied=there,
         fitness=jnp.where(there, fitness, 0.0),
-        features=jnp.where(there[:, None], known[rows], 0.0),
+        measures=jnp.where(there[:, None], known[rows], 0.0),
         generation=told["generation"][rows] if "generation" in told else none,
         slot=told["slot"][rows] if "slot" in told else none,
         genotypes=genotypes,
     )
 
 
-def _features(
-    place: Float[Array, "cell axis"], axes: tuple[Axis, ...], features: int
-) -> Float[Array, "cell feature"]:
-    found = jnp.full((len(place), features), jnp.nan, jnp.float32)
+def _measures(
+    place: Float[Array, "cell axis"], axes: tuple[Axis, ...], measures: int
+) -> Float[Array, "cell measure"]:
+    found = jnp.full((len(place), measures), jnp.nan, jnp.float32)
     for i, axis in enumerate(axes):
         low, high = axis.low, axis.high
         if axis.logarithmic:
             low, high = np.log10(low), np.log10(high)
         value = low + place[:, i] * (high - low)
-        found = found.at[:, axis.feature].set(10**value if axis.logarithmic else value)
+        found = found.at[:, axis.measure].set(10**value if axis.logarithmic else value)
     return found

@@ -35,20 +35,20 @@ class Measured(Part):
 
     fitness: float
     descriptors: Figures
-    features: Figures
+    measures: Figures
     block: int = Field(ge=1, le=4096)
     room: tuple[Room, Room] | None = None
     """`max_nodes` and `max_connections` of the evaluated arrays; none without a network."""
     device: str
     own: dict[str, Own] = Field(default={}, exclude_if=lambda own: not own)
-    """Versions of the measures of one's own among the features."""
+    """Versions of the measures of one's own among the measures."""
 
     @model_validator(mode="after")
     def check_agreement(self) -> Self:
-        """Descriptors are features, so that a check of those is one of all."""
+        """Descriptors are measures, so that a check of those is one of all."""
         told = self.descriptors
-        if wrong := [name for name in told if told[name] != self.features.get(name)]:
-            raise ValueError(f"`features` must hold descriptors; got other values of {wrong}")
+        if wrong := [name for name in told if told[name] != self.measures.get(name)]:
+            raise ValueError(f"`measures` must hold descriptors; got other values of {wrong}")
         return self
 
 
@@ -75,26 +75,26 @@ class CreatureFile(Part):
 
     @model_validator(mode="after")
     def check_measured(self) -> Self:
-        """The arrays that were measured had room for the genes; fitness is its features'."""
+        """The arrays that were measured had room for the genes; fitness is its measures'."""
         if self.measured is None:
             return self
         room_of(self.identity.genome, self.measured.room)
-        expected = fitness_of(self.identity.task, self.measured.features)
+        expected = fitness_of(self.identity.task, self.measured.measures)
         # Compilers may fuse the sum, which rounds it otherwise.
         if not np.isclose(self.measured.fitness, expected, rtol=1e-5, atol=1e-9):
             raise ValueError(
-                f"`measured.fitness` must be {expected!r} as `features` have it for "
+                f"`measured.fitness` must be {expected!r} as `measures` have it for "
                 f"{self.identity.task.fitness}; got {self.measured.fitness!r}"
             )
         return self
 
 
-def fitness_of(task: Task, features: Mapping[str, float]) -> float:
+def fitness_of(task: Task, measures: Mapping[str, float]) -> float:
     """Fitness in float32, as it is computed where a creature is evaluated."""
     if task.own is not None:  # Which is among what was measured.
-        return features.get(task.fitness, np.nan)
-    displacement = np.float32(features.get("displacement", np.nan))
-    energy = np.float32(task.energy_weight) * np.float32(features.get("energy", np.nan))
+        return measures.get(task.fitness, np.nan)
+    displacement = np.float32(measures.get("displacement", np.nan))
+    energy = np.float32(task.energy_weight) * np.float32(measures.get("energy", np.nan))
     both = {"displacement": displacement, "energy": energy}
     return float(both.get(task.fitness, displacement + energy))
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..experiments import EXPERIMENTS, Experiment
-from ..measures import FEATURES
+from ..measures import MEASURES
 from .fields import Field, Part, experiment, parts
 
 HEAD = """# Every field of a spec
@@ -79,7 +79,7 @@ def _measures() -> Iterator[str]:
     )
     yield _row(("name", "title", "unit", "low", "high", "scale"))
     yield _row(["---"] * 6)
-    for name, one in FEATURES.items():
+    for name, one in MEASURES.items():
         yield _row(
             (f"`{name}`", one.title, one.unit, f"{one.low:g}", f"{one.high:g}", one.scale)
         )

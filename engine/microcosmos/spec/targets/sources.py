@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...optional import needed
+from ...optional import require
 from .placing import MOST, Ink, fitted
 
 IMAGES = 2051
@@ -22,7 +22,7 @@ def png(path: str | Path) -> Ink:
     Pictures larger than a spec holds are made smaller. Raises `ValueError` where the file is
     no picture or shows nothing.
     """
-    images = needed("PIL.Image")
+    images = require("PIL.Image")
     try:
         with images.open(path) as image:
             image.thumbnail((LARGEST, LARGEST))
@@ -36,7 +36,7 @@ def png(path: str | Path) -> Ink:
 def text(words: str, font: str | Path | None = None, size: int = 128) -> Ink:
     """Words in a font file (.ttf, .otf), or in Pillow's own font, `size` pixels high."""
     images, draw, fonts = (
-        needed(f"PIL.{part}") for part in ("Image", "ImageDraw", "ImageFont")
+        require(f"PIL.{part}") for part in ("Image", "ImageDraw", "ImageFont")
     )
     try:
         face = fonts.truetype(str(font), size) if font else fonts.load_default(size)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...archive.export import unit as place_on
-from ...spec.measures import FEATURES
+from ...spec.measures import MEASURES
 from .reading import Archive
 
 BINS = 24
@@ -46,7 +46,7 @@ class Axis:
 
 def label(archive: Archive, name: str) -> str:
     """The title and unit of a measure; one of one's own has those that it was declared with."""
-    known = archive.own.get(name) or FEATURES.get(name)
+    known = archive.own.get(name) or MEASURES.get(name)
     if known is None:
         return name.replace("_", " ").capitalize()
     return known.title + (f" [{known.unit}]" if known.unit else "")
@@ -67,10 +67,10 @@ def chosen(archive: Archive, names: list[str] | None) -> list[Axis]:
     if not 1 <= len(names) <= 2 or len(set(names)) < len(names):
         raise ValueError(f"`axes` must be one or two that differ, got {', '.join(names)}.")
     for name in names:
-        if name not in archive.features:
+        if name not in archive.measures:
             raise ValueError(
                 f"`axes` must be of {', '.join(own)} (the archive's own) or what else was "
-                f"measured ({', '.join(n for n in archive.features if n not in own)}); "
+                f"measured ({', '.join(n for n in archive.measures if n not in own)}); "
                 f"got {name!r}."
             )
     return [
@@ -87,7 +87,7 @@ def _own(archive: Archive, axis: Any) -> Axis:
 
 def _other(archive: Archive, name: str) -> Axis:
     """From end to end of what there is, rounded outwards."""
-    known, values = FEATURES.get(name), archive.features[name].astype(float)
+    known, values = MEASURES.get(name), archive.measures[name].astype(float)
     title = label(archive, name)
     if known is not None and known.scale == "log10":
         found = np.log10(np.clip(values, known.low, None))

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from ...archive.table import read_table
-from ...optional import needed
+from ...optional import require
 from .gait_sweep import sweep
 from .scaling import scaling
 
@@ -40,5 +40,5 @@ def save(figure: Any, path: str | Path) -> None:
     suffix = Path(path).suffix.lower()
     if suffix not in UNDATED:
         raise ValueError(f"`path` must end in {', '.join(UNDATED)}, got {str(path)!r}.")
-    with needed("matplotlib").rc_context({"svg.hashsalt": "microcosmos"}):
+    with require("matplotlib").rc_context({"svg.hashsalt": "microcosmos"}):
         figure.savefig(path, dpi=160, metadata=UNDATED[suffix])

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ...spec.measures import FEATURES
+from ...spec.measures import MEASURES
 from .axes import Axis, chosen, dress, fitness_label, label
 from .reading import Archive
 from .style import EMPTY, GREY, INK, blank, palette
@@ -33,7 +33,7 @@ def archive(
     drawn = draw(panel, found, along, shown, shades)
     dress(panel, along)
     if len(along) == 2:
-        x, y = (found.features[axis.name][found.best] for axis in along)
+        x, y = (found.measures[axis.name][found.best] for axis in along)
         x, y = (np.clip(v, a.low, a.high) for v, a in zip((x, y), along, strict=True))
         for edge, size in (("white", 1.8), (INK, 0.8)):
             panel.plot(x, y, "o", ms=5, mfc="none", mec=edge, mew=size, clip_on=False)
@@ -46,16 +46,16 @@ def _colour(found: Archive, name: str) -> tuple[np.ndarray, str]:
     """Of each elite the number that is shown, and what it is."""
     if name == "fitness":
         return found.fitness, fitness_label(found)
-    if name not in found.features:
-        known = ", ".join(["fitness", *found.features])
+    if name not in found.measures:
+        known = ", ".join(["fitness", *found.measures])
         raise ValueError(f"`colour` must be one of {known}, got {name!r}.")
-    return found.features[name].astype(float), label(found, name)
+    return found.measures[name].astype(float), label(found, name)
 
 
 def _logarithmic(found: Archive, name: str) -> bool:
     """Whether a measure goes in decades: as its axis does, where it is one of the archive's."""
     own = {axis.name: axis.scale for axis in found.axes}
-    usual = FEATURES[name].scale if name in FEATURES else "linear"
+    usual = MEASURES[name].scale if name in MEASURES else "linear"
     return own.get(name, usual) == "log10"
 
 
@@ -85,7 +85,7 @@ def bins(found: Archive, along: list[Axis]) -> np.ndarray:
             places[own.index(axis.name)]
             if grid and axis.name in own
             else np.minimum(
-                (axis.places(found.features[axis.name]) * axis.bins).astype(int), axis.bins - 1
+                (axis.places(found.measures[axis.name]) * axis.bins).astype(int), axis.bins - 1
             )
             for axis in along
         ]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ...optional import needed
+from ...optional import require
 
 Row = Mapping[str, Any]
 """Names and values, flat, as an experiment reports them."""
@@ -17,7 +17,7 @@ GREY = "#5f6b73"
 
 def blank(width: float, height: float) -> Any:
     """A figure of inches, drawn without matplotlib's global state."""
-    return needed("matplotlib.figure").Figure(figsize=(width, height), layout="constrained")
+    return require("matplotlib.figure").Figure(figsize=(width, height), layout="constrained")
 
 
 def look(number: int) -> dict[str, Any]:

@@ -24,7 +24,7 @@ class Archive:
     version: str
     devices: tuple[str, ...]
     """Kinds of device that computed it, the last one last."""
-    features: dict[str, np.ndarray]
+    measures: dict[str, np.ndarray]
     """Of each elite, every measure by its name."""
     cells: np.ndarray
     fitness: np.ndarray
@@ -82,12 +82,12 @@ def read(data: bytes) -> Archive:
     archive = tree["archive"]
     if not len(archive["cell"]):
         raise ValueError("an archive with an elite is needed, got one without")
-    names = json.loads(told["features"])
+    names = json.loads(told["measures"])
     return Archive(
         spec=spec,
         version=told["version"],
         devices=tuple(json.loads(told["device"])),
-        features=dict(zip(names, archive["features"].T, strict=True)),
+        measures=dict(zip(names, archive["measures"].T, strict=True)),
         cells=archive["cell"],
         fitness=archive["fitness"].astype(float),
         generation=archive["generation"],

@@ -56,7 +56,7 @@ def layout(
     for name, value in (("columns", columns), ("rows", rows)):
         if not 1 <= value <= 20:
             raise ValueError(f"`{name}` must be from 1 to 20, got {value}.")
-    places = np.stack([axis.places(found.features[axis.name]) for axis in along])
+    places = np.stack([axis.places(found.measures[axis.name]) for axis in along])
     ends = np.stack([_ends(axis, own) for axis, own in zip(along, places, strict=True)])
     share = (places - ends[:, :1]) / np.diff(ends)
     counts = np.array([[columns], [rows]])

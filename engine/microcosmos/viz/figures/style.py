@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Any
 
-from ...optional import needed
+from ...optional import require
 
 INCH = 25.4
 """Millimetres."""
@@ -61,7 +61,7 @@ most colour-blind people too."""
 
 def styled() -> AbstractContextManager:
     """The look of print, for as long as a figure is made and saved."""
-    return needed("matplotlib").rc_context(RC)
+    return require("matplotlib").rc_context(RC)
 
 
 def palette(name: str) -> Any:
@@ -69,7 +69,7 @@ def palette(name: str) -> Any:
     if name not in SAMPLES:
         raise ValueError(f"`palette` must be one of {', '.join(SAMPLES)}, got {name!r}.")
     colours = ["#" + colour for colour in re.findall("......", SAMPLES[name])]
-    return needed("matplotlib.colors").LinearSegmentedColormap.from_list(name, colours)
+    return require("matplotlib.colors").LinearSegmentedColormap.from_list(name, colours)
 
 
 def millimetres(width: str) -> float:
@@ -93,7 +93,7 @@ def _unit(name: str) -> float:
 
 def blank(width: float, height: float) -> Any:
     """A figure of so many mm, drawn without matplotlib's global state."""
-    figure = needed("matplotlib.figure").Figure((width / INCH, height / INCH))
+    figure = require("matplotlib.figure").Figure((width / INCH, height / INCH))
     figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02, wspace=0.03, hspace=0.03)
     return figure
 

@@ -42,7 +42,7 @@ def label(network: Network, key: int) -> str:
     return name if aggregation == "sum" else f"{aggregation} {name}"
 
 
-def told(network: Network, key: int) -> str:
+def value_text(network: Network, key: int) -> str:
     """What a node is, for whoever points at it."""
     row = network.keys.index(key)
     if key < network.inputs:

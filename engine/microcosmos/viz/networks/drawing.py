@@ -3,7 +3,7 @@
 from html import escape
 from itertools import pairwise
 
-from .colours import NEGATIVE, POSITIVE, described, fill, label, thickness, told
+from .colours import NEGATIVE, POSITIVE, described, fill, label, thickness, value_text
 from .layout import Layout, layout
 from .network import Network
 
@@ -114,7 +114,7 @@ def _node(network: Network, key: int, drawn: Layout) -> str:
         at = f'x="{x + width / 2 + 10:.1f}" y="{y + 4.5:.1f}"'
         name = f'<text class="name" {at}>{escape(network.names[key])}</text>'
     return (
-        f'<g class="node"><title>{escape(told(network, key))}</title>'
+        f'<g class="node"><title>{escape(value_text(network, key))}</title>'
         f'<rect x="{x - width / 2:.1f}" y="{y - HEIGHT / 2:.1f}" width="{width:.1f}" '
         f'height="{HEIGHT:.1f}" rx="{HEIGHT / 2:.1f}" fill="{fill(network, key)}"/>'
         f'<text x="{x:.1f}" y="{y + 4.5:.1f}">{escape(label(network, key))}</text></g>{name}'

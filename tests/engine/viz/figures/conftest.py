@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos import spec
-from microcosmos.spec.measures import FEATURES
+from microcosmos.spec.measures import MEASURES
 from microcosmos.viz.figures.reading import Archive
 
 DEVICE = "cpu, A Model avx2, microcosmos 0, jax 0, jaxlib 0"
@@ -29,9 +29,9 @@ def made():
             spec=spec.parse(document),
             version="0.1.0",
             devices=(DEVICE,),
-            features={
+            measures={
                 n: np.array([e.get(n, 0.5) for e in elites])
-                for n in [*FEATURES, *(axis["name"] for axis in axes)]
+                for n in [*MEASURES, *(axis["name"] for axis in axes)]
             },
             cells=np.array([elite["cell"] for elite in elites]),
             fitness=np.array([elite["fitness"] for elite in elites], float),

@@ -4,21 +4,25 @@ import type { ComponentChildren } from "preact";
 import { setQuery } from "../../store/router";
 import { Select } from "../../ui/Select";
 import { AXES, type CurveView, OVER, WINDOWS } from "./look";
+import { text } from "./text";
 import "./curves.css";
 
-const MEANS = WINDOWS.map((size): [string, string] => [String(size), size === 1 ? "none" : `over ${size}`]);
+const MEANS = WINDOWS.map((size): [string, string] => [
+  String(size),
+  size === 1 ? text.none : text.window(size),
+]);
 
 export function CurveOptions({ look: { over, smooth, log } }: { look: CurveView }) {
   return (
     <CurveBar log={log}>
       <Select
-        title="Over"
+        title={text.axis}
         choices={AXES.map((name) => [name, OVER[name]])}
         value={over}
         onChange={(name) => setQuery({ over: name === "generation" ? null : name })}
       />
       <Select
-        title="Smooth"
+        title={text.smooth}
         choices={MEANS}
         value={String(smooth)}
         onChange={(size) => setQuery({ smooth: size === "1" ? null : size })}
@@ -30,9 +34,9 @@ export function CurveOptions({ look: { over, smooth, log } }: { look: CurveView 
 /** What can be chosen for all curves, beside what only some have. */
 export function CurveBar({ log, children }: { log: boolean; children: ComponentChildren }) {
   return (
-    <div class="curve-choices" role="group" aria-label="How curves are drawn">
+    <div class="curve-choices" role="group" aria-label={text.options}>
       {children}
-      <Check title="Log scale" name="log" on={log} />
+      <Check title={text.logScale} name="log" on={log} />
     </div>
   );
 }

@@ -7,6 +7,8 @@ import { useTheme } from "../../ui/theme";
 import { type CurveView, OVER, tableOf } from "./look";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";
+import { text } from "./text";
+import { Term } from "../../ui/Term";
 import "uplot/dist/uPlot.min.css";
 import "../lineStyle.css";
 import "./curves.css";
@@ -69,14 +71,14 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
   return (
     <figure class="curve">
       <figcaption>
-        <span>{title}</span>
+        <span>
+          <Term name={title} />
+        </span>
         <Keys series={told} write={write} />
       </figcaption>
       <div ref={host} class="plot" role="img" aria-label={label} />
       {!series.some(({ y }) => y.some((value) => value !== null && (!log || value > 0))) && (
-        <p class="quiet small">
-          {log ? "Nothing here is above zero, where a log scale begins." : "Nothing is told of it yet."}
-        </p>
+        <p class="quiet small">{log ? text.noneAboveZero : text.noValues}</p>
       )}
     </figure>
   );

@@ -22,7 +22,7 @@ describe("curves", () => {
     expect(scoresOf(told)[0]!.series[1]).toMatchObject({ y: [0.8], dots: true });
     expect(workOf(told).map(({ title, series }) => [title, ...series.map(({ name }) => name)])).toEqual([
       ["Into empty cells", "neat", "iso+line"],
-      ["Better than before", "neat"],
+      ["Improvements", "neat"],
       ["Device-seconds", "device_seconds"],
     ]);
   });

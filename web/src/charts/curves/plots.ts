@@ -2,6 +2,7 @@
 
 import { type Column, type Curves, DIVERGED } from "../../store/curves";
 import { number, percent } from "../../ui/format";
+import { text } from "./text";
 
 export interface Series {
   name: string;
@@ -37,19 +38,19 @@ export interface Plot {
 
 const again = (curves: Curves, name: string): Series[] => {
   const y = curves.summary[name];
-  return y ? [{ name: "evaluated again", colour: "--series-3", y, dots: true }] : [];
+  return y ? [{ name: text.reevaluated, colour: "--series-3", y, dots: true }] : [];
 };
 
 /** How good the archive is; beside it, what is left when its elites are evaluated again. */
 export function scoresOf(curves: Curves): Plot[] {
   const { qd_score, coverage, best } = curves;
-  const score = { name: "as found", colour: "--curve-1", y: qd_score };
-  const share = { name: "as found", colour: "--curve-2", y: coverage };
+  const score = { name: text.asFound, colour: "--curve-1", y: qd_score };
+  const share = { name: text.asFound, colour: "--curve-2", y: coverage };
   return [
-    { title: "QD score", write: number, series: [score, ...again(curves, "corrected_qd_score")] },
-    { title: "Coverage", write: percent, series: [share, ...again(curves, "corrected_coverage")] },
+    { title: text.qdScore, write: number, series: [score, ...again(curves, "corrected_qd_score")] },
+    { title: text.coverage, write: percent, series: [share, ...again(curves, "corrected_coverage")] },
     {
-      title: "Best fitness",
+      title: text.bestFitness,
       write: number,
       series: [{ name: "best", colour: "--curve-3", y: best }],
     },
@@ -59,27 +60,27 @@ export function scoresOf(curves: Curves): Plot[] {
 /** What the search is doing: its emitters' success, its luck, its time. */
 export function workOf(curves: Curves): Plot[] {
   const plots: Plot[] = [
-    { title: "Into empty cells", write: number, series: ofEmitters(curves, ": inserted") },
-    { title: "Better than before", write: number, series: ofEmitters(curves, ": improved") },
+    { title: text.inserted, write: number, series: ofEmitters(curves, ": inserted") },
+    { title: text.improved, write: number, series: ofEmitters(curves, ": improved") },
     {
-      title: "Repeats in their own cell",
+      title: text.hitRate,
       write: percent,
       series: one(curves, "hit_rate", "--series-3", true),
     },
     {
-      title: "Device-seconds",
+      title: text.deviceSeconds,
       write: number,
       series: one(withoutFirst(curves), "device_seconds", "--curve-2", false),
     },
-    { title: "Diverged so far", write: number, series: divergedSoFar(curves) },
+    { title: text.diverged, write: number, series: divergedSoFar(curves) },
   ];
   return plots.filter(({ series }) => series.length > 0);
 }
 
 /** Why an evaluation does not count, in words; the engine's own names are the keys. */
 export const REASONS: Record<string, string> = {
-  "non-finite": "Numbers grew beyond all bounds.",
-  supersonic: "The fluid became faster than sound, where the method does not hold.",
+  "non-finite": text.nonFinite,
+  supersonic: text.supersonic,
 };
 
 /** How many evaluations diverged for each reason that was told, most first. */

@@ -1,4 +1,4 @@
-/** One value of a spec: its name, its control, what it means, what is wrong with it. */
+/** One field of a spec: name, control, help and errors. */
 
 import type { Json } from "../../api/types";
 import { number } from "../../ui/format";
@@ -14,12 +14,13 @@ import {
   TextInput,
   rangeText,
 } from "./inputs";
+import { text } from "./text";
 
 export interface FormState {
   document: Json;
-  /** What the values were when the form was filled. */
+  /** The values before any change. */
   original: Json;
-  /** Paths at which those two differ. */
+  /** Paths of changed values. */
   changed: ReadonlySet<string>;
   messages: ReadonlyMap<string, string[]>;
   change: (path: string, value: Json) => void;
@@ -66,13 +67,13 @@ export function Entry({ field, state }: { field: Leaf; state: FormState }) {
   );
 }
 
-/** Of a choice of users' own: what it is, and who has it. */
+/** Description of a plug-in, and the workers that offer it. */
 function aboutOwn(field: Leaf, value: Json): string {
   const own = field.kind === "choice" ? field.own?.[String(value)] : undefined;
-  return own ? `${String(value)}: ${own.about} Of one's own: on ${own.workers.join(", ")}.` : "";
+  return own ? text.plugin(String(value), own.about, own.workers.join(", ")) : "";
 }
 
-/** The unit, unless the name says it already. */
+/** The unit, unless the title already names it. */
 function unitOf({ unit, unitBy, title }: NumberField, document: Json): string {
   const found = unitBy ? (unitBy.units[String(valueAt(document, unitBy.path))] ?? "") : unit;
   return found === title.toLowerCase() ? "" : found;
@@ -81,25 +82,25 @@ function unitOf({ unit, unitBy, title }: NumberField, document: Json): string {
 function rangeOf(field: Leaf, unit: string): string {
   if (field.kind === "list") {
     const range = rangeText(field.item.range);
-    return [range && `Each ${range}`, field.item.unit].filter(Boolean).join(" ");
+    return [range && text.each(range), field.item.unit].filter(Boolean).join(" ");
   }
   if (field.kind !== "number") return "";
-  // What has no real limits has some for safety, which nobody needs to read.
+  // Very large limits exist for safety only and are not shown.
   const { low = 0, high = 0 } = field.range;
   if (Math.max(Math.abs(low), Math.abs(high)) >= 1e9) return "";
-  const text = rangeText(field.range);
-  return text && `${text.charAt(0).toUpperCase()}${text.slice(1)} ${unit}`.trimEnd();
+  const range = rangeText(field.range);
+  return range && `${range.charAt(0).toUpperCase()}${range.slice(1)} ${unit}`.trimEnd();
 }
 
-/** The longest value that a way back names. */
+/** The longest value that the reset button names. */
 const NAMED = 12;
 
-/** The way back to what the value was; nothing where it is that. */
+/** A button that resets a changed value. */
 export function Reset({ path, state }: { path: string; state: FormState }) {
   if (!state.changed.has(path)) return null;
   const value = valueAt(state.original, path);
-  const text = typeof value === "number" ? number(value, 6) : String(value ?? "auto");
-  const short = typeof value !== "object" && text.length <= NAMED;
+  const shown = typeof value === "number" ? number(value, 6) : String(value ?? text.auto);
+  const short = typeof value !== "object" && shown.length <= NAMED;
   return (
     <button
       type="button"
@@ -107,7 +108,7 @@ export function Reset({ path, state }: { path: string; state: FormState }) {
       aria-describedby={`field-${path}-label`}
       onClick={() => state.change(path, value)}
     >
-      {short ? `back to ${text}` : "undo change"}
+      {short ? text.resetTo(shown) : text.undoChange}
     </button>
   );
 }

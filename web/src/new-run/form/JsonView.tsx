@@ -2,6 +2,7 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { FieldError, Spec } from "../../api/types";
+import { text } from "./text";
 
 interface Props {
   spec: Spec;
@@ -17,7 +18,7 @@ interface Props {
 export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
   const area = useRef<HTMLTextAreaElement>(null);
   const own = useRef<string | null>(null);
-  const [text, setText] = useState(() => written(spec));
+  const [json, setJson] = useState(() => written(spec));
   const [problem, setProblem] = useState<string | null>(null);
   const tell = (found: string | null) => {
     setProblem(found);
@@ -28,7 +29,7 @@ export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
     const typing = own.current !== null;
     own.current = null;
     if (typing) return;
-    setText(written(spec));
+    setJson(written(spec));
     tell(null);
   }, [spec]);
   useEffect(() => {
@@ -37,10 +38,9 @@ export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
   }, []);
   return (
     <section class="card json-view">
-      <label for="spec-json">The spec as JSON</label>
+      <label for="spec-json">{text.json}</label>
       <p id="spec-json-about" class="help">
-        Change it here, or replace it by a spec, a run as the API gives it, or a creature file. What is left
-        out has its default.
+        {text.jsonAbout}
       </p>
       <textarea
         id="spec-json"
@@ -48,12 +48,12 @@ export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
         spellcheck={false}
         autoComplete="off"
         rows={28}
-        value={text}
+        value={json}
         aria-invalid={problem !== null || errors.length > 0}
         aria-describedby="spec-json-about spec-json-problems"
         onInput={(event) => {
           own.current = event.currentTarget.value;
-          setText(own.current);
+          setJson(own.current);
           const found = take(own.current);
           if (found) own.current = null;
           tell(found);

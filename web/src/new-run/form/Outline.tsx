@@ -1,8 +1,9 @@
-/** The sections of a form: where something was changed, and where something is wrong. */
+/** The sections of a form, with counts of errors and changes. */
 
 import { countWithin } from "./changes";
 import type { FormState } from "./Entry";
 import type { Section, Union } from "./fields";
+import { text } from "./text";
 
 interface Props {
   parts: (Section | Union)[];
@@ -11,15 +12,15 @@ interface Props {
 
 export function Outline({ parts, state }: Props) {
   return (
-    <nav class="outline" aria-label="Sections of the form">
+    <nav class="outline" aria-label={text.sections}>
       {parts.map((part) => {
         const wrong = within(part, state.messages.keys(), parts);
         const changed = within(part, state.changed, parts);
         return (
           <button type="button" key={part.path} class="plain" onClick={() => go(part.path, state)}>
             {part.title}
-            {wrong > 0 && <span class="wrong-text">{wrong} to mend</span>}
-            {wrong === 0 && changed > 0 && <span class="tally">{changed} changed</span>}
+            {wrong > 0 && <span class="wrong-text">{text.errors(wrong)}</span>}
+            {wrong === 0 && changed > 0 && <span class="tally">{text.changed(changed)}</span>}
           </button>
         );
       })}
@@ -27,7 +28,7 @@ export function Outline({ parts, state }: Props) {
   );
 }
 
-/** How many paths lie in a section; what lies in no other is in the first. */
+/** Number of paths in a section; paths outside all sections count for the first. */
 function within({ path }: Props["parts"][0], paths: Iterable<string>, parts: Props["parts"]): number {
   const all = [...paths];
   if (path) return countWithin(all, path);

@@ -7,6 +7,7 @@ import { countWithin } from "./changes";
 import { isOff, isThere, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
 import { Entry, type FormState, Messages, Reset } from "./Entry";
+import { text } from "./text";
 
 interface Props {
   form: Section;
@@ -17,7 +18,7 @@ interface Props {
 export function partsOf(form: Section): (Section | Union)[] {
   const whole = (field: Field) => field.kind === "section" || field.kind === "union";
   const loose = form.fields.filter((field) => !whole(field));
-  const general: Section = { ...form, title: "General", help: "", fields: loose };
+  const general: Section = { ...form, title: text.general, help: "", fields: loose };
   return [general, ...(form.fields.filter(whole) as (Section | Union)[])];
 }
 
@@ -32,7 +33,7 @@ export function SpecForm({ form, state }: Props) {
   );
 }
 
-/** A section that can be closed; what is wrong in it opens it. */
+/** A section that can be closed; an error opens it. */
 function Card({ part, state }: { part: Section | Union; state: FormState }) {
   const wrong = part.path !== "" && countWithin(state.messages.keys(), part.path) > 0;
   const open = wrong || !state.closed.has(part.path);
@@ -44,7 +45,7 @@ function Card({ part, state }: { part: Section | Union; state: FormState }) {
         class="fold"
         aria-expanded={open}
         aria-controls={`inside-${name}`}
-        aria-label={`${open ? "Close" : "Open"} the section ${part.title}`}
+        aria-label={text.toggle(open, part.title)}
         onClick={() => state.close(part.path, open)}
       />
       <Part part={part} state={state} kind="inside" open={open} />
@@ -170,14 +171,14 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
         <Part key={`${i} of ${items.length}`} part={rows.row(i)} state={state} kind="form-row">
           {items.length > rows.least && (
             <button type="button" class="plain" onClick={() => remove(i)}>
-              Remove {lower(rows.row(i).title)}
+              {text.remove(lower(rows.row(i).title))}
             </button>
           )}
         </Part>
       ))}
       {items.length < rows.most && (
         <button type="button" class="plain" onClick={() => state.change(rows.path, [...items, rows.fresh])}>
-          Add to {lower(rows.title)}
+          {text.addTo(lower(rows.title))}
         </button>
       )}
     </div>

@@ -137,10 +137,10 @@ describe("a spec under a form", () => {
     ["viscosities", [1, 1, 1, 1], "Needs at most 3 numbers."],
     ["viscosities", [0.5, 3], "Needs at most 2."],
     ["viscosities", [0.5, "x"], "Needs a number, got “x”."],
-    ["swimmers", [], "Needs at least 1 of them."],
+    ["swimmers", [], "Select at least 1."],
     ["body.nodes", 2, "Needs at least 3."],
     ["world.steric", { strength: 21 }, "Needs at most 20."],
-    ["body", { builder: "line", points: "[[" }, "Needs a list, [[0, 1], [2, 3]]."],
+    ["body", { builder: "line", points: "[[" }, "Needs a list of lists, such as [[0, 1], [2, 3]]."],
   ])("is told what is wrong with parts and lists at %s with %j", (path, value, message) => {
     const whole = {
       world: { width: 32, viscosity: 1, limit: null, steric: null },

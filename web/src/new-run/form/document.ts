@@ -4,6 +4,7 @@ import type { FieldError, Json, Spec } from "../../api/types";
 import { number } from "../../ui/format";
 import { join } from "./schema";
 import type { Field, List, NumberField, Section, Several, Union } from "./fields";
+import { text } from "./text";
 
 export function valueAt(document: Json, path: string): Json {
   const keys = path === "" ? [] : path.split(".");
@@ -34,15 +35,15 @@ export function typed(text: string): Json {
 
 /** What is wrong with a number, as far as the schema alone can say; else null. */
 export function complaint(field: NumberField, value: Json): string | null {
-  if (value === null) return field.nullable ? null : "Needs a number.";
-  if (typeof value !== "number") return `Needs a number, got “${String(value)}”.`;
-  if (field.whole && !Number.isInteger(value)) return `Needs a whole number, got ${value}.`;
+  if (value === null) return field.nullable ? null : text.needsNumber;
+  if (typeof value !== "number") return text.notANumber(String(value));
+  if (field.whole && !Number.isInteger(value)) return text.notWhole(value);
   const { low, lowOpen, high, highOpen } = field.range;
   if (low !== undefined && (value < low || (lowOpen && value === low))) {
-    return `Needs ${lowOpen ? "more than" : "at least"} ${number(low, 6)}.`;
+    return text.tooLow(lowOpen, number(low, 6));
   }
   if (high !== undefined && (value > high || (highOpen && value === high))) {
-    return `Needs ${highOpen ? "less than" : "at most"} ${number(high, 6)}.`;
+    return text.tooHigh(highOpen, number(high, 6));
   }
   return null;
 }
@@ -92,7 +93,7 @@ function wrongWith(field: Field, value: Json): string | null {
   if (field.kind === "number") return complaint(field, value);
   if (field.kind === "list") return listComplaint(field, value);
   if (field.kind === "several") return severalComplaint(field, value);
-  if (field.kind === "nested" && !Array.isArray(value)) return "Needs a list, [[0, 1], [2, 3]].";
+  if (field.kind === "nested" && !Array.isArray(value)) return text.needsNested;
   return null;
 }
 
@@ -100,13 +101,13 @@ function listComplaint({ item, least, most }: List, value: Json): string | null 
   const items = Array.isArray(value) ? value : [];
   const wrong = items.map((one) => complaint(item, one)).find((message) => message !== null);
   if (wrong) return wrong;
-  if (items.length < least) return `Needs at least ${least} ${least === 1 ? "number" : "numbers"}.`;
-  return items.length > most ? `Needs at most ${most} numbers.` : null;
+  if (items.length < least) return text.tooFew(least);
+  return items.length > most ? text.tooManyNumbers(most) : null;
 }
 
 function severalComplaint({ least }: Several, value: Json): string | null {
   const chosen = Array.isArray(value) ? value.length : 0;
-  return chosen < least ? `Needs at least ${least} of them.` : null;
+  return chosen < least ? text.selectMore(least) : null;
 }
 
 /** The part of a union that a document has. */

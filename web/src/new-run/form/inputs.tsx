@@ -5,6 +5,7 @@ import type { Json } from "../../api/types";
 import { count, number } from "../../ui/format";
 import { typed, typedJson, typedList } from "./document";
 import type { Choice, NumberField, Range, Several } from "./fields";
+import { text } from "./text";
 
 interface Common {
   id: string;
@@ -19,10 +20,10 @@ interface NumberProps extends Common {
 }
 
 export function NumberInput({ id, value, invalid, onChange, field, unit }: NumberProps) {
-  const [text, setText] = useState(() => written(value));
+  const [shown, setShown] = useState(() => written(value));
   // Typing "1e" or "0." must not be rewritten; a preset's value must.
   useEffect(() => {
-    setText((now) => (Object.is(typed(now), value) ? now : written(value)));
+    setShown((now) => (Object.is(typed(now), value) ? now : written(value)));
   }, [value]);
   return (
     <span class="number">
@@ -31,12 +32,12 @@ export function NumberInput({ id, value, invalid, onChange, field, unit }: Numbe
         inputMode={field.whole ? "numeric" : "decimal"}
         autoComplete="off"
         spellcheck={false}
-        value={text}
-        placeholder={field.nullable ? "auto" : ""}
+        value={shown}
+        placeholder={field.nullable ? text.auto : ""}
         aria-invalid={invalid}
         aria-describedby={`${id}-about`}
         onInput={(event) => {
-          setText(event.currentTarget.value);
+          setShown(event.currentTarget.value);
           onChange(typed(event.currentTarget.value));
         }}
       />
@@ -54,7 +55,7 @@ export function ChoiceInput({ id, value, invalid, onChange, field }: Common & { 
       aria-describedby={`${id}-about`}
       onChange={(event) => onChange(JSON.parse(event.currentTarget.value))}
     >
-      {field.nullable && <option value="null">auto</option>}
+      {field.nullable && <option value="null">{text.auto}</option>}
       {field.options.map((option) => (
         <option key={String(option)} value={JSON.stringify(option)}>
           {field.own?.[String(option)]?.title ?? String(option).replaceAll("_", " ")}
@@ -159,11 +160,11 @@ function written(value: Json): string {
 /** `16 to 2,048`, `more than 0`, or nothing. */
 export function rangeText({ low, lowOpen, high, highOpen }: Range): string {
   const parts = [
-    low === undefined ? "" : `${lowOpen ? "more than" : "at least"} ${limit(low)}`,
-    high === undefined ? "" : `${highOpen ? "less than" : "at most"} ${limit(high)}`,
+    low === undefined ? "" : text.low(lowOpen, limit(low)),
+    high === undefined ? "" : text.high(highOpen, limit(high)),
   ];
   if (low !== undefined && high !== undefined && !lowOpen && !highOpen) {
-    return `${limit(low)} to ${limit(high)}`;
+    return text.range(limit(low), limit(high));
   }
   return parts.filter(Boolean).join(", ");
 }

@@ -10,6 +10,7 @@ import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Segments } from "../../ui/Select";
 import { MarkReplay, useLastMark } from "./MarkReplay";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
+import { text } from "./text";
 import "./gaits.css";
 
 const REPLAYS = "beside";
@@ -27,7 +28,7 @@ export function GaitsRun({ run, query }: ResultsProps) {
     <>
       <section class="card plot-card" aria-labelledby="sweep-title">
         <div class="card-head">
-          <h2 id="sweep-title">Displacement against viscosity</h2>
+          <h2 id="sweep-title">{text.title}</h2>
           <span class="spring" />
           {forms.length > 1 && <Forms forms={forms} chosen={asked} />}
         </div>
@@ -54,8 +55,8 @@ function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
   const choices = forms.map((form): [string, string] => [form, formOf(form).title]);
   return (
     <Segments
-      label="Form of the coupling"
-      choices={[...choices, [REPLAYS, "Side by side"]]}
+      label={text.form}
+      choices={[...choices, [REPLAYS, text.sideBySide]]}
       value={chosen}
       onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
     />
@@ -81,7 +82,7 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
         <b>{title}</b> <span class="quiet">{about}</span> {!free && <NotForceFree />}
       </p>
       <Plot
-        title={`Displacement against viscosity, ${title}`}
+        title={text.plot(title)}
         {...sweepAxes(run.spec, peers)}
         lines={lines}
         upper={reynoldsAxis(rows)}
@@ -98,15 +99,15 @@ function Key({ rows }: { rows: ResultRow[] }) {
   const failed = rows.some((row) => row.status !== "ok");
   return (
     <p class="quiet small marks">
-      <span>Each mark leads to the creature’s replay.</span>
+      <span>{text.marks}</span>
       {doubtful && (
         <span>
-          <i class="mark-sample hollow" /> with a warning, or limits were active
+          <i class="mark-sample hollow" /> {text.doubtful}
         </span>
       )}
       {failed && (
         <span>
-          <i class="mark-sample cross" /> did not finish
+          <i class="mark-sample cross" /> {text.unfinished}
         </span>
       )}
     </p>

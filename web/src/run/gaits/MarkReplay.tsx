@@ -5,6 +5,7 @@ import { useDebounced } from "../../store/throttle";
 import type { Point } from "../../charts/plot/Plot";
 import { ReplayLoop } from "../../replay/Loop";
 import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { text } from "./text";
 import "./gaits.css";
 
 /** A pointer on its way passes marks that nobody wants to see. */
@@ -19,12 +20,8 @@ export function useLastMark(near: Point | null): Point | null {
 
 export function MarkReplay({ point }: { point: Point | null }) {
   return (
-    <aside class="mark-replay" aria-label="Replay of the mark">
-      {point ? (
-        <Playing key={point.href} point={point} />
-      ) : (
-        <p class="quiet small">Point at a mark, or focus it, to see it swim here.</p>
-      )}
+    <aside class="mark-replay" aria-label={text.replay}>
+      {point ? <Playing key={point.href} point={point} /> : <p class="quiet small">{text.pointAtMark}</p>}
     </aside>
   );
 }
@@ -35,14 +32,14 @@ function Playing({ point }: { point: Point }) {
   const [name, ...figures] = point.says;
   return (
     <>
-      <RecordingStatus {...rendering} what="Simulating it again …" />
-      {replay && <ReplayLoop replay={replay} name={`${name}, swimming`} />}
+      <RecordingStatus {...rendering} what={text.simulating} />
+      {replay && <ReplayLoop replay={replay} name={text.swimming(name)} />}
       <p class="small">
         <b>{name}</b>
         <br />
         <span class="quiet">{figures.join(", ")}</span>
         <br />
-        <a href={point.href}>Open the creature</a>
+        <a href={point.href}>{text.openCreature}</a>
       </p>
     </>
   );

@@ -21,12 +21,12 @@ describe("a sweep of gaits", () => {
       [1, 0.5],
     ]);
     expect(worm!.points[1]!.href).toBe("/creatures/ab");
-    expect(worm!.points[1]!.says).toEqual(["Worm at ν = 1", "0.5 cells a cycle", "Reynolds number 2"]);
+    expect(worm!.points[1]!.says).toEqual(["Worm at ν = 1", "0.5 cells per cycle", "Reynolds number 2"]);
   });
 
   it("marks what limits or warnings make doubtful, and what did not finish", () => {
     expect(worm!.points.map(({ hollow }) => hollow)).toEqual([true, false]);
-    expect(worm!.points[0]!.says).toContain("limited in 10 % of node steps");
+    expect(worm!.points[0]!.says).toContain("limits active in 10 % of node steps");
     expect(ray!.points[0]!.y).toBeNull();
     expect(ray!.points[0]!.says[1]).toBe("Non-finite");
   });

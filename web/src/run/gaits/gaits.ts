@@ -5,6 +5,7 @@ import { number, percent, words } from "../../ui/format";
 import type { Upper } from "../../charts/plot/Frame";
 import type { Axis, Line, Point } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
+import { text } from "./text";
 
 /** In the order of the paper, so that a swimmer has the same colour in every run. */
 const SWIMMERS = ["worm", "tadpole", "ray", "cilia", "jellyfish"];
@@ -21,14 +22,14 @@ export const formsOf = (spec: Spec) => strings(spec.forms);
 /** The same for all forms whose rows are given, so that they can be compared. */
 export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
   const ways = rows.filter(finished).map((row) => Number(row.displacement));
-  const text = (value: number) => number(value, 2);
+  const write = (value: number) => number(value, 2);
   return {
     x: {
-      title: "Viscosity (cells²/step)",
+      title: text.viscosity,
       scale: logAround(numbers(spec.viscosities)),
-      write: text,
+      write,
     },
-    y: { title: "Displacement (cells/cycle)", scale: fromZero(ways), write: text },
+    y: { title: text.displacement, scale: fromZero(ways), write },
   };
 }
 
@@ -54,14 +55,14 @@ function doubtsOf(row: ResultRow): string[] {
     .split("; ")
     .filter(Boolean);
   if (said.length > 0 || !doubtful(row)) return said;
-  return [`limited in ${percent(Number(row.limited))} of node steps`];
+  return [text.limited(percent(Number(row.limited)))];
 }
 
 function pointOf(row: ResultRow, hrefOf: Href): Point {
   const way = finished(row) ? measure(row, "displacement") : null;
   const figures = [
-    way === null ? words(String(row.status)) : `${number(way)} cells a cycle`,
-    `Reynolds number ${number(measure(row, "reynolds"))}`,
+    way === null ? words(String(row.status)) : text.cellsPerCycle(number(way)),
+    text.reynolds(number(measure(row, "reynolds"))),
     ...doubtsOf(row),
   ];
   return {
@@ -69,7 +70,7 @@ function pointOf(row: ResultRow, hrefOf: Href): Point {
     y: way,
     hollow: doubtful(row),
     ...(row.creature && { href: hrefOf(row.creature) }),
-    says: [`${words(String(row.swimmer))} at ν = ${number(Number(row.viscosity))}`, ...figures],
+    says: [text.mark(words(String(row.swimmer)), number(Number(row.viscosity))), ...figures],
   };
 }
 
@@ -82,5 +83,5 @@ export function reynoldsAxis(rows: readonly ResultRow[]): Upper | null {
   const ticks = own
     .map((row) => ({ at: Number(row.viscosity), text: number(Number(row.reynolds), 2) }))
     .sort((a, b) => a.at - b.at);
-  return { title: `Reynolds number of the ${swimmer}`, ticks };
+  return { title: text.reynoldsOf(swimmer), ticks };
 }

@@ -9,6 +9,7 @@ import { useClock } from "../../replay/clock";
 import { StepRange } from "../../replay/Transport";
 import { type Fold, drawFold, pictureOf } from "./fold";
 import { chainsOf } from "../../replay/motion";
+import { text } from "./text";
 
 /** Seconds that a whole life takes, and those for which its end is looked at. */
 const [LIFE_S, REST_S] = [4, 1.5];
@@ -43,12 +44,12 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
   };
   return (
     <div class="fold-player">
-      <Still fold={fold} time={moment} name={`The filament for ${target.name} over its picture`} />
+      <Still fold={fold} time={moment} name={text.filamentFor(target.name)} />
       <div class="controls">
-        <button onClick={() => setPlaying(!playing)}>{playing ? "Pause" : "Play"}</button>
+        <button onClick={() => setPlaying(!playing)}>{playing ? text.pause : text.play}</button>
         <StepRange time={moment} {...{ last, every, steps }} onScrub={scrub} />
         <label class="compact">
-          Picture
+          {text.picture}
           <input
             type="range"
             min="0"
@@ -67,16 +68,16 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
 function Moments({ fold, onChoose }: { fold: Fold; onChoose: (share: number) => void }) {
   const { frames, steps } = fold.replay.header;
   return (
-    <ol class="fold-moments" aria-label="Moments of its life">
+    <ol class="fold-moments" aria-label={text.moments}>
       {MOMENTS.map((share) => (
         <li key={share}>
           <button class="plain" onClick={() => onChoose(share)}>
             <Still
               fold={fold}
               time={share * (frames - 1)}
-              name={`After ${Math.round(share * steps)} steps`}
+              name={text.afterSteps(Math.round(share * steps))}
             />
-            <span class="small quiet">step {Math.round(share * steps)}</span>
+            <span class="small quiet">{text.step(Math.round(share * steps))}</span>
           </button>
         </li>
       ))}

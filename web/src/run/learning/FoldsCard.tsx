@@ -11,6 +11,7 @@ import { FoldPlayer } from "./FoldPlayer";
 import { pictureOf } from "./fold";
 import { RecordingStatus, useReplays } from "../../replay/recordings";
 import { hrefOf } from "../results/resultsPage";
+import { text } from "./text";
 import "./folds.css";
 
 interface Props {
@@ -25,13 +26,11 @@ export function FoldsCard({ run, query, rows }: Props) {
   const row = rows.find(({ picture }) => picture === chosen?.name);
   return (
     <section class="card folds" id="folds" aria-labelledby="folds-title" tabIndex={-1}>
-      <h2 id="folds-title">{rows.length > 0 ? "Filaments over their pictures" : "Pictures"}</h2>
+      <h2 id="folds-title">{rows.length > 0 ? text.filaments : text.pictures}</h2>
       {error && <p class="wrong-text small">{error}</p>}
       {targets && <Pictures {...{ run, targets, rows, chosen: chosen!.name }} />}
       {row?.creature && <Fold key={row.creature} {...{ run, row }} target={chosen!} />}
-      {targets && rows.length === 0 && (
-        <p class="quiet small">Filaments can be watched here once all updates are done.</p>
-      )}
+      {targets && rows.length === 0 && <p class="quiet small">{text.noFilaments}</p>}
     </section>
   );
 }
@@ -47,10 +46,10 @@ function Pictures({ run, targets, rows, chosen }: PicturesProps) {
   const summary = useStore((state) => state.runs.get(run.id))?.summary;
   const lossOf = (name: string) => {
     const loss = rows.find(({ picture }) => picture === name)?.least ?? summary?.[`loss of ${name}`];
-    return typeof loss === "number" ? `loss ${number(loss)}` : "no loss yet";
+    return typeof loss === "number" ? text.loss(number(loss)) : text.noLoss;
   };
   return (
-    <div class="fold-choice" role="group" aria-label="Pictures">
+    <div class="fold-choice" role="group" aria-label={text.pictures}>
       {targets.map((target) => (
         <button
           key={target.name}
@@ -84,13 +83,12 @@ function Fold({ run, row, target }: { run: Run; row: ResultRow; target: Target }
   const replay = rendering.replays?.[0];
   return (
     <>
-      <RecordingStatus {...rendering} what="Simulating this filament again to record how it folds …" />
+      <RecordingStatus {...rendering} what={text.recordingFold} />
       {replay && <FoldPlayer replay={replay} target={target} />}
       <p class="quiet small">
-        Loss {number(Number(row.first))} before it learnt, {number(Number(row.least))} at best; without a
-        filament it would be {number(Number(row.empty))}.{" "}
+        {text.losses(number(Number(row.first)), number(Number(row.least)), number(Number(row.empty)))}{" "}
         <a href={hrefOf(run)(row.creature!)}>
-          Open the creature <code>{short(row.creature!)}</code>
+          {text.openCreature} <code>{short(row.creature!)}</code>
         </a>
       </p>
     </>

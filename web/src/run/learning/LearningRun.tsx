@@ -10,6 +10,7 @@ import { courseOf } from "./learning";
 import { FoldsCard } from "./FoldsCard";
 import { RecordingStatus, useReplays } from "../../replay/recordings";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
+import { text } from "./text";
 
 export function LearningRun({ run, query }: ResultsProps) {
   const curves = useStore((state) => state.details.get(run.id))?.curves;
@@ -19,11 +20,11 @@ export function LearningRun({ run, query }: ResultsProps) {
   return (
     <>
       <section class="card plot-card" aria-labelledby="course-title">
-        <h2 id="course-title">{course?.title ?? "Course"}</h2>
+        <h2 id="course-title">{course?.title ?? text.progress}</h2>
         {course && course.lines.length > 0 ? (
           <Plot {...course} />
         ) : (
-          <p class="quiet waiting">The first step is being computed …</p>
+          <p class="quiet waiting">{text.firstStep}</p>
         )}
       </section>
       {run.experiment === "folding" && <FoldsCard {...{ run, query, rows }} />}
@@ -44,9 +45,9 @@ interface Ends {
 function Improvement({ run, before, after }: Ends) {
   return (
     <section class="card films" aria-labelledby="films-title">
-      <h2 id="films-title">Before and after</h2>
+      <h2 id="films-title">{text.beforeAndAfter}</h2>
       {before.creature === after.creature ? (
-        <p class="quiet">No step made it fitter: it is as it was.</p>
+        <p class="quiet">{text.unchanged}</p>
       ) : (
         <SideBySide {...{ run, before, after }} />
       )}
@@ -61,15 +62,15 @@ function SideBySide({ run, before, after }: Ends) {
     () =>
       first && last
         ? [
-            { replay: first, name: <Name {...{ run, row: before }} title="Before" /> },
-            { replay: last, name: <Name {...{ run, row: after }} title="After" /> },
+            { replay: first, name: <Name {...{ run, row: before }} title={text.before} /> },
+            { replay: last, name: <Name {...{ run, row: after }} title={text.after} /> },
           ]
         : [],
     [run.id, first, last],
   );
   return (
     <>
-      <RecordingStatus {...rendering} what="Simulating both creatures to record their motion …" />
+      <RecordingStatus {...rendering} what={text.recordingBoth} />
       {films.length > 0 && <ReplayPlayer films={films} />}
     </>
   );
@@ -78,7 +79,7 @@ function SideBySide({ run, before, after }: Ends) {
 function Name({ run, row, title }: { run: Run; row: ResultRow; title: string }) {
   return (
     <>
-      <b>{title}</b> fitness {number(Number(row.fitness), 4)},{" "}
+      <b>{title}</b> {text.fitness(number(Number(row.fitness), 4))}{" "}
       <a href={hrefOf(run)(row.creature!)}>
         <code>{short(row.creature!)}</code>
       </a>

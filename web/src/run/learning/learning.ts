@@ -5,6 +5,7 @@ import type { Curves } from "../../store/curves";
 import { count, number } from "../../ui/format";
 import type { Axis, Line } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
+import { text } from "./text";
 
 /** Marks of a line; between them nothing would be seen. */
 const MARKS = 120;
@@ -30,11 +31,11 @@ export function courseOf(run: Run, curves: Curves): Course {
   const rises = around(values);
   const steps = { log: false, low: 0, high: Math.max(1, run.generations - before) };
   return {
-    title: folds ? "Loss against updates" : "Fitness against steps",
-    x: { title: folds ? "Update" : "Step", scale: steps, write: count },
+    title: folds ? text.lossAgainstUpdates : text.fitnessAgainstSteps,
+    x: { title: folds ? text.update : text.stepAxis, scale: steps, write: count },
     y: folds
-      ? { title: "Loss", scale: logAround(values), write: (value) => number(value, 2) }
-      : { title: "Fitness", scale: rises, write: (value) => number(value, digitsOf(rises)) },
+      ? { title: text.lossAxis, scale: logAround(values), write: (value) => number(value, 2) }
+      : { title: text.fitnessAxis, scale: rises, write: (value) => number(value, digitsOf(rises)) },
     lines,
   };
 }
@@ -53,7 +54,7 @@ function lineOf(column: string, curves: Curves, before: number, k: number): Line
       .map((i) => ({
         x: step(i),
         y: values[i]!,
-        says: [name, `after ${count(step(i))}`, number(values[i]!)],
+        says: [name, text.afterCount(count(step(i))), number(values[i]!)],
       })),
   };
 }

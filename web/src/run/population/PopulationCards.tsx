@@ -10,6 +10,7 @@ import { useSpecies } from "../../store/runPage";
 import { number, short } from "../../ui/format";
 import { NetworkGraph } from "../../creature/NetworkGraph";
 import { SpeciesPlot } from "./SpeciesPlot";
+import { text } from "./text";
 import "./population.css";
 
 export function PopulationCards({ run, elites }: { run: Run; elites: Elites }) {
@@ -26,15 +27,11 @@ function SpeciesCard({ run }: { run: Run }) {
   const some = value !== null && value.generation.length > 0;
   return (
     <section class="card" id="species" aria-labelledby="species-title" tabIndex={-1}>
-      <h2 id="species-title">Species over time</h2>
+      <h2 id="species-title">{text.species}</h2>
       {error && <p class="wrong-text small">{error}</p>}
       {some && <SpeciesPlot history={value} />}
       {value && !some && (
-        <p class="quiet waiting">
-          {run.generation === 0
-            ? "They begin with the first generation."
-            : "No species were recorded: the run is of an older version, or its search keeps none."}
-        </p>
+        <p class="quiet waiting">{run.generation === 0 ? text.noSpeciesYet : text.noSpecies}</p>
       )}
     </section>
   );
@@ -53,10 +50,10 @@ function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
   return (
     <section class="card" id="network" aria-labelledby="best-title" tabIndex={-1}>
       <div class="card-head wraps">
-        <h2 id="best-title">Best network so far</h2>
+        <h2 id="best-title">{text.bestNetwork}</h2>
         {best && (
           <span class="quiet">
-            fitness {number(best.fitness, 4)}, of generation {best.generation},{" "}
+            {text.bestOf(number(best.fitness, 4), best.generation)}{" "}
             <a href={`/creatures/${best.creature}?run=${run.id}`}>
               <code>{short(best.creature)}</code>
             </a>
@@ -64,9 +61,9 @@ function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
         )}
       </div>
       {error && <p class="wrong-text small">{error}</p>}
-      {!best && <p class="quiet waiting">There is none before the first generation.</p>}
+      {!best && <p class="quiet waiting">{text.noBest}</p>}
       {network && <NetworkGraph network={network} />}
-      {genome && !network && <p class="quiet">Its genes are numbers: it has no network to draw.</p>}
+      {genome && !network && <p class="quiet">{text.noNetwork}</p>}
     </section>
   );
 }

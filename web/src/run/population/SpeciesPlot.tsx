@@ -6,6 +6,7 @@ import { type Size, useSize } from "../../ui/canvas";
 import { count } from "../../ui/format";
 import { ticksOf } from "../../charts/plot/scale";
 import { type Stack, colourOf, pathOf, speciesAt, stackOf } from "./speciesStack";
+import { text } from "./text";
 
 const [LEFT, RIGHT, TOP, BOTTOM] = [44, 8, 8, 26];
 
@@ -64,7 +65,7 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
         class="species-plot"
         role="application"
         tabIndex={0}
-        aria-label={`Species over generations: ${summaryOf(stack)}. Arrow keys go through the generations.`}
+        aria-label={text.plot(summaryOf(stack))}
         aria-describedby="species-reading"
         onPointerMove={follow}
         onPointerDown={follow}
@@ -129,7 +130,7 @@ function Axes({ stack: { generation, size }, width, x, y }: AxesProps) {
       ))}
       {shown.map((i) => (
         <text key={i} x={x(i)} y={y(0) + 18} class={i === 0 ? "" : i === last ? "end" : "middle"}>
-          {i === 0 ? `generation ${generation[i]}` : generation[i]}
+          {i === 0 ? text.generation(generation[i]) : generation[i]}
         </text>
       ))}
     </g>

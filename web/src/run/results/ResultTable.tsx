@@ -4,6 +4,7 @@ import { Fragment } from "preact";
 import type { ResultRow, Value } from "../../api/types";
 import { short } from "../../ui/format";
 import { type Column, type Order, columnsOf, sortRows } from "./columns";
+import { text } from "./text";
 
 /** What is doubtful about a row. */
 const NOTE = "warnings";
@@ -25,7 +26,7 @@ export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
       <table class="results">
         <thead>
           <tr>
-            {watchable && <th scope="col">Replay</th>}
+            {watchable && <th scope="col">{text.replay}</th>}
             {shown.map((column) => (
               <Heading key={column.name} {...{ column, order, onOrder }} />
             ))}
@@ -87,9 +88,9 @@ function several(rows: ResultRow[], name: string): boolean {
 }
 
 function Cell({ column, value }: { column: Column; value: Value }) {
-  const text = column.write(value);
+  const written = column.write(value);
   const mark = markOf(column.name, value);
-  return mark ? <span class={`mark-word ${mark}`}>{text}</span> : <>{text}</>;
+  return mark ? <span class={`mark-word ${mark}`}>{written}</span> : <>{written}</>;
 }
 
 /** Values that people should not overlook. */

@@ -3,6 +3,7 @@
 import type { ResultRow, Value } from "../../api/types";
 import { formOf } from "../../ui/coupling";
 import { DASH, bytes, count, number, percent, words } from "../../ui/format";
+import { text } from "./text";
 
 export interface Column {
   name: string;
@@ -14,7 +15,7 @@ export interface Column {
 
 const plain = (value: Value): string => {
   if (value === null || value === "") return DASH;
-  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value === "boolean") return value ? text.yes : text.no;
   return typeof value === "number" ? number(value) : value;
 };
 const as = (write: (value: number) => string) => (value: Value) =>
@@ -29,24 +30,24 @@ const KNOWN: Record<string, Partial<Column>> = {
   reynolds: { title: "Reynolds" },
   sperm: { title: "Sperm" },
   mach: { title: "Mach" },
-  limited: { title: "Limited", unit: "of node steps", write: as(percent) },
-  impulse: { title: "Net impulse", unit: "lattice units", write: as((x) => number(x, 2)) },
-  force_free: { title: "Force-free" },
+  limited: { title: text.limited, unit: text.ofNodeSteps, write: as(percent) },
+  impulse: { title: text.impulse, unit: text.latticeUnits, write: as((x) => number(x, 2)) },
+  force_free: { title: text.forceFree },
   nodes: { write: as(count) },
-  steps: { title: "Steps timed", write: as(count) },
-  seconds: { title: "All", ...seconds },
+  steps: { title: text.stepsTimed, write: as(count) },
+  seconds: { title: text.all, ...seconds },
   fluid: seconds,
   coupling: seconds,
   constraints: seconds,
   steric: seconds,
-  first: { title: "First loss" },
-  last: { title: "Last loss" },
-  least: { title: "Least loss" },
-  empty: { title: "Loss of an empty picture" },
-  failed: { title: "Failed updates", write: as(count) },
-  slope: { title: "Slope’s length" },
-  agreement: { title: "Gain over predicted" },
-  memory_bytes: { title: "Memory", write: as(bytes) },
+  first: { title: text.firstLoss },
+  last: { title: text.lastLoss },
+  least: { title: text.leastLoss },
+  empty: { title: text.emptyLoss },
+  failed: { title: text.failedUpdates, write: as(count) },
+  slope: { title: text.slope },
+  agreement: { title: text.gain },
+  memory_bytes: { title: text.memory, write: as(bytes) },
 };
 
 /** The columns of some rows, in their order; the creature is none of them. */

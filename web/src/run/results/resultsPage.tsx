@@ -4,9 +4,9 @@ import type { ResultRow, Results, Run } from "../../api/types";
 import { resultsUrl } from "../../api/urls";
 import { useResults } from "../../store/fetch";
 import { setQuery } from "../../store/router";
-import { count } from "../../ui/format";
 import { ResultTable } from "./ResultTable";
 import type { Order } from "./columns";
+import { text } from "./text";
 import "./results.css";
 
 export interface ResultsProps {
@@ -21,19 +21,19 @@ interface Shown {
 }
 
 const EMPTY: Record<Run["status"], string> = {
-  queued: "It waits for a worker.",
-  running: "The first results are being computed …",
-  paused: "It was paused before its first results.",
-  finished: "It has no results.",
-  failed: "It failed before its first results.",
-  cancelled: "It was cancelled before its first results.",
+  queued: text.queued,
+  running: text.running,
+  paused: text.paused,
+  finished: text.noResults,
+  failed: text.failed,
+  cancelled: text.cancelled,
 };
 
 export function useTable(run: Run): Shown {
   const { value, error } = useResults(run.id);
   // What was fetched stays while fetching it anew fails.
   if (value && value.rows.length > 0) return { results: value, missing: null };
-  return { results: value, missing: error ?? (value ? EMPTY[run.status] : "Loading the results …") };
+  return { results: value, missing: error ?? (value ? EMPTY[run.status] : text.loading) };
 }
 
 export const hrefOf = (run: Run) => (creature: string) => `/creatures/${creature}?run=${run.id}`;
@@ -44,13 +44,11 @@ export function TableCard({ run, query, rows }: ResultsProps & { rows: ResultRow
   return (
     <section class="card table-card" aria-labelledby="table-title">
       <div class="card-head">
-        <h2 id="table-title">Table</h2>
-        <span class="quiet">
-          {count(rows.length)} {rows.length === 1 ? "row" : "rows"}
-        </span>
+        <h2 id="table-title">{text.table}</h2>
+        <span class="quiet">{text.rows(rows.length)}</span>
         <span class="spring" />
         <a class="button" href={resultsUrl(run.id)}>
-          Download CSV
+          {text.download}
         </a>
       </div>
       <ResultTable rows={rows} order={order} onOrder={turn} hrefOf={hrefOf(run)} />

@@ -4,6 +4,7 @@ import { bytes, number } from "../../ui/format";
 import { Plot } from "../../charts/plot/Plot";
 import { logAxis, memoryLines, nodesAxis, timeLines } from "./scaling";
 import { type ResultsProps, TableCard, useTable } from "../results/resultsPage";
+import { text } from "./text";
 
 export function ScalingRun({ run, query }: ResultsProps) {
   const { results, missing } = useTable(run);
@@ -22,22 +23,17 @@ export function ScalingRun({ run, query }: ResultsProps) {
     <>
       <div class="run-columns scaling">
         <section class="card plot-card" aria-labelledby="time-title">
-          <h2 id="time-title">Wall time</h2>
+          <h2 id="time-title">{text.wallTime}</h2>
           <Plot
-            title="Wall time of 1,000 steps against the number of nodes"
+            title={text.wallTimePlot}
             x={x}
-            y={logAxis("Seconds for 1,000 steps", times, (value) => number(value, 2))}
+            y={logAxis(text.seconds, times, (value) => number(value, 2))}
             lines={times}
           />
         </section>
         <section class="card plot-card" aria-labelledby="memory-title">
-          <h2 id="memory-title">Memory</h2>
-          <Plot
-            title="Memory against the number of nodes"
-            x={x}
-            y={logAxis("Memory", memory, bytes)}
-            lines={memory}
-          />
+          <h2 id="memory-title">{text.memory}</h2>
+          <Plot title={text.memoryPlot} x={x} y={logAxis(text.memory, memory, bytes)} lines={memory} />
         </section>
       </div>
       <TableCard run={run} query={query} rows={rows} />

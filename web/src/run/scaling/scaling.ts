@@ -4,6 +4,7 @@ import type { ResultRow, Spec, Values } from "../../api/types";
 import { bytes, count, number } from "../../ui/format";
 import type { Axis, Line } from "../../charts/plot/Plot";
 import { logAround } from "../../charts/plot/scale";
+import { text } from "./text";
 
 interface Part {
   name: string;
@@ -14,7 +15,7 @@ interface Part {
   width?: number;
 }
 
-const [OURS, PAIRS] = ["all parts", "all-pairs repulsion"];
+const [OURS, PAIRS] = [text.allParts, text.allPairs];
 
 const PARTS: Part[] = [
   { name: OURS, method: "microcosmos", column: "seconds", colour: "--series-1", width: 2.6 },
@@ -50,7 +51,7 @@ export function timeLines(rows: readonly ResultRow[], summary: Values | null): L
     [PAIRS]: power("exponent_all_pairs"),
   };
   const lines = PARTS.map((part) => ({
-    ...lineOf(part, rows, (value) => `${number(value)} s for 1,000 steps`),
+    ...lineOf(part, rows, (value) => text.secondsFor(number(value))),
     power: powers[part.name] ?? null,
   }));
   return lines.filter(({ points }) => points.length > 0);
@@ -66,7 +67,7 @@ function lineOf(part: Part, rows: readonly ResultRow[], write: (value: number) =
   const points = mine.map((row) => ({
     x: Number(row.nodes),
     y: Number(row[column]),
-    says: [part.name, `${count(Number(row.nodes))} nodes`, write(Number(row[column]))] as [
+    says: [part.name, text.nodesOf(count(Number(row.nodes))), write(Number(row[column]))] as [
       string,
       ...string[],
     ],
@@ -76,7 +77,7 @@ function lineOf(part: Part, rows: readonly ResultRow[], write: (value: number) =
 
 export function nodesAxis(spec: Spec): Axis {
   const nodes = Array.isArray(spec.nodes) ? spec.nodes.map(Number) : [];
-  return { title: "Nodes", scale: logAround(nodes), write: thousands };
+  return { title: text.nodes, scale: logAround(nodes), write: thousands };
 }
 
 export function logAxis(title: string, lines: Line[], write: (value: number) => string): Axis {

@@ -11,25 +11,26 @@ import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
 import { differences } from "./difference";
 import { copyText } from "../../ui/clipboard";
 import { RunPicker } from "../RunPicker";
+import { text } from "./text";
 import "./spec.css";
 
 export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
   const against = query.get("against");
-  const text = useMemo(() => JSON.stringify(run.spec, null, 2), [run.spec]);
-  const href = `data:application/json;charset=utf-8,${encodeURIComponent(text)}`;
+  const json = useMemo(() => JSON.stringify(run.spec, null, 2), [run.spec]);
+  const href = `data:application/json;charset=utf-8,${encodeURIComponent(json)}`;
   return (
     <section class="card spec-card" id="spec" aria-labelledby="spec-title" tabIndex={-1}>
       <div class="card-head wraps">
-        <h2 id="spec-title">Spec</h2>
+        <h2 id="spec-title">{text.spec}</h2>
         <span class="spring" />
         <RunPicker
           run={run}
-          label="Difference to a run"
+          label={text.compareSpec}
           fits={() => true}
           onChoose={(id) => setQuery({ against: id })}
         />
-        <button class="slim" onClick={() => copyText(text, "Spec copied.")}>
-          Copy JSON
+        <button class="slim" onClick={() => copyText(json, text.copied)}>
+          {text.copyJson}
         </button>
         <a class="button slim" href={href} download={`${short(run.id)}-spec.json`}>
           spec.json
@@ -38,8 +39,8 @@ export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
       {against && <DifferenceTo key={against} run={run} id={against} />}
       <Sections run={run} />
       <details>
-        <summary>As JSON</summary>
-        <pre tabIndex={0}>{text}</pre>
+        <summary>{text.json}</summary>
+        <pre tabIndex={0}>{json}</pre>
       </details>
     </section>
   );
@@ -62,12 +63,17 @@ function Sections({ run }: { run: Run }) {
               {title} <span class="quiet small">{fields.length}</span>
             </summary>
             <dl>
-              {fields.map(({ path, name, text, usual }) => (
+              {fields.map(({ path, name, text: value, usual }) => (
                 <div key={path} class={usual === null ? "" : "unusual"} title={path}>
                   <dt>{name}</dt>
                   <dd>
-                    {text}
-                    {usual !== null && <span class="quiet small"> preset: {usual}</span>}
+                    {value}
+                    {usual !== null && (
+                      <span class="quiet small">
+                        {" "}
+                        {text.preset} {usual}
+                      </span>
+                    )}
                   </dd>
                 </div>
               ))}
@@ -80,10 +86,8 @@ function Sections({ run }: { run: Run }) {
 }
 
 function sentenceOf(preset: string, changed: number): string {
-  if (changed === 0) return `As in the preset ${words(preset)}, whatever the seed.`;
-  return changed === 1
-    ? `One field differs from the preset ${words(preset)}; it stands out below.`
-    : `${changed} fields differ from the preset ${words(preset)}; they stand out below.`;
+  if (changed === 0) return text.samePreset(words(preset));
+  return changed === 1 ? text.oneChange(words(preset)) : text.changes(changed, words(preset));
 }
 
 function DifferenceTo({ run, id }: { run: Run; id: string }) {
@@ -94,13 +98,13 @@ function DifferenceTo({ run, id }: { run: Run; id: string }) {
   const rows = useMemo(() => (other ? differences([run.spec, other.spec]) : []), [other?.spec, run.spec]);
   const close = () => setQuery({ against: null });
   return (
-    <div class="spec-difference" role="region" aria-label="Difference to another run">
+    <div class="spec-difference" role="region" aria-label={text.difference}>
       {error && !other && <p class="wrong-text small">{error}</p>}
-      {!other && !error && <p class="quiet">Loading the other run …</p>}
+      {!other && !error && <p class="quiet">{text.loading}</p>}
       {other && (
         <table class="plain-table">
           <caption>
-            {rows.length === 0 ? "No field differs from " : `${rows.length} fields differ from `}
+            {rows.length === 0 ? text.noDifference : text.differences(rows.length)}
             <a href={`/runs/${id}`}>
               {titleOf(other, experiments)} <code>{short(id)}</code>
             </a>
@@ -109,9 +113,9 @@ function DifferenceTo({ run, id }: { run: Run; id: string }) {
             <>
               <thead>
                 <tr>
-                  <th scope="col">Field</th>
-                  <th scope="col">This run</th>
-                  <th scope="col">The other one</th>
+                  <th scope="col">{text.field}</th>
+                  <th scope="col">{text.thisRun}</th>
+                  <th scope="col">{text.otherRun}</th>
                 </tr>
               </thead>
               <tbody>
@@ -130,7 +134,7 @@ function DifferenceTo({ run, id }: { run: Run; id: string }) {
         </table>
       )}
       <button class="slim" onClick={close}>
-        Close the difference
+        {text.close}
       </button>
     </div>
   );

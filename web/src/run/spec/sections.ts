@@ -3,6 +3,7 @@
 import type { Json, Preset, Spec } from "../../api/types";
 import { words } from "../../ui/format";
 import { type Difference, differences, written } from "./difference";
+import { text } from "./text";
 
 /** Characters of a value that are shown; pictures have thousands. */
 const LONGEST = 120;
@@ -50,7 +51,7 @@ export function sectionsOf(spec: Spec, changed: readonly Difference[]): Section[
   }
   return [...sections]
     .filter(([, fields]) => fields.length > 0)
-    .map(([title, fields]) => ({ title: title ? words(title) : "Run", fields }));
+    .map(([title, fields]) => ({ title: title ? words(title) : text.run, fields }));
 }
 
 /** `descriptors.0.bins` as `Descriptors 1, bins`. */

@@ -6,10 +6,10 @@ from fastapi import APIRouter, Query
 from sqlalchemy import select
 
 from ..auth.authorize import MAY_READ
-from ..estimates import position
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
 from ..workers.brief import brief
+from . import position
 from .schemas import QueuedRun, QueueRead
 
 router = APIRouter(prefix="/queue", tags=["workers"])

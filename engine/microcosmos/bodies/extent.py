@@ -6,7 +6,7 @@ from .graph import Body
 from .shape import distances
 
 
-def reach(body: Body) -> float:
+def extent(body: Body) -> float:
     """The longest way along edges between two nodes, in cells; of loops the shorter way.
 
     Found from the node farthest from a first one: exact without loops, and for one loop.

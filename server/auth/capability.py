@@ -1,0 +1,42 @@
+"""A share as a capability: what its holder may read on the ordinary routes."""
+
+from typing import Annotated, Any, Protocol
+from uuid import UUID
+
+from fastapi import Depends, Request
+from sqlalchemy.orm import Session
+
+from ..tables import Artifact, Run
+
+HEADER = "Microcosmos-Share"
+"""The header that names a share. Caches keep the answers of each share apart."""
+
+
+class SharedView(Protocol):
+    """The rows that a share shows, as it shows them. `shares` implements it."""
+
+    listed: bool
+
+    def run(self, session: Session, run_id: UUID) -> Run:
+        """Return the run as it was; raise `ProblemError` if the share does not hold it."""
+        ...
+
+    def refuse_unless_holds(self, session: Session, creature: str) -> None:
+        """Raise `ProblemError` if the share does not hold a creature."""
+        ...
+
+    def licensed(self, file: dict[str, Any]) -> dict[str, Any]:
+        """Return a creature file under the licence of the share."""
+        ...
+
+    def archive(self, session: Session) -> Artifact:
+        """Return the archive file as it was; raise `ProblemError` if there is none."""
+        ...
+
+
+async def shared_view(request: Request) -> SharedView | None:
+    """Return what the share of the request shows; None for a request without one."""
+    return request.state.share
+
+
+SharedViewDep = Annotated[SharedView | None, Depends(shared_view)]

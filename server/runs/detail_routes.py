@@ -1,0 +1,98 @@
+"""Read a run's curves, species, log and target pictures; and all tags."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from sqlalchemy import select
+
+from microcosmos.spec import Folding, parse, targets
+
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED
+from ..core.errors import ProblemError
+from ..core.schemas import MOST_ROWS
+from ..services.deps import SessionDep
+from ..tables import Generation
+from . import curves, listing, log
+from .deps import RunDep
+from .overview import evenly
+from .schemas import Curves, Log, LogEntryRead, Species, TagRead, Target
+
+router = APIRouter()
+
+
+@router.get("/runs/{run_id}/generations", tags=["runs"], dependencies=[MAY_READ_SHARED])
+def read_generations(
+    run: RunDep,
+    session: SessionDep,
+    points: Annotated[int | None, Query(ge=2, le=10_000)] = None,
+) -> Curves:
+    """All generations, or about so many of them, evenly spaced.
+
+    What `summary` tells is thinned to the newest value since the point before.
+    """
+    names = [name for name in Curves.model_fields if name != "summary"]
+    statement = select(*(getattr(Generation, name) for name in names)).where(
+        Generation.run_id == run.id, Generation.generation <= run.generation
+    )
+    if points:
+        statement = statement.where(Generation.generation.in_(evenly(run.generation, points)))
+    rows = session.execute(statement.order_by(Generation.generation)).all()
+    values = [list(column) for column in zip(*rows, strict=True)] or [[] for _ in names]
+    columns = dict(zip(names, values, strict=True))
+    return Curves(**columns, summary=curves.told(session, run.id, columns["generation"]))
+
+
+@router.get("/runs/{run_id}/species", tags=["runs"], dependencies=[MAY_READ])
+def read_species(
+    run: RunDep,
+    session: SessionDep,
+    points: Annotated[int, Query(ge=2, le=10_000)] = 400,
+) -> Species:
+    """How many members each species had, in about so many generations, evenly spaced.
+
+    There are none where the search keeps no species, or was computed before they were told.
+    """
+    return Species(**curves.species(session, run.id, evenly(run.generation, points)))
+
+
+@router.get("/runs/{run_id}/log", tags=["runs"], dependencies=[MAY_READ])
+def read_log(
+    run: RunDep,
+    session: SessionDep,
+    after: Annotated[int | None, Query(ge=0, le=MOST_ROWS)] = None,
+    limit: Annotated[int, Query(ge=1, le=1000)] = 500,
+) -> Log:
+    """The newest entries, the oldest of them first; `after` the id of one, those that follow.
+
+    Of the checkpoints of an attempt only the first and the last are told.
+    """
+    found = log.read(session, run.id, after, limit)
+    return Log(entries=[LogEntryRead.model_validate(entry) for entry in found])
+
+
+@router.get("/runs/{run_id}/targets", tags=["results"], dependencies=[MAY_READ])
+def read_targets(run: RunDep) -> list[Target]:
+    """In the order of the spec; at most 256 pixels along a side."""
+    if run.experiment != "folding":
+        detail = f"A run of `{run.experiment}` folds nothing into pictures."
+        raise ProblemError(404, "No pictures", detail)
+    chosen = parse(run.spec)
+    assert isinstance(chosen, Folding)
+    longest = min(chosen.size, targets.MOST)
+    fitted = [(one.name, targets.fitted(one.ink, longest)) for one in chosen.targets]
+    return [
+        Target(
+            name=name,
+            width=ink.shape[1],
+            height=ink.shape[0],
+            size=chosen.size,
+            pixels=targets.encoded(ink),
+        )
+        for name, ink in fitted
+    ]
+
+
+@router.get("/tags", tags=["runs"], dependencies=[MAY_READ])
+def list_tags(session: SessionDep) -> list[TagRead]:
+    """All of them, by name."""
+    return [TagRead(tag=tag, runs=runs) for tag, runs in listing.tags(session)]

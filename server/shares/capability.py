@@ -1,0 +1,50 @@
+"""Open a share, and decide what its holder may read."""
+
+from dataclasses import dataclass
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy.orm import Session
+
+from ..core.errors import ProblemError
+from ..services.services import Services
+from ..tables import Artifact, Run, Share
+from . import archive_files, publishing
+
+
+@dataclass(frozen=True)
+class ShareView:
+    """What a live share shows."""
+
+    share: Share
+
+    @property
+    def listed(self) -> bool:
+        return self.share.listed
+
+    def run(self, session: Session, run_id: UUID) -> Run:
+        if self.share.run_id is None or run_id != self.share.run_id:
+            raise ProblemError(404, "Not found", f"This share holds no run of the id {run_id}.")
+        return publishing.frozen(session, self.share)
+
+    def refuse_unless_holds(self, session: Session, creature: str) -> None:
+        if not publishing.holds(session, self.share, creature):
+            detail = f"This share holds no creature of the name {creature}."
+            raise ProblemError(404, "Not found", detail)
+
+    def licensed(self, file: dict[str, Any]) -> dict[str, Any]:
+        return publishing.licensed(self.share, file)
+
+    def archive(self, session: Session) -> Artifact:
+        found = archive_files.find(session, self.share)
+        if found is None:
+            generation = self.share.generation
+            detail = f"No file was kept of generation {generation}; its elites are here."
+            raise ProblemError(404, "No file", detail)
+        return found
+
+
+def open_share(services: Services, slug: str) -> ShareView:
+    """Return the view of a share; raise `ProblemError` if there is none, or none any more."""
+    with services.sessions.read() as session:
+        return ShareView(publishing.opened(session, slug))

@@ -1,0 +1,121 @@
+"""Old names are gone from modules, public identifiers, tables, columns and the API."""
+
+import ast
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from server.tables import Base
+
+pytestmark = pytest.mark.fast
+
+ROOT = Path(__file__).parents[1]
+OLD = {
+    *("own", "own_specs", "own_schemas", "own_of", "is_own", "Own", "OwnBody", "OwnControl"),
+    *("OwnName", "MaybeOwn", "Told", "Shelf", "origin", "origins", "Origin", "born", "kin"),
+    *("brood", "Brood", "fates", "FATES", "told", "niches", "again", "telling", "agreement"),
+    *("feature", "features", "Feature", "FEATURES", "Said", "played", "answered", "seen"),
+    *("Seen", "at_once", "heard", "bands", "planning", "sweeping", "binned"),
+    *("purging", "leftovers", "discarded", "needs", "Door", "guard", "caller", "guesses"),
+    *("discretion", "readers", "quarantine", "warming", "fence", "Fenced", "pace", "wish"),
+    *("device_leave", "forked", "standing", "left", "chance", "reach"),
+    *("beginning", "keeping", "following", "most", "KEPT", "AT_ONCE", "DECISIVE"),
+}
+LEFT = {
+    "engine/microcosmos/build/plugins.py:own_of",
+    "engine/microcosmos/client/formatting.py:pace",
+    "engine/microcosmos/client/formatting.py:standing",
+    "engine/microcosmos/experiments/refinement.py:own",
+    "engine/microcosmos/experiments/state.py:own",
+    "engine/microcosmos/experiments/state.py:quarantine",
+    "engine/microcosmos/genomes/plugin.py:Own",
+    "engine/microcosmos/neat/offspring.py:standing",
+    "engine/microcosmos/neat/rng.py:left",
+    "engine/microcosmos/plugins/declaration.py:is_own",
+    "engine/microcosmos/search/evaluation.py:own",
+    "engine/microcosmos/search/folding.py:pace",
+    "engine/microcosmos/search/measures.py:pace",
+    "engine/microcosmos/search/plugin_measures.py:pace",
+    "engine/microcosmos/search/qdax/emitters.py:Told",
+    "engine/microcosmos/spec/body.py:OwnBody",
+    "engine/microcosmos/spec/body.py:own",
+    "engine/microcosmos/spec/creature/file.py:own",
+    "engine/microcosmos/spec/creature/genomes.py:Own",
+    "engine/microcosmos/spec/encodings.py:OwnControl",
+    "engine/microcosmos/spec/encodings.py:own",
+    "engine/microcosmos/spec/gaits.py:own",
+    "engine/microcosmos/spec/plugins.py:MaybeOwn",
+    "engine/microcosmos/spec/plugins.py:Own",
+    "engine/microcosmos/spec/plugins.py:OwnName",
+    "engine/microcosmos/spec/plugins.py:own",
+    "engine/microcosmos/spec/scene.py:own",
+    "engine/microcosmos/spec/search.py:own",
+    "engine/microcosmos/viz/figures/reading.py:own",
+    "engine/microcosmos/world/model.py:pace",
+    "server/attempts/recording.py:standing",
+    "server/auth/bootstrap.py:told",
+    "server/creatures/initial.py:DECISIVE",
+    "server/deletion/garbage.py:AT_ONCE",
+    "server/deletion/purge.py:AT_ONCE",
+    "server/queue/jobs.py:KEPT",
+    "server/runs/curves.py:told",
+    "server/runs/lifecycle.py:KEPT",
+    "server/runs/overview.py:forked",
+    "server/runs/submission.py:DECISIVE",
+    "server/runs/submission.py:own",
+    "server/shares/routes.py:told",
+    "server/specs/stored.py:needs",
+    "server/sweeps/planning.py:planning",
+    "server/sweeps/steering.py:AT_ONCE",
+    "server/sweeps/summary.py:Told",
+    "server/sweeps/summary.py:told",
+    "worker/plugins.py:Shelf",
+    "worker/plugins.py:Told",
+}
+"""Old names that are still there; this list may only shrink."""
+
+
+def sources() -> list[Path]:
+    roots = (ROOT / "engine" / "microcosmos", ROOT / "server", ROOT / "worker")
+    return [path for root in roots for path in sorted(root.rglob("*.py"))]
+
+
+def public(path: Path) -> Iterator[str]:
+    """Yield the module's name, and its classes, functions, methods, fields and constants."""
+    yield path.stem
+    tree = ast.parse(path.read_text())
+    functions = (ast.FunctionDef, ast.AsyncFunctionDef)
+    classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    for owner in (tree, *classes):
+        for node in owner.body:
+            if isinstance(node, (*functions, ast.ClassDef)):
+                yield node.name
+            elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+                yield node.target.id
+            elif isinstance(node, ast.Assign):
+                yield from (one.id for one in node.targets if isinstance(one, ast.Name))
+
+
+def test_no_module_or_public_identifier_has_an_old_name():
+    found = {
+        f"{path.relative_to(ROOT).as_posix()}:{name}"
+        for path in sources()
+        for name in public(path)
+        if name in OLD
+    }
+    assert found <= LEFT
+
+
+def test_no_table_or_column_has_an_old_name():
+    tables = Base.metadata.tables
+    names = {*tables, *(column.name for table in tables.values() for column in table.columns)}
+    assert not names & OLD - LEFT
+
+
+def test_no_field_of_the_api_has_an_old_name():
+    document = json.loads((ROOT / "web" / "openapi.json").read_text())
+    schemas = document["components"]["schemas"].values()
+    fields = {name for schema in schemas for name in schema.get("properties", {})}
+    assert not fields & OLD - LEFT

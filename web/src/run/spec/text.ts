@@ -1,0 +1,23 @@
+/** Texts of the spec of a run. */
+
+export const text = {
+  spec: "Spec",
+  compareSpec: "Compare specs",
+  copied: "Spec copied.",
+  copyJson: "Copy JSON",
+  json: "JSON",
+  preset: "preset:",
+  samePreset: (preset: string) => `Same as preset ${preset}, apart from the seed.`,
+  oneChange: (preset: string) => `1 field differs from preset ${preset}; it is highlighted below.`,
+  changes: (count: number, preset: string) =>
+    `${count} fields differ from preset ${preset}; they are highlighted below.`,
+  difference: "Differences from another run",
+  loading: "Loading the other run …",
+  noDifference: "No field differs from ",
+  differences: (count: number) => `${count} ${count === 1 ? "field differs" : "fields differ"} from `,
+  field: "Field",
+  thisRun: "This run",
+  otherRun: "Other run",
+  close: "Close differences",
+  run: "Run",
+};
