@@ -9,6 +9,7 @@ import { differences, written } from "../run/spec/difference";
 import { LineKey } from "../charts/lineStyle";
 import type { Compared } from "./Legend";
 import { text } from "./text";
+import { Term } from "../ui/Term";
 
 const ROWS: [title: string, write: (run: Run) => string][] = [
   [text.qdScore, (run) => number(run.qd_score, 5)],
@@ -29,7 +30,9 @@ export function Figures({ runs }: { runs: Compared[] }) {
       <Table runs={runs} corner={text.figure}>
         {ROWS.map(([title, write]) => (
           <tr key={title}>
-            <th scope="row">{title}</th>
+            <th scope="row">
+              <Term name={title} />
+            </th>
             {runs.map(({ run }) => (
               <td key={run.id}>{write(run)}</td>
             ))}

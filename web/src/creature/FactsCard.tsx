@@ -3,6 +3,7 @@
 import type { Creature } from "../api/types";
 import { formOf, groupsOf, originOf } from "./facts";
 import { text } from "./text";
+import { Term } from "../ui/Term";
 
 export function FactsCard({ creature }: { creature: Creature }) {
   const form = formOf(creature);
@@ -46,7 +47,9 @@ export function FactsCard({ creature }: { creature: Creature }) {
 function Rows({ rows }: { rows: [name: string, value: string][] }) {
   return rows.map(([name, value]) => (
     <div key={name}>
-      <dt>{name}</dt>
+      <dt>
+        <Term name={name} />
+      </dt>
       <dd>{value}</dd>
     </div>
   ));

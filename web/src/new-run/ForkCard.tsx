@@ -40,4 +40,5 @@ export function ForkCard({ name, errors, onName }: Props) {
 }
 
 /** True for errors of fields that the form does not show. */
-export const isForkField = (field: string): boolean => /^(from|name|generation|search\.initial)\b/.test(field);
+export const isForkField = (field: string): boolean =>
+  /^(from|name|generation|search\.initial)\b/.test(field);

@@ -200,7 +200,9 @@ describe("what an address of a fork names", () => {
 
   it("is of no more creatures than the schema has room for", () => {
     const { fields } = formOf(SEARCH.schema).fields.find(({ path }) => path === "search") as Section;
-    expect(JSON.stringify(fields.find(({ path }) => path === "search.initial"))).toContain(`${MAX_CREATURES}`);
+    expect(JSON.stringify(fields.find(({ path }) => path === "search.initial"))).toContain(
+      `${MAX_CREATURES}`,
+    );
   });
 
   it("is the creature's own world where its run was no search", async () => {

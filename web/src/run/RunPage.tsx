@@ -29,6 +29,7 @@ import { PublishButton } from "../publish/PublishButton";
 import { SpecCard } from "./spec/SpecCard";
 import { commandsFor } from "./runCommands";
 import { text } from "./text";
+import { Term } from "../ui/Term";
 import "./run.css";
 
 const GaitsRun = lazy(async () => (await import("./gaits/GaitsRun")).GaitsRun, "section");
@@ -226,7 +227,9 @@ function RunFacts({ run }: { run: Run }) {
       <dl class="facts">
         {facts.map(([name, value]) => (
           <div key={name}>
-            <dt>{name}</dt>
+            <dt>
+              <Term name={name} />
+            </dt>
             <dd>{value}</dd>
           </div>
         ))}

@@ -8,6 +8,7 @@ import { type CurveView, OVER, tableOf } from "./look";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";
 import { text } from "./text";
+import { Term } from "../../ui/Term";
 import "uplot/dist/uPlot.min.css";
 import "../lineStyle.css";
 import "./curves.css";
@@ -70,7 +71,9 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
   return (
     <figure class="curve">
       <figcaption>
-        <span>{title}</span>
+        <span>
+          <Term name={title} />
+        </span>
         <Keys series={told} write={write} />
       </figcaption>
       <div ref={host} class="plot" role="img" aria-label={label} />
