@@ -89,7 +89,7 @@ def choose_what_is_shown(page: Page) -> None:
 
 def read_the_shape_over_time(page: Page) -> None:
     picture = page.get_by_role(
-        "application", name=re.compile("^Rest angles \(applied\) over 40 steps")
+        "application", name=re.compile(r"^Rest angles \(applied\) over 40 steps")
     )
     box = picture.bounding_box()
     assert box
@@ -102,7 +102,7 @@ def read_the_shape_over_time(page: Page) -> None:
     moment = page.get_by_role("slider", name="Time in the replay")
     expect(moment).to_have_attribute("aria-valuetext", "step 20 of 40")
     page.get_by_role("button", name="Lengths").click()
-    lengths = page.get_by_role("application", name=re.compile("^Rest lengths \(applied\)"))
+    lengths = page.get_by_role("application", name=re.compile(r"^Rest lengths \(applied\)"))
     lengths.focus()
     page.keyboard.press("ArrowUp")
     expect(page.get_by_text(re.compile("^Step 20, edge 1: asked .* %, did"))).to_be_visible()

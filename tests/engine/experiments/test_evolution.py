@@ -3,12 +3,14 @@
 import json
 from dataclasses import replace
 
+import equinox as eqx
 import numpy as np
 import pytest
 
 from microcosmos import naming
 from microcosmos.archive import creature, file
 from microcosmos.build import build
+from microcosmos.experiments import evolution
 from microcosmos.experiments.archive_file import OtherDevice
 from microcosmos.search import MEASURES
 
@@ -124,6 +126,22 @@ def test_diverged_creatures_are_kept_apart_with_their_reason(small):
     assert np.isfinite(np.asarray(state.elites.fitness)).all()
     restored = experiment.restore(experiment.save(state))
     assert experiment.save(restored) == experiment.save(state)
+
+
+def test_an_evaluation_that_cannot_be_trusted_is_no_elite(experiment, monkeypatch):
+    evaluate, fittest = evolution.search.evaluate_blocks, []
+
+    def too_fast(*given, **options):
+        found = evaluate(*given, **options)
+        fittest.append(int(np.argmax(found.fitness)))
+        status = np.where(np.arange(len(found.status)) == fittest[-1], 2, found.status)
+        return eqx.tree_at(lambda evaluation: evaluation.status, found, status)
+
+    monkeypatch.setattr(evolution.search, "evaluate_blocks", too_fast)
+    state, report = experiment.advance(experiment.init())
+    assert report.diverged == 1
+    assert state.quarantine.slot.tolist() == fittest
+    assert fittest[0] not in np.asarray(state.elites.slot)[np.asarray(state.elites.occupied)]
 
 
 def test_the_file_names_what_it_holds(experiment, course):

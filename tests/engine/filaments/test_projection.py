@@ -1,5 +1,7 @@
 """Constraint projection: what sweeps keep and how errors fall."""
 
+from dataclasses import replace
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -73,6 +75,17 @@ def test_errors_of_length_and_angle_fall(disturbed):
     assert np.all(np.diff(joints) < 0), joints
     assert lengths[-1] <= 1e-3
     assert joints[-1] <= 1e-3
+
+
+@pytest.mark.parametrize("stiffness", [0.25, 1.0])
+def test_a_sweep_takes_the_share_of_its_stiffness_off_an_error(float64, chain, stiffness):
+    body = chain(3)
+    rods = replace(build_rods(body, float64), bend=jnp.full(1, stiffness))
+    rest, angles = filaments.Rest(jnp.full(1, 0.2), jnp.ones(2)), jnp.asarray([0.3, -0.4])
+    positions = jnp.asarray(body.positions)
+    _, turned = filaments.project(positions, angles, rods, rest, iterations=1)
+    error = turned[1] - turned[0] - 0.2
+    np.testing.assert_allclose(error, -0.9 * (1 - stiffness), atol=1e-12)
 
 
 def test_a_straight_chain_becomes_the_circle_it_is_asked_for(float64, chain):

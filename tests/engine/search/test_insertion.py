@@ -57,9 +57,10 @@ def candidates(genotypes, count, seed, generation=0, levels=4):
     )
 
 
-def awkward(genotypes, count, seed):
+def awkward(genotypes, count, seed, generation=0):
     """The same with every kind of odd number in fitness and descriptors."""
-    random, rows = np.random.default_rng(seed), candidates(genotypes, count, seed)
+    rows = candidates(genotypes, count, seed, generation)
+    random = np.random.default_rng(seed)
     fitness, measures = np.array(rows.fitness), np.array(rows.measures)
     odd = random.random(count) < 0.6
     fitness[odd] = random.choice(AWKWARD, odd.sum())
@@ -108,13 +109,13 @@ def by_dictionary(batches, cells):
 
 @pytest.mark.parametrize("kind", [candidates, awkward])
 def test_the_archive_holds_what_the_rule_says(cells, genotypes, kind):
-    batches = [kind(genotypes, 64, seed) for seed in range(6)]
+    batches = [kind(genotypes, 64, seed, generation=seed // 2) for seed in range(24)]
     archive = all_of(batches, cells, nothing(genotypes))
     expected = by_dictionary(batches, cells)
     assert set(np.flatnonzero(archive.occupied)) == set(expected)
     for cell, key in expected.items():
-        found = (-float(archive.fitness[cell]), int(archive.slot[cell]))
-        assert found == (key[0], key[-1])
+        place = (int(archive.generation[cell]), int(archive.slot[cell]))
+        assert (-float(archive.fitness[cell]), *place) == (key[0], *key[-2:])
 
 
 @pytest.mark.parametrize("kind", [candidates, awkward])

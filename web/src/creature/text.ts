@@ -85,7 +85,6 @@ export const text = {
     `${value} at ${share} % of the body, step ${step}`,
   refineAbout: "Queues a new run, which improves this creature by gradient steps within its cell.",
   refineWhat: "this creature",
-  starting: "Starting …",
   refine: "Refine",
   remeasured: "Measurement on this server",
   measureAgain: "Measure again",

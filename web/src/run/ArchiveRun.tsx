@@ -25,7 +25,7 @@ export function ArchiveRun({ run, detail, query }: Props) {
           ) : (
             <>
               <h2 id="archive-title">{text.archive}</h2>
-              <p class="quiet waiting">{text.loadingArchive}</p>
+              <p class="quiet waiting tall">{text.loadingArchive}</p>
             </>
           )}
         </section>

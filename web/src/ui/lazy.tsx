@@ -24,7 +24,9 @@ export function lazy<P extends object>(
       );
     }, []);
     if (Found) return <Found {...props} />;
-    return <Around>{failed ? <LoadFailed /> : <p class="quiet loading">{text.loading}</p>}</Around>;
+    return (
+      <Around class="lazy">{failed ? <LoadFailed /> : <p class="quiet loading">{text.loading}</p>}</Around>
+    );
   };
 }
 
