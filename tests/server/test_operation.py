@@ -52,7 +52,7 @@ def test_every_metric_is_there_and_no_other(address):
     assert told == there
 
 
-@pytest.mark.parametrize("row", rows("How large"), ids=lambda row: row[0])
+@pytest.mark.parametrize("row", rows("Size"), ids=lambda row: row[0])
 def test_sizes_are_those_of_the_estimates(row):
     experiment, name = re.match(r"`(.*)/(.*)`", row[0]).groups()
     presets = {preset.name: preset.spec for preset in EXPERIMENTS[experiment].presets}
