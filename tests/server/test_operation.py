@@ -65,4 +65,4 @@ def test_sizes_are_those_of_the_estimates(row):
 def test_times_and_shares_are_those_of_the_code():
     assert f"{PATIENCE:g} s" in TEXT
     assert f"{TAKEN:g} divided by their number" in TEXT
-    assert f"get {TAKEN / 2:g} of its memory" in TEXT
+    assert f"have {TAKEN / 2:g} of its memory" in TEXT
