@@ -96,7 +96,7 @@ def read_the_shape_over_time(page: Page) -> None:
     # The last of 41 frames and of 6 joints is in the upper right corner.
     page.mouse.move(box["x"] + box["width"] - 2, box["y"] + 2)
     expect(
-        page.get_by_text(re.compile(r"^Step 40, joint 6: asked .* rad, did"))
+        page.get_by_text(re.compile(r"^Step 40, joint 6: rest .* rad, actual"))
     ).to_be_visible()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 20)
     moment = page.get_by_role("slider", name="Time in the replay")
@@ -105,9 +105,9 @@ def read_the_shape_over_time(page: Page) -> None:
     lengths = page.get_by_role("application", name=re.compile(r"^Rest lengths \(applied\)"))
     lengths.focus()
     page.keyboard.press("ArrowUp")
-    expect(page.get_by_text(re.compile("^Step 20, edge 1: asked .* %, did"))).to_be_visible()
+    expect(page.get_by_text(re.compile("^Step 20, edge 1: rest .* %, actual"))).to_be_visible()
     page.keyboard.press("ArrowRight")
-    expect(page.get_by_text(re.compile("^Step 21, edge 1: asked .* %, did"))).to_be_visible()
+    expect(page.get_by_text(re.compile("^Step 21, edge 1: rest .* %, actual"))).to_be_visible()
     expect(moment).to_have_attribute("aria-valuetext", "step 21 of 40")
 
 

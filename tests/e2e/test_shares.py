@@ -86,7 +86,7 @@ def publish(page: Page, title: str, *, listed: bool) -> str:
     dialog.get_by_label("Licence").select_option("CC-BY-SA-4.0")
     dialog.get_by_label("Expires").select_option("7")
     if listed:
-        dialog.get_by_label("List it in the commons").check()
+        dialog.get_by_label("List in the commons").check()
     dialog.get_by_role("button", name="Publish").click()
     found = dialog.get_by_label("Link")
     expect(found).to_be_visible(timeout=FAST)
