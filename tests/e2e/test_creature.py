@@ -35,7 +35,7 @@ def child_and_parent(page: Page, address: str, run: str) -> tuple[str, str]:
 
 
 def stage(page: Page):
-    return page.get_by_role("img", name=re.compile("The creature swimming"))
+    return page.get_by_role("img", name=re.compile("The swimming creature"))
 
 
 def pixels(page: Page) -> str:
@@ -75,7 +75,7 @@ def choose_what_is_shown(page: Page) -> None:
         assert f"field={name.lower()}" in page.url
         shown.add(pixels(page))
     page.get_by_role("checkbox", name="Tracers").press("Space")
-    expect(page.get_by_role("img", name=re.compile("tracers its paths"))).to_be_visible()
+    expect(page.get_by_role("img", name=re.compile("tracers show its flow"))).to_be_visible()
     shown.add(pixels(page))
     page.get_by_role("checkbox", name="Follow").uncheck()
     shown.add(pixels(page))

@@ -100,7 +100,7 @@ def see_it_swim(page: Page, swimmer: str) -> None:
     expect(page.get_by_role("heading", name=swimmer)).to_be_visible(timeout=FAST)
     expect(page.get_by_text("not force-free", exact=True)).to_be_visible()
     expect(page.get_by_role("group", name=re.compile("^Network:"))).to_have_count(0)
-    canvas = page.get_by_role("img", name=re.compile("The creature swimming"))
+    canvas = page.get_by_role("img", name=re.compile("The swimming creature"))
     expect(canvas).to_be_visible(timeout=SLOW)
     page.wait_for_timeout(300)
     before = pixels(page)

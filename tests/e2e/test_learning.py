@@ -49,7 +49,7 @@ def test_an_elite_is_refined_and_watched_beside_what_it_was(shared, shared_page:
 
 
 def see_it_move(page: Page, films: int) -> None:
-    canvas = page.get_by_role("img", name=re.compile("The creature swimming"))
+    canvas = page.get_by_role("img", name=re.compile("The swimming creature"))
     expect(canvas).to_have_count(films, timeout=SLOW)
     before = pixels(page)
     page.get_by_label("Time in the replay").focus()

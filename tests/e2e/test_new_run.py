@@ -96,11 +96,11 @@ def every_experiment_shows_its_body_and_cost(page: Page) -> None:
         drawing = page.locator(".body-drawing")
         expect(drawing).to_contain_text(nodes, timeout=FAST)
         assert page.locator(".filament").first.get_attribute("d")
-        expect(page.get_by_label("Estimated cost")).to_contain_text("No worker is running")
+        expect(page.get_by_role("region", name="Cost")).to_contain_text("No worker is running")
     choose(page, "Folding")
     expect(page.get_by_role("img", name=re.compile("^Picture"))).to_have_count(2, timeout=FAST)
     choose(page, "Refinement")
-    expect(page.get_by_text("It begins at a creature")).to_be_visible()
+    expect(page.get_by_text("A refinement starts from a creature")).to_be_visible()
     page.get_by_role("radio", name=re.compile("^Quality")).check()
 
 
@@ -113,7 +113,7 @@ def a_wrong_value_is_named(page: Page) -> None:
         timeout=FAST
     )
     page.get_by_role("button", name="Start run").click()
-    expect(page.get_by_text("Some values cannot be used")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Fix the highlighted fields")).to_be_visible(timeout=FAST)
     assert page.url.endswith("/new?preset=quality-diversity%2Fdemo")
     page.get_by_role("group", name="Body", exact=True).get_by_label("Builder").select_option(
         "ring"
@@ -126,7 +126,7 @@ def changes_are_counted_kept_and_undone(page: Page) -> None:
     expect(beginning(page)).to_contain_text(re.compile(r"\d changes from preset “demo”"))
     text = beginning(page).inner_text().partition(".")[0]
     page.reload()
-    expect(beginning(page)).to_contain_text("Your draft is back", timeout=FAST)
+    expect(beginning(page)).to_contain_text("Restored draft", timeout=FAST)
     expect(beginning(page)).to_contain_text(text)
     expect(field(page, "Task", "Steps")).to_have_value("120")
     page.get_by_role("button", name="Reset to 100", exact=True).click()
@@ -164,7 +164,7 @@ def a_spec_is_pasted_and_what_is_none_is_refused(page: Page, address: str) -> No
     paste(page, '{"experiment": "astrology"}')
     expect(page.get_by_text("“experiment” must be one of quality-diversity")).to_be_visible()
     drop(page, "elites.h5", "\u0089HDF")
-    expect(page.get_by_text("elites.h5: An archive or checkpoint (HDF5)")).to_be_visible()
+    expect(page.get_by_text("elites.h5: Archives and checkpoints (HDF5)")).to_be_visible()
 
 
 def a_run_is_cloned(page: Page, address: str) -> None:

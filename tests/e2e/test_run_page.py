@@ -42,12 +42,12 @@ def watch_it_begin(page: Page, run: Written) -> None:
         1, timeout=FAST
     )
     run.begin("worker 1")
-    expect(page.get_by_text("most of a minute on a CPU")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("up to a minute on a CPU")).to_be_visible(timeout=FAST)
     elapsed = page.locator(".activity .quiet")
     before = elapsed.inner_text()
     expect(elapsed).not_to_have_text(before, timeout=FAST)
     run.go_on(1, 4)
-    expect(page.get_by_text("most of a minute on a CPU")).to_have_count(0, timeout=FAST)
+    expect(page.get_by_text("up to a minute on a CPU")).to_have_count(0, timeout=FAST)
 
 
 def follow_the_log(page: Page, run: Written) -> None:
@@ -92,11 +92,11 @@ def see_species_and_the_best_network(page: Page, run: Written) -> None:
 
 
 def see_why_evaluations_diverged(page: Page) -> None:
-    table = page.get_by_role("table", name=re.compile("^Evaluations that diverged"))
+    table = page.get_by_role("table", name=re.compile("^Diverged evaluations"))
     expect(table.get_by_role("row", name=re.compile("Non-finite"))).to_contain_text("24")
     row = table.get_by_role("row", name=re.compile("Supersonic"))
     expect(row).to_contain_text("12")
-    expect(row).to_contain_text("faster than sound")
+    expect(row).to_contain_text("exceeded the speed of sound")
     expect(page.get_by_role("img", name=re.compile("^Diverged so far"))).to_be_visible()
 
 
@@ -185,7 +185,7 @@ def test_a_folding_shows_its_pictures_while_it_learns(idle_page: Page, idle):
     run = idle.product.submit(spec.model_dump(mode="json"))
     page.goto(f"{address}/runs/{run}")
     card = page.get_by_role("region", name="Pictures")
-    expect(card).to_contain_text("once all updates are done", timeout=FAST)
+    expect(card).to_contain_text("when all updates are done", timeout=FAST)
     inked = page.evaluate(
         """() => [...document.querySelectorAll(".fold-choice canvas")].map((canvas) =>
             canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)

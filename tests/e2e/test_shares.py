@@ -32,7 +32,7 @@ def test_a_creature_is_published_looked_at_and_taken_back(
     asked = requests_of(stranger)
     stranger.goto(link)
     expect(stranger.get_by_role("heading", level=1)).to_contain_text("An eel <b>&")
-    expect(stranger.get_by_role("img", name=re.compile("The creature swimming"))).to_be_visible(
+    expect(stranger.get_by_role("img", name=re.compile("The swimming creature"))).to_be_visible(
         timeout=SLOW
     )
     expect(stranger.get_by_text("Ada, Bob").first).to_be_visible()
@@ -62,7 +62,7 @@ def test_an_archive_is_published_and_its_elites_are_opened(
     stranger.keyboard.press("ArrowRight")
     stranger.keyboard.press("Enter")
     stranger.wait_for_url(re.compile("/s/.+/creatures/"))
-    expect(stranger.get_by_role("img", name=re.compile("The creature swimming"))).to_be_visible(
+    expect(stranger.get_by_role("img", name=re.compile("The swimming creature"))).to_be_visible(
         timeout=SLOW
     )
     stay_within(link, asked)

@@ -69,7 +69,7 @@ def open_an_elite(page: Page, address: str, run: str) -> str:
 
 
 def see_it_move(page: Page) -> None:
-    canvas = page.get_by_role("img", name=re.compile("The creature swimming"))
+    canvas = page.get_by_role("img", name=re.compile("The swimming creature"))
     expect(canvas).to_be_visible(timeout=SLOW)
     page.wait_for_timeout(300)
     before = pixels(page)

@@ -52,7 +52,7 @@ def test_every_metric_is_there_and_no_other(address):
     assert told == there
 
 
-@pytest.mark.parametrize("row", rows("How large"), ids=lambda row: row[0])
+@pytest.mark.parametrize("row", rows("Size"), ids=lambda row: row[0])
 def test_sizes_are_those_of_the_estimates(row):
     experiment, name = re.match(r"`(.*)/(.*)`", row[0]).groups()
     presets = {preset.name: preset.spec for preset in EXPERIMENTS[experiment].presets}
@@ -65,4 +65,4 @@ def test_sizes_are_those_of_the_estimates(row):
 def test_times_and_shares_are_those_of_the_code():
     assert f"{PATIENCE:g} s" in TEXT
     assert f"{TAKEN:g} divided by their number" in TEXT
-    assert f"get {TAKEN / 2:g} of its memory" in TEXT
+    assert f"have {TAKEN / 2:g} of its memory" in TEXT

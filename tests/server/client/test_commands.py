@@ -154,6 +154,8 @@ def test_watching_ends_as_the_run_does(command, services, run_id, report, monkey
 @pytest.mark.parametrize("terminal", [False, True])
 def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
     """In a process of its own, as a person would."""
+    # A shell's background jobs ignore SIGINT, and so would every process that they start.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     ours, theirs = os.openpty() if terminal else os.pipe()
     watching = subprocess.Popen(
         [sys.executable, "-m", "microcosmos.cli", "watch", run.id[:8]],

@@ -5,12 +5,9 @@ from typing import Any
 
 import h5py
 import pytest
-from alembic import command
-from sqlalchemy import text
 
 from microcosmos.archive import creature, creature_h5
 from server.attempts.begin import claim
-from server.tables import migrations
 
 
 @pytest.fixture
@@ -133,16 +130,6 @@ def test_elites_of_a_run_are_linked_to_their_parents(api, enter):
     elite = enter(1, 1.25, parent)
     (only,) = api.get(f"creatures/{elite}/ancestors").json()["items"]
     assert (only["creature"], only["kept"]) == (parent, False)
-
-
-def test_creatures_of_before_are_linked_by_the_migration(api, services, bring):
-    parent, child = bring(1), bring(2, 1)
-    with services.sessions.engine.begin() as connection:
-        command.downgrade(migrations.config(connection), "0003")
-        assert connection.execute(text("SELECT count(*) FROM creatures")).scalar_one() == 2
-    migrations.upgrade(services.sessions)
-    migrations.check(services.sessions)
-    assert names(api.get(f"creatures/{parent}/children").json()) == [child]
 
 
 def test_a_creature_as_hdf5_is_always_the_same_bytes_and_all_of_it(api, bring):

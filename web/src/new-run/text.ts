@@ -32,7 +32,7 @@ export const text = {
   ofMemory: (limit: string) => `of ${limit}`,
   evaluations: "Evaluations",
   onWorkers: (workers: number, time: string) => `, ${time} on ${workers} workers`,
-  cost: "Estimated cost",
+  cost: "Cost",
   memoryNeeded: (limit: string, fits: boolean) =>
     `${fits ? `of memory at most; ${limit} available.` : `of memory; only ${limit} available. The server will refuse the run.`}`,
   evaluationsAbout: "evaluations: creatures simulated.",
