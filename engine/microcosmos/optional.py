@@ -1,11 +1,11 @@
-"""Libraries that draw and encode, which not everybody installs."""
+"""Import of optional libraries, which draw and encode."""
 
 from importlib import import_module
 from typing import Any
 
 
 def require(module: str) -> Any:
-    """A module of an optional library."""
+    """Import a module of an optional library; say what installs it if it is missing."""
     try:
         return import_module(module)
     except ImportError as error:

@@ -15,7 +15,10 @@ HEADER = "Microcosmos-Share"
 class SharedView(Protocol):
     """The rows that a share shows, as it shows them. `shares` implements it."""
 
-    listed: bool
+    @property
+    def listed(self) -> bool:
+        """Whether search engines may list the share's page."""
+        ...
 
     def run(self, session: Session, run_id: UUID) -> Run:
         """Return the run as it was; raise `ProblemError` if the share does not hold it."""

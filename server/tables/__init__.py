@@ -67,7 +67,6 @@ __all__ = [
     "Idempotency",
     "InitialCreature",
     "LogEntry",
-    "Origin",
     "Owned",
     "Parent",
     "Plugin",

@@ -31,7 +31,7 @@ def submit_a_small_sweep(page: Page, address: str) -> None:
     page.get_by_label("Period", exact=False).fill("40")
     page.get_by_role("checkbox", name="Steric").check()
     expect(page.get_by_label("Strength", exact=False)).to_have_value("4")
-    expect(page.get_by_label("Estimate")).to_contain_text("8", timeout=FAST)
+    expect(page.get_by_label("Estimate", exact=True)).to_contain_text("8", timeout=FAST)
     page.get_by_role("button", name="Start run").click()
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
 

@@ -94,7 +94,7 @@ def fork_the_chosen(page: Page, address: str, run: str) -> None:
     beginning = page.locator(".base-bar")
     expect(beginning).to_contain_text(f"Starts from {text} of run {run[:8]}.", timeout=FAST)
     assert "cells=" in page.url
-    expect(page.get_by_label("Estimate")).to_be_visible(timeout=FAST)
+    expect(page.get_by_label("Estimate", exact=True)).to_be_visible(timeout=FAST)
     beginning.get_by_role("link", name=text).click()
     expect(chosen(page)).to_have_text(f"{text} selected", timeout=FAST)
 

@@ -34,7 +34,7 @@ SMALL = {
 @pytest.fixture
 def new(idle_page: Page, idle, complaints: list[str]) -> Iterator[Page]:
     idle_page.goto(f"{idle.product.url}/new")
-    expect(idle_page.get_by_label("Estimate")).to_be_visible(timeout=FAST)
+    expect(idle_page.get_by_label("Estimate", exact=True)).to_be_visible(timeout=FAST)
     yield idle_page
     # What the browser notes of a wrong value, which a person is told about.
     complaints[:] = [said for said in complaints if "status of 422" not in said]

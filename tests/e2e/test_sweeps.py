@@ -46,7 +46,9 @@ def test_seeds_and_a_grid_make_a_sweep_that_is_summed_up_while_it_is_computed(
     values.fill("0.05, 0.1")
     expect(card.get_by_role("status")).to_have_text("6 runs in total")
     card.get_by_label("Name of the sweep").fill("Thick and thin")
-    expect(page.get_by_label("Estimate")).to_contain_text("Time of 6 runs", timeout=FAST)
+    expect(page.get_by_label("Estimate", exact=True)).to_contain_text(
+        "Time of 6 runs", timeout=FAST
+    )
     page.get_by_role("button", name="Start 6 runs").click()
 
     expect(page.get_by_role("heading", name="Thick and thin")).to_be_visible(timeout=FAST)

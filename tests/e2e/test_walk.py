@@ -31,7 +31,7 @@ def submit_a_short_run(page: Page, address: str) -> str:
     generations.fill("-1")
     expect(page.get_by_text("Needs at least 1.")).to_be_visible(timeout=FAST)
     generations.fill("30")
-    expect(page.get_by_label("Estimate")).to_contain_text("480", timeout=FAST)
+    expect(page.get_by_label("Estimate", exact=True)).to_contain_text("480", timeout=FAST)
     page.get_by_role("button", name="Start run").click()
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
     return page.url.rpartition("/")[2]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from microcosmos.optional import require
 from microcosmos.viz.raster import THEMES, frame
 from microcosmos.viz.strip import GAP, LETTERS, moments, png, strip
 
@@ -74,4 +75,4 @@ def test_a_strip_that_cannot_be_is_refused(swimming, options, message):
 def test_a_library_that_is_missing_is_named_with_what_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "PIL", None)
     with pytest.raises(ImportError, match=r'need PIL: pip install "microcosmos\[figures\]"'):
-        needed("PIL")
+        require("PIL")

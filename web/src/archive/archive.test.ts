@@ -1,33 +1,9 @@
 import { describe, expect, it } from "vitest";
-import type { Archive } from "../api/types";
-import type { Elite, Elites } from "../store/elites";
 import { axisOf, choicesOf, missingOf, namesOf } from "./axes";
 import { binOf, project } from "./projection";
 import { voronoiLayout } from "./layout";
 import { Delaunay } from "d3-delaunay";
-
-const AXES = [
-  { name: "a", low: 0, high: 1, bins: 2, scale: "linear" },
-  { name: "b", low: 1, high: 100, bins: 4, scale: "log10" },
-  { name: "c", low: 0, high: 1, bins: 3, scale: "linear" },
-] as const;
-
-const recorded = ["a", "b", "c", "turning", "nodes"].map((name) => {
-  return { name, title: name.toUpperCase(), unit: "rad", low: 0.01, high: 1, scale: "linear" };
-});
-
-function archiveOf(count: number, kind: Archive["kind"] = "grid"): Archive {
-  return { kind, axes: AXES.slice(0, count), recorded } as unknown as Archive;
-}
-
-function elite(fitness: number, ...descriptors: number[]): Elite {
-  return { fitness, descriptors, generation: 1, creature: `c${fitness}`, seenAt: 1 };
-}
-
-const NONE = new Map();
-
-const over = (archive: Archive, elites: Elites, names: [string, string], measures = NONE) =>
-  project(elites, [axisOf(names[0], archive, elites, measures), axisOf(names[1], archive, elites, measures)]);
+import { AXES, archiveOf, elite, NONE, over } from "./archive.fixture";
 
 describe("the axes of a map", () => {
   it("are the archive's first two, and fitness where there is but one", () => {
@@ -38,7 +14,7 @@ describe("the axes of a map", () => {
     expect(namesOf(archiveOf(2), "unheard of", "fitness")).toEqual(["a", "fitness"]);
   });
 
-  it("can be everything that was recorded, of which elites carry their descriptors", () => {
+  it("can be everything that was of which elites carry their descriptors", () => {
     expect(choicesOf(archiveOf(2)).at(-1)).toEqual(["fitness", "Fitness"]);
     expect(missingOf(archiveOf(2), ["a", "turning"])).toEqual(["turning"]);
     expect(missingOf(archiveOf(2), ["b", "fitness"])).toEqual([]);

@@ -1,83 +1,8 @@
 import { describe, expect, it } from "vitest";
-import type { Archive, GenerationEvent, Generations, Run } from "../api/types";
-import { type Action, INITIAL_STATE, type State, epochOf, reduce } from "./reducer";
-
-const RUN = {
-  id: "a",
-  created_at: "2026-01-02T00:00:00Z",
-  generation: 2,
-  generations: 10,
-  evaluations: 32,
-  sparkline: [1, 2],
-  spec: { archive: {} },
-} as unknown as Run;
-
-const ARCHIVE: Archive = {
-  generation: 2,
-  kind: "grid",
-  cells: 16,
-  axes: [],
-  recorded: [],
-  measures: {},
-  cell: [0, 5],
-  fitness: [1, 2],
-  descriptors: [
-    [0, 0],
-    [1, 1],
-  ],
-  elite_generation: [1, 2],
-  creature: ["aa", "bb"],
-};
-
-const column = [1, 2];
-
-const GENERATIONS: Generations = {
-  generation: column,
-  qd_score: column,
-  coverage: column,
-  best: column,
-  mean: column,
-  evaluations: [16, 32],
-  diverged: [0, 0],
-  seconds: [1, 2],
-  summary: { inserted: [5, 6], corrected: [null, 0.5] },
-};
-
-function generation(number: number): GenerationEvent {
-  const [evaluations, seconds] = [16 * number, 2 * number];
-  const values = { qd_score: number, coverage: number, best: number, mean: number, diverged: 0 };
-  const summary = { inserted: number, ended: "words", ...(number % 2 === 1 && { late: number }) };
-  return { run: "a", generation: number, evaluations, seconds, ...values, summary };
-}
-
-function elites(told: number, cell: number, creature: string): Action {
-  const columns = { cell: [cell], fitness: [9], descriptors: [[0, 0]], creature: [creature] };
-  const event = { run: "a", generation: told, elite_generation: [told], ...columns };
-  return { type: "elites", event };
-}
-
-const snapshot = (state: State): Action => ({
-  type: "snapshot",
-  run: "a",
-  epoch: epochOf(state, "a"),
-  archive: ARCHIVE,
-  generations: GENERATIONS,
-});
-
-function after(...actions: (Action | ((state: State) => Action))[]): State {
-  return actions.reduce<State>((state, action) => {
-    return reduce(state, typeof action === "function" ? action(state) : action);
-  }, INITIAL_STATE);
-}
-
-const open: Action = { type: "open", run: "a", more: 1 };
+import { type Action, INITIAL_STATE, epochOf, reduce } from "./reducer";
+import { RUN, generation, elites, snapshot, after, open, opened, creatures } from "./state.fixture";
 
 const close: Action = { ...open, more: -1 };
-
-const opened = after({ type: "run", run: RUN }, open, snapshot);
-
-const creatures = (state: State) =>
-  [...state.details.get("a")!.elites].map(([cell, { creature }]) => [cell, creature]);
 
 describe("a snapshot", () => {
   it("keeps what events told of later generations while it was on its way", () => {
