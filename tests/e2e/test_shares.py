@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Request, expect
 
 FAST, SLOW = 10_000, 300_000
 FIRST_S = 300
@@ -93,19 +93,25 @@ def publish(page: Page, title: str, *, listed: bool) -> str:
     return found.input_value()
 
 
-def requests_of(page: Page) -> list[str]:
-    """The paths that a page asks for from now on."""
-    paths: list[str] = []
-    page.on("request", lambda request: paths.append(urlsplit(request.url).path))
-    return paths
+def requests_of(page: Page) -> list[tuple[str, str | None]]:
+    """The paths that a page asks for from now on, each with the share that it names."""
+    asked: list[tuple[str, str | None]] = []
+
+    def note(request: Request) -> None:
+        path = urlsplit(request.url).path
+        asked.append((path, request.headers.get("microcosmos-share")))
+
+    page.on("request", note)
+    return asked
 
 
-def stay_within(link: str, asked: list[str]) -> None:
-    """The page of a share asks for nothing but what was shared, and its own script."""
+def stay_within(link: str, asked: list[tuple[str, str | None]]) -> None:
+    """The page of a share asks for its own script, and for data through the share alone."""
     slug = link.rpartition("/")[2]
     own = re.compile(rf"/s/{slug}(/.*)?|/assets/.+|/favicon.svg|/api/v1/shares/{slug}(/.*)?")
     assert asked, "it was listened to"
-    assert [path for path in asked if not own.fullmatch(path)] == []
+    others = [path for path, share in asked if share != slug and not own.fullmatch(path)]
+    assert others == []
 
 
 def tell_other_sites(stranger: Page, link: str) -> None:
@@ -146,7 +152,7 @@ def meet_it_in_the_commons(stranger: Page, address: str, link: str) -> None:
     tile = stranger.get_by_role("link", name=re.compile("An eel <b>&"))
     expect(tile).to_have_attribute("href", urlsplit(link).path)
     public = re.compile("/commons|/assets/.+|/favicon.svg|/api/v1/(commons|shares/.+)")
-    assert [path for path in asked if not public.fullmatch(path)] == []
+    assert [path for path, _ in asked if not public.fullmatch(path)] == []
 
 
 def take_back(page: Page, address: str, title: str) -> None:
