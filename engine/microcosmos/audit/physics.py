@@ -123,16 +123,16 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Found, Rest]:
     def run(start, inputs):
         begun = replace(driven, start=start, inputs=inputs)
         end, watched = search.simulate(begun, partial(search.watch, driven.world))
-        values = search.motion_of(task, begun, end, watched.seen)
-        path = jnp.sum(watched.seen.pace)
-        way = watched.seen.centre[-1] - world.centre(driven.world, start)
+        values = search.motion_of(task, begun, end, watched.observed)
+        path = jnp.sum(watched.observed.pace)
+        way = watched.observed.centre[-1] - world.centre(driven.world, start)
         return (
             way,
             path,
             jnp.max(watched.mach),
             values,
             search.impulse(watched),
-            watched.seen.rest,
+            watched.observed.rest,
         )
 
     program = jax.jit(run, compiler_options=compiler_options())

@@ -89,6 +89,7 @@ def test_a_wrong_spec_is_refused_with_its_field(run, tmp_path):
 def test_evolve_sets_fields_and_makes_the_folder_of_its_file(tmp_path, monkeypatch):
     carried = []
     monkeypatch.setattr(run_command, "carry_on", lambda *given: carried.append(given) or True)
+    monkeypatch.setattr("microcosmos.device.prepare", lambda **_: None)  # JAX runs already.
     (tmp_path / "spec.json").write_text(json.dumps(SPEC))
     out = tmp_path / "new" / "folder" / "x.h5"
     command = ["evolve", str(tmp_path / "spec.json"), "--out", str(out)]

@@ -40,7 +40,7 @@ def record() -> dict[str, Any]:
         "note": None,
         "status": "running",
         "wish": None,
-        "waiting": None,
+        "waiting_reason": None,
         "spec": {"experiment": "quality-diversity", "seed": 4},
         "progress": 0.5,
         "eta_seconds": 75.0,

@@ -19,7 +19,7 @@ SWEEP = {
     "name": None,
     "cases": [],
     "total": 6,
-    "standing": {"queued": 6},
+    "status_counts": {"queued": 6},
 }
 
 

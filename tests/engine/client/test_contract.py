@@ -22,7 +22,7 @@ SWEEP = {
         {"values": {"world.viscosity": 0.2}, "runs": ["r3"]},
     ],
     "total": 3,
-    "standing": {"finished": 3},
+    "status_counts": {"finished": 3},
 }
 
 

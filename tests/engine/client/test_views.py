@@ -81,7 +81,11 @@ def test_how_far_and_how_long_stand_on_one_line_of_a_usual_terminal(record):
 
 
 def test_trouble_and_reasons_are_shown(record):
-    waits = record | {"status": "queued", "waiting": "no worker is free", "eta_seconds": None}
+    waits = record | {
+        "status": "queued",
+        "waiting_reason": "no worker is free",
+        "eta_seconds": None,
+    }
     text = shown(Standing(waits, {}, "No server answers."))
     assert "queued: no worker is free" in text
     assert "No server answers." in text
@@ -205,7 +209,7 @@ def test_a_sweep_is_watched_through_an_outage(fake, monkeypatch):
     def read(path):
         if (standing := left.pop(0)) is None:
             raise NoAnswer("No server answers.")
-        return sweep | {"standing": standing}
+        return sweep | {"status_counts": standing}
 
     connection = fake({}).client.connection
     monkeypatch.setattr(connection, "read", read)

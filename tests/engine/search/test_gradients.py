@@ -11,7 +11,7 @@ from microcosmos import spec
 from microcosmos.build import build_task
 from microcosmos.search import gradients
 
-STEPS = 100
+STEPS = 200
 OF = ("fitness", "path_length", "bending_effort", "stretching_effort", "power", "symmetry")
 SIZES = (1e-3, 1e-4, 1e-5, 1e-6)
 """Of finite differences; the best counts: stiffnesses matter little, a path's length bends

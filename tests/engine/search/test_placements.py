@@ -72,6 +72,5 @@ def test_gradients_are_of_the_mean(task, network, float64):
     np.testing.assert_allclose(whole(values)[0], np.mean(each), rtol=1e-10)
 
 
-def test_one_placement_is_what_names_had_before_there_were_several():
-    assert "placements" not in spec.identity(spec.Energy())
+def test_a_task_of_one_placement_has_no_axis_of_placements():
     assert build_task(spec.Scene(world=spec.World(energy=spec.Energy()))).placements is None

@@ -52,8 +52,3 @@ def test_limits_hold_without_a_fluid_too(float64):
         jnp.full((1, 7), 1.0), jnp.full((1, 8), 1.0)))))  # fmt: skip
     way = np.hypot(*(np.asarray(end.positions) - np.asarray(start.positions)).T)
     assert 0.0099 < way.max() <= 0.01 + 1e-12
-
-
-def test_a_world_without_a_fluid_has_another_name_and_one_with_it_the_same():
-    assert "fluid" not in spec.identity(spec.World())
-    assert spec.identity(spec.World(fluid=False))["fluid"] is False
