@@ -207,7 +207,7 @@ def nothing_is_left_behind(product: Installation, run: Run) -> None:
     folder = product.folder / "artifacts"
     files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     assert files == {row[0] for row in rows(product, "artifacts", column="path")}
-    used = "SELECT creature FROM elites UNION SELECT creature FROM origins "
+    used = "SELECT creature FROM elites UNION SELECT creature FROM initial_creatures "
     used += "UNION SELECT parent FROM parents"
     assert not rows(product, f"creatures WHERE sha256 NOT IN ({used})")
 

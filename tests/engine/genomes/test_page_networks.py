@@ -12,7 +12,7 @@ WEB = Path(__file__).parents[3] / "web"
 
 @pytest.mark.optimised
 def test_the_fixture_of_the_page_is_what_the_engine_computes_now():
-    kept = json.loads((WEB / "test" / "fixtures" / "networks.json").read_text())
+    kept = json.loads((WEB / "src" / "decode" / "networks.fixture.json").read_text())
     made = json.loads(
         json.dumps(runpy.run_path(str(WEB / "scripts" / "networks.py"))["cases"]())
     )
