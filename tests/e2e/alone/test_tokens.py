@@ -119,7 +119,7 @@ def stay_within_what_it_may(page: Page, place: Installation, first: str) -> None
     expect(row.get_by_role("link", name=re.compile("^Clone"))).to_be_visible()
     expect(row.get_by_role("button")).to_have_count(0)
     page.goto(f"{place.url}/runs/{theirs}")
-    expect(page.get_by_text("Only admin or an admin may change it.")).to_be_visible()
+    expect(page.get_by_text("Only admin or an admin can change it.")).to_be_visible()
     expect(page.get_by_role("button", name=re.compile("^(Cancel|Pause|Rename)"))).to_have_count(
         0
     )
