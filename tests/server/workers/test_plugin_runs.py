@@ -96,19 +96,19 @@ def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sw
         "steps": 20,
         "updates": 2,
     }
-    for spec, part in ((swim, "plugin"), (code, "control"), (fold, "body")):
+    for spec, part in ((swim, "plugins"), (code, "control"), (fold, "body")):
         assert api.post("runs/estimate", json=spec).status_code == 200, part
         answer = api.post("runs", json=spec)
         assert answer.status_code == 202, answer.text
         found = answer.json()["spec"][part]
-        version = found["mine.wiggler"] if part == "plugin" else found["plugin"]
+        version = found["mine.wiggler"] if part == "plugins" else found["plugin"]
         assert version["source"] == A
         assert (
             api.get(f"runs/{answer.json()['id']}")
             .json()["waiting_reason"]
             .startswith("A worker is")
         )
-    assert "plugin" not in api.post("runs", json=sweep).json()["spec"]
+    assert "plugins" not in api.post("runs", json=sweep).json()["spec"]
 
 
 def test_a_run_with_a_plugin_is_extended_as_it_is(api, services, have, mine):

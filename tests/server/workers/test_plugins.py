@@ -13,7 +13,7 @@ def test_what_workers_have_is_among_the_choices_of_the_forms(api, services, have
     search = after["quality-diversity"]
     fitness = search["$defs"]["Task"]["properties"]["fitness"]
     assert fitness["enum"][-2:] == ["displacement+energy", "mine.straight"]
-    assert fitness["plugin"]["mine.straight"]["workers"] == ["worker"]
+    assert fitness["plugins"]["mine.straight"]["workers"] == ["worker"]
     settings = search["$defs"]["Task"]["properties"]["plugin"]["parts"]["mine.straight"]
     assert settings["properties"]["settings"]["properties"] == STRICT["properties"]
     axis = search["$defs"]["Descriptor"]["properties"]
