@@ -24,7 +24,7 @@ log = logging.getLogger(__name__)
 
 EVOLVE = "worker.jobs.evolve"
 RENDER = "worker.jobs.render"
-WITH_PLUGINS = "-plugins-"
+PLUGINS = "-plugins-"
 """Between the name of a queue and the hash of the plug-ins that its workers must have."""
 TIMEOUTS = {AUDIT: 3600, MEASUREMENT: 3600}
 RENDER_SECONDS = 600
@@ -156,13 +156,13 @@ class Jobs:
         if not plugin_versions:
             return queue
         name = sha256("".join(sorted(plugin_versions)).encode()).hexdigest()[:16]
-        return self._queue(f"{queue.name}{WITH_PLUGINS}{name}")
+        return self._queue(f"{queue.name}{PLUGINS}{name}")
 
     def evolving_anywhere(self) -> list[Queue]:
         """Return all queues of runs that Redis knows."""
         found = [as_text(name) for name in self.redis.smembers(Queue.redis_queues_keys)]  # pyright: ignore
         names = [name.removeprefix(Queue.redis_queue_namespace_prefix) for name in found]
-        ours = tuple(queue.name + WITH_PLUGINS for queue in self.evolving)
+        ours = tuple(queue.name + PLUGINS for queue in self.evolving)
         special = sorted(name for name in names if name.startswith(ours))
         return [*self.evolving, *map(self._queue, special)]
 

@@ -415,7 +415,7 @@ export interface paths {
         };
         /**
          * List Experiments
-         * @description With what live workers have of users' own among the choices.
+         * @description Return the experiments, with the plug-ins of live workers among the choices.
          */
         get: operations["list_experiments_api_v1_experiments_get"];
         put?: never;
