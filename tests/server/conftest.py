@@ -14,6 +14,8 @@ import reports
 from installation import Installation, empty_redis, own_postgresql, own_redis, running
 
 from microcosmos.spec import EXPERIMENTS, parse
+from server.attempts.begin import claim
+from server.attempts.claim import Claim
 from server.runs.submission import submit
 from server.services.services import Services
 from server.settings import Settings
@@ -127,6 +129,23 @@ def run_id(services, spec) -> UUID:
     """A queued run."""
     demo = EXPERIMENTS["quality-diversity"].presets[0].spec
     return submit(services, demo)[0].id
+
+
+@pytest.fixture
+def attempt(services, run_id) -> Claim:
+    """A worker's claim on the queued run."""
+    return claim(services, run_id, "worker")
+
+
+@pytest.fixture
+def record(services, run_id, request) -> Callable[..., str | None]:
+    """Records a generation of the queued run, as `attempt`; takes what `report` does."""
+
+    def record(*said: Any, seconds: float = 1.0, **more: Any) -> str | None:
+        held = request.getfixturevalue("attempt")
+        return held.record(reports.report(*said, **more), seconds)
+
+    return record
 
 
 @pytest.fixture

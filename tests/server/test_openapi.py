@@ -52,11 +52,12 @@ def database() -> str:
 
 
 @pytest.fixture
-def known(services, spec, run_id, sweep_id, report, identity, table) -> dict[str, list[str]]:
+def known(
+    services, spec, run_id, sweep_id, report, identity, table, attempt, record
+) -> dict[str, list[str]]:
     """What paths may name so that there is something to answer: by the parameter."""
-    attempt = claim(services, run_id, "worker")
     for generation in (1, 2):
-        attempt.record(report(generation, {generation: 1.0}), 1.0)
+        record(generation, {generation: 1.0})
     attempt.save(2, checkpoint(spec))
     claim(services, sweep_id, "worker").record(table(1, {"number": 1, "speed": 0.5}), 1.0)
     kept = creature.document(identity(3), None, None)

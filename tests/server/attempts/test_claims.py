@@ -63,8 +63,7 @@ def test_a_silent_workers_run_is_taken_and_the_woken_one_is_fenced(services, run
     assert count(services, Generation) == 1
 
 
-def test_a_generation_is_recorded_once_or_not_at_all(services, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_a_generation_is_recorded_once_or_not_at_all(services, report, attempt, record):
     broken = report(1, {1: 1.0})
     broken.elites[0].creature = "00" * 32  # Of which there is no creature.
     broken.elites[0].identity = None
@@ -72,7 +71,7 @@ def test_a_generation_is_recorded_once_or_not_at_all(services, run_id, report):
         attempt.record(broken, 1.0)
     assert count(services, Generation) == count(services, Elite) == 0
     assert attempt.seconds == 0
-    attempt.record(report(1, {1: 1.0}), 1.0)
+    record(1, {1: 1.0})
 
 
 def test_numbers_that_are_not_finite_are_recorded_as_none(services, run_id, report, row):
@@ -136,9 +135,8 @@ def test_resuming_a_run_that_needs_no_leave_gives_none(services, run_id):
 
 @pytest.mark.parametrize("end", [Claim.pause, lambda held: held.wait_for_override("why")])
 def test_a_cancellation_that_comes_while_a_pause_is_carried_out_holds(
-    services, run_id, row, end
+    services, run_id, row, end, attempt
 ):
-    attempt = claim(services, run_id, "worker")
     with services.sessions.write.begin() as session:
         lifecycle.cancel(session, session.get_one(Run, run_id))
     end(attempt)
@@ -147,12 +145,11 @@ def test_a_cancellation_that_comes_while_a_pause_is_carried_out_holds(
 
 
 def test_a_generation_that_was_committed_unnoticed_is_not_written_again(
-    services, run_id, report, row
+    services, row, attempt, record
 ):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {1: 1.0}), 2.0)
+    record(1, {1: 1.0}, seconds=2.0)
     attempt.seconds = 0.0  # As after a commit whose answer was lost.
-    attempt.record(report(1, {1: 1.0}), 2.0)
+    record(1, {1: 1.0}, seconds=2.0)
     assert count(services, Generation) == count(services, Elite) == 1
     assert (row().seconds, attempt.seconds) == (2.0, 2.0)
 

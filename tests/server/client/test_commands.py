@@ -111,9 +111,8 @@ def test_what_cannot_be_meant_is_2(command, arguments):
     assert "Usage" in command(*arguments, code=2).stderr
 
 
-def test_a_file_is_pulled_under_the_runs_name(command, services, run_id, report, tmp_path):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+def test_a_file_is_pulled_under_the_runs_name(command, run_id, tmp_path, attempt, record):
+    record(1)
     attempt.save(1, b"the archive")
     pulled = command("pull", str(run_id), "--out", str(tmp_path)).stdout.strip()
     assert pulled == str(tmp_path / f"quality-diversity-{str(run_id)[:8]}.h5")
@@ -134,9 +133,8 @@ def test_creatures_are_brought_with_their_hashes(command, client, identity, tmp_
     assert client.creature(file["sha256"]).identity == file["identity"]
 
 
-def test_watching_ends_as_the_run_does(command, services, run_id, report, monkeypatch):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+def test_watching_ends_as_the_run_does(command, run_id, monkeypatch, attempt, record):
+    record(1)
     left = [attempt.finish]
     show = views.Lines.show
 

@@ -11,7 +11,7 @@ def levels(findings):
     return [finding.level for finding in findings]
 
 
-def test_a_server_without_workers_is_told(address, services):
+def test_a_server_without_workers_is_told(address):
     found = list(server(address, None))
     assert levels(found) == ["ok", "ok", "warning"]
     assert found[0].found.endswith(f"answers at {address}")

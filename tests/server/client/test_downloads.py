@@ -63,9 +63,7 @@ def test_a_download_that_is_given_up_is_taken_up_later(relay, run_id, archive, t
     assert f"bytes={had}-".encode() in b"".join(relay.asked)
 
 
-def test_a_file_that_changed_meanwhile_is_fetched_anew(
-    client, services, run_id, archive, report, tmp_path
-):
+def test_a_file_that_changed_meanwhile_is_fetched_anew(client, run_id, archive, tmp_path):
     old = hashlib.sha256(b"an older checkpoint").hexdigest()
     (tmp_path / f".run.h5.{old}.part").write_bytes(b"an older")
     run = client.run(str(run_id))

@@ -15,7 +15,6 @@ from microcosmos.client import (
     connection,
     streaming,
 )
-from server.attempts.begin import claim
 
 
 def test_a_request_whose_answer_is_lost_is_made_again_and_counts_once(
@@ -41,14 +40,13 @@ def test_what_would_be_done_twice_is_not_sent_again(relay, run, hasty):
     assert sum(b"/extend" in ask for ask in relay.asked) == 1
 
 
-def test_events_go_on_behind_the_last_one(relay, services, run_id, report):
+def test_events_go_on_behind_the_last_one(relay, run_id, record):
     client = Client(relay.url)
-    attempt = claim(services, run_id, "worker")
     found = streaming.events(client.connection, str(run_id))
     assert next(found).kind == "beat"  # From here on.
     heard: list[int] = []
     for generation in range(1, 7):
-        attempt.record(report(generation), float(generation))
+        record(generation, seconds=float(generation))
         if generation == 3:
             relay.cut()
         while generation not in heard:

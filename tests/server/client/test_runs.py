@@ -97,10 +97,9 @@ def test_an_estimate_queues_nothing(client, spec):
     assert list(client.runs()) == []
 
 
-def test_curves_are_columns(run, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, summary={"hit_rate": 0.5}), 1.0)
-    attempt.record(report(2), 2.0)
+def test_curves_are_columns(run, record):
+    record(1, summary={"hit_rate": 0.5})
+    record(2, seconds=2.0)
     curves = run.curves()
     assert curves["generation"].tolist() == [1, 2]
     assert curves["qd_score"].tolist() == [10.0, 20.0]
@@ -109,10 +108,9 @@ def test_curves_are_columns(run, services, run_id, report):
     assert any("Submitted" in entry["text"] for entry in run.log())
 
 
-def test_an_archive_is_columns_and_creatures(run, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.25}), 1.0)
-    attempt.record(report(2, {5: 3.0}, measures={"turning": 0.5}), 1.0)
+def test_an_archive_is_columns_and_creatures(run, record):
+    record(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.25})
+    record(2, {5: 3.0}, measures={"turning": 0.5})
     archive = run.archive()
     assert archive.cell.tolist() == [3, 5]
     assert archive.fitness.tolist() == [2.0, 3.0]
@@ -145,7 +143,7 @@ def test_a_table_comes_as_rows(client, services, sweep_id, table):
         client.run(str(sweep_id)).archive()
 
 
-def test_workers_and_kinds_of_run_are_told(client, services, run_id):
+def test_workers_and_kinds_of_run_are_told(client, run_id):
     assert client.workers() == []
     assert {one["experiment"] for one in client.experiments()} >= {"gaits", "folding"}
 

@@ -27,9 +27,8 @@ class Kept:
 
 
 @pytest.fixture
-def worked(services, run_id, report):
+def worked(attempt, record):
     """The run goes on by a generation whenever it is shown, until its third."""
-    attempt = claim(services, run_id, "worker")
     left = [1, 2, 3, None]
 
     def go_on(standing: polling.Standing) -> None:
@@ -37,7 +36,7 @@ def worked(services, run_id, report):
         if left and reached == 4 - len(left):
             generation = left.pop(0)
             if generation:
-                attempt.record(report(generation), float(generation))
+                record(generation, seconds=float(generation))
             else:
                 attempt.finish()
 
@@ -100,10 +99,9 @@ def test_what_was_never_there_is_an_error_at_once():
         next(polling.follow(Client("127.0.0.1:9").connection, "x"))
 
 
-def test_a_rewound_run_forgets_what_came_after(client, services, run, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_a_rewound_run_forgets_what_came_after(client, services, run, run_id, attempt, record):
     for generation in (1, 2, 3):
-        attempt.record(report(generation), 1.0)
+        record(generation)
         if generation == 1:
             attempt.save(1, b"state")
     found = polling.follow(client.connection, run.id)

@@ -7,7 +7,6 @@ import h5py
 import pytest
 
 from microcosmos.archive import creature, creature_h5
-from server.attempts.begin import claim
 
 
 @pytest.fixture
@@ -98,9 +97,8 @@ def test_children_are_counted_and_named_once_each(api, bring):
 
 
 @pytest.fixture
-def enter(api, services, run_id, report):
+def enter(api, report, attempt):
     """Has a creature enter the archive with a fitness and a parent; answers its name."""
-    attempt = claim(services, run_id, "worker")
     assert attempt is not None
 
     def enter(generation: int, fitness: float, parent: str) -> str:

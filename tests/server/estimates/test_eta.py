@@ -127,7 +127,7 @@ def test_a_creature_that_is_refined_is_drawn(api, identity):
     assert [(body["name"], body["nodes"]) for body in found["bodies"]] == [("chain", 16)]
 
 
-def test_a_long_body_is_thinned(api, spec):
+def test_a_long_body_is_thinned(api):
     world = {"width": 2048, "height": 2048}
     walk = {"builder": "walk", "nodes": 4000, "deviation": 0.05}
     folds = {"experiment": "folding", "world": world, "body": walk, "memory": 100}

@@ -70,10 +70,9 @@ def test_who_listens_is_told_what_happens_to_a_run(address, services, run_id, re
     assert [("spec" in data[i]) for i in (0, 3, 4)] == [True, False, True]
 
 
-def test_taking_a_run_up_again_rewinds(address, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_taking_a_run_up_again_rewinds(address, services, run_id, attempt, record):
     for generation in (1, 2, 3):
-        attempt.record(report(generation), 1.0)
+        record(generation)
         if generation == 2:
             attempt.save(2, b"state")
     with stream(address) as found:
@@ -110,11 +109,10 @@ def test_the_last_word_on_a_run_is_how_it_stands(services, run_id, monkeypatch):
     assert told == ["running", "queued", "running"]
 
 
-def test_what_has_not_changed_is_told_once(services, run_id, report, monkeypatch):
+def test_what_has_not_changed_is_told_once(services, run_id, monkeypatch, record):
     told = []
-    attempt = claim(services, run_id, "worker")
     monkeypatch.setattr(services.events, "publish", lambda *event: told.append(event))
-    attempt.record(report(1), 1.0)
+    record(1)
     told.clear()
     announce(services, run_id, without=["spec"])
     assert len(told) == 1

@@ -7,17 +7,16 @@ import pytest
 from server.attempts.begin import claim
 
 
-def end(services, run_id, report, generations, summary=None):
+def end(generations, summary, attempt, record=None):
     """Carry a run out up to a generation and finish it."""
-    attempt = claim(services, run_id, "worker")
     for generation in range(attempt.generation + 1, generations + 1):
-        attempt.record(report(generation, {generation: 1.0}, summary=summary), 1.0)
+        record(generation, {generation: 1.0}, summary=summary)
     attempt.save(generations, b"state after %d" % generations)
     attempt.finish()
 
 
 def test_a_finished_run_is_queued_again_and_goes_on_where_it_ended(
-    api, services, run_id, report, flush, row
+    api, services, run_id, report, flush
 ):
     end(services, run_id, report, 400)
     flush()
@@ -55,7 +54,7 @@ def extended(api, run_id, generations=1):
     return api.post(f"runs/{run_id}/extend", json={"generations": generations})
 
 
-def test_only_a_finished_run_is_extended(api, services, run_id):
+def test_only_a_finished_run_is_extended(api, run_id):
     answer = extended(api, run_id)
     assert answer.status_code == 409
     assert answer.json()["detail"] == "to extend a run it must be finished; it is queued"

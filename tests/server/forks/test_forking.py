@@ -14,12 +14,11 @@ from server.tables import InitialCreature, Run
 
 
 @pytest.fixture
-def ended(services, run_id, report):
+def ended(run_id, attempt, record):
     """A run of three generations: cells 0 to 2, the first taken again by a later elite."""
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {0: 1.0, 1: 2.0}), 1.0)
-    attempt.record(report(2, {0: 3.0}, (0.5, 0.5)), 1.0)
-    attempt.record(report(3, {2: 4.0}, (0.9, 0.9)), 1.0)
+    record(1, {0: 1.0, 1: 2.0})
+    record(2, {0: 3.0}, (0.5, 0.5))
+    record(3, {2: 4.0}, (0.9, 0.9))
     attempt.finish()
     return run_id
 
@@ -121,12 +120,11 @@ def test_the_same_key_is_the_same_fork(fork):
     assert fork({"cells": [2]}, headers=headers).status_code == 422
 
 
-def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {0: 1.0}), 1.0)
+def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, run_id, attempt, record):
+    record(1, {0: 1.0})
     asked = {"json": {"from": {"archive": True}}, "headers": {"Idempotency-Key": "a key"}}
     first = api.post(f"runs/{run_id}/fork", **asked)
-    attempt.record(report(2, {1: 2.0}), 1.0)
+    record(2, {1: 2.0})
     attempt.finish()
     second = api.post(f"runs/{run_id}/fork", **asked)
     assert (first.status_code, second.status_code) == (202, 200)

@@ -67,8 +67,7 @@ def test_runs_are_enqueued_in_the_order_in_which_they_came(services, api, spec, 
     assert enqueued(services) == ids
 
 
-def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, report):
-    attempt = claim(services, run_id, "worker")
+def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, record):
     flush()
     reconcile(services)
     assert (row().status, enqueued(services)) == ("running", [])
@@ -76,7 +75,7 @@ def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, repo
     reconcile(services)
     assert (row().status, enqueued(services)) == ("queued", [str(run_id)])
     with pytest.raises(ClaimLost):
-        attempt.record(report(1), 1.0)
+        record(1)
 
 
 def test_three_silent_workers_end_a_run(services, run_id, row):
@@ -98,8 +97,7 @@ def test_a_wish_to_a_dead_worker_is_granted(services, api, run_id, row, action, 
     assert (row().finished_at is None) == (status == "paused")
 
 
-def test_who_does_not_obey_a_cancellation_loses_the_run(services, api, run_id, row):
-    attempt = claim(services, run_id, "worker")
+def test_who_does_not_obey_a_cancellation_loses_the_run(services, api, run_id, row, attempt):
     api.post(f"runs/{run_id}/cancel")
     reconcile(services)
     assert row().status == "running"

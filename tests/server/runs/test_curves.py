@@ -4,18 +4,15 @@ import json
 
 import pytest
 
-from server.attempts.begin import claim
-
 
 @pytest.fixture
-def told(services, run_id, report):
+def told(record):
     """Twelve generations, of which every fifth tells a score."""
-    attempt = claim(services, run_id, "worker")
     for generation in range(1, 13):
         summary = {"inserted": generation, "ended": "never", "fine": True}
         if generation % 5 == 0:
             summary["corrected"] = 0.5 * generation
-        attempt.record(report(generation, summary=summary), 1.0)
+        record(generation, summary=summary)
 
 
 def test_all_generations_tell_the_numbers_of_their_summaries(api, run_id, told):
@@ -33,8 +30,8 @@ def test_thinned_curves_lose_nothing_that_is_told_now_and_then(api, run_id, told
     assert curves["summary"] == {"inserted": [1, 7, 12], "corrected": [None, 2.5, 5.0]}
 
 
-def test_runs_that_tell_nothing_else_have_no_other_columns(api, services, run_id, report):
-    claim(services, run_id, "worker").record(report(1), 1.0)
+def test_runs_that_tell_nothing_else_have_no_other_columns(api, run_id, record):
+    record(1)
     assert api.get(f"runs/{run_id}/generations").json()["summary"] == {}
 
 
@@ -44,9 +41,8 @@ def test_a_generation_is_told_with_its_summary(services, run_id, told):
     assert [event["summary"].get("corrected") for event in events[3:6]] == [None, 2.5, None]
 
 
-def test_a_run_that_ended_early_is_done(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, summary={"ended": "fitness after generation 1"}), 1.0)
+def test_a_run_that_ended_early_is_done(api, run_id, attempt, record):
+    record(1, summary={"ended": "fitness after generation 1"})
     attempt.save(1, b"the archive")
     attempt.finish()
     run = api.get(f"runs/{run_id}").json()

@@ -6,7 +6,6 @@ from uuid import UUID, uuid4
 import pytest
 from sqlalchemy import update
 
-from server.attempts.begin import claim
 from server.tables import Run
 
 pytestmark = pytest.mark.postgresql
@@ -265,8 +264,7 @@ def test_a_cursor_may_name_any_value_that_there_can_be(api):
             assert (answer.status_code, answer.json()) == (200, {"items": [], "next": None})
 
 
-def test_a_run_that_is_at_work_keeps_what_people_said_of_it(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_a_run_that_is_at_work_keeps_what_people_said_of_it(api, run_id, record):
     api.patch(f"runs/{run_id}", json={"name": "mine"})
-    attempt.record(report(1, {1: 1.0}), 1.0)
+    record(1, {1: 1.0})
     assert api.get(f"runs/{run_id}").json()["name"] == "mine"

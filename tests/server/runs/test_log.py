@@ -49,10 +49,9 @@ def test_a_run_that_goes_well_is_told_from_end_to_end(services, run_id, report, 
     assert submitted.startswith("Submitted: quality-diversity")
 
 
-def test_of_many_checkpoints_the_first_and_the_last_stay(services, run_id, report, texts):
-    attempt = claim(services, run_id, "worker")
+def test_of_many_checkpoints_the_first_and_the_last_stay(texts, attempt, record):
     for generation in range(1, 8):
-        attempt.record(report(generation), 1.0)
+        record(generation)
         attempt.save(generation, b"archive %d" % generation)
         attempt.warn("it is crowded")
     saved = [text for text in texts() if text.startswith("Checkpoint")]
@@ -61,14 +60,13 @@ def test_of_many_checkpoints_the_first_and_the_last_stay(services, run_id, repor
 
 
 def test_a_failed_attempt_keeps_its_traceback_and_the_next_says_where_it_goes_on(
-    services, run_id, report, log
+    services, run_id, log, attempt, record
 ):
-    first = claim(services, run_id, "worker")
     for generation in (1, 2, 3):
-        first.record(report(generation), 1.0)
+        record(generation)
         if generation == 1:
-            first.save(1, b"the archive")
-    first.fail("Traceback:\nZeroDivisionError: twice nothing")
+            attempt.save(1, b"the archive")
+    attempt.fail("Traceback:\nZeroDivisionError: twice nothing")
     claim(services, run_id, "another")
     assert log()[-4:] == [
         (
@@ -89,10 +87,9 @@ def test_the_third_attempt_without_a_checkpoint_is_told_as_the_last(services, ru
 
 
 def test_what_people_ask_is_told_when_it_is_asked_and_when_it_is_done(
-    services, run_id, report, api, texts
+    run_id, api, texts, attempt, record
 ):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+    record(1)
     attempt.save(1, b"the archive")
     api.post(f"runs/{run_id}/pause")
     attempt.pause()
@@ -118,7 +115,7 @@ def test_a_job_that_died_is_told(services, run_id, log):
     assert ("error", 1, "Attempt 1 ended badly: killed by signal 9") in log()
 
 
-def test_a_refused_wish_leaves_no_entry(services, run_id, api, texts):
+def test_a_refused_wish_leaves_no_entry(run_id, api, texts):
     before = texts()
     assert api.post(f"runs/{run_id}/resume").status_code == 409
     assert texts() == before

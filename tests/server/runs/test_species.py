@@ -5,15 +5,13 @@ import base64
 import pytest
 
 from microcosmos.spec import EXPERIMENTS, targets
-from server.attempts.begin import claim
 from server.runs.submission import submit
 
 
-def test_species_are_told_generation_by_generation(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, summary={"species": "0:10 3:6"}), 1.0)
-    attempt.record(report(2, summary={"device_seconds": 1.0}), 1.0)
-    attempt.record(report(3, summary={"species": "3:16"}), 1.0)
+def test_species_are_told_generation_by_generation(api, run_id, record):
+    record(1, summary={"species": "0:10 3:6"})
+    record(2, summary={"device_seconds": 1.0})
+    record(3, summary={"species": "3:16"})
     assert api.get(f"runs/{run_id}/species").json() == {
         "generation": [1, 3],
         "number": [[0, 3], [3]],
@@ -23,19 +21,16 @@ def test_species_are_told_generation_by_generation(api, services, run_id, report
     assert thin["generation"] == [1, 3]
 
 
-def test_a_run_that_tells_no_species_has_none(api, services, run_id, report):
-    claim(services, run_id, "worker").record(report(1), 1.0)
+def test_a_run_that_tells_no_species_has_none(api, run_id, record):
+    record(1)
     assert api.get(f"runs/{run_id}/species").json()["generation"] == []
 
 
-def test_reasons_of_divergence_are_added_up_where_curves_are_thinned(
-    api, services, run_id, report
-):
-    attempt = claim(services, run_id, "worker")
+def test_reasons_of_divergence_are_added_up_where_curves_are_thinned(api, run_id, record):
     for generation in range(1, 11):
         told = {"diverged: non-finite": 2, "inserted": generation}
         told |= {"diverged: supersonic": 1} if generation == 4 else {}
-        attempt.record(report(generation, summary=told), 1.0)
+        record(generation, summary=told)
     columns = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()["summary"]
     assert sum(filter(None, columns["diverged: non-finite"])) == 20
     assert sum(filter(None, columns["diverged: supersonic"])) == 1

@@ -54,11 +54,10 @@ def test_what_the_state_forbids_is_a_conflict_that_says_why(api, services, run_i
         assert "it is finished" in answer.json()["detail"]
 
 
-def test_progress_is_what_was_recorded(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_progress_is_what_was_recorded(api, run_id, attempt, record):
     attempt.use("a device")
     for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
-        attempt.record(report(generation), seconds)
+        record(generation, seconds=seconds)
     run = api.get(f"runs/{run_id}").json()
     assert run["generation"] == 3
     assert run["progress"] == 3 / run["generations"]
@@ -70,27 +69,25 @@ def test_progress_is_what_was_recorded(api, services, run_id, report):
 
 
 def test_of_a_run_that_is_done_the_rate_is_that_of_all_but_the_first_generation(
-    api, services, run_id, report
+    api, run_id, attempt, record
 ):
-    attempt = claim(services, run_id, "worker")
     for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
-        attempt.record(report(generation), seconds)
+        record(generation, seconds=seconds)
     attempt.finish()
     assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 32 / 8
 
 
-def test_a_single_generation_has_a_rate_with_its_compilation(api, services, run_id, report):
+def test_a_single_generation_has_a_rate_with_its_compilation(api, run_id, record):
     assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
-    claim(services, run_id, "worker").record(report(1), 20.0)
+    record(1, seconds=20.0)
     assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 16 / 20
 
 
-def test_curves_are_columns_of_all_or_some_generations(api, services, run_id, report):
+def test_curves_are_columns_of_all_or_some_generations(api, run_id, record):
     empty = api.get(f"runs/{run_id}/generations").json()
     assert empty["generation"] == []
-    attempt = claim(services, run_id, "worker")
     for generation in range(1, 41):
-        attempt.record(report(generation), 0.5)
+        record(generation, seconds=0.5)
     curves = api.get(f"runs/{run_id}/generations").json()
     assert curves["generation"] == list(range(1, 41))
     assert curves["seconds"][-1] == 20.0

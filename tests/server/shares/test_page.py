@@ -25,7 +25,7 @@ def built(tmp_path, monkeypatch):
     monkeypatch.setattr(page, "BUILT", tmp_path / "dist")
 
 
-def test_the_page_tells_other_sites_what_it_shows(api, address, built, known, services):
+def test_the_page_tells_other_sites_what_it_shows(api, address, built, known):
     sent = {"creature": known, "title": HOSTILE, "credit": [HOSTILE]}
     slug = api.post("shares", json=sent).json()["slug"]
     answer = api.get(f"{address}/s/{slug}")

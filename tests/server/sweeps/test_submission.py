@@ -162,7 +162,7 @@ def test_whole_numbers_that_canonical_json_has_not_are_no_hindrance(api, spec):
 
 
 @pytest.fixture
-def elite(claimed, services, run_id, report, identity):
+def elite(claimed, run_id, report, identity):
     """The name of a creature that lives in a finished run."""
     attempt = claimed(run_id)
     attempt.record(report(1, {0: 1.0}), 1.0)

@@ -123,9 +123,7 @@ def test_a_summary_asks_the_database_as_often_for_many_runs_as_for_few(services,
     assert sizes == [2, 2]
 
 
-def test_of_a_table_the_finals_are_the_figures_of_its_summary(
-    claimed, api, services, sweep, table
-):
+def test_of_a_table_the_finals_are_the_figures_of_its_summary(claimed, api, sweep, table):
     found = api.post("sweeps", json={"spec": sweep, "grid": {"period": [40, 50]}}).json()
     assert (found["seeds"], found["total"]) == ([], 2)
     attempt = claimed(found["cases"][0]["runs"][0])

@@ -57,14 +57,14 @@ def test_a_run_whose_worker_is_away_waits_and_says_for_what(api, services, have,
     assert "free" in api.get(f"runs/{run}").json()["waiting_reason"]
 
 
-def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services, run_id, row):
+def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services, run_id):
     claim(services, run_id, "worker").refuse("mine.straight must give one number")
     told = api.get(f"runs/{run_id}").json()
     assert (told["status"], told["attempt"]) == ("failed", 1)
     assert told["error"] == "mine.straight must give one number"
 
 
-def test_a_run_set_aside_goes_on_when_it_is_resumed(api, services, run_id, row):
+def test_a_run_set_aside_goes_on_when_it_is_resumed(api, services, run_id):
     claim(services, run_id, "worker").set_aside("mine.py is not what it was.")
     told = api.get(f"runs/{run_id}").json()
     assert (told["status"], told["warning"]) == ("paused", "mine.py is not what it was.")

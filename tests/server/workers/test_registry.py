@@ -27,10 +27,8 @@ def waiting(api):
     return lambda run: api.get(f"runs/{run}").json()["waiting_reason"]
 
 
-def test_a_worker_tells_its_device_its_load_and_its_run(
-    api, services, spec, run_id, alive, report
-):
-    claim(services, run_id, "worker").record(report(5), 1.0)
+def test_a_worker_tells_its_device_its_load_and_its_run(api, spec, run_id, alive, record):
+    record(5)
     api.patch(f"runs/{run_id}", json={"name": "Wide"})
     alive("worker", "busy", run_id, kind="gpu", memory_used_bytes=1 << 30, load=0.75)
     (found,) = api.get("workers").json()
@@ -44,7 +42,7 @@ def test_a_worker_tells_its_device_its_load_and_its_run(
     assert carried["progress"] == 5 / carried["generations"]
 
 
-def test_since_when_changes_with_what_a_worker_is_at(api, services, run_id, alive):
+def test_since_when_changes_with_what_a_worker_is_at(api, run_id, alive):
     def since():
         return api.get("workers").json()[0]["since"]
 
