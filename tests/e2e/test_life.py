@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 import pytest
-from accessibility import violations
+from looks import violations
 from places import GUIDED
 from playwright.sync_api import Locator, Page, expect
 from small import TINY

@@ -13,6 +13,7 @@ import pytest
 import reports
 from installation import Installation, empty_redis, own_postgresql, own_redis, running
 
+from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
 from server.attempts.begin import claim
 from server.attempts.claim import Claim
@@ -162,6 +163,18 @@ def row(services, run_id) -> Callable[[], Run]:
 @pytest.fixture
 def identity() -> Callable[[int], dict[str, Any]]:
     return reports.identity
+
+
+@pytest.fixture
+def file() -> dict[str, Any]:
+    """A creature file."""
+    return creature.document(reports.identity(3), None, None)
+
+
+@pytest.fixture
+def known(api, file) -> str:
+    """The hash of a creature that was uploaded."""
+    return api.post("creatures", json=file).json()["creature"]
 
 
 @pytest.fixture

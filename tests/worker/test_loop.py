@@ -1,12 +1,26 @@
-"""The loop that takes jobs from a queue."""
+"""The loop that takes jobs, the supervisor, its heartbeat and the renderer."""
+
+import signal
+import subprocess
+import sys
+import time
 
 import pytest
 import redis
 from rq.job import Job
 from rq.serializers import JSONSerializer
+from sqlalchemy import select, update
 
-from worker import loop, renderer, stop
-from worker.renderer import Renderer
+from server.attempts.begin import claim
+from server.local import process_tree
+from server.renderings.storage import RenderingFailed, order
+from server.tables import CANCELLED, Run, Worker
+from server.workers import registry
+from worker import loop, renderer, stop, supervisor
+from worker.device import Device
+from worker.pulse import PATIENCE, Pulse
+from worker.renderer import Renderer, take_up
+from worker.supervisor import Supervisor
 
 
 @pytest.fixture
@@ -68,3 +82,161 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
     renderer.take_up(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.job_ids == [job_id]
     assert not services.jobs.renderings.started_job_registry.get_job_ids()
+
+
+CREATURE = "ab" * 32
+
+
+@pytest.fixture
+def begin(services):
+    """Takes the order as far as a renderer that dies while it works on it."""
+
+    def take():
+        queue = services.jobs.renderings
+        renderer = Renderer([queue], serializer=JSONSerializer)
+        renderer.register_birth()
+        job, _ = queue.dequeue_any([queue], None, services.redis, serializer=JSONSerializer)
+        renderer.prepare_execution(job)
+        renderer.prepare_job_execution(job)
+        renderer.register_death()
+        return job
+
+    return take
+
+
+def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services, begin):
+    order(services, CREATURE)
+    begin()
+    take_up(services.jobs, services.jobs.renderings)
+    assert services.jobs.renderings.count == 1
+    begin()
+    take_up(services.jobs, services.jobs.renderings)
+    assert services.jobs.renderings.count == 0
+    with pytest.raises(RenderingFailed, match="ended the renderer twice"):
+        order(services, CREATURE)
+
+
+def test_a_long_rendering_counts_as_alive_for_all_its_time(services, begin):
+    order(services, CREATURE)
+    job = begin()
+    (execution,) = job.execution_registry.get_execution_ids()
+    ends = services.redis.zscore(job.started_job_registry.key, f"{job.id}:{execution}")
+    assert ends - time.time() > job.timeout
+
+
+ENGINE_FREE = ["worker.supervisor", "worker.pulse", "worker.loop", "worker.job_process"]
+
+
+@pytest.mark.parametrize("module", ENGINE_FREE)
+def test_what_looks_after_jobs_never_loads_jax(module):
+    check = f"import sys, {module}; sys.exit('jax' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", check], check=False).returncode == 0
+
+
+def test_a_worker_can_be_started_from_any_folder(tmp_path):
+    command = [sys.executable, "-c", "import worker.supervisor"]
+    assert subprocess.run(command, cwd=tmp_path, check=False).returncode == 0
+
+
+@pytest.fixture
+def busy(services):
+    """A supervisor whose job can be replaced by another process."""
+    busy = Supervisor([services.jobs.runs], "worker", serializer=JSONSerializer)
+    busy.services, busy.lease, busy.environment = services, 20, {}
+    busy.pulse = Pulse(services.sessions, "worker", Device("a device", 1, {}), 20.0)
+    busy.register_birth()
+    return busy
+
+
+def test_a_job_that_does_not_stop_in_time_is_killed_and_its_run_unmarked(
+    services, run_id, row, busy, monkeypatch
+):
+    def begin(*_):
+        before = signal.signal(signal.SIGTERM, signal.SIG_IGN)  # The job inherits it.
+        busy._horse = subprocess.Popen(["sleep", "60"])
+        signal.signal(signal.SIGTERM, before)
+        busy._horse_pid = busy._horse.pid
+        claim(services, run_id, busy.name)
+        busy.pass_on()
+
+    monkeypatch.setattr(supervisor, "PATIENCE", 0.0)
+    monkeypatch.setattr(supervisor, "LOOK", 0.05)
+    monkeypatch.setattr(busy, "fork_work_horse", begin)
+    busy.execute_job(services.jobs.find(str(run_id)), services.jobs.runs)
+    assert busy._horse.returncode == -signal.SIGKILL
+    assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
+
+
+def test_a_job_is_stopped_before_its_supervisor_is_killed():
+    assert supervisor.PATIENCE + 2 * supervisor.LOOK < process_tree.GRACE
+
+
+@pytest.fixture
+def pulse(services):
+    return Pulse(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
+
+
+@pytest.fixture
+def killed():
+    return []
+
+
+def change(services, **values):
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(**values))
+
+
+def test_a_worker_tells_its_device_its_memory_and_its_run(services, pulse, run_id, killed):
+    claim(services, run_id, "worker")
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    pulse.beat()
+    with services.sessions.read() as session:
+        found = registry.live(session, 20)[0]
+    assert (found.name, found.device, found.memory_bytes) == ("worker", "some device", 8 << 30)
+    assert (found.status, found.run_id) == ("busy", run_id)
+    assert not killed
+
+
+def test_a_beat_renews_the_lease(services, pulse, run_id, row, killed):
+    claim(services, run_id, "worker")
+    change(services, heartbeat_at=None)
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    pulse.beat()
+    assert row().heartbeat_at is not None
+
+
+def test_the_job_of_a_run_that_another_took_is_killed_at_once(services, pulse, run_id, killed):
+    claim(services, run_id, "worker")
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    pulse.beat()
+    change(services, worker="another")
+    pulse.beat()
+    assert killed == [run_id]
+
+
+def test_a_job_that_does_not_end_with_its_run_is_killed_after_a_while(
+    services, pulse, run_id, killed
+):
+    claim(services, run_id, "worker")
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    pulse.beat()
+    change(services, status=CANCELLED, worker=None)
+    for _ in range(PATIENCE):
+        pulse.beat()
+    assert not killed
+    pulse.beat()
+    assert killed == [run_id]
+
+
+def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(pulse, run_id, killed):
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    for _ in range(PATIENCE + 2):
+        pulse.beat()
+    assert not killed
+
+
+def test_a_worker_that_ended_is_off_the_list(services, pulse):
+    pulse.start()
+    pulse.end()
+    with services.sessions.read() as session:
+        assert not session.scalars(select(Worker)).all()

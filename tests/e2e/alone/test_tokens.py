@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from accessibility import violations
 from drive import Installation
-from looks import faults
+from looks import faults, violations
 from playwright.sync_api import Browser, Page, expect
 from small import TINY
 

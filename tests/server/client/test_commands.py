@@ -1,4 +1,4 @@
-"""The commands, over a real server."""
+"""The commands and the doctor, over a real server."""
 
 import json
 import os
@@ -7,16 +7,19 @@ import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from datetime import UTC, datetime, timedelta
 from typing import Any
 from uuid import UUID
 
 import pytest
 from click.testing import Result
+from pydantic import SecretStr
 from typer.testing import CliRunner
 
 from microcosmos.archive import creature, creature_h5
 from microcosmos.cli import app
 from microcosmos.client import views
+from microcosmos.doctor.server import server, workers
 from server.attempts.begin import claim
 
 
@@ -176,3 +179,46 @@ def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
     assert "Traceback" not in text
     assert ("━" in text) == terminal
     assert client.run(run.id).status == "queued"
+
+
+def levels(findings):
+    return [finding.level for finding in findings]
+
+
+def test_a_server_without_workers_is_told(address):
+    found = list(server(address, None))
+    assert levels(found) == ["ok", "ok", "warning"]
+    assert found[0].found.endswith(f"answers at {address}")
+    assert "WORKERS=n" in found[-1].advice
+
+
+def test_a_server_that_lost_its_redis_is_told(serve, services):
+    with serve(redis_url="redis://127.0.0.1:1/0") as address:
+        found = list(server(address, None))
+    assert "problem" in levels(found)
+    assert any("does not reach its Redis" in one.found for one in found)
+
+
+def test_a_token_is_asked_for(serve, monkeypatch):
+    monkeypatch.delenv("MICROCOSMOS_TOKEN", raising=False)
+    with serve(token=SecretStr("sesame")) as address:
+        assert levels(server(address, None)) == ["problem"]
+        assert "problem" not in levels(server(address, "sesame"))
+
+
+def test_another_version_is_a_warning(address, monkeypatch):
+    monkeypatch.setattr("microcosmos.doctor.server.VERSION", "9.9.9")
+    first = next(server(address, None))
+    assert first.level == "warning"
+    assert "this is 9.9.9" in first.found
+
+
+def test_a_worker_that_is_silent_is_told():
+    now = datetime(2026, 1, 1, tzinfo=UTC)
+    one = {"name": "here-1", "device": "cpu", "status": "busy"}
+    beats = [now - timedelta(seconds=age) for age in (3, 60)]
+    found = workers([one | {"heartbeat_at": beat.isoformat()} for beat in beats], now)
+    assert [(each.level, each.found.split(", ")[-1]) for each in found] == [
+        ("ok", "heard of 3 s ago"),
+        ("warning", "heard of 60 s ago"),
+    ]

@@ -14,16 +14,6 @@ from server.renderings import storage as renderings
 from server.tables import REPLAY
 
 
-@pytest.fixture
-def file(identity):
-    return creature.document(identity(3), None, None)
-
-
-@pytest.fixture
-def known(api, file) -> str:
-    return api.post("creatures", json=file).json()["creature"]
-
-
 def test_an_elite_is_read_as_a_creature_file(api, services, run_id, report):
     found = report(2, {7: 1.25})
     attempt = claim(services, run_id, "worker")

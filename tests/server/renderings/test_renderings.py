@@ -1,19 +1,17 @@
-"""Orders of renderings, and what comes of them."""
+"""Replays, films, pictures, motions and measurements on request."""
+
+import json
+import struct
 
 import httpx
+import numpy as np
 import pytest
 from sqlalchemy import select
 
 from microcosmos.archive import creature
 from microcosmos.viz.replay_file import REPLAY_VERSION
 from server.renderings import storage as renderings
-from server.tables import REPLAY, Artifact
-
-
-@pytest.fixture
-def known(api, identity) -> str:
-    file = creature.document(identity(3), None, None)
-    return api.post("creatures", json=file).json()["creature"]
+from server.tables import MEASUREMENT, REPLAY, Artifact
 
 
 def test_a_replay_that_the_engine_refuses_is_refused_in_its_words(api, services, known):
@@ -118,3 +116,92 @@ def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
     assert api.get(f"creatures/{known}/film.gif").content == b"GIF"
     renderings.save(services, known, REPLAY, b"of now again")
     assert api.get(f"creatures/{known}/replay").content == b"of now again"
+
+
+def recorded(positions: np.ndarray) -> bytes:
+    """A replay with these positions, (frame, node, 2), and some fluid behind them."""
+    frames, nodes, _ = positions.shape
+    header = {
+        "format": "microcosmos-replay/2",
+        "frames": frames,
+        "every": 5,
+        "steps": 5 * (frames - 1),
+        "nodes": nodes,
+        "edges": [[0, 1], [1, 2]],
+        "size": [8, 4],
+        "vorticity": {"scale": 1.0},
+    }
+    told = json.dumps(header).encode()
+    fluid = np.ones((frames, 8, 4), np.int8).tobytes()
+    return struct.pack("<I", len(told)) + told + positions.astype("<f4").tobytes() + fluid
+
+
+def read(data: bytes) -> tuple[dict, np.ndarray]:
+    (length,) = struct.unpack_from("<I", data)
+    header = json.loads(data[4 : 4 + length])
+    positions = np.frombuffer(data[4 + length :], "<f4")
+    return header, positions.reshape(header["frames"], header["nodes"], 2)
+
+
+@pytest.mark.parametrize(("frames", "stride"), [(7, 1), (96, 1), (97, 2), (1001, 11)])
+def test_it_is_every_kth_frame_of_the_replay(api, services, known, frames, stride):
+    positions = np.random.default_rng(0).normal(size=(frames, 3, 2)).astype(np.float32)
+    renderings.save(services, known, REPLAY, recorded(positions))
+    answer = api.get(f"creatures/{known}/motion")
+    header, motion = read(answer.content)
+    np.testing.assert_array_equal(motion, positions[::stride])
+    assert header["every"] == 5 * stride
+    assert (header["nodes"], header["edges"], header["size"]) == (3, [[0, 1], [1, 2]], [8, 4])
+    again = api.get(
+        f"creatures/{known}/motion", headers={"If-None-Match": answer.headers["etag"]}
+    )
+    assert (again.status_code, again.content) == (304, b"")
+
+
+def test_it_has_the_replay_recorded_where_there_is_none(api, services, known):
+    answer = api.get(f"creatures/{known}/motion")
+    assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
+    assert services.jobs.renderings.count == 1
+
+
+@pytest.fixture
+def measured(api, report) -> str:
+    (elite,) = report(1, {3: 1.5}).elites
+    file = creature.document(json.loads(elite.identity), elite.measured, elite.provenance)
+    return api.post("creatures", json=file).json()["creature"]
+
+
+def test_a_creature_is_measured_again_when_somebody_asks(api, services, measured):
+    path = f"creatures/{measured}/measurement"
+    assert api.get(path).status_code == 204
+    assert services.jobs.audits.count == 0, "looking orders nothing"
+    for _ in range(2):
+        assert api.post(f"creatures/{measured}/measure").status_code == 202
+        assert api.get(path).status_code == 202
+    (job,) = services.jobs.audits.get_jobs()
+    assert job.args == [measured, MEASUREMENT]
+    services.jobs.forget(job.id)
+    renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
+    assert api.get(path).json() == {"exact": True}
+
+
+def test_it_can_be_measured_once_more(api, services, measured):
+    renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
+    api.post(f"creatures/{measured}/measure")
+    assert api.get(f"creatures/{measured}/measurement").status_code == 202
+
+
+def test_what_was_never_measured_has_nothing_to_compare_with(api, identity):
+    file = creature.document(identity(3), None, None)
+    measured = api.post("creatures", json=file).json()["creature"]
+    answer = api.post(f"creatures/{measured}/measure")
+    assert (answer.status_code, answer.json()["title"]) == (422, "Never measured")
+
+
+def test_a_measurement_that_failed_says_why(api, services, measured):
+    api.post(f"creatures/{measured}/measure")
+    (job,) = services.jobs.audits.get_jobs()
+    services.jobs.give_up(job, "Traceback\nValueError: out of memory\n")
+    answer = api.get(f"creatures/{measured}/measurement")
+    assert answer.status_code == 500
+    assert "The measurement could not be made: ValueError: out of memory" in answer.text

@@ -5,17 +5,10 @@ import re
 import httpx
 import pytest
 
-from microcosmos.archive import creature
 from server.core import page
 
 INDEX = "<!doctype html><html><head><title>Microcosmos</title>\n</head><body></body></html>"
 HOSTILE = """</title><script>alert("x")</script>'&"""
-
-
-@pytest.fixture
-def known(api, identity) -> str:
-    file = creature.document(identity(3), None, None)
-    return api.post("creatures", json={**file, "credit": ["Ada"]}).json()["creature"]
 
 
 @pytest.fixture

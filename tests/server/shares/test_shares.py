@@ -16,12 +16,6 @@ STRANGE = {"Host": "microcosmos.example"}
 
 
 @pytest.fixture
-def known(api, identity) -> str:
-    file = creature.document(identity(3), None, None)
-    return api.post("creatures", json={**file, "credit": ["Ada"]}).json()["creature"]
-
-
-@pytest.fixture
 def other(api, identity) -> str:
     file = creature.document(identity(4), None, None)
     return api.post("creatures", json=file).json()["creature"]

@@ -1,11 +1,15 @@
-"""Pausing, resuming and cancelling runs, and what their progress says."""
+"""Progress of runs: steering, curves, species and the targets of a folding."""
 
+import base64
+import json
 from concurrent.futures import ThreadPoolExecutor
 from uuid import uuid4
 
 import pytest
 
+from microcosmos.spec import EXPERIMENTS, targets
 from server.attempts.begin import claim
+from server.runs.submission import submit
 
 
 def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, run_id, flush):
@@ -107,3 +111,97 @@ def test_an_unknown_run_cannot_be_steered(api):
     for action in ("pause", "resume", "cancel"):
         assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
         assert api.post(f"runs/nonsense/{action}").status_code == 422
+
+
+@pytest.fixture
+def told(record):
+    """Twelve generations, of which every fifth tells a score."""
+    for generation in range(1, 13):
+        summary = {"inserted": generation, "ended": "never", "fine": True}
+        if generation % 5 == 0:
+            summary["corrected"] = 0.5 * generation
+        record(generation, summary=summary)
+
+
+def test_all_generations_tell_the_numbers_of_their_summaries(api, run_id, told):
+    curves = api.get(f"runs/{run_id}/generations").json()
+    assert curves["generation"] == list(range(1, 13))
+    assert list(curves["summary"]) == ["inserted", "corrected"]
+    assert curves["summary"]["inserted"] == curves["generation"]
+    known = dict(zip(curves["generation"], curves["summary"]["corrected"], strict=True))
+    assert {g: value for g, value in known.items() if value is not None} == {5: 2.5, 10: 5.0}
+
+
+def test_thinned_curves_lose_nothing_that_is_told_now_and_then(api, run_id, told):
+    curves = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()
+    assert curves["generation"] == [1, 7, 12]
+    assert curves["summary"] == {"inserted": [1, 7, 12], "corrected": [None, 2.5, 5.0]}
+
+
+def test_runs_that_tell_nothing_else_have_no_other_columns(api, run_id, record):
+    record(1)
+    assert api.get(f"runs/{run_id}/generations").json()["summary"] == {}
+
+
+def test_a_generation_is_told_with_its_summary(services, run_id, told):
+    entries = services.redis.xrange(services.events.stream)
+    events = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"generation"]
+    assert [event["summary"].get("corrected") for event in events[3:6]] == [None, 2.5, None]
+
+
+def test_a_run_that_ended_early_is_done(api, run_id, attempt, record):
+    record(1, summary={"ended": "fitness after generation 1"})
+    attempt.save(1, b"the archive")
+    attempt.finish()
+    run = api.get(f"runs/{run_id}").json()
+    assert (run["status"], run["progress"], run["generation"]) == ("finished", 1.0, 1)
+
+
+def test_species_are_told_generation_by_generation(api, run_id, record):
+    record(1, summary={"species": "0:10 3:6"})
+    record(2, summary={"device_seconds": 1.0})
+    record(3, summary={"species": "3:16"})
+    assert api.get(f"runs/{run_id}/species").json() == {
+        "generation": [1, 3],
+        "number": [[0, 3], [3]],
+        "members": [[10, 6], [16]],
+    }
+    thin = api.get(f"runs/{run_id}/species", params={"points": 2}).json()
+    assert thin["generation"] == [1, 3]
+
+
+def test_a_run_that_tells_no_species_has_none(api, run_id, record):
+    record(1)
+    assert api.get(f"runs/{run_id}/species").json()["generation"] == []
+
+
+def test_reasons_of_divergence_are_added_up_where_curves_are_thinned(api, run_id, record):
+    for generation in range(1, 11):
+        told = {"diverged: non-finite": 2, "inserted": generation}
+        told |= {"diverged: supersonic": 1} if generation == 4 else {}
+        record(generation, summary=told)
+    columns = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()["summary"]
+    assert sum(filter(None, columns["diverged: non-finite"])) == 20
+    assert sum(filter(None, columns["diverged: supersonic"])) == 1
+    assert columns["inserted"][-1] == 10
+
+
+@pytest.fixture
+def fold_id(services):
+    presets = {preset.name: preset.spec for preset in EXPERIMENTS["folding"].presets}
+    return submit(services, presets["demo"])[0].id
+
+
+def test_pictures_that_a_run_folds_into_are_as_its_filaments_see_them(api, fold_id):
+    first, second = api.get(f"runs/{fold_id}/targets").json()
+    assert (first["name"], second["name"]) == ("3", "7")
+    assert (first["width"], first["height"], first["size"]) == (32, 32, 32)
+    ink = targets.decoded(first["pixels"], 32, 32)
+    assert abs(ink - targets.fitted(targets.digit(3), 32)).max() < 1 / 255
+    assert base64.b64decode(first["pixels"]) != base64.b64decode(second["pixels"])
+
+
+def test_a_run_that_folds_nothing_has_no_pictures(api, run_id):
+    refused = api.get(f"runs/{run_id}/targets")
+    assert refused.status_code == 404
+    assert "folds nothing" in refused.json()["detail"]

@@ -1,4 +1,4 @@
-"""Other users of a machine do not look into the data folder."""
+"""The data folder's mode, and JSON that people send."""
 
 import os
 import stat
@@ -7,6 +7,7 @@ import pytest
 
 from server import main as alone
 from server.core import database
+from server.core.uploads import parse
 from server.local import launcher
 from server.settings import Settings
 
@@ -53,3 +54,8 @@ def test_a_folder_that_somebody_opened_stays_so_and_is_told(tmp_path, capsys):
     (tmp_path / "other").mkdir()
     launcher.occupy(Settings(data=tmp_path / "other", auth="required"))
     assert f"other users can look into {tmp_path / 'other'}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("body", [b'"\\\\u0000"', '"\U0001f41f"'.encode(), b'"\\ud83d\\udc1f"'])
+def test_text_that_only_looks_odd_is_taken(body):
+    assert parse(body) in ("\\u0000", "\U0001f41f")
