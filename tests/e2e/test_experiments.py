@@ -9,9 +9,7 @@ FAST, SLOW = 10_000, 300_000
 
 
 @pytest.mark.e2e
-def test_a_population_is_started_watched_seen_along_other_axes_and_one_of_it_opened(
-    shared_page: Page, shared_address: str
-):
+def test_a_population_is_started_watched_and_explored(shared_page: Page, shared_address: str):
     page = shared_page
     submit_a_small_population(page, shared_address)
     watch_it_end(page)
@@ -74,9 +72,7 @@ WIDTH = 1280
 
 
 @pytest.mark.e2e
-def test_a_sweep_is_submitted_plotted_and_one_of_its_swimmers_watched(
-    shared_page: Page, shared_address: str
-):
+def test_gaits_are_submitted_plotted_and_watched(shared_page: Page, shared_address: str):
     page = shared_page
     submit_a_small_sweep(page, shared_address)
     watch_points_appear(page)
@@ -206,7 +202,7 @@ def test_a_filament_folds_and_is_watched(shared_page: Page, shared_address: str)
 
 
 @pytest.mark.e2e
-def test_an_elite_is_refined_and_watched_beside_what_it_was(shared, shared_page: Page):
+def test_an_elite_is_refined_and_compared(shared, shared_page: Page):
     page, address = shared_page, shared.product.url
     found = page.request.get(
         f"{address}/api/v1/runs/{shared.finished('voronoi')}/archive"

@@ -102,9 +102,7 @@ SMALL = """
 
 @pytest.mark.e2e
 @pytest.mark.parametrize("width", [1280, 390])
-def test_opening_a_run_moves_nothing_that_is_visible(
-    shared: Any, shared_page: Page, width: int
-):
+def test_opening_a_run_shifts_no_layout(shared: Any, shared_page: Page, width: int):
     page = shared_page
     page.set_viewport_size({"width": width, "height": 800})
     page.add_init_script(SHIFT)
@@ -132,7 +130,7 @@ def test_a_phone_has_one_row_of_navigation_and_controls_to_touch(
 
 
 @pytest.mark.e2e
-def test_a_malformed_id_is_named_and_no_parser_speaks(
+def test_a_malformed_id_is_named_without_parser_words(
     shared: Any, shared_page: Page, complaints: list[str]
 ):
     shared_page.goto(f"{shared.product.url}/runs/abc")

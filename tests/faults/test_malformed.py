@@ -23,7 +23,7 @@ def canary(tmp_path):
     return path
 
 
-def test_the_files_they_are_made_of_are_sound(place):
+def test_the_original_files_are_valid(place):
     for body in (malformed.written(malformed.good()), malformed_hdf5.whole()):
         answer = place.http.post("/api/v1/creatures", content=body)
         assert answer.status_code in (200, 201)
@@ -40,14 +40,14 @@ def test_malformed_files_are_refused_with_the_reason_and_read_no_other(place, ca
     assert told == []
 
 
-def test_the_watch_would_have_told(canary):
+def test_the_file_watch_notices_readings(canary):
     with watched(canary) as told:
         canary.read_bytes()
     assert told
 
 
 @pytest.mark.parametrize("name", LIES)
-def test_a_length_that_lies_harms_nobody(place, name):
+def test_a_false_content_length_does_no_harm(place, name):
     sent, status = LIES[name]
     answer = lie(place.port, sent)
     assert not answer or status in answer
@@ -63,7 +63,7 @@ def test_a_length_that_lies_harms_nobody(place, name):
         ("bytearray(1 << 30)", "MemoryError"),
     ],
 )
-def test_the_kernel_keeps_readers_from_files_and_memory(canary, deed, outcome):
+def test_the_kernel_keeps_sandboxes_from_files_and_memory(canary, deed, outcome):
     """Even where our own checks of a file fail."""
     text = f"""
 import h5py, io, signal
@@ -85,14 +85,14 @@ except (OSError, MemoryError) as error:
 
 
 @pytest.mark.parametrize("deed", ["time.sleep(60)", "while True: pass"])
-def test_the_kernel_ends_readers_that_take_their_time(deed):
+def test_the_kernel_ends_slow_sandboxes(deed):
     begin = "from server.creatures.sandbox_process import restrict; restrict()"
     text = f"import time; {begin}\n{deed}"
     ended = subprocess.run([sys.executable, "-c", text], cwd=ROOT, check=False)
     assert ended.returncode in (-signal.SIGALRM, -signal.SIGPROF)
 
 
-def test_a_reader_that_was_killed_is_replaced(place):
+def test_a_killed_sandbox_is_replaced(place):
     place.signal("server.creatures.sandbox_process", signal.SIGKILL)
     body = malformed.written(malformed.good())
     answers = [place.http.post("/api/v1/creatures", content=body) for _ in range(3)]

@@ -124,7 +124,7 @@ def elsewhere():
 
 
 @pytest.mark.long
-def test_the_same_bytes_come_from_postgresql_and_a_redis_server_whatever_happens(
+def test_postgresql_and_a_redis_server_give_the_same_bytes(
     elsewhere, installation, spec, undisturbed
 ):
     """`undisturbed` is of SQLite and the embedded Redis."""
@@ -141,7 +141,7 @@ def test_the_same_bytes_come_from_postgresql_and_a_redis_server_whatever_happens
 
 
 @pytest.mark.long
-def test_a_run_goes_on_elsewhere_only_when_somebody_says_so(installation, spec):
+def test_a_run_changes_device_only_when_resumed_by_a_person(installation, spec):
     place = installation()
     place.start()
     run = place.submit(spec)

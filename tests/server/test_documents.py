@@ -104,7 +104,7 @@ def replay() -> bytes:
 
 
 @pytest.mark.parametrize("database", ["sqlite"])
-def test_no_request_breaks_the_server_or_its_promise(serve, services, known):
+def test_no_request_breaks_the_server_or_its_document(serve, services, known):
     schema = schemathesis.openapi.from_dict(create_app(services).openapi())
     wrong: list[str] = []
     reached: set[str] = set()
@@ -185,7 +185,7 @@ def test_every_metric_is_there_and_no_other(address):
 
 
 @pytest.mark.parametrize("row", rows("Size"), ids=lambda row: row[0])
-def test_sizes_are_those_of_the_estimates(row):
+def test_documented_sizes_match_the_estimates(row):
     experiment, name = re.match(r"`(.*)/(.*)`", row[0]).groups()
     presets = {preset.name: preset.spec for preset in EXPERIMENTS[experiment].presets}
     found = estimate(presets[name])
@@ -194,7 +194,7 @@ def test_sizes_are_those_of_the_estimates(row):
     assert float(row[3]) == pytest.approx(found.cell_steps, rel=0.05)
 
 
-def test_times_and_shares_are_those_of_the_code():
+def test_documented_times_and_shares_match_the_code():
     assert f"{PATIENCE:g} s" in TEXT
     assert f"{TAKEN:g} divided by their number" in TEXT
     assert f"have {TAKEN / 2:g} of its memory" in TEXT

@@ -69,7 +69,7 @@ def test_more_workers_than_gpus_share_them_and_their_memory(nvidia_smi):
     assert device.FRACTION not in second.environment
 
 
-def test_a_fraction_of_memory_that_a_person_gave_stays(nvidia_smi, monkeypatch):
+def test_a_given_memory_fraction_stays(nvidia_smi, monkeypatch):
     nvidia_smi(TWO)
     monkeypatch.setenv(device.FRACTION, "0.2")
     assert device.find(0, 4).environment[device.FRACTION] == "0.2"
@@ -106,7 +106,7 @@ def test_parts_of_a_divided_card_are_devices(nvidia_smi, monkeypatch):
 
 
 @pytest.mark.parametrize("script", ["#!/bin/sh\nexit 9\n", "#!/bin/sh\necho 'No devices'\n"])
-def test_without_a_gpu_that_answers_it_is_the_processor(nvidia_smi, script):
+def test_the_processor_is_used_without_a_gpu(nvidia_smi, script):
     nvidia_smi(script)
     found = device.find(0)
     assert found.memory_bytes > 1 << 20
@@ -139,7 +139,7 @@ def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
     assert processor.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
 
 
-def test_a_machine_that_tells_nothing_of_its_processor_has_one(tmp_path, monkeypatch):
+def test_a_machine_without_processor_information_works(tmp_path, monkeypatch):
     monkeypatch.setattr(processor, "INFORMATION", tmp_path / "none")
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.delattr(os, "sched_setaffinity", raising=False)
@@ -149,7 +149,7 @@ def test_a_machine_that_tells_nothing_of_its_processor_has_one(tmp_path, monkeyp
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system has no affinity")
-def test_what_a_worker_starts_keeps_to_its_threads():
+def test_child_processes_keep_to_the_workers_threads():
     one = processor.threads()[-1]
     program = (
         "import subprocess, sys; from worker import processor\n"
@@ -177,7 +177,7 @@ def answering(tmp_path, monkeypatch):
     return answering
 
 
-def test_a_processor_tells_the_machines_load_a_core_and_memory_that_is_taken():
+def test_a_processor_reports_load_and_memory():
     found = usage.usage(Device("cpu", memory(), {}))
     assert found.load is not None
     assert found.load == pytest.approx(os.getloadavg()[0] / os.cpu_count(), abs=0.5)
@@ -185,7 +185,7 @@ def test_a_processor_tells_the_machines_load_a_core_and_memory_that_is_taken():
     assert 0 < found.memory_bytes < memory()
 
 
-def test_where_the_system_tells_no_memory_the_load_is_told_all_the_same(tmp_path, monkeypatch):
+def test_load_is_reported_without_memory(tmp_path, monkeypatch):
     monkeypatch.setattr(usage, "GROUP", tmp_path / "none")
     monkeypatch.setattr(usage, "MEMINFO", tmp_path / "none")
     found = usage.usage(Device("cpu", 1, {}))
@@ -197,7 +197,7 @@ def test_where_the_system_tells_no_memory_the_load_is_told_all_the_same(tmp_path
     assert usage.memory_in_use() is None
 
 
-def test_a_gpu_tells_its_own(answering):
+def test_a_gpu_reports_its_own_usage(answering):
     asked = answering("1234, 56")
     found = usage.usage(Device("gpu", 80 << 30, {}, "3"))
     assert found == Usage(1234 * MIB, 0.56)
@@ -213,12 +213,12 @@ def test_a_gpu_tells_its_own(answering):
         ("", 0, Usage()),
     ],
 )
-def test_what_a_gpu_does_not_tell_is_none(answering, line, code, expected):
+def test_missing_figures_of_a_gpu_are_none(answering, line, code, expected):
     answering(line, code)
     assert usage.of_gpu("0") == expected
 
 
-def test_a_beat_tells_what_was_seen_last(services):
+def test_a_heartbeat_reports_the_latest_usage(services):
     pulse = Pulse(services.sessions, "worker", Device("gpu", 8 << 30, {}, "0"), lease=20)
     pulse.gauge.last = Usage(5, 0.25)
     pulse.beat()
@@ -227,7 +227,7 @@ def test_a_beat_tells_what_was_seen_last(services):
     assert (found.kind, found.memory_used_bytes, found.load) == ("gpu", 5, 0.25)
 
 
-def test_a_gauge_looks_until_its_end():
+def test_a_gauge_reads_until_it_ends():
     seen, enough = [], Event()
 
     def look():
@@ -245,7 +245,7 @@ def test_a_gauge_looks_until_its_end():
 
 
 @pytest.mark.parametrize("error", [OSError("gone"), ValueError("no number")])
-def test_a_gauge_that_fails_once_tells_nothing_old_and_looks_again(error):
+def test_a_failed_reading_of_usage_drops_the_old_one(error):
     failed, go_on, enough = Event(), Event(), Event()
     looks = iter([Usage(load=1.0), error])
 

@@ -47,7 +47,7 @@ def test_a_job_is_taken_and_carried_out(worker, ask):
     assert job.is_finished
 
 
-def test_it_registers_anew_when_redis_was_emptied(services, worker, ask):
+def test_a_worker_registers_again_after_redis_was_emptied(services, worker, ask):
     loop.take_one(worker)
     services.redis.flushdb()
     job = ask("abc")
@@ -128,7 +128,7 @@ ENGINE_FREE = ["worker.supervisor", "worker.pulse", "worker.loop", "worker.job_p
 
 
 @pytest.mark.parametrize("module", ENGINE_FREE)
-def test_what_looks_after_jobs_never_loads_jax(module):
+def test_the_supervisor_never_loads_jax(module):
     check = f"import sys, {module}; sys.exit('jax' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", check], check=False).returncode == 0
 
@@ -148,7 +148,7 @@ def busy(services):
     return busy
 
 
-def test_a_job_that_does_not_stop_in_time_is_killed_and_its_run_unmarked(
+def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
     services, run_id, row, busy, monkeypatch
 ):
     def begin(*_):
@@ -186,7 +186,7 @@ def change(services, **values):
         session.execute(update(Run).values(**values))
 
 
-def test_a_worker_tells_its_device_its_memory_and_its_run(services, pulse, run_id, killed):
+def test_a_heartbeat_reports_device_memory_and_run(services, pulse, run_id, killed):
     claim(services, run_id, "worker")
     pulse.watch(run_id, lambda: killed.append(run_id))
     pulse.beat()
@@ -205,7 +205,7 @@ def test_a_beat_renews_the_lease(services, pulse, run_id, row, killed):
     assert row().heartbeat_at is not None
 
 
-def test_the_job_of_a_run_that_another_took_is_killed_at_once(services, pulse, run_id, killed):
+def test_the_job_of_a_lost_run_is_killed(services, pulse, run_id, killed):
     claim(services, run_id, "worker")
     pulse.watch(run_id, lambda: killed.append(run_id))
     pulse.beat()
@@ -214,9 +214,7 @@ def test_the_job_of_a_run_that_another_took_is_killed_at_once(services, pulse, r
     assert killed == [run_id]
 
 
-def test_a_job_that_does_not_end_with_its_run_is_killed_after_a_while(
-    services, pulse, run_id, killed
-):
+def test_a_job_that_outlives_its_run_is_killed(services, pulse, run_id, killed):
     claim(services, run_id, "worker")
     pulse.watch(run_id, lambda: killed.append(run_id))
     pulse.beat()
@@ -235,7 +233,7 @@ def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(pulse, run_id, kil
     assert not killed
 
 
-def test_a_worker_that_ended_is_off_the_list(services, pulse):
+def test_an_ended_worker_is_not_listed(services, pulse):
     pulse.start()
     pulse.end()
     with services.sessions.read() as session:

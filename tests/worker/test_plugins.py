@@ -36,7 +36,7 @@ def settings(tmp_path, monkeypatch):
     return make
 
 
-def test_a_worker_tells_what_it_has_and_what_it_could_not_load(settings):
+def test_a_worker_reports_its_plug_ins_and_failed_modules(settings):
     told = plugins.ask(settings(mine=GOOD, broken="nothing", gone="raise SystemExit"))
     assert [one["name"] for one in told.plugins] == ["mine.stick"]
     assert len(told.plugin_versions) == 1
@@ -102,7 +102,7 @@ print(json.dumps(said))
 """
 
 
-def test_a_run_that_came_to_the_wrong_worker_is_set_aside_or_refused_not_tried_again(settings):
+def test_a_run_on_the_wrong_worker_is_set_aside_or_refused(settings):
     wrong = GOOD.replace("...", "return 3")
     chosen = settings(mine=wrong)
     (stick,) = plugins.ask(chosen).plugins

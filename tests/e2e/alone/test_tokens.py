@@ -34,7 +34,7 @@ def alice(browser: Browser) -> Iterator[Page]:
 
 
 @pytest.mark.e2e
-def test_an_admin_signs_in_with_the_first_token_and_makes_and_revokes_others(
+def test_an_admin_signs_in_and_manages_tokens(
     guarded: Installation, browser: Browser, alice: Page
 ):
     first = told_at_the_start(guarded)

@@ -68,7 +68,7 @@ def test_the_archive_in_the_past_is_as_it_was(api, run_id, generation, cells, fi
 
 
 @pytest.mark.parametrize("ending", ["h5", "csv"])
-def test_without_a_checkpoint_there_is_no_file_yet(api, run_id, ending):
+def test_a_run_without_checkpoint_has_no_file(api, run_id, ending):
     answer = api.get(f"runs/{run_id}/archive.{ending}")
     assert answer.status_code == 404
     assert answer.json()["detail"] == f"Run {run_id} has no checkpoint yet; it is queued."
@@ -82,7 +82,7 @@ def test_the_file_is_the_checkpoint_with_its_hash_as_etag(api, run_id, saved):
     assert "attachment" in answer.headers["content-disposition"]
 
 
-def test_who_has_the_file_gets_it_once(api, run_id, saved):
+def test_a_known_file_is_not_sent_again(api, run_id, saved):
     etag = api.get(f"runs/{run_id}/archive.h5").headers["etag"]
     again = api.get(f"runs/{run_id}/archive.h5", headers={"If-None-Match": f'"other", {etag}'})
     assert (again.status_code, again.content) == (304, b"")
@@ -99,7 +99,7 @@ def test_who_has_the_file_gets_it_once(api, run_id, saved):
         ("bytes=5-5", 5, 6),
     ],
 )
-def test_a_part_of_the_file_can_be_asked_for(api, run_id, saved, wanted, start, stop):
+def test_ranges_of_the_file_are_served(api, run_id, saved, wanted, start, stop):
     answer = api.get(f"runs/{run_id}/archive.h5", headers={"Range": wanted})
     assert answer.status_code == 206
     assert answer.content == saved[start:stop]
@@ -108,7 +108,7 @@ def test_a_part_of_the_file_can_be_asked_for(api, run_id, saved, wanted, start, 
     assert answer.headers["content-range"] == f"bytes {first}-{last}/{len(saved)}"
 
 
-def test_parts_that_cannot_be_are_refused_or_ignored(api, run_id, saved):
+def test_impossible_ranges_are_refused_or_ignored(api, run_id, saved):
     def ask(**headers):
         return api.get(f"runs/{run_id}/archive.h5", headers=headers)
 
@@ -136,7 +136,7 @@ def test_the_table_has_the_columns_of_pyribs(api, run_id, saved):
 SLIM = {"energy": 0.1 + 0.2, "turning": -1e-9}
 
 
-def test_an_archive_has_the_measures_of_its_elites_that_are_asked_for(api, run_id, record):
+def test_an_archive_has_the_requested_measures(api, run_id, record):
     record(1, {5: 1.0}, measures=SLIM)
     record(2, {3: 2.0}, measures=dict.fromkeys(SLIM, 7.0))
     found = api.get(f"runs/{run_id}/archive", params={"measures": "turning,energy"}).json()
@@ -151,7 +151,7 @@ def test_an_archive_has_the_measures_of_its_elites_that_are_asked_for(api, run_i
 
 
 @pytest.mark.postgresql
-def test_an_archive_tells_only_what_entered_after_a_generation(api, run_id, record):
+def test_after_limits_the_archive_to_later_elites(api, run_id, record):
     record(1, {5: 1.0, 3: 0.5}, measures=SLIM)
     record(2, {5: 2.0, 7: 0.1}, measures=SLIM)
     record(3, {5: 3.0}, measures=SLIM)
@@ -169,7 +169,7 @@ def test_an_archive_tells_only_what_entered_after_a_generation(api, run_id, reco
     assert api.get(f"runs/{run_id}/archive", params={"after": -1}).status_code == 422
 
 
-def test_measures_that_were_not_recorded_are_refused_with_those_that_were(api, run_id, record):
+def test_an_unknown_measure_is_refused_with_the_known_ones(api, run_id, record):
     record(1, {5: 1.0})
     answer = api.get(f"runs/{run_id}/archive", params={"measures": "energy,displacement"})
     assert answer.status_code == 422
@@ -199,7 +199,7 @@ def test_elites_have_any_number_of_descriptors(api, services, run_id, descriptor
         ({"centroids": 500}, "cvt", 500),
     ],
 )
-def test_an_archive_says_what_its_cells_and_axes_are(
+def test_an_archive_describes_its_cells_and_axes(
     api, services, spec, report, archive, kind, cells
 ):
     document = {**spec, "archive": {**archive}}
@@ -228,7 +228,7 @@ def test_a_measure_comes_with_title_unit_and_ends(api, run_id, record):
     }
 
 
-def test_the_history_tells_the_archive_of_every_generation(api, run_id, record):
+def test_the_history_contains_the_archive_of_every_generation(api, run_id, record):
     record(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.5})
     record(2, {5: 1.5}, measures={"turning": 0.25})
     record(3, {255: 0.5, 5: 4.0}, measures={"turning": 1.0})
@@ -251,7 +251,7 @@ def test_the_history_tells_the_archive_of_every_generation(api, run_id, record):
         }
 
 
-def test_a_history_with_what_was_not_recorded_is_refused(api, run_id, record):
+def test_a_history_with_an_unknown_measure_is_refused(api, run_id, record):
     record(1, {5: 1.0})
     answer = api.get(f"runs/{run_id}/archive/history", params={"measures": "beauty"})
     assert answer.status_code == 422

@@ -31,7 +31,7 @@ def damage_all(folder):
         file.write_bytes(b"rot")
 
 
-def test_what_was_recorded_beyond_the_checkpoint_is_done_again(
+def test_generations_after_the_checkpoint_are_repeated(
     services, run_id, report, row, attempt, record
 ):
     for generation in range(1, 6):
@@ -47,7 +47,7 @@ def test_what_was_recorded_beyond_the_checkpoint_is_done_again(
     again.record(report(4, {4: 1.0}), 1.0)
 
 
-def test_without_a_checkpoint_a_run_begins_anew(services, run_id, report, row):
+def test_a_run_without_checkpoint_restarts(services, run_id, report, row):
     claim(services, run_id, "worker").record(report(1, {1: 1.0}), 1.0)
     again = claim(services, run_id, "worker")
     assert (again.generation, again.restore()) == (0, None)
@@ -105,7 +105,7 @@ def test_three_attempts_without_a_checkpoint_end_a_run(services, run_id, row):
     assert claim(services, run_id, "worker") is None
 
 
-def test_a_new_checkpoint_or_an_orderly_end_gives_new_chances(services, run_id, report, row):
+def test_a_new_checkpoint_or_a_requeue_resets_the_attempts(services, run_id, report, row):
     for generation in range(1, 5):
         attempt = claim(services, run_id, "worker")
         attempt.record(report(generation), 1.0)
@@ -116,7 +116,7 @@ def test_a_new_checkpoint_or_an_orderly_end_gives_new_chances(services, run_id, 
     assert row().status == "queued"
 
 
-def test_a_checkpoint_without_progress_gives_none(services, run_id, report, row):
+def test_a_checkpoint_without_progress_resets_no_attempts(services, run_id, report, row):
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1), 1.0)
     attempt.save(1, b"state")

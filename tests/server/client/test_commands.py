@@ -54,7 +54,7 @@ def test_a_run_is_submitted_listed_and_kept(command, client):
     assert command("watch", "--last", code=1).stdout.count("cancelled") == 1
 
 
-def test_a_sweep_is_named_deleted_and_taken_back(command, client):
+def test_a_sweep_is_named_deleted_and_restored(command, client):
     sweep = client.submit("demo", seeds=2)
     assert sweep.change(name="twins").name == "twins"
     first = next(sweep.runs())
@@ -72,9 +72,7 @@ def test_a_sweep_is_named_deleted_and_taken_back(command, client):
     assert waiting.refresh().total == 2
 
 
-def test_the_table_of_a_sweep_is_of_all_runs_however_far_one_of_them_went(
-    command, client, services, report
-):
+def test_the_table_of_a_sweep_compares_a_common_generation(command, client, services, report):
     sweep = client.submit("demo", seeds=3)
     for run, last in zip(sweep.runs(), (2, 2, 5), strict=True):
         attempt = claim(services, UUID(run.id), "worker")
@@ -86,7 +84,7 @@ def test_the_table_of_a_sweep_is_of_all_runs_however_far_one_of_them_went(
     assert "2 (2 to 3.5)" in command("sweep", sweep.id).stdout
 
 
-def test_what_is_wrong_is_a_sentence_and_1(command):
+def test_errors_are_sentences_and_exit_with_1(command):
     wrong = command("submit", "demo", "--set", "world.viscosity=-1", code=1)
     assert "world.viscosity" in wrong.stderr
     assert wrong.stdout == ""
@@ -110,7 +108,7 @@ def test_what_is_wrong_is_a_sentence_and_1(command):
         ("fork", "abc", "--set", "archive.descriptors.0.bins=3"),
     ],
 )
-def test_what_cannot_be_meant_is_2(command, arguments):
+def test_invalid_usage_exits_with_2(command, arguments):
     assert "Usage" in command(*arguments, code=2).stderr
 
 
@@ -123,7 +121,7 @@ def test_a_file_is_pulled_under_the_runs_name(command, run_id, tmp_path, attempt
     assert "existing folder" in command("pull", str(run_id), "--out", "no/x", code=1).stderr
 
 
-def test_creatures_are_brought_with_their_hashes(command, client, identity, tmp_path):
+def test_creatures_are_imported_with_their_hashes(command, client, identity, tmp_path):
     file = creature.document(identity(3), None, None)
     (tmp_path / "one.json").write_text(json.dumps(file))
     assert command("import", str(tmp_path / "one.json")).stdout.strip() == file["sha256"]
@@ -185,21 +183,21 @@ def levels(findings):
     return [finding.level for finding in findings]
 
 
-def test_a_server_without_workers_is_told(address):
+def test_the_doctor_warns_of_missing_workers(address):
     found = list(server(address, None))
     assert levels(found) == ["ok", "ok", "warning"]
     assert found[0].found.endswith(f"answers at {address}")
     assert "WORKERS=n" in found[-1].advice
 
 
-def test_a_server_that_lost_its_redis_is_told(serve, services):
+def test_the_doctor_names_a_lost_redis(serve, services):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         found = list(server(address, None))
     assert "problem" in levels(found)
     assert any("does not reach its Redis" in one.found for one in found)
 
 
-def test_a_token_is_asked_for(serve, monkeypatch):
+def test_the_doctor_asks_for_a_token(serve, monkeypatch):
     monkeypatch.delenv("MICROCOSMOS_TOKEN", raising=False)
     with serve(token=SecretStr("sesame")) as address:
         assert levels(server(address, None)) == ["problem"]
@@ -213,7 +211,7 @@ def test_another_version_is_a_warning(address, monkeypatch):
     assert "this is 9.9.9" in first.found
 
 
-def test_a_worker_that_is_silent_is_told():
+def test_the_doctor_warns_of_a_silent_worker():
     now = datetime(2026, 1, 1, tzinfo=UTC)
     one = {"name": "here-1", "device": "cpu", "status": "busy"}
     beats = [now - timedelta(seconds=age) for age in (3, 60)]

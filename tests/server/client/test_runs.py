@@ -39,7 +39,7 @@ def test_an_unknown_preset_is_refused_with_those_there_are(client):
         client.submit("nonsense")
 
 
-def test_the_fields_at_fault_arrive_as_a_sentence(client, spec):
+def test_invalid_fields_become_a_sentence(client, spec):
     wrong = spec | {"seed": -1, "world": {"viscosity": -2}}
     with pytest.raises(Refused) as caught:
         client.submit(wrong)
@@ -143,12 +143,12 @@ def test_a_table_comes_as_rows(client, services, sweep_id, table):
         client.run(str(sweep_id)).archive()
 
 
-def test_workers_and_kinds_of_run_are_told(client, run_id):
+def test_the_client_lists_workers_and_experiments(client, run_id):
     assert client.workers() == []
     assert {one["experiment"] for one in client.experiments()} >= {"gaits", "folding"}
 
 
-def test_a_token_is_needed_and_given(serve, monkeypatch):
+def test_the_client_sends_its_token(serve, monkeypatch):
     from pydantic import SecretStr
 
     with serve(token=SecretStr("sesame")) as address:
@@ -208,7 +208,7 @@ def test_a_run_is_followed_by_events(client, run, worked):
     assert curves == sorted(curves)  # Nothing twice, nothing out of order.
 
 
-def test_where_no_stream_comes_through_it_is_asked_for(client, run, worked, monkeypatch):
+def test_watching_polls_without_a_stream(client, run, worked, monkeypatch):
     def none(*_: object):
         raise Refused("no streams here")
         yield
@@ -221,9 +221,7 @@ def test_where_no_stream_comes_through_it_is_asked_for(client, run, worked, monk
     assert view.shown[-1] == ("finished", 3, [1, 2, 3])
 
 
-def test_a_server_that_is_away_for_a_while_is_waited_for(
-    serve, services, run, worked, monkeypatch
-):
+def test_watching_survives_an_absence_of_the_server(serve, services, run, worked, monkeypatch):
     monkeypatch.setattr(polling, "POLL", 0.01)
     with serve() as address:
         client = Client(address, patience=0.0)
@@ -248,12 +246,12 @@ def test_a_server_that_is_away_for_a_while_is_waited_for(
         assert (troubles[-1], standing.record["status"]) == (None, "finished")
 
 
-def test_what_was_never_there_is_an_error_at_once():
+def test_an_absent_server_is_an_error_at_once():
     with pytest.raises(NoAnswer, match="make run"):
         next(polling.follow(Client("127.0.0.1:9").connection, "x"))
 
 
-def test_a_rewound_run_forgets_what_came_after(client, services, run, run_id, attempt, record):
+def test_a_rewound_run_drops_later_generations(client, services, run, run_id, attempt, record):
     for generation in (1, 2, 3):
         record(generation)
         if generation == 1:

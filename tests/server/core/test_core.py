@@ -34,7 +34,7 @@ def open_database(folder):
     database.connect(f"sqlite:///{folder / 'microcosmos.sqlite'}").engine.dispose()
 
 
-def test_a_new_data_folder_is_its_users_alone(tmp_path, monkeypatch):
+def test_a_new_data_folder_is_private(tmp_path, monkeypatch):
     ways = {
         "all": lambda folder: launcher.occupy(Settings(data=folder)),
         "alone": lambda folder: begin_alone(folder, monkeypatch),
@@ -46,7 +46,7 @@ def test_a_new_data_folder_is_its_users_alone(tmp_path, monkeypatch):
         assert mode(tmp_path / name) == 0o755, "folders above it are as usual"
 
 
-def test_a_folder_that_somebody_opened_stays_so_and_is_told(tmp_path, capsys):
+def test_an_open_data_folder_stays_open_with_a_warning(tmp_path, capsys):
     (tmp_path / "data").mkdir()
     launcher.occupy(Settings(data=tmp_path / "data"))
     assert mode(tmp_path / "data") == 0o755
@@ -57,5 +57,5 @@ def test_a_folder_that_somebody_opened_stays_so_and_is_told(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("body", [b'"\\\\u0000"', '"\U0001f41f"'.encode(), b'"\\ud83d\\udc1f"'])
-def test_text_that_only_looks_odd_is_taken(body):
+def test_unusual_text_is_accepted(body):
     assert parse(body) in ("\\u0000", "\U0001f41f")

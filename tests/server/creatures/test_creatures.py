@@ -30,27 +30,27 @@ def test_an_elite_is_read_as_a_creature_file(api, services, run_id, report):
     assert "immutable" in answer.headers["cache-control"]
 
 
-def test_a_creature_is_downloaded_under_its_name_and_can_be_brought_back(api, known):
+def test_a_downloaded_creature_can_be_uploaded_again(api, known):
     answer = api.get(f"creatures/{known}", params={"download": 1})
     assert f'filename="creature-{known[:12]}.json"' in answer.headers["content-disposition"]
     again = api.post("creatures", content=answer.content)
     assert (again.status_code, again.json()) == (200, {"creature": known})
 
 
-def test_a_creature_is_brought_back_as_hdf5_too(api, known):
+def test_a_creature_is_uploaded_as_hdf5(api, known):
     file = api.get(f"creatures/{known}/creature.h5").content
     sent = {"Content-Type": "application/x-hdf5"}
     again = api.post("creatures", content=file, headers=sent)
     assert (again.status_code, again.json()) == (200, {"creature": known})
 
 
-def test_who_has_a_creature_gets_it_once(api, known):
+def test_a_known_creature_is_not_sent_again(api, known):
     etag = api.get(f"creatures/{known}").headers["etag"]
     answer = api.get(f"creatures/{known}", headers={"If-None-Match": etag})
     assert (answer.status_code, answer.content) == (304, b"")
 
 
-def test_a_new_creature_is_kept_whole(api, file):
+def test_an_uploaded_creature_is_kept_whole(api, file):
     file["measured"] = {
         "fitness": 1.5,
         "descriptors": {"bending_effort": 0.25},
@@ -152,7 +152,7 @@ def test_a_rendering_that_failed_says_why(api, services, known, monkeypatch):
     assert answer.headers["retry-after"]
 
 
-def test_while_redis_is_away_a_replay_cannot_be_ordered(serve, known):
+def test_a_replay_cannot_be_ordered_without_redis(serve, known):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         answer = httpx.get(f"{address}/api/v1/creatures/{known}/replay", timeout=20)
     assert answer.status_code == 503
@@ -181,7 +181,7 @@ def family(identity) -> list[dict]:
     return [one(3, parent), parent, oldest]
 
 
-def test_a_creature_brings_its_ancestors_with_hashes_credit_and_licence(api, family):
+def test_an_upload_keeps_ancestors_with_credit_and_licence(api, family):
     young, parent, oldest = family
     oldest |= {"credit": ["Ada"], "licence": "CC0-1.0"}
     whole = {**young, "ancestors": [parent, oldest]}
@@ -198,7 +198,7 @@ def test_a_creature_brings_its_ancestors_with_hashes_credit_and_licence(api, fam
     assert (kin[1]["credit"], kin[1]["licence"]) == (["Ada"], "CC0-1.0")
 
 
-def test_ancestors_that_are_none_are_refused_and_nothing_is_kept(api, family, identity):
+def test_false_ancestors_are_refused_and_nothing_is_kept(api, family, identity):
     young, parent, oldest = family
     stranger = creature.document(identity(9), None, None)
     cases = [

