@@ -34,7 +34,7 @@ from server.tables import REPLAY
 from worker.device import TAKEN
 from worker.supervisor import PATIENCE
 
-EXAMPLES = int(os.environ.get("EXAMPLES", "8"))
+EXAMPLES = int(os.environ.get("EXAMPLES", "4"))
 """Requests to each operation, right ones and wrong ones; `EXAMPLES=500` looks longer."""
 CHECKS = [
     not_a_server_error,

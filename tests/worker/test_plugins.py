@@ -88,16 +88,17 @@ from server.settings import Settings
 from worker.evolution import carry_out
 
 said = {}
-attempt = SimpleNamespace(
-    spec=json.loads(sys.argv[1]),
-    settings=Settings(),
-    use=lambda device: None,
-    restore=lambda: None,
-    initial=lambda: [],
-    set_aside=lambda text: said.update(aside=text),
-    refuse=lambda text: said.update(refused=text),
-)
-carry_out(attempt)
+for spec in json.loads(sys.argv[1]):
+    attempt = SimpleNamespace(
+        spec=spec,
+        settings=Settings(),
+        use=lambda device: None,
+        restore=lambda: None,
+        initial=lambda: [],
+        set_aside=lambda text: said.update(aside=text),
+        refuse=lambda text: said.update(refused=text),
+    )
+    carry_out(attempt)
 print(json.dumps(said))
 """
 
@@ -107,13 +108,12 @@ def test_a_run_on_the_wrong_worker_is_set_aside_or_refused(settings):
     chosen = settings(mine=wrong)
     (stick,) = plugins.ask(chosen).plugins
     spec = {"experiment": "quality-diversity", "task": {"steps": 20}}
-
-    def said(source):
+    specs = []
+    for source in ("a" * 64, stick["source"]):
         version = {"source": source, "title": "A stick"}
-        document = {**spec, "body": {"builder": "mine.stick", "own": version}}
-        command = [sys.executable, "-c", CARRY_OUT, json.dumps(document)]
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
-        return json.loads(done.stdout.splitlines()[-1])
-
-    assert "must be of version aaaaaaaaaaaa, got version" in said("a" * 64)["aside"]
-    assert "mine.stick must give a body, got int" in said(stick["source"])["refused"]
+        specs.append({**spec, "body": {"builder": "mine.stick", "own": version}})
+    command = [sys.executable, "-c", CARRY_OUT, json.dumps(specs)]
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
+    said = json.loads(done.stdout.splitlines()[-1])
+    assert "must be of version aaaaaaaaaaaa, got version" in said["aside"]
+    assert "mine.stick must give a body, got int" in said["refused"]

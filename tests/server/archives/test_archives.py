@@ -6,6 +6,7 @@ from uuid import UUID
 
 import numpy as np
 import pytest
+from answers import detail, errors, fields
 
 from microcosmos.archive import file
 from microcosmos.spec import parse
@@ -70,8 +71,7 @@ def test_the_archive_in_the_past_is_as_it_was(api, run_id, generation, cells, fi
 @pytest.mark.parametrize("ending", ["h5", "csv"])
 def test_a_run_without_checkpoint_has_no_file(api, run_id, ending):
     answer = api.get(f"runs/{run_id}/archive.{ending}")
-    assert answer.status_code == 404
-    assert answer.json()["detail"] == f"Run {run_id} has no checkpoint yet; it is queued."
+    assert detail(answer, 404) == f"Run {run_id} has no checkpoint yet; it is queued."
 
 
 def test_the_file_is_the_checkpoint_with_its_hash_as_etag(api, run_id, saved):
@@ -172,8 +172,7 @@ def test_after_limits_the_archive_to_later_elites(api, run_id, record):
 def test_an_unknown_measure_is_refused_with_the_known_ones(api, run_id, record):
     record(1, {5: 1.0})
     answer = api.get(f"runs/{run_id}/archive", params={"measures": "energy,displacement"})
-    assert answer.status_code == 422
-    (error,) = answer.json()["errors"]
+    (error,) = errors(answer)
     assert (error["field"], error["got"]) == ("measures", ["energy"])
     assert "displacement" in error["needed"]
 
@@ -254,8 +253,7 @@ def test_the_history_contains_the_archive_of_every_generation(api, run_id, recor
 def test_a_history_with_an_unknown_measure_is_refused(api, run_id, record):
     record(1, {5: 1.0})
     answer = api.get(f"runs/{run_id}/archive/history", params={"measures": "beauty"})
-    assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == "measures"
+    assert fields(answer)[0] == "measures"
 
 
 def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, spec, report):
@@ -281,5 +279,4 @@ def test_a_history_too_long_to_be_sent_is_refused(api, run_id, monkeypatch, reco
     record(1, {5: 1.0, 3: 2.0})
     monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
     answer = api.get(f"runs/{run_id}/archive/history")
-    assert answer.status_code == 422
-    assert "has 2 entries, of which at most 1" in answer.json()["detail"]
+    assert "has 2 entries, of which at most 1" in detail(answer, 422)

@@ -150,7 +150,7 @@ def test_watching_ends_as_the_run_does(command, run_id, monkeypatch, attempt, re
     assert "finished" in last
 
 
-@pytest.mark.parametrize("terminal", [False, True])
+@pytest.mark.parametrize("terminal", [pytest.param(False, marks=pytest.mark.long), True])
 def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
     """In a process of its own, as a person would."""
     # A shell's background jobs ignore SIGINT, and so would every process that they start.

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from answers import detail
 
 from microcosmos import naming
 from microcosmos.archive import creature
@@ -122,6 +123,4 @@ def test_a_creature_without_network_says_so(api, services, form):
         identity = naming.canonical(found)
         row = Creature(sha256=name, identity=identity, parents=[], licence="CC0-1.0")
         session.add(row)
-    answer = api.get(f"creatures/{name}/network.{form}")
-    assert answer.status_code == 404
-    assert "'gait'" in answer.json()["detail"]
+    assert "'gait'" in detail(api.get(f"creatures/{name}/network.{form}"), 404)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from answers import detail
 from deletion import another, delete_for_good, files, finish, let_time_pass, rows
 from sqlalchemy import select
 
@@ -54,9 +55,7 @@ def test_a_deleted_run_is_hidden_and_restored_unchanged(api, services, run_id, r
 def test_queued_and_running_runs_are_not_deleted(api, services, run_id):
     attempt = None
     for standing in ("queued", "running"):
-        answer = api.delete(f"runs/{run_id}")
-        assert answer.status_code == 409
-        assert f"cancel it first; it is {standing}" in answer.json()["detail"]
+        assert f"cancel it first; it is {standing}" in detail(api.delete(f"runs/{run_id}"), 409)
         attempt = attempt or claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/pause")
     attempt.pause()
@@ -66,9 +65,7 @@ def test_queued_and_running_runs_are_not_deleted(api, services, run_id):
 
 def test_only_runs_in_the_bin_are_restored_in_time(api, services, run_id):
     api.post(f"runs/{run_id}/cancel")
-    answer = api.post(f"runs/{run_id}/restore")
-    assert answer.status_code == 409
-    assert "it is cancelled" in answer.json()["detail"]
+    assert "it is cancelled" in detail(api.post(f"runs/{run_id}/restore"), 409)
     api.delete(f"runs/{run_id}")
     let_time_pass(services, run_id)
     answer = api.post(f"runs/{run_id}/restore")

@@ -6,6 +6,7 @@ import struct
 import httpx
 import numpy as np
 import pytest
+from answers import detail
 from sqlalchemy import select
 
 from microcosmos.archive import creature
@@ -82,8 +83,7 @@ def test_a_failed_kind_leaves_the_others(api, services, known):
     job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
     services.jobs.give_up(job, "Traceback\nValueError: too large to refine\n")
     answer = api.get(f"creatures/{known}/audit")
-    assert answer.status_code == 500
-    assert "The audit could not be made: ValueError: too large" in answer.json()["detail"]
+    assert "The audit could not be made: ValueError: too large" in detail(answer, 500)
     assert api.get(f"creatures/{known}/film.gif").status_code == 202
 
 

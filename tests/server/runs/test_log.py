@@ -3,6 +3,7 @@
 from uuid import uuid4
 
 import pytest
+from answers import fields
 
 from server.attempts import leases
 from server.attempts.begin import claim
@@ -137,6 +138,4 @@ def test_the_log_gives_the_newest_entries_or_those_after_an_id(api, services, ru
 def test_the_log_of_no_run_is_not_found_and_a_limit_has_to_make_sense(api, run_id):
     assert api.get(f"runs/{uuid4()}/log").status_code == 404
     for wrong in ({"limit": 0}, {"after": -1}, {"after": 1 << 31}, {"after": 1 << 63}):
-        refused = api.get(f"runs/{run_id}/log", params=wrong)
-        assert refused.status_code == 422
-        assert refused.json()["errors"][0]["field"] in wrong
+        assert fields(api.get(f"runs/{run_id}/log", params=wrong))[0] in wrong

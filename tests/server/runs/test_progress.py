@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from uuid import uuid4
 
 import pytest
+from answers import detail
 
 from microcosmos.spec import EXPERIMENTS, targets
 from server.attempts.begin import claim
@@ -49,13 +50,10 @@ def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run
 
 def test_forbidden_actions_are_conflicts_with_a_reason(api, services, run_id):
     answer = api.post(f"runs/{run_id}/resume")
-    assert answer.status_code == 409
-    assert answer.json()["detail"] == "to resume a run it must be paused; it is queued"
+    assert detail(answer, 409) == "to resume a run it must be paused; it is queued"
     claim(services, run_id, "worker").finish()
     for action in ("pause", "resume", "cancel"):
-        answer = api.post(f"runs/{run_id}/{action}")
-        assert answer.status_code == 409
-        assert "it is finished" in answer.json()["detail"]
+        assert "it is finished" in detail(api.post(f"runs/{run_id}/{action}"), 409)
 
 
 def test_progress_is_what_was_recorded(api, run_id, attempt, record):
@@ -200,6 +198,4 @@ def test_targets_are_scaled_as_the_filaments_see_them(api, fold_id):
 
 
 def test_a_run_without_targets_has_no_pictures(api, run_id):
-    refused = api.get(f"runs/{run_id}/targets")
-    assert refused.status_code == 404
-    assert "folds nothing" in refused.json()["detail"]
+    assert "folds nothing" in detail(api.get(f"runs/{run_id}/targets"), 404)

@@ -5,6 +5,7 @@ from datetime import UTC, datetime, timedelta
 
 import httpx
 import pytest
+from answers import detail, fields
 from pydantic import SecretStr
 
 from microcosmos.archive import creature
@@ -67,9 +68,7 @@ def test_publishing_orders_the_preview(services, shared, known):
     ],
 )
 def test_an_invalid_share_is_refused_with_its_field(api, sent, field):
-    answer = api.post("shares", json=sent)
-    assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == field
+    assert fields(api.post("shares", json=sent))[0] == field
 
 
 def test_missing_things_cannot_be_published(api, run_id, sweep_id):
@@ -114,8 +113,7 @@ def test_a_revoked_share_is_gone(api, through, shared, known):
         through(slug, f"creatures/{known}"),
         through(slug, f"creatures/{known}/replay"),
     ):
-        assert answer.status_code == 410
-        assert answer.json()["detail"] == "Whoever shared this has taken it back."
+        assert detail(answer, 410) == "Whoever shared this has taken it back."
     assert api.delete(f"shares/{'A' * 32}").status_code == 404
 
 
@@ -127,8 +125,7 @@ def test_an_expired_share_is_gone(api, through, services, known):
     with services.sessions.write.begin() as session:
         session.get_one(Share, slug).expires_at = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
     answer = through(slug, f"creatures/{known}")
-    assert answer.status_code == 410
-    assert answer.json()["detail"] == "This was shared until 02 January 2026, 03:04 UTC."
+    assert detail(answer, 410) == "This was shared until 02 January 2026, 03:04 UTC."
     assert api.get("commons").json()["items"] == []
     assert api.get("shares").json()["items"][0]["state"] == "expired"
 
@@ -215,8 +212,7 @@ def test_holders_of_a_share_do_not_read_renderer_errors(api, services, shared, k
     owner = api.get(f"creatures/{known}/preview.png")
     assert "/home/ada" in owner.json()["detail"]
     stranger = api.get(f"shares/{shared['slug']}/preview.png")
-    assert stranger.status_code == 500
-    assert stranger.json()["detail"] == (
+    assert detail(stranger, 500) == (
         "The picture could not be made. It can be tried again in a minute."
     )
     assert stranger.headers["retry-after"] == "60"

@@ -3,6 +3,7 @@
 from uuid import UUID
 
 import pytest
+from answers import errors
 from declared import STRICT, A, B, declared
 
 from server.attempts.begin import claim
@@ -97,9 +98,7 @@ def test_a_missing_plug_in_is_refused_with_field_and_reason(
     api, have, spec, part, value, field, words
 ):
     have(plugins=declared())
-    answer = api.post("runs", json={**spec, part: value})
-    assert answer.status_code == 422
-    (error,) = answer.json()["errors"]
+    (error,) = errors(api.post("runs", json={**spec, part: value}))
     assert error["field"] == field
     assert words in error["message"]
 
