@@ -43,7 +43,7 @@ def test_unsafe_requests_are_not_repeated(relay, run, hasty):
     assert sum(b"/extend" in ask for ask in relay.asked) == 1
 
 
-def test_events_continue_after_the_last_id(relay, run_id, record):
+def test_events_continue_after_the_last_id(relay, run_id, record, attempt):
     client = Client(relay.url)
     found = streaming.events(client.connection, str(run_id))
     assert next(found).kind == "beat"  # From here on.

@@ -109,7 +109,7 @@ def test_the_last_event_of_a_run_is_its_current_state(services, run_id, monkeypa
     assert told == ["running", "queued", "running"]
 
 
-def test_an_unchanged_run_is_published_once(services, run_id, monkeypatch, record):
+def test_an_unchanged_run_is_published_once(services, run_id, monkeypatch, record, attempt):
     told = []
     monkeypatch.setattr(services.events, "publish", lambda *event: told.append(event))
     record(1)

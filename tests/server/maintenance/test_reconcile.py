@@ -67,7 +67,7 @@ def test_runs_are_enqueued_in_the_order_in_which_they_came(services, api, spec, 
     assert enqueued(services) == ids
 
 
-def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, record):
+def test_a_silent_workers_run_is_queued_again(services, run_id, attempt, flush, row, record):
     flush()
     reconcile(services)
     assert (row().status, enqueued(services)) == ("running", [])

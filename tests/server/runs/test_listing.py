@@ -262,7 +262,7 @@ def test_a_cursor_may_hold_any_possible_value(api):
             assert (answer.status_code, answer.json()) == (200, {"items": [], "next": None})
 
 
-def test_recording_keeps_the_name_of_a_run(api, run_id, record):
+def test_recording_keeps_the_name_of_a_run(api, run_id, record, attempt):
     api.patch(f"runs/{run_id}", json={"name": "mine"})
     record(1, {1: 1.0})
     assert api.get(f"runs/{run_id}").json()["name"] == "mine"
