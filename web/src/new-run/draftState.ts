@@ -13,7 +13,7 @@ import {
   loadDraft,
   saveDraft,
 } from "../store/draft";
-import { dismissToast, showToast } from "../store/toasts";
+import { dismissToast, showUndo } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { changedPaths } from "./form/changes";
 import { withInitial } from "./initialCreatures";
@@ -129,10 +129,6 @@ function useKept(current: Draft | null, changed: ReadonlySet<string>): void {
 let undoToast = 0;
 
 function offerUndo(note: string, undo: () => void): void {
-  const run = () => {
-    dismissToast(undoToast);
-    undo();
-  };
   dismissToast(undoToast);
-  undoToast = showToast({ kind: "note", text: note, action: { label: text.undo, run } });
+  undoToast = showUndo(note, undo);
 }

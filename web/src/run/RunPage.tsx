@@ -10,7 +10,7 @@ import { lazy } from "../ui/lazy";
 import { useRefusal } from "../store/principal";
 import { useStore } from "../store/store";
 import { useNow } from "../store/runPage";
-import { editRun } from "../store/edit";
+import { editRun } from "../store/commands";
 import { forceFreeShare } from "../ui/coupling";
 import { RunActivity, activityOf } from "./RunActivity";
 import { endReasonOf } from "./endReason";

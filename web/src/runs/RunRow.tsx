@@ -2,9 +2,8 @@
 
 import type { Experiment, Run } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { restore } from "../store/lifecycle";
 import { useStore } from "../store/store";
-import { addTag, removeNote, removeTag, editRun } from "../store/edit";
+import { addTag, editRun, removeNote, removeTag, restore } from "../store/commands";
 import { setQuery } from "../store/router";
 import { forceFreeShare } from "../ui/coupling";
 import { DASH, moment, number, short, titleOf } from "../ui/format";

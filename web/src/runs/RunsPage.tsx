@@ -2,14 +2,13 @@
 
 import { useState } from "preact/hooks";
 import { MAX_LINES } from "../charts/lineStyle";
-import { messageOf } from "../api/problem";
 import type { Experiment, RunQuery } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
 import { moreRuns, useRunList, useTags } from "../store/runList";
 import { useStore } from "../store/store";
 import { useSweeps } from "../store/sweeps";
-import { showToast } from "../store/toasts";
+import { showError } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { Filters } from "./Filters";
 import { NO_FILTERS, WITHOUT_SWEEP, ariaSort, groupsSweeps, isFiltered, nextSort, queryOf } from "./runQuery";
@@ -197,7 +196,7 @@ function LoadMore({ query }: { query: RunQuery }) {
   const [busy, setBusy] = useState(false);
   const load = async () => {
     setBusy(true);
-    await moreRuns(query).catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
+    await moreRuns(query).catch(showError);
     setBusy(false);
   };
   return (

@@ -1,10 +1,9 @@
 /** The settings page: the signed-in principal, and for admins all tokens. */
 
 import { signOut } from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Principal } from "../api/types";
 import { usePrincipal } from "../store/principal";
-import { showToast } from "../store/toasts";
+import { showError } from "../store/toasts";
 import { Tokens } from "./Tokens";
 import { day } from "./tokenText";
 import { text } from "./text";
@@ -44,7 +43,7 @@ function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { pri
       await signOut();
       location.reload();
     } catch (error) {
-      showToast({ kind: "wrong", text: messageOf(error) });
+      showError(error);
     }
   };
   return (

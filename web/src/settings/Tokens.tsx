@@ -5,7 +5,7 @@ import { createToken, readTokens, revokeToken } from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Token, CreatedToken, TokenScope } from "../api/types";
 import { useFetched } from "../store/fetch";
-import { showToast } from "../store/toasts";
+import { showError, showToast } from "../store/toasts";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { Select } from "../ui/Select";
 import { copyText } from "../ui/clipboard";
@@ -167,6 +167,6 @@ async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void>
     showToast({ kind: "note", text: text.revoked(name) });
     onRevoked();
   } catch (error) {
-    showToast({ kind: "wrong", text: messageOf(error) });
+    showError(error);
   }
 }

@@ -1,11 +1,10 @@
 /** The list of shares, with revoking. */
 
 import * as api from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Share } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { usePages } from "../store/paging";
-import { showToast } from "../store/toasts";
+import { showError, showToast } from "../store/toasts";
 import { moment } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { copyText } from "../ui/clipboard";
@@ -107,6 +106,6 @@ async function revoke(share: Share, onChange: (share: Share) => void): Promise<v
     onChange(await api.revoke(share.slug));
     showToast({ kind: "note", text: text.revoked(share.title) });
   } catch (error) {
-    showToast({ kind: "wrong", text: messageOf(error) });
+    showError(error);
   }
 }
