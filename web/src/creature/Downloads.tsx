@@ -5,7 +5,7 @@ import { renderingReady, save } from "../api/files";
 import { type PictureFormat, creatureFileUrl, creatureH5Url, pictureUrl } from "../api/urls";
 import { sharedSlug } from "../api/address";
 import { poll } from "../store/polling";
-import { showError, showToast } from "../store/toasts";
+import { showFailure, showToast } from "../store/toasts";
 import { copyText } from "../ui/clipboard";
 import { FileLink } from "../ui/FileLink";
 import { text } from "./text";
@@ -42,7 +42,7 @@ function Download({ url, title }: { url: string; title: string }) {
     return poll(() => renderingReady(url), {
       value: () => {
         setBusy(false);
-        save(url).catch(showError);
+        save(url).catch(showFailure);
       },
       note: () => {},
       error: (message) => {

@@ -4,7 +4,7 @@ import * as api from "../api/client";
 import type { Creature, Json } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { applyResponse } from "../store/store";
-import { showError } from "../store/toasts";
+import { showFailure } from "../store/toasts";
 import { navigate } from "../store/router";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
@@ -30,7 +30,7 @@ export function RefineButton({ creature, run }: Props) {
       const made = await applyResponse("change", api.createRun(spec, newIdempotencyKey()));
       navigate(`/runs/${made.id}`);
     } catch (error) {
-      showError(error);
+      showFailure(error);
     }
   };
   return (

@@ -52,16 +52,16 @@ function measureRow(name: string, value: number, plugin: Plugin | undefined): Ro
 
 /** Plug-ins that measured a creature, by name. */
 function measuringPlugins({ identity, measured }: Creature): Record<string, Plugin> {
-  const task = identity.task as { fitness?: string; own?: Plugin } | undefined;
-  const measures = (measured as { own?: Record<string, Plugin> } | null)?.own ?? {};
-  return task?.own ? { ...measures, [task.fitness!]: task.own } : measures;
+  const task = identity.task as { fitness?: string; plugin?: Plugin } | undefined;
+  const measures = (measured as { plugins?: Record<string, Plugin> } | null)?.plugins ?? {};
+  return task?.plugin ? { ...measures, [task.fitness!]: task.plugin } : measures;
 }
 
 /** Titles, names and versions of the plug-ins that a creature needs. */
 function pluginRows(creature: Creature): Row[] {
   const { genome } = creature.identity;
   const control = "control" in genome ? genome.control : (genome as unknown as Spec);
-  const controller = control.own as unknown as Plugin | undefined;
+  const controller = control.plugin as unknown as Plugin | undefined;
   const name = "swimmer" in genome ? genome.swimmer : genome.encoding;
   const all = { ...measuringPlugins(creature), ...(controller && { [name]: controller }) };
   const versions = Object.entries(all).map(([plugin, { title, source }]) =>

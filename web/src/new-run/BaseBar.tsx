@@ -4,7 +4,7 @@ import { importCreature } from "../api/client";
 import type { Experiment } from "../api/types";
 import { formatCells } from "../store/cellRanges";
 import type { Base, ForkSource, Draft } from "../store/draft";
-import { showError } from "../store/toasts";
+import { showFailure } from "../store/toasts";
 import { navigate } from "../store/router";
 import { equalPreset } from "./form/changes";
 import { count, short } from "../ui/format";
@@ -98,6 +98,6 @@ async function open(file: CreatureFile): Promise<void> {
     const { creature } = await importCreature(new Blob([file.text], { type: "application/json" }));
     navigate(`/creatures/${creature}`);
   } catch (error) {
-    showError(error);
+    showFailure(error);
   }
 }

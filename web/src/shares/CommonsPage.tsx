@@ -1,33 +1,21 @@
 /** The commons: listed shares as moving tiles. */
 
-import { useEffect } from "preact/hooks";
 import * as api from "../api/client";
 import type { Share } from "../api/types";
 import { decodeMotion } from "../decode/motion";
 import { usePages } from "../store/paging";
 import { usePolled } from "../store/polling";
+import { Empty, Page, useTitle } from "../ui/Page";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { text } from "./text";
 import "./shares.css";
 
 export function CommonsPage() {
   const { items: shares, error, more } = usePages(api.readCommons, ({ slug }) => slug);
-  useEffect(() => {
-    document.title = text.commonsTitle;
-  }, []);
+  useTitle(text.commons);
   return (
-    <main>
-      <header class="page-head">
-        <h1>{text.commons}</h1>
-      </header>
-      {error && <p class="banner wrong">{error}</p>}
-      {!shares && !error && <p class="quiet loading">{text.loading}</p>}
-      {shares?.length === 0 && (
-        <section class="empty card">
-          <h2>{text.nothingListed}</h2>
-          <p>{text.nothingListedHint}</p>
-        </section>
-      )}
+    <Page title={text.commons} error={error} loading={!shares && text.loading}>
+      {shares?.length === 0 && <Empty title={text.nothingListed} hint={text.nothingListedHint} />}
       <ul class="commons">
         {shares?.map((share) => (
           <li key={share.slug}>
@@ -36,7 +24,7 @@ export function CommonsPage() {
         ))}
       </ul>
       {more && <button onClick={more}>{text.showMore}</button>}
-    </main>
+    </Page>
   );
 }
 

@@ -3,7 +3,7 @@
 import * as api from "../api/client";
 import type { Run, RunChange } from "../api/types";
 import { applyResponse, currentState, dispatch } from "./store";
-import { attempt, delayWithUndo, showUndo } from "./toasts";
+import { attempt, delayWithUndo, offerUndo } from "./toasts";
 import { text } from "./text";
 
 /** Apply the answer of the server, or show its error; return true on success. */
@@ -21,7 +21,7 @@ export const restore = (id: string) => apply(api.restoreRun(id));
 /** Move a run to the bin. */
 export async function remove(id: string, title: string): Promise<boolean> {
   const removed = await apply(api.deleteRun(id));
-  if (removed) showUndo(text.inBin(title), () => void restore(id));
+  if (removed) offerUndo(text.inBin(title), () => void restore(id));
   return removed;
 }
 
@@ -40,7 +40,7 @@ export function addTag({ id, tags }: Run, tag: string): void {
 
 export function removeTag({ id, tags }: Run, tag: string): void {
   void editRun(id, { tags: tags.filter((each) => each !== tag) });
-  showUndo(text.tagRemoved(tag), () => {
+  offerUndo(text.tagRemoved(tag), () => {
     const run = currentState().runs.get(id);
     if (run) addTag(run, tag);
   });
@@ -48,5 +48,5 @@ export function removeTag({ id, tags }: Run, tag: string): void {
 
 export function removeNote({ id, note }: Run): void {
   void editRun(id, { note: null });
-  showUndo(text.noteRemoved, () => void editRun(id, { note }));
+  offerUndo(text.noteRemoved, () => void editRun(id, { note }));
 }

@@ -5,7 +5,7 @@ import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "
 import { type Loaded, useFetched } from "./fetch";
 import { useStore } from "./store";
 import { useThrottled } from "./throttle";
-import { attempt, delayWithUndo, showToast, showUndo } from "./toasts";
+import { attempt, delayWithUndo, showToast, offerUndo } from "./toasts";
 import { text } from "./text";
 
 /** Points per curve, as many as a screen resolves. */
@@ -64,7 +64,7 @@ export const restoreSweep = (id: string) => attempt(api.restoreSweep(id));
 /** Move all runs to the bin. */
 export async function removeSweep(id: string): Promise<void> {
   const answer = await attempt(api.deleteSweep(id));
-  if (answer) showUndo(outcome(answer, text.deleted), () => void restoreSweep(id));
+  if (answer) offerUndo(outcome(answer, text.deleted), () => void restoreSweep(id));
 }
 
 export const cancelSweepWithUndo = (id: string, title: string) =>

@@ -35,7 +35,7 @@ export function showToast(toast: Omit<Toast, "id">): number {
 }
 
 /** Show what went wrong. */
-export function showError(error: unknown): void {
+export function showFailure(error: unknown): void {
   showToast({ kind: "wrong", text: messageOf(error) });
 }
 
@@ -44,13 +44,13 @@ export async function attempt<T>(request: Promise<T>): Promise<T | null> {
   try {
     return await request;
   } catch (error) {
-    showError(error);
+    showFailure(error);
     return null;
   }
 }
 
 /** Show a note with an undo button; return the id of the note. */
-export function showUndo(note: string, undo: () => void): number {
+export function offerUndo(note: string, undo: () => void): number {
   const run = () => {
     dismissToast(toast);
     undo();
@@ -64,7 +64,7 @@ const UNDO_MS = 4000;
 /** Do something after a delay in which it can be undone. */
 export function delayWithUndo(note: string, act: () => void): void {
   const timer = setTimeout(act, UNDO_MS);
-  showUndo(note, () => clearTimeout(timer));
+  offerUndo(note, () => clearTimeout(timer));
 }
 
 /** Ctrl+Z presses the newest undo button, which the Tab key reaches too late. */

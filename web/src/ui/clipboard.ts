@@ -1,6 +1,6 @@
 /** Copy text to the clipboard, with a note on success or failure. */
 
-import { showError, showToast } from "../store/toasts";
+import { showFailure, showToast } from "../store/toasts";
 import { text } from "./text";
 
 export async function copyText(content: string, note: string): Promise<void> {
@@ -8,7 +8,7 @@ export async function copyText(content: string, note: string): Promise<void> {
     await writeClipboard(content);
     showToast({ kind: "note", text: note });
   } catch (error) {
-    showError(error);
+    showFailure(error);
   }
 }
 
