@@ -23,7 +23,7 @@ from ..tables import AUDIT, MEASUREMENT, REPLAY, Run
 
 log = logging.getLogger(__name__)
 
-EVOLVE = "worker.jobs.evolve"
+EVOLVE = "worker.job_process.main"
 RENDER = "worker.jobs.render"
 OWN = "-own-"
 """Begins the second part of names of queues that only some workers listen to."""
