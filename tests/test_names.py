@@ -54,7 +54,6 @@ LEFT = {
     "engine/microcosmos/spec/search.py:own",
     "engine/microcosmos/viz/figures/reading.py:own",
     "engine/microcosmos/world/model.py:pace",
-    "server/attempts/recording.py:standing",
     "server/auth/bootstrap.py:told",
     "server/creatures/initial.py:DECISIVE",
     "server/deletion/garbage.py:AT_ONCE",
@@ -71,8 +70,6 @@ LEFT = {
     "server/sweeps/steering.py:AT_ONCE",
     "server/sweeps/summary.py:Told",
     "server/sweeps/summary.py:told",
-    "worker/plugins.py:Shelf",
-    "worker/plugins.py:Told",
 }
 """Old names that are still there; this list may only shrink."""
 
