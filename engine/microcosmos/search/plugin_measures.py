@@ -1,4 +1,4 @@
-"""What measures of one's own are made of."""
+"""The data that plug-in measures are computed from."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ class Measure:
 def motion_for_plugins(
     world: World, start: State, end: State, observed: Observations, measures: dict[str, Any]
 ) -> Motion:
-    """A simulation as measures of one's own see it."""
+    """A simulation as plug-in measures see it."""
     first = mean(start.angles, edges_there(world))
     return Motion(
         path=jnp.concatenate([centre(world, start)[None], observed.centre]),

@@ -38,21 +38,21 @@ export function measurementsOf({ identity, measured }: Creature): Row[] {
   return [
     ...(gait ? [] : [[text.fitness, number(measured.fitness, 6)] as Row]),
     ...figures.map(([name, value]): Row => {
-      const own = ownOf({ identity, measured })[name];
-      const [title, write] = MEASURES[name] ?? [own?.title ?? words(name), (x: number) => number(x, 6)];
-      return [title, own?.unit ? `${write(value)} ${own.unit}` : write(value)];
+      const plugin = pluginsOf({ identity, measured })[name];
+      const [title, write] = MEASURES[name] ?? [plugin?.title ?? words(name), (x: number) => number(x, 6)];
+      return [title, plugin?.unit ? `${write(value)} ${plugin.unit}` : write(value)];
     }),
   ];
 }
 
 /** Plug-ins that measured a creature, by name. */
-function ownOf({ identity, measured }: Pick<Creature, "identity" | "measured">): Record<string, Own> {
-  const task = identity.task as { fitness?: string; own?: Own } | undefined;
-  const measures = (measured as { own?: Record<string, Own> } | null)?.own ?? {};
-  return task?.own ? { ...measures, [task.fitness!]: task.own } : measures;
+function pluginsOf({ identity, measured }: Pick<Creature, "identity" | "measured">): Record<string, Plugin> {
+  const task = identity.task as { fitness?: string; plugin?: Plugin } | undefined;
+  const measures = (measured as { plugins?: Record<string, Plugin> } | null)?.plugins ?? {};
+  return task?.plugin ? { ...measures, [task.fitness!]: task.plugin } : measures;
 }
 
-interface Own {
+interface Plugin {
   title: string;
   unit: string;
   source: string;
@@ -62,11 +62,11 @@ interface Own {
 function needsOf(creature: Creature): Row[] {
   const { genome } = creature.identity;
   const control = "control" in genome ? genome.control : (genome as unknown as Spec);
-  const moved = control.own as unknown as Own | undefined;
-  const name = "swimmer" in genome ? genome.swimmer : genome.encoding;
-  const all = { ...ownOf(creature), ...(moved && { [name]: moved }) };
-  const told = Object.entries(all).map(([own, { title, source }]) =>
-    text.pluginVersion(title, own, source.slice(0, 12)),
+  const actuating = control.plugin as unknown as Plugin | undefined;
+  const controller = "swimmer" in genome ? genome.swimmer : genome.encoding;
+  const all = { ...pluginsOf(creature), ...(actuating && { [controller]: actuating }) };
+  const told = Object.entries(all).map(([name, { title, source }]) =>
+    text.pluginVersion(title, name, source.slice(0, 12)),
   );
   return told.length > 0 ? [[text.plugins, told.join("; ")]] : [];
 }

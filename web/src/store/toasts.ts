@@ -1,6 +1,8 @@
 /** Short notes at the edge of the page, some with a way back. */
 
 import { useEffect, useState } from "preact/hooks";
+import { messageOf } from "../api/problem";
+import { text } from "./text";
 
 export interface Toast {
   id: number;
@@ -29,6 +31,21 @@ export function showToast(toast: Omit<Toast, "id">): number {
   const id = ++count;
   change([...toasts, { ...toast, id }]);
   setTimeout(() => dismissToast(id), SHOWN_MS[toast.kind]);
+  return id;
+}
+
+/** Show why something failed. */
+export function showFailure(error: unknown): void {
+  showToast({ kind: "wrong", text: messageOf(error) });
+}
+
+/** Show a note with a button that takes back what was done; return its id. */
+export function offerUndo(note: string, undo: () => void): number {
+  const run = () => {
+    dismissToast(id);
+    undo();
+  };
+  const id = showToast({ kind: "note", text: note, action: { label: text.undo, run } });
   return id;
 }
 
