@@ -6,7 +6,8 @@ from uuid import UUID
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from ..core.sizes import size
+from microcosmos.sizes import size
+
 from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, QUEUED, RUNNING, LogEntry, Run
 
 Level = Literal["info", "warning", "error"]

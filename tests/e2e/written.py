@@ -8,8 +8,8 @@ from uuid import UUID
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
-from server.attempts.claim import claim
 from server.attempts.attempt import Attempt
+from server.attempts.claim import claim
 from server.runs.submission import submit
 from server.services.services import Services
 
