@@ -1,4 +1,4 @@
-"""What a worker has of users' own: found out in another process, again when a file changes."""
+"""Plug-ins of a worker: listed in another process, again when a file changes."""
 
 import json
 import subprocess
@@ -110,7 +110,7 @@ def test_a_run_that_came_to_the_wrong_worker_is_set_aside_or_refused_not_tried_a
 
     def said(source):
         version = {"source": source, "title": "A stick"}
-        document = {**spec, "body": {"builder": "mine.stick", "own": version}}
+        document = {**spec, "body": {"builder": "mine.stick", "plugin": version}}
         command = [sys.executable, "-c", CARRY_OUT, json.dumps(document)]
         done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
         return json.loads(done.stdout.splitlines()[-1])

@@ -21,7 +21,7 @@ from .cells import build_cells
 from .creatures import build_block, build_disturbed_block, frame
 from .emitters import build_emitters
 from .folding import build_folding
-from .plugins import measures_of, own_of
+from .plugins import measures_of, plugin_versions
 from .refinement import build_refinement
 from .scene import build_encoding, build_task
 from .tables import build_gaits, build_scaling
@@ -125,7 +125,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         reevaluation=build_reevaluation(chosen),
         force_free=chosen.coupling.force_free,
         measures=measures_of(scene),
-        own=own_of(scene),
+        plugins=plugin_versions(scene),
     )
 
 

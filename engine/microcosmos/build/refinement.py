@@ -12,7 +12,7 @@ from ..experiments import refinement
 from ..spec.refinement import parsed
 from .cells import build_cells
 from .creatures import build_block, frame
-from .plugins import measures_of, own_of
+from .plugins import measures_of, plugin_versions
 from .scene import build_task
 
 
@@ -41,14 +41,14 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         provenance=found["provenance"],
         device=device.device_kind(),
         measures=measures_of(scene),
-        own=own_of(scene),
+        plugins=plugin_versions(scene),
     )
 
 
 def _scene(chosen: spec.Refinement, found: dict[str, Any]) -> spec.Scene:
     """The creature's, with what its own archive and this one measure."""
     scene = creature.scene_of(found)
-    return scene.model_copy(update={"own": {**scene.own, **chosen.archive.own}})
+    return scene.model_copy(update={"plugins": {**scene.plugins, **chosen.archive.plugins}})
 
 
 def _names(chosen: spec.Refinement) -> tuple[str, ...]:

@@ -44,7 +44,7 @@ class Goal(eqx.Module):
 
     displacement: float = eqx.field(static=True, default=1.0)
     energy: float = eqx.field(static=True, default=0.0)
-    own: str | None = eqx.field(static=True, default=None)
+    plugin: str | None = eqx.field(static=True, default=None)
     """The name of the task's own measure that is all of it."""
 
 
@@ -62,13 +62,13 @@ class Task(eqx.Module):
     placements: Int[Array, "placement 2"] | None = None
     """Shift of the energy, in cells, in each world that a creature is measured in; None: one
     world, unshifted."""
-    own: tuple[Measure, ...] = eqx.field(static=True, default=())
-    """What is measured beside the usual measures."""
+    plugin_measures: tuple[Measure, ...] = eqx.field(static=True, default=())
+    """Measures of plug-ins, beside the usual ones."""
 
     @property
     def measures(self) -> tuple[str, ...]:
         """Names of the measures of every creature, in this order."""
-        return MEASURES + tuple(measure.name for measure in self.own)
+        return MEASURES + tuple(measure.name for measure in self.plugin_measures)
 
 
 def evaluate(task: Task, genotype: Genotype) -> Evaluation:
@@ -127,18 +127,18 @@ def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict
     """Measures of any actuator's motion."""
     length = task.length if driven.length is None else driven.length
     values = motion(driven.world, driven.start, end, observed, length)
-    if not task.own:
+    if not task.plugin_measures:
         return values
     whole = motion_for_plugins(driven.world, driven.start, end, observed, values)
-    return values | {measure.name: measure.of(whole) for measure in task.own}
+    return values | {measure.name: measure.of(whole) for measure in task.plugin_measures}
 
 
 def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
     """Displacement in cells, collected energy, or both, as the goal weighs them; or a measure
     of a plug-in."""
     goal = task.goal
-    if goal.own is not None:
-        return values[goal.own]
+    if goal.plugin is not None:
+        return values[goal.plugin]
     displacement, energy = values["displacement"], values["energy"]
     if goal.energy == 0:
         return displacement

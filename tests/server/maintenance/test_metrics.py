@@ -84,6 +84,6 @@ def test_methods_that_somebody_invents_are_counted_as_one(scrape, address):
 def test_a_redis_that_is_gone_is_told_and_the_rest_too(services, run_id, serve):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         told = httpx.get(f"{address}/metrics", verify=False, timeout=30).text.splitlines()
-    assert "microcosmos_redis_up 0" in told
-    assert 'microcosmos_runs{status="queued"} 1' in told
+    assert "microcosmos_redis_up 0.0" in told
+    assert 'microcosmos_runs{status="queued"} 1.0' in told
     assert not any(line.startswith("microcosmos_queue_length{") for line in told)

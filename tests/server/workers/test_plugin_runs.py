@@ -15,7 +15,7 @@ def test_only_a_worker_that_has_it_takes_a_run(api, services, have, mine, row):
     run = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
     with services.sessions.read() as session:
         known = Reported(session, services.settings.lease)
-        pinned = run["spec"]["body"]["own"]["source"]
+        pinned = run["spec"]["body"]["plugin"]["source"]
         (able,) = known.having(pinned)
     names = {"with": A, "other": B}
     for worker in ("without", next(name for name in names if name != able), "nobody"):
@@ -52,7 +52,7 @@ def test_a_run_whose_worker_is_away_waits_and_says_for_what(api, services, have,
     have("other", plugins=declared(B))
     assert "; other has another version" in api.get(f"runs/{run}").json()["waiting_reason"]
     late = api.post("runs", json={**mine, "body": {"builder": "mine.cross"}}).json()
-    assert late["spec"]["body"]["own"]["source"] == B, "the version that a live worker has"
+    assert late["spec"]["body"]["plugin"]["source"] == B, "the version that a live worker has"
     have("again", plugins=declared())
     assert "free" in api.get(f"runs/{run}").json()["waiting_reason"]
 
@@ -75,13 +75,13 @@ def test_a_run_of_modules_that_no_worker_has_together_says_so(services, have):
     have("one", plugins=declared()), have("two", plugins=declared(B))
     with services.sessions.read() as session:
         alive = Reported(session, services.settings.lease).alive
-    task = {"fitness": "mine.straight", "own": {"source": A, "title": "x"}}
-    body = {"builder": "mine.cross", "own": {"source": B, "title": "x"}}
+    task = {"fitness": "mine.straight", "plugin": {"source": A, "title": "x"}}
+    body = {"builder": "mine.cross", "plugin": {"source": B, "title": "x"}}
     assert plugins.needed_versions({"task": task, "body": body}) == [A, B]
     assert "none has them together" in plugins.missing(alive, {"task": task, "body": body})
 
 
-def test_gaits_encodings_and_folded_bodies_of_ones_own_are_queued(api, have, mine, sweep):
+def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sweep):
     have(plugins=declared())
     swim = {**sweep, "swimmers": ["worm", "mine.wiggler"]}
     code = {
@@ -96,22 +96,22 @@ def test_gaits_encodings_and_folded_bodies_of_ones_own_are_queued(api, have, min
         "steps": 20,
         "updates": 2,
     }
-    for spec, part in ((swim, "own"), (code, "control"), (fold, "body")):
+    for spec, part in ((swim, "plugins"), (code, "control"), (fold, "body")):
         assert api.post("runs/estimate", json=spec).status_code == 200, part
         answer = api.post("runs", json=spec)
         assert answer.status_code == 202, answer.text
         found = answer.json()["spec"][part]
-        version = found["mine.wiggler"] if part == "own" else found["own"]
+        version = found["mine.wiggler"] if part == "plugins" else found["plugin"]
         assert version["source"] == A
         assert (
             api.get(f"runs/{answer.json()['id']}")
             .json()["waiting_reason"]
             .startswith("A worker is")
         )
-    assert "own" not in api.post("runs", json=sweep).json()["spec"]
+    assert "plugins" not in api.post("runs", json=sweep).json()["spec"]
 
 
-def test_a_run_with_something_of_ones_own_is_extended_as_it_is(api, services, have, mine):
+def test_a_run_with_a_plugin_is_extended_as_it_is(api, services, have, mine):
     have(plugins=declared(A))
     run = api.post("runs", json=mine).json()
     claim(services, UUID(run["id"]), "worker").finish()

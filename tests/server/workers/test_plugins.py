@@ -1,4 +1,4 @@
-"""What workers have of users' own is offered, checked and queued for them; never run here."""
+"""Plug-ins of workers are offered, checked and queued; the server never runs them."""
 
 import pytest
 from declared import STRICT, A, B, declared
@@ -13,8 +13,8 @@ def test_what_workers_have_is_among_the_choices_of_the_forms(api, services, have
     search = after["quality-diversity"]
     fitness = search["$defs"]["Task"]["properties"]["fitness"]
     assert fitness["enum"][-2:] == ["displacement+energy", "mine.straight"]
-    assert fitness["own"]["mine.straight"]["workers"] == ["worker"]
-    settings = search["$defs"]["Task"]["properties"]["own"]["parts"]["mine.straight"]
+    assert fitness["plugins"]["mine.straight"]["workers"] == ["worker"]
+    settings = search["$defs"]["Task"]["properties"]["plugin"]["parts"]["mine.straight"]
     assert settings["properties"]["settings"]["properties"] == STRICT["properties"]
     axis = search["$defs"]["Descriptor"]["properties"]
     assert axis["name"]["enum"][-1] == "mine.sway"
@@ -37,9 +37,9 @@ def test_a_run_says_which_version_it_needs_with_all_its_settings(api, have, mine
     assert answer.status_code == 202, answer.text
     spec = answer.json()["spec"]
     straight = {"title": "Straight way", "unit": "cells", "sizes": {}, "source": A}
-    assert spec["task"]["own"] == {**straight, "settings": {"strictness": 1.0}}
-    assert spec["body"]["own"]["settings"] == {"strictness": 2}
-    assert spec["body"]["own"]["sizes"] == {"nodes": 40}
+    assert spec["task"]["plugin"] == {**straight, "settings": {"strictness": 1.0}}
+    assert spec["body"]["plugin"]["settings"] == {"strictness": 2}
+    assert spec["body"]["plugin"]["sizes"] == {"nodes": 40}
     axis = spec["archive"]["descriptors"][0]
     assert (axis["low"], axis["high"], axis["scale"]) == (0.001, 1.0, "log10")
     run = answer.json()["id"]
@@ -48,7 +48,7 @@ def test_a_run_says_which_version_it_needs_with_all_its_settings(api, have, mine
     again = api.post("runs", json=spec)
     assert again.json()["spec"] == spec, "what a run has is taken as it is"
     usual = {**spec, "task": {**spec["task"], "fitness": "displacement"}}
-    assert "own" not in api.post("runs", json=usual).json()["spec"]["task"]
+    assert "plugin" not in api.post("runs", json=usual).json()["spec"]["task"]
 
 
 def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, mine):
@@ -66,23 +66,23 @@ def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, min
         ("task", {"fitness": "mine.sway"}, "task.fitness", "mine.straight on worker"),
         ("body", {"builder": "your.body"}, "body.builder", "docs/plugins.md"),
         ("control", {"encoding": "your.code"}, "control.encoding", "no worker has"),
-        ("task", {"own": {"settings": {}}}, "task.own", "must be left out"),
-        ("task", {"fitness": "mine.straight", "own": 3}, "task.own", "must be an object"),
+        ("task", {"plugin": {"settings": {}}}, "task.plugin", "must be left out"),
+        ("task", {"fitness": "mine.straight", "plugin": 3}, "task.plugin", "must be an object"),
         (
             "task",
-            {"fitness": "mine.straight", "own": {"settings": {"strictness": 11}}},
-            "task.own.settings.strictness",
+            {"fitness": "mine.straight", "plugin": {"settings": {"strictness": 11}}},
+            "task.plugin.settings.strictness",
             "11 is greater than the maximum of 10",
         ),
         (
             "task",
-            {"fitness": "mine.straight", "own": {"settings": {"color": 1}}},
-            "task.own.settings",
+            {"fitness": "mine.straight", "plugin": {"settings": {"color": 1}}},
+            "task.plugin.settings",
             "'color' was unexpected",
         ),
         (
             "task",
-            {"fitness": "mine.straight", "own": {"source": B, "title": "x"}},
+            {"fitness": "mine.straight", "plugin": {"source": B, "title": "x"}},
             "task.fitness",
             f"in version {B[:12]}; workers have {A[:12]}",
         ),

@@ -1,6 +1,8 @@
 /** The activity of a run before its first generation. */
 
 import type { Run } from "../api/types";
+import { useRunRefresh } from "../store/refresh";
+import { useNow } from "../store/runPage";
 import { duration } from "../ui/format";
 import { text } from "./text";
 import "../replay/replay.css";
@@ -20,9 +22,10 @@ export function elapsedOf({ status, started_at, queued_at }: Run, now: number): 
   return since && duration(Math.max(0, Math.floor((now - Date.parse(since)) / 1000)));
 }
 
-export function RunActivity({ run, now }: { run: Run; now: number }) {
+export function RunActivity({ run }: { run: Run }) {
   const activity = activityOf(run);
-  const elapsed = elapsedOf(run, now);
+  const elapsed = elapsedOf(run, useNow(activity !== null));
+  useRunRefresh(run.id, run.status === "queued" || run.status === "running");
   if (!activity) return null;
   return (
     <p class="activity">

@@ -59,7 +59,7 @@ export function Entry({ field, state }: { field: Leaf; state: FormState }) {
       {field.kind === "text" && <TextInput {...common} />}
       <div id={`${common.id}-about`} class="about">
         <p class="help">
-          {field.help} {aboutOwn(field, value)} <span class="range">{rangeOf(field, unit)}</span>
+          {field.help} {aboutPlugin(field, value)} <span class="range">{rangeOf(field, unit)}</span>
         </p>
         <Sentences messages={messages} />
       </div>
@@ -68,9 +68,9 @@ export function Entry({ field, state }: { field: Leaf; state: FormState }) {
 }
 
 /** Description of a plug-in, and the workers that offer it. */
-function aboutOwn(field: Leaf, value: Json): string {
-  const own = field.kind === "choice" ? field.own?.[String(value)] : undefined;
-  return own ? text.plugin(String(value), own.about, own.workers.join(", ")) : "";
+function aboutPlugin(field: Leaf, value: Json): string {
+  const plugin = field.kind === "choice" ? field.plugins?.[String(value)] : undefined;
+  return plugin ? text.plugin(String(value), plugin.about, plugin.workers.join(", ")) : "";
 }
 
 /** The unit, unless the title already names it. */

@@ -11,15 +11,15 @@ interface Common {
   path: string;
   title: string;
   help: string;
-  /** The choice with which alone it is there: the settings of something of users' own. */
+  /** The choice that shows the field: settings belong to one plug-in. */
   when?: { path: string; is: string };
 }
 
-/** What is told of a choice of users' own. */
-export interface Own {
+/** A plug-in among the options of a choice. */
+export interface PluginOption {
   title: string;
   about: string;
-  /** Names of those who have it. */
+  /** Names of the workers that offer it. */
   workers: string[];
 }
 
@@ -28,7 +28,7 @@ export interface Section extends Common {
   fields: Field[];
   /** Names of fields that follow from the others where they are left out. */
   following: string[];
-  /** What belongs to a choice of users' own, by its path and word, when it is made. */
+  /** The settings of each plug-in of a choice when it is chosen. */
   settings?: { path: string; fresh: Record<string, Json> };
   /** What it begins with when it is switched on; not there where it cannot be switched off. */
   fresh?: Json;
@@ -65,7 +65,7 @@ export interface Choice extends Common {
   kind: "choice";
   nullable: boolean;
   options: Json[];
-  own?: Record<string, Own>;
+  plugins?: Record<string, PluginOption>;
 }
 
 /** Several numbers in a row. */
@@ -121,7 +121,7 @@ function sectionOf(schema: Schema, root: Schema, common: Common): Section {
   return { ...common, kind: "section", fields, following, ...seldom, ...freshSettings(schema, common.path) };
 }
 
-/** The settings that go with words of users' own for a choice, each shown with its word. */
+/** The settings of the plug-ins of a choice, each shown with its plug-in. */
 function settingsOf(property: Schema, root: Schema, beside: string, path: string): Field[] {
   const choice = join(beside, String(property.settings_of));
   return Object.entries(property.parts as Record<string, Schema>).flatMap(([is, part]) =>
@@ -133,11 +133,11 @@ function settingsOf(property: Schema, root: Schema, beside: string, path: string
 }
 
 function freshSettings(schema: Schema, path: string): Pick<Section, "settings"> {
-  const own = (schema.properties as Record<string, Schema> | undefined)?.own;
-  if (!own?.parts) return {};
-  const parts = Object.entries(own.parts as Record<string, Schema>);
+  const plugin = (schema.properties as Record<string, Schema> | undefined)?.plugin;
+  if (!plugin?.parts) return {};
+  const parts = Object.entries(plugin.parts as Record<string, Schema>);
   const fresh = Object.fromEntries(parts.map(([name, part]) => [name, part.default!]));
-  return { settings: { path: join(path, String(own.settings_of)), fresh } };
+  return { settings: { path: join(path, String(plugin.settings_of)), fresh } };
 }
 
 const unitIn = ({ unit }: Schema): Schema => (unit === undefined ? {} : { unit });
@@ -159,8 +159,8 @@ function fieldOf(property: Schema, root: Schema, key: string, path: string, foll
   if (Array.isArray(inner.oneOf)) return unionOf(inner, root, common);
   if ("const" in inner) return { ...common, kind: "constant" };
   if (Array.isArray(inner.enum)) {
-    const own = inner.own && { own: inner.own as unknown as Record<string, Own> };
-    return { ...common, kind: "choice", nullable, options: inner.enum, ...own };
+    const plugins = inner.plugins && { plugins: inner.plugins as unknown as Record<string, PluginOption> };
+    return { ...common, kind: "choice", nullable, options: inner.enum, ...plugins };
   }
   switch (inner.type) {
     case "object": {

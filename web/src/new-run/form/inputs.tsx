@@ -58,7 +58,7 @@ export function ChoiceInput({ id, value, invalid, onChange, field }: Common & { 
       {field.nullable && <option value="null">{text.auto}</option>}
       {field.options.map((option) => (
         <option key={String(option)} value={JSON.stringify(option)}>
-          {field.own?.[String(option)]?.title ?? String(option).replaceAll("_", " ")}
+          {field.plugins?.[String(option)]?.title ?? String(option).replaceAll("_", " ")}
         </option>
       ))}
     </select>
