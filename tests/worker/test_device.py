@@ -8,40 +8,25 @@ import pytest
 
 from worker import device, processor
 
-TWO = """#!/bin/sh
-case "$*" in
--L) echo "GPU 0: NVIDIA H200 (UUID: GPU-aaaa1111)"
-    echo "GPU 1: NVIDIA A100-SXM4-40GB (UUID: GPU-bbbb2222)" ;;
-*)  echo "GPU-aaaa1111, NVIDIA H200, 143771"
-    echo "GPU-bbbb2222, NVIDIA A100-SXM4-40GB, 40960" ;;
-esac
-"""
-DIVIDED = TWO.replace(
-    " ;;",
-    """
-    echo "  MIG 3g.20gb     Device  0: (UUID: MIG-cccc3333)"
-    echo "  MIG 1g.5gb      Device  1: (UUID: MIG-dddd4444)" ;;""",
-    1,
-).replace('echo "GPU 1: NVIDIA A100-SXM4-40GB (UUID: GPU-bbbb2222)"', ":")
+TWO = {
+    "GPU-aaaa1111": ("NVIDIA H200", 143771 << 20),
+    "GPU-bbbb2222": ("NVIDIA A100-SXM4-40GB", 40 << 30),
+}
+DIVIDED = {
+    "MIG-cccc3333": ("NVIDIA H200 MIG 3g.71gb", 71 << 30),
+    "MIG-dddd4444": ("NVIDIA H200 MIG 1g.18gb", 18 << 30),
+}
 
 
 @pytest.fixture
-def nvidia_smi(tmp_path, monkeypatch):
-    """A program of that name which says what it is told to."""
-
-    def says(script):
-        program = tmp_path / "nvidia-smi"
-        program.write_text(script)
-        program.chmod(0o755)
-        monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
-
+def driver(nvml, monkeypatch):
     for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.FRACTION):
         monkeypatch.delenv(name, raising=False)
-    return says
+    return nvml
 
 
-def test_every_worker_has_a_gpu_of_its_own(nvidia_smi):
-    nvidia_smi(TWO)
+def test_every_worker_has_a_gpu_of_its_own(driver):
+    driver(TWO)
     first, second = device.find(0, 2), device.find(1, 2)
     assert (first.name, first.memory_bytes) == ("NVIDIA H200", 143771 << 20)
     assert first.environment == {"CUDA_VISIBLE_DEVICES": "GPU-aaaa1111"}
@@ -50,8 +35,8 @@ def test_every_worker_has_a_gpu_of_its_own(nvidia_smi):
     assert first.threads == second.threads == ()
 
 
-def test_more_workers_than_gpus_share_them_and_their_memory(nvidia_smi):
-    nvidia_smi(TWO)
+def test_more_workers_than_gpus_share_them_and_their_memory(driver):
+    driver(TWO)
     first, second, third = (device.find(i, 3) for i in range(3))
     assert first == third
     assert first.name == "NVIDIA H200 (shared by 2 workers)"
@@ -63,8 +48,8 @@ def test_more_workers_than_gpus_share_them_and_their_memory(nvidia_smi):
     assert device.FRACTION not in second.environment
 
 
-def test_a_fraction_of_memory_that_a_person_gave_stays(nvidia_smi, monkeypatch):
-    nvidia_smi(TWO)
+def test_a_fraction_of_memory_that_a_person_gave_stays(driver, monkeypatch):
+    driver(TWO)
     monkeypatch.setenv(device.FRACTION, "0.2")
     assert device.find(0, 4).environment[device.FRACTION] == "0.2"
 
@@ -80,28 +65,26 @@ def test_a_fraction_of_memory_that_a_person_gave_stays(nvidia_smi, monkeypatch):
         ("-1", [None, None]),
     ],
 )
-def test_only_gpus_that_the_environment_allows_are_used(
-    nvidia_smi, monkeypatch, allowed, found
-):
-    nvidia_smi(TWO)
+def test_only_gpus_that_the_environment_allows_are_used(driver, monkeypatch, allowed, found):
+    driver(TWO)
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", allowed)
     assert [device.find(i, 2).gpu for i in range(2)] == found
 
 
-def test_parts_of_a_divided_card_are_devices(nvidia_smi, monkeypatch):
-    nvidia_smi(DIVIDED)
+def test_parts_of_a_divided_card_are_devices(driver, monkeypatch):
+    driver(TWO, {"GPU-aaaa1111": DIVIDED})
     first, second, third = (device.find(i, 3) for i in range(3))
-    assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.20gb")
-    assert first.memory_bytes == 20 << 30
-    assert (second.gpu, second.memory_bytes) == ("MIG-dddd4444", 5 << 30)
+    assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.71gb")
+    assert first.memory_bytes == 71 << 30
+    assert (second.gpu, second.memory_bytes) == ("MIG-dddd4444", 18 << 30)
     assert third.gpu == "GPU-bbbb2222"
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "MIG-dddd4444,0")
     assert [device.find(i, 2).gpu for i in range(2)] == ["MIG-dddd4444", "MIG-cccc3333"]
 
 
-@pytest.mark.parametrize("script", ["#!/bin/sh\nexit 9\n", "#!/bin/sh\necho 'No devices'\n"])
-def test_without_a_gpu_that_answers_it_is_the_processor(nvidia_smi, script):
-    nvidia_smi(script)
+@pytest.mark.parametrize("cards", [None, {}, {"GPU-aaaa1111": None}])
+def test_without_a_gpu_that_answers_it_is_the_processor(driver, cards):
+    driver(cards)
     found = device.find(0)
     assert found.memory_bytes > 1 << 20
     assert found.environment == {}

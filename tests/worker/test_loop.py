@@ -4,15 +4,15 @@ import pytest
 import redis
 from rq.job import Job
 from rq.serializers import JSONSerializer
+from rq.worker import SimpleWorker
 
-from worker import loop, renderer, stop
-from worker.renderer import Renderer
+from worker import loop, process, renderer
 
 
 @pytest.fixture
 def worker(services):
     """A worker whose jobs run in this process."""
-    return Renderer([services.jobs.renderings], "renderer", serializer=JSONSerializer)
+    return SimpleWorker([services.jobs.renderings], "renderer", serializer=JSONSerializer)
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
 
     def turn(worker):
         turns.append(worker)
-        monkeypatch.setattr(stop, "_requested", len(turns) > 2)
+        monkeypatch.setattr(process, "_stop_requested", len(turns) > 2)
         raise redis.ResponseError("MISCONF Errors writing to the AOF file")
 
     monkeypatch.setattr(loop, "take_one", turn)
@@ -65,6 +65,6 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
     execution = worker.prepare_execution(job)
     services.redis.delete(execution.key)  # It expires, before what leads there.
     assert services.jobs.renderings.started_job_registry.get_job_ids() == [job_id]
-    renderer.take_up(services.jobs, services.jobs.renderings)
+    renderer.retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.job_ids == [job_id]
     assert not services.jobs.renderings.started_job_registry.get_job_ids()

@@ -3,7 +3,7 @@
 import pytest
 from sqlalchemy import select, update
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.tables import CANCELLED, Run, Worker
 from server.workers import registry
 from worker.device import Device

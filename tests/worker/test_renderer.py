@@ -4,9 +4,10 @@ import time
 
 import pytest
 from rq.serializers import JSONSerializer
+from rq.worker import SimpleWorker
 
 from server.renderings.storage import RenderingFailed, order
-from worker.renderer import Renderer, take_up
+from worker.renderer import retry_interrupted
 
 CREATURE = "ab" * 32
 
@@ -17,7 +18,7 @@ def begin(services):
 
     def take():
         queue = services.jobs.renderings
-        renderer = Renderer([queue], serializer=JSONSerializer)
+        renderer = SimpleWorker([queue], serializer=JSONSerializer)
         renderer.register_birth()
         job, _ = queue.dequeue_any([queue], None, services.redis, serializer=JSONSerializer)
         renderer.prepare_execution(job)
@@ -31,10 +32,10 @@ def begin(services):
 def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services, begin):
     order(services, CREATURE)
     begin()
-    take_up(services.jobs, services.jobs.renderings)
+    retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 1
     begin()
-    take_up(services.jobs, services.jobs.renderings)
+    retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 0
     with pytest.raises(RenderingFailed, match="ended the renderer twice"):
         order(services, CREATURE)

@@ -7,7 +7,7 @@ import sys
 import pytest
 from rq.serializers import JSONSerializer
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.local import process_tree
 from worker import supervisor
 from worker.device import Device
@@ -40,21 +40,23 @@ def worker(services):
 def test_a_job_that_does_not_stop_in_time_is_killed_and_its_run_unmarked(
     services, run_id, row, worker, monkeypatch
 ):
-    def begin(*_):
+    started = []
+
+    def start(_):
         before = signal.signal(signal.SIGTERM, signal.SIG_IGN)  # The job inherits it.
-        worker._horse = subprocess.Popen(["sleep", "60"])
+        started.append(subprocess.Popen(["sleep", "60"]))
         signal.signal(signal.SIGTERM, before)
-        worker._horse_pid = worker._horse.pid
+        worker.job = started[0]
         claim(services, run_id, worker.name)
-        worker.pass_on()
+        worker.stop_job()
 
     monkeypatch.setattr(supervisor, "PATIENCE", 0.0)
-    monkeypatch.setattr(supervisor, "LOOK", 0.05)
-    monkeypatch.setattr(worker, "fork_work_horse", begin)
+    monkeypatch.setattr(supervisor, "STOP_CHECK_SECONDS", 0.05)
+    monkeypatch.setattr(worker, "start", start)
     worker.execute_job(services.jobs.find(str(run_id)), services.jobs.runs)
-    assert worker._horse.returncode == -signal.SIGKILL
+    assert started[0].returncode == -signal.SIGKILL
     assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
 
 
 def test_a_job_is_stopped_before_its_supervisor_is_killed():
-    assert supervisor.PATIENCE + 2 * supervisor.LOOK < process_tree.GRACE
+    assert supervisor.PATIENCE + 2 * supervisor.STOP_CHECK_SECONDS < process_tree.GRACE

@@ -1,31 +1,15 @@
 """How much of a device is in use."""
 
 import os
-import stat
 from threading import Event
 
 import pytest
 
 from server.workers import registry
 from worker import usage
-from worker.device import MIB, Device, memory
+from worker.device import Device, memory
 from worker.pulse import Pulse
 from worker.usage import Usage
-
-
-@pytest.fixture
-def answering(tmp_path, monkeypatch):
-    """An `nvidia-smi` that answers so, and notes what it was asked."""
-
-    def answering(line, code=0):
-        script = tmp_path / "nvidia-smi"
-        words = (f'echo "$@" > {tmp_path}/asked', f"echo '{line}'", f"exit {code}")
-        script.write_text("\n".join(("#!/bin/sh", *words)))
-        script.chmod(script.stat().st_mode | stat.S_IEXEC)
-        monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
-        return tmp_path / "asked"
-
-    return answering
 
 
 def test_a_processor_tells_the_machines_load_a_core_and_memory_that_is_taken():
@@ -36,37 +20,30 @@ def test_a_processor_tells_the_machines_load_a_core_and_memory_that_is_taken():
     assert 0 < found.memory_bytes < memory()
 
 
-def test_where_the_system_tells_no_memory_the_load_is_told_all_the_same(tmp_path, monkeypatch):
-    monkeypatch.setattr(usage, "GROUP", tmp_path / "none")
-    monkeypatch.setattr(usage, "MEMINFO", tmp_path / "none")
-    found = usage.usage(Device("cpu", 1, {}))
-    assert (found.memory_bytes, found.load is None) == (None, False)
-    (tmp_path / "memory.max").write_text("1000")
-    (tmp_path / "memory.current").write_text("no number")
-    (tmp_path / "memory.stat").write_text("inactive_file 10")
+@pytest.mark.parametrize(
+    ("current", "expected"), [("1000", 990), ("5", 0), ("no number", None)]
+)
+def test_in_a_container_its_own_memory_is_told(tmp_path, monkeypatch, current, expected):
+    (tmp_path / "memory.max").write_text("2000")
+    (tmp_path / "memory.current").write_text(current)
+    (tmp_path / "memory.stat").write_text("inactive_file 10\n")
     monkeypatch.setattr(usage, "GROUP", tmp_path)
-    assert usage.memory_in_use() is None
-
-
-def test_a_gpu_tells_its_own(answering):
-    asked = answering("1234, 56")
-    found = usage.usage(Device("gpu", 80 << 30, {}, "3"))
-    assert found == Usage(1234 * MIB, 0.56)
-    assert "-i 3 --query-gpu=memory.used,utilization.gpu" in asked.read_text()
+    found = usage.usage(Device("cpu", 1, {}))
+    assert (found.memory_bytes, found.load is None) == (expected, False)
 
 
 @pytest.mark.parametrize(
-    ("line", "code", "expected"),
-    [
-        ("1234, [N/A]", 0, Usage(1234 * MIB, None)),
-        ("[N/A], [N/A]", 0, Usage()),
-        ("1234, 56", 9, Usage()),
-        ("", 0, Usage()),
-    ],
+    ("used", "load", "expected"),
+    [(1234, 56, Usage(1234, 0.56)), (1234, None, Usage(1234, None)), (None, None, Usage())],
 )
-def test_what_a_gpu_does_not_tell_is_none(answering, line, code, expected):
-    answering(line, code)
-    assert usage.of_gpu("0") == expected
+def test_a_gpu_tells_its_own_and_none_for_what_it_does_not_tell(nvml, used, load, expected):
+    nvml({"GPU-3": ("a GPU", 80 << 30)}, used=used, load=load)
+    assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
+
+
+def test_without_a_driver_a_gpus_usage_is_unknown(nvml):
+    nvml(None)
+    assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == Usage()
 
 
 def test_a_beat_tells_what_was_seen_last(services):

@@ -10,7 +10,7 @@ import pytest
 from microcosmos.archive import file
 from microcosmos.spec import parse
 from server.archives import routes as archives
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs.submission import submit
 
 

@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from microcosmos.archive import creature, creature_h5
 from microcosmos.cli import app
 from microcosmos.client import views
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 @pytest.fixture

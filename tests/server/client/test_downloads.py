@@ -13,7 +13,7 @@ from microcosmos.client import (
     ServerError,
     files,
 )
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from microcosmos.client import (
     connection,
     streaming,
 )
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 def test_a_request_whose_answer_is_lost_is_made_again_and_counts_once(

@@ -4,7 +4,7 @@ import pytest
 
 from microcosmos.client import Client, NoAnswer, polling
 from microcosmos.client.errors import Refused
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 class Kept:

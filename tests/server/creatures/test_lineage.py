@@ -7,7 +7,7 @@ import h5py
 import pytest
 
 from microcosmos.archive import creature, creature_h5
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import pytest
 from deletion import delete_for_good, files, finish, let_time_pass, rows
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.maintenance.reconcile import reconcile
 from server.tables import (
     Run,

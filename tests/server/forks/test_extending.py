@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 def end(services, run_id, report, generations, summary=None):

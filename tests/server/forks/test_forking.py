@@ -7,7 +7,7 @@ from sqlalchemy import select, update
 
 from microcosmos.archive import creature
 from microcosmos.spec import parse
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.deletion.purge import purge
 from server.forks import forking
 from server.tables import InitialCreature, Run

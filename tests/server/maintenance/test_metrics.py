@@ -5,7 +5,7 @@ import re
 import httpx
 import pytest
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.workers import registry
 
 SAMPLE = re.compile(r'^(\w+)(?:\{((?:\w+="(?:[^"\\]|\\.)*",?)*)\})? (\S+)$')

@@ -5,8 +5,8 @@ from redis import ConnectionError
 from rq.registry import StartedJobRegistry
 from sqlalchemy import update
 
-from server.attempts.begin import claim
-from server.attempts.claim import ClaimLost
+from server.attempts.attempt import ClaimLost
+from server.attempts.claim import claim
 from server.attempts.leases import job_died, job_stopped
 from server.core.database import ago
 from server.maintenance.reconcile import reconcile
@@ -107,7 +107,7 @@ def test_who_does_not_obey_a_cancellation_loses_the_run(services, api, run_id, r
     reconcile(services)
     assert row().status == "cancelled"
     with pytest.raises(ClaimLost):
-        attempt.requested()
+        attempt.check()
 
 
 def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
@@ -128,7 +128,7 @@ def test_a_job_killed_because_its_worker_stops_is_no_lost_chance(services, run_i
         job_stopped(services, run_id, "worker")
         assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
         with pytest.raises(ClaimLost):
-            attempt.requested()
+            attempt.check()
     assert enqueued(services) == [str(run_id)]
 
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 @pytest.fixture

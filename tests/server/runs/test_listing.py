@@ -6,7 +6,7 @@ from uuid import UUID, uuid4
 import pytest
 from sqlalchemy import update
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.tables import Run
 
 pytestmark = pytest.mark.postgresql

@@ -5,7 +5,7 @@ from uuid import uuid4
 import pytest
 
 from server.attempts import leases
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs import lifecycle
 from server.tables import Run
 

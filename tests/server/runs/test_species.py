@@ -5,7 +5,7 @@ import base64
 import pytest
 
 from microcosmos.spec import EXPERIMENTS, targets
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs.submission import submit
 
 

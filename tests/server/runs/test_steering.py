@@ -5,7 +5,7 @@ from uuid import uuid4
 
 import pytest
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, run_id, flush):
@@ -24,14 +24,16 @@ def test_a_running_run_is_asked_and_its_worker_obeys(api, services, run_id, repo
     attempt = claim(services, run_id, "worker")
     paused = api.post(f"runs/{run_id}/pause").json()
     assert (paused["status"], paused["requested_state"]) == ("running", "paused")
-    assert attempt.record(report(1), 1.0) == "paused"
+    attempt.record(report(1), 1.0)
+    assert attempt.requested_state == "paused"
     attempt.pause()
     run = api.get(f"runs/{run_id}").json()
     assert (run["status"], run["requested_state"]) == ("paused", None)
     api.post(f"runs/{run_id}/resume")
     attempt = claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/cancel")
-    assert attempt.requested() == "cancelled"
+    attempt.check()
+    assert attempt.requested_state == "cancelled"
     attempt.cancel()
     assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"
 

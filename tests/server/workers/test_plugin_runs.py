@@ -4,10 +4,10 @@ from uuid import UUID
 
 from declared import A, B, declared
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.workers import plugins, registry
 from server.workers.plugins import Reported
-from worker.supervisor import own_queues
+from worker.supervisor import runnable_queues
 
 
 def test_only_a_worker_that_has_it_takes_a_run(api, services, have, mine, row):
@@ -30,10 +30,12 @@ def test_its_job_is_where_only_those_who_have_it_look(api, services, have, mine,
     second = api.post("runs", json=spec).json()["id"]
     assert services.jobs.runs.get_job_ids() == [second]
     assert services.jobs.runs_at_hand() == {first, second}
-    jobs = [queue.get_job_ids() for queue in own_queues(services, {A})]
+    jobs = [queue.get_job_ids() for queue in runnable_queues(services, {A})]
     assert jobs == [[first], [second], []], "who came first is taken first, sweeps last"
     for plugin_versions in (set(), {B}):
-        assert [queue.get_job_ids() for queue in own_queues(services, plugin_versions)] == [
+        assert [
+            queue.get_job_ids() for queue in runnable_queues(services, plugin_versions)
+        ] == [
             [second],
             [],
         ]
@@ -67,7 +69,10 @@ def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services
 def test_a_run_set_aside_goes_on_when_it_is_resumed(api, services, run_id, row):
     claim(services, run_id, "worker").set_aside("mine.py is not what it was.")
     told = api.get(f"runs/{run_id}").json()
-    assert (told["status"], told["warning"]) == ("paused", "mine.py is not what it was.")
+    assert (told["status"], told["warning"]) == (
+        "paused",
+        "mine.py is not what it was. Then resume the run.",
+    )
     assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
 
 
