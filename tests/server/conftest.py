@@ -15,8 +15,8 @@ from installation import Installation, empty_redis, own_postgresql, own_redis, r
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
-from server.attempts.begin import claim
-from server.attempts.claim import Claim
+from server.attempts.attempt import Attempt
+from server.attempts.claim import claim
 from server.runs.submission import submit
 from server.services.services import Services
 from server.settings import Settings
@@ -133,18 +133,18 @@ def run_id(services, spec) -> UUID:
 
 
 @pytest.fixture
-def attempt(services, run_id) -> Claim:
+def attempt(services, run_id) -> Attempt:
     """A worker's claim on the queued run."""
     return claim(services, run_id, "worker")
 
 
 @pytest.fixture
-def record(services, run_id, request) -> Callable[..., str | None]:
+def record(services, run_id, request) -> Callable[..., None]:
     """Records a generation of the queued run, as `attempt`; takes what `report` does."""
 
-    def record(*said: Any, seconds: float = 1.0, **more: Any) -> str | None:
+    def record(*said: Any, seconds: float = 1.0, **more: Any) -> None:
         held = request.getfixturevalue("attempt")
-        return held.record(reports.report(*said, **more), seconds)
+        held.record(reports.report(*said, **more), seconds)
 
     return record
 

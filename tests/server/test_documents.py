@@ -25,7 +25,7 @@ from schemathesis.specs.openapi.checks import (
 from microcosmos.archive import creature, file
 from microcosmos.spec import EXPERIMENTS, estimate
 from server.app import create_app
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.auth import tokens
 from server.creatures import storage as creatures
 from server.renderings import storage as renderings

@@ -1,7 +1,6 @@
 """The device of a worker, and how much of it is in use."""
 
 import os
-import stat
 import subprocess
 import sys
 from threading import Event
@@ -10,44 +9,29 @@ import pytest
 
 from server.workers import registry
 from worker import device, processor, usage
-from worker.device import MIB, Device, memory
+from worker.device import Device, memory
 from worker.pulse import Pulse
 from worker.usage import Usage
 
-TWO = """#!/bin/sh
-case "$*" in
--L) echo "GPU 0: NVIDIA H200 (UUID: GPU-aaaa1111)"
-    echo "GPU 1: NVIDIA A100-SXM4-40GB (UUID: GPU-bbbb2222)" ;;
-*)  echo "GPU-aaaa1111, NVIDIA H200, 143771"
-    echo "GPU-bbbb2222, NVIDIA A100-SXM4-40GB, 40960" ;;
-esac
-"""
-DIVIDED = TWO.replace(
-    " ;;",
-    """
-    echo "  MIG 3g.20gb     Device  0: (UUID: MIG-cccc3333)"
-    echo "  MIG 1g.5gb      Device  1: (UUID: MIG-dddd4444)" ;;""",
-    1,
-).replace('echo "GPU 1: NVIDIA A100-SXM4-40GB (UUID: GPU-bbbb2222)"', ":")
+TWO = {
+    "GPU-aaaa1111": ("NVIDIA H200", 143771 << 20),
+    "GPU-bbbb2222": ("NVIDIA A100-SXM4-40GB", 40 << 30),
+}
+DIVIDED = {
+    "MIG-cccc3333": ("NVIDIA H200 MIG 3g.71gb", 71 << 30),
+    "MIG-dddd4444": ("NVIDIA H200 MIG 1g.18gb", 18 << 30),
+}
 
 
 @pytest.fixture
-def nvidia_smi(tmp_path, monkeypatch):
-    """A program of that name which says what it is told to."""
-
-    def says(script):
-        program = tmp_path / "nvidia-smi"
-        program.write_text(script)
-        program.chmod(0o755)
-        monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
-
+def driver(nvml, monkeypatch):
     for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.FRACTION):
         monkeypatch.delenv(name, raising=False)
-    return says
+    return nvml
 
 
-def test_every_worker_has_a_gpu_of_its_own(nvidia_smi):
-    nvidia_smi(TWO)
+def test_every_worker_has_a_gpu_of_its_own(driver):
+    driver(TWO)
     first, second = device.find(0, 2), device.find(1, 2)
     assert (first.name, first.memory_bytes) == ("NVIDIA H200", 143771 << 20)
     assert first.environment == {"CUDA_VISIBLE_DEVICES": "GPU-aaaa1111"}
@@ -56,8 +40,8 @@ def test_every_worker_has_a_gpu_of_its_own(nvidia_smi):
     assert first.threads == second.threads == ()
 
 
-def test_more_workers_than_gpus_share_them_and_their_memory(nvidia_smi):
-    nvidia_smi(TWO)
+def test_more_workers_than_gpus_share_them_and_their_memory(driver):
+    driver(TWO)
     first, second, third = (device.find(i, 3) for i in range(3))
     assert first == third
     assert first.name == "NVIDIA H200 (shared by 2 workers)"
@@ -69,8 +53,8 @@ def test_more_workers_than_gpus_share_them_and_their_memory(nvidia_smi):
     assert device.FRACTION not in second.environment
 
 
-def test_a_given_memory_fraction_stays(nvidia_smi, monkeypatch):
-    nvidia_smi(TWO)
+def test_a_given_memory_fraction_stays(driver, monkeypatch):
+    driver(TWO)
     monkeypatch.setenv(device.FRACTION, "0.2")
     assert device.find(0, 4).environment[device.FRACTION] == "0.2"
 
@@ -86,28 +70,26 @@ def test_a_given_memory_fraction_stays(nvidia_smi, monkeypatch):
         ("-1", [None, None]),
     ],
 )
-def test_only_gpus_that_the_environment_allows_are_used(
-    nvidia_smi, monkeypatch, allowed, found
-):
-    nvidia_smi(TWO)
+def test_only_gpus_that_the_environment_allows_are_used(driver, monkeypatch, allowed, found):
+    driver(TWO)
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", allowed)
     assert [device.find(i, 2).gpu for i in range(2)] == found
 
 
-def test_parts_of_a_divided_card_are_devices(nvidia_smi, monkeypatch):
-    nvidia_smi(DIVIDED)
+def test_parts_of_a_divided_card_are_devices(driver, monkeypatch):
+    driver(TWO, {"GPU-aaaa1111": DIVIDED})
     first, second, third = (device.find(i, 3) for i in range(3))
-    assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.20gb")
-    assert first.memory_bytes == 20 << 30
-    assert (second.gpu, second.memory_bytes) == ("MIG-dddd4444", 5 << 30)
+    assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.71gb")
+    assert first.memory_bytes == 71 << 30
+    assert (second.gpu, second.memory_bytes) == ("MIG-dddd4444", 18 << 30)
     assert third.gpu == "GPU-bbbb2222"
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "MIG-dddd4444,0")
     assert [device.find(i, 2).gpu for i in range(2)] == ["MIG-dddd4444", "MIG-cccc3333"]
 
 
-@pytest.mark.parametrize("script", ["#!/bin/sh\nexit 9\n", "#!/bin/sh\necho 'No devices'\n"])
-def test_the_processor_is_used_without_a_gpu(nvidia_smi, script):
-    nvidia_smi(script)
+@pytest.mark.parametrize("cards", [None, {}, {"GPU-aaaa1111": None}])
+def test_the_processor_is_used_without_a_gpu(driver, cards):
+    driver(cards)
     found = device.find(0)
     assert found.memory_bytes > 1 << 20
     assert found.environment == {}
@@ -162,21 +144,6 @@ def test_child_processes_keep_to_the_workers_threads():
     assert answer.stdout.split() == [str(one)]
 
 
-@pytest.fixture
-def answering(tmp_path, monkeypatch):
-    """An `nvidia-smi` that answers so, and notes what it was asked."""
-
-    def answering(line, code=0):
-        script = tmp_path / "nvidia-smi"
-        words = (f'echo "$@" > {tmp_path}/asked', f"echo '{line}'", f"exit {code}")
-        script.write_text("\n".join(("#!/bin/sh", *words)))
-        script.chmod(script.stat().st_mode | stat.S_IEXEC)
-        monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
-        return tmp_path / "asked"
-
-    return answering
-
-
 def test_a_processor_reports_load_and_memory():
     found = usage.usage(Device("cpu", memory(), {}))
     assert found.load is not None
@@ -185,37 +152,30 @@ def test_a_processor_reports_load_and_memory():
     assert 0 < found.memory_bytes < memory()
 
 
-def test_load_is_reported_without_memory(tmp_path, monkeypatch):
-    monkeypatch.setattr(usage, "GROUP", tmp_path / "none")
-    monkeypatch.setattr(usage, "MEMINFO", tmp_path / "none")
-    found = usage.usage(Device("cpu", 1, {}))
-    assert (found.memory_bytes, found.load is None) == (None, False)
-    (tmp_path / "memory.max").write_text("1000")
-    (tmp_path / "memory.current").write_text("no number")
-    (tmp_path / "memory.stat").write_text("inactive_file 10")
+@pytest.mark.parametrize(
+    ("current", "expected"), [("1000", 990), ("5", 0), ("no number", None)]
+)
+def test_in_a_container_its_own_memory_is_told(tmp_path, monkeypatch, current, expected):
+    (tmp_path / "memory.max").write_text("2000")
+    (tmp_path / "memory.current").write_text(current)
+    (tmp_path / "memory.stat").write_text("inactive_file 10\n")
     monkeypatch.setattr(usage, "GROUP", tmp_path)
-    assert usage.memory_in_use() is None
-
-
-def test_a_gpu_reports_its_own_usage(answering):
-    asked = answering("1234, 56")
-    found = usage.usage(Device("gpu", 80 << 30, {}, "3"))
-    assert found == Usage(1234 * MIB, 0.56)
-    assert "-i 3 --query-gpu=memory.used,utilization.gpu" in asked.read_text()
+    found = usage.usage(Device("cpu", 1, {}))
+    assert (found.memory_bytes, found.load is None) == (expected, False)
 
 
 @pytest.mark.parametrize(
-    ("line", "code", "expected"),
-    [
-        ("1234, [N/A]", 0, Usage(1234 * MIB, None)),
-        ("[N/A], [N/A]", 0, Usage()),
-        ("1234, 56", 9, Usage()),
-        ("", 0, Usage()),
-    ],
+    ("used", "load", "expected"),
+    [(1234, 56, Usage(1234, 0.56)), (1234, None, Usage(1234, None)), (None, None, Usage())],
 )
-def test_missing_figures_of_a_gpu_are_none(answering, line, code, expected):
-    answering(line, code)
-    assert usage.of_gpu("0") == expected
+def test_a_gpu_tells_its_own_and_none_for_what_it_does_not_tell(nvml, used, load, expected):
+    nvml({"GPU-3": ("a GPU", 80 << 30)}, used=used, load=load)
+    assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
+
+
+def test_without_a_driver_a_gpus_usage_is_unknown(nvml):
+    nvml(None)
+    assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == Usage()
 
 
 def test_a_heartbeat_reports_the_latest_usage(services):

@@ -9,24 +9,25 @@ import pytest
 import redis
 from rq.job import Job
 from rq.serializers import JSONSerializer
+from rq.worker import SimpleWorker
 from sqlalchemy import select, update
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.local import process_tree
 from server.renderings.storage import RenderingFailed, order
 from server.tables import CANCELLED, Run, Worker
 from server.workers import registry
-from worker import loop, renderer, stop, supervisor
+from worker import loop, process, renderer, supervisor
 from worker.device import Device
 from worker.pulse import PATIENCE, Pulse
-from worker.renderer import Renderer, take_up
+from worker.renderer import retry_interrupted
 from worker.supervisor import Supervisor
 
 
 @pytest.fixture
 def worker(services):
     """A worker whose jobs run in this process."""
-    return Renderer([services.jobs.renderings], "renderer", serializer=JSONSerializer)
+    return SimpleWorker([services.jobs.renderings], "renderer", serializer=JSONSerializer)
 
 
 @pytest.fixture
@@ -62,7 +63,7 @@ def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
 
     def turn(worker):
         turns.append(worker)
-        monkeypatch.setattr(stop, "_requested", len(turns) > 2)
+        monkeypatch.setattr(process, "_stop_requested", len(turns) > 2)
         raise redis.ResponseError("MISCONF Errors writing to the AOF file")
 
     monkeypatch.setattr(loop, "take_one", turn)
@@ -79,7 +80,7 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
     execution = worker.prepare_execution(job)
     services.redis.delete(execution.key)  # It expires, before what leads there.
     assert services.jobs.renderings.started_job_registry.get_job_ids() == [job_id]
-    renderer.take_up(services.jobs, services.jobs.renderings)
+    renderer.retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.job_ids == [job_id]
     assert not services.jobs.renderings.started_job_registry.get_job_ids()
 
@@ -93,7 +94,7 @@ def begin(services):
 
     def take():
         queue = services.jobs.renderings
-        renderer = Renderer([queue], serializer=JSONSerializer)
+        renderer = SimpleWorker([queue], serializer=JSONSerializer)
         renderer.register_birth()
         job, _ = queue.dequeue_any([queue], None, services.redis, serializer=JSONSerializer)
         renderer.prepare_execution(job)
@@ -107,10 +108,10 @@ def begin(services):
 def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services, begin):
     order(services, CREATURE)
     begin()
-    take_up(services.jobs, services.jobs.renderings)
+    retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 1
     begin()
-    take_up(services.jobs, services.jobs.renderings)
+    retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 0
     with pytest.raises(RenderingFailed, match="ended the renderer twice"):
         order(services, CREATURE)
@@ -136,34 +137,36 @@ def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
 @pytest.fixture
 def busy(services):
     """A supervisor whose job can be replaced by another process."""
-    busy = Supervisor([services.jobs.runs], "worker", serializer=JSONSerializer)
-    busy.services, busy.lease, busy.environment = services, 20, {}
-    busy.pulse = Pulse(services.sessions, "worker", Device("a device", 1, {}), 20.0)
-    busy.register_birth()
-    return busy
+    worker = Supervisor([services.jobs.runs], "worker", serializer=JSONSerializer)
+    worker.services, worker.lease, worker.environment = services, 20, {}
+    worker.pulse = Pulse(services.sessions, "worker", Device("a device", 1, {}), 20.0)
+    worker.register_birth()
+    return worker
 
 
 def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
     services, run_id, row, busy, monkeypatch
 ):
-    def begin(*_):
+    started = []
+
+    def start(_):
         before = signal.signal(signal.SIGTERM, signal.SIG_IGN)  # The job inherits it.
-        busy._horse = subprocess.Popen(["sleep", "60"])
+        started.append(subprocess.Popen(["sleep", "60"]))
         signal.signal(signal.SIGTERM, before)
-        busy._horse_pid = busy._horse.pid
+        busy.job = started[0]
         claim(services, run_id, busy.name)
-        busy.pass_on()
+        busy.stop_job()
 
     monkeypatch.setattr(supervisor, "PATIENCE", 0.0)
-    monkeypatch.setattr(supervisor, "LOOK", 0.05)
-    monkeypatch.setattr(busy, "fork_work_horse", begin)
+    monkeypatch.setattr(supervisor, "STOP_CHECK_SECONDS", 0.05)
+    monkeypatch.setattr(busy, "start", start)
     busy.execute_job(services.jobs.find(str(run_id)), services.jobs.runs)
-    assert busy._horse.returncode == -signal.SIGKILL
+    assert started[0].returncode == -signal.SIGKILL
     assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
 
 
 def test_a_job_is_stopped_before_its_supervisor_is_killed():
-    assert supervisor.PATIENCE + 2 * supervisor.LOOK < process_tree.GRACE
+    assert supervisor.PATIENCE + 2 * supervisor.STOP_CHECK_SECONDS < process_tree.GRACE
 
 
 @pytest.fixture

@@ -78,8 +78,8 @@ def _(control: spec.Direct, controls, body, room):
 
 
 @_encoding.register
-def _(control: spec.OwnControl, controls, body, room):
-    return genomes.Own(controls, control.genes(body), build_act(control, controls))
+def _(control: spec.PluginControl, controls, body, room):
+    return genomes.PluginEncoding(controls, control.genes(body), build_act(control, controls))
 
 
 @_encoding.register

@@ -153,7 +153,7 @@ def _elite(
         "block": plan.block,
         "room": list(plan.encoding.room) if plan.encoding.room else None,
         "device": device,
-        **({"own": dict(plan.own)} if plan.own else {}),
+        **({"plugins": dict(plan.plugins)} if plan.plugins else {}),
     }
     provenance = naming.provenance(
         search.OPERATORS[operator], generation=generation, parents=named, seed=plan.seed

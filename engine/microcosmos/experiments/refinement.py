@@ -59,8 +59,8 @@ class Refinement:
     """How it came to be, if that is known."""
     device: str
     measures: tuple[str, ...] = search.MEASURES
-    own: Mapping[str, Any] = field(default_factory=dict)
-    """Versions of the measures of one's own among the measures."""
+    plugins: Mapping[str, Any] = field(default_factory=dict)
+    """Versions of the plug-ins among the measures."""
 
     def init(self) -> State:
         """Before the creature is measured."""
@@ -178,7 +178,7 @@ class Refinement:
             "block": self.block,
             "room": list(self.encoding.room) if self.encoding.room else None,
             "device": self.device,
-            **({"own": dict(self.own)} if self.own else {}),
+            **({"plugins": dict(self.plugins)} if self.plugins else {}),
         }
         refined = naming.provenance(
             "refinement",

@@ -100,8 +100,8 @@ class Plan:
 
     measures: tuple[str, ...] = search.MEASURES
     """What is recorded of every creature, in this order."""
-    own: Mapping[str, Any] = field(default_factory=dict)
-    """Versions of the measures of one's own among them."""
+    plugins: Mapping[str, Any] = field(default_factory=dict)
+    """Versions of the plug-ins among them."""
     names: tuple[str, ...] = ()
     """What the emitters are called, each by a name of its own."""
     initial: InitialCreatures | None = None

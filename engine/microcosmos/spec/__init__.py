@@ -1,12 +1,21 @@
 """Everything a run can be, validated: the only place where a default is written."""
 
 from .base import Part, field_path
-from .body import Body, Chain, Known, OwnBody, made_elsewhere, shape
+from .body import Body, Chain, Known, PluginBody, made_elsewhere, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
 from .drawing import Drawing, drawing
 from .emitters import Emitter
-from .encodings import Controller, Direct, Free, Grown, OwnControl, Weights, genes, lengthening
+from .encodings import (
+    Controller,
+    Direct,
+    Free,
+    Grown,
+    PluginControl,
+    Weights,
+    genes,
+    lengthening,
+)
 from .estimate import Estimate, estimate
 from .evolution import Evolution
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
@@ -14,7 +23,7 @@ from .fields import Energy, Steric
 from .folding import Digit, Folding, Picture, picture
 from .gaits import FORMS, Gaits
 from .neuroevolution import Neuroevolution
-from .plugins import Own, Used, used
+from .plugins import PluginUse, PluginVersion, plugins_in
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement
 from .scaling import Scaling
@@ -51,11 +60,12 @@ __all__ = [
     "Grown",
     "Known",
     "Neuroevolution",
-    "Own",
-    "OwnBody",
-    "OwnControl",
     "Part",
     "Picture",
+    "PluginBody",
+    "PluginControl",
+    "PluginUse",
+    "PluginVersion",
     "Preset",
     "QualityDiversity",
     "Reevaluation",
@@ -67,7 +77,6 @@ __all__ = [
     "Steric",
     "Stop",
     "Task",
-    "Used",
     "Weights",
     "World",
     "drawing",
@@ -78,6 +87,6 @@ __all__ = [
     "made_elsewhere",
     "parse",
     "picture",
+    "plugins_in",
     "shape",
-    "used",
 ]

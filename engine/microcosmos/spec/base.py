@@ -29,10 +29,10 @@ TAGS: dict[str, tuple[str, ...]] = {
         "polyline",
         "graph",
         "known",
-        "own",
+        "plugin",
     ),
-    "genome": ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "own"),
-    "control": ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "own"),
+    "genome": ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "plugin"),
+    "control": ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "plugin"),
     "targets": ("digit", "picture"),
     "emitters": (
         "random",

@@ -4,13 +4,13 @@ from functools import lru_cache
 from typing import Annotated, Any, Literal, Self, get_args
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
 from ..bodies import swimmers
 from .base import Part, unit
-from .plugins import Own, OwnName, completed
+from .plugins import PluginName, PluginVersion, complete_plugin
 from .sources import PAPER, RODS, after
 
 SUPPORT = 4.0
@@ -153,23 +153,18 @@ class Known(Part):
     """Whose body."""
 
 
-class OwnBody(Part):
-    """A body that a module of one's own builds, or that of a swimmer with a gait of its own."""
-
-    builder: OwnName
-    """Its name."""
-    own: Own
-    """Which version it is."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def complete(cls, given: Any, info: ValidationInfo) -> Any:
-        """It is told with its version."""
-        return completed(given, OF_BODIES, "builder", info)[0]
+WITH_BODY = ("body", "gait")
+"""Kinds of plug-ins that have a body."""
 
 
-OF_BODIES = ("body", "gait")
-"""Kinds of things of one's own that have a body."""
+class PluginBody(Part):
+    """A body that a plug-in builds, or the body of a plug-in's gait."""
+
+    builder: PluginName
+    plugin: PluginVersion
+
+    complete = complete_plugin(WITH_BODY, "builder")
+
 
 NAMES = (
     "chain",
@@ -190,8 +185,8 @@ def _tag(value: Any) -> Any:
         name = value.get("builder", "chain")
     else:
         name = getattr(value, "builder", None)
-    if plugins.is_own(name):
-        return "own"
+    if plugins.is_plugin(name):
+        return "plugin"
     return "known" if name in get_args(Swimmer) else name
 
 
@@ -205,7 +200,7 @@ Body = Annotated[
     | Annotated[Polyline, Tag("polyline")]
     | Annotated[Graph, Tag("graph")]
     | Annotated[Known, Tag("known")]
-    | Annotated[SkipJsonSchema[OwnBody], Tag("own")],
+    | Annotated[SkipJsonSchema[PluginBody], Tag("plugin")],
     Discriminator(
         _tag,
         custom_error_type="unknown_builder",
@@ -223,17 +218,17 @@ def shape(body: Body) -> bodies.Body:
 def about(body: Body) -> bodies.Body:
     """The graph of a body, or where it is made elsewhere a chain with as many nodes at most."""
     if made_elsewhere(body):
-        assert isinstance(body, OwnBody)
-        return bodies.chain(min(MOST, max(3, body.own.sizes.get("nodes", MOST))), 1.0)
+        assert isinstance(body, PluginBody)
+        return bodies.chain(min(MOST, max(3, body.plugin.sizes.get("nodes", MOST))), 1.0)
     return shape(body)
 
 
 def made_elsewhere(body: Body) -> bool:
     """Whether it is of one's own, in a version that is not loaded here."""
-    if not isinstance(body, OwnBody):
+    if not isinstance(body, PluginBody):
         return False
     try:
-        plugins.find(OF_BODIES, body.builder, body.own.source)
+        plugins.find(WITH_BODY, body.builder, body.plugin.source)
     except plugins.Missing:
         return True
     return False
@@ -241,18 +236,18 @@ def made_elsewhere(body: Body) -> bool:
 
 def resolved(body: Body) -> Body:
     """A body of one's own as the graph that it is: that means the same to everybody."""
-    if not isinstance(body, OwnBody):
+    if not isinstance(body, PluginBody):
         return body
-    plugin = plugins.find(OF_BODIES, body.builder, body.own.source)
-    made = plugin(settings=body.own.settings)
+    plugin = plugins.find(WITH_BODY, body.builder, body.plugin.source)
+    made = plugin(settings=body.plugin.settings)
     made = getattr(made, "body", made)  # A swimmer has one.
     if not isinstance(made, bodies.Body):
         raise plugins.Broken(f"{body.builder} must give a body, got {type(made).__name__}")
     return _graph(body, made)
 
 
-def _graph(body: OwnBody, made: bodies.Body) -> Graph:
-    most = body.own.sizes.get("nodes", MOST)
+def _graph(body: PluginBody, made: bodies.Body) -> Graph:
+    most = body.plugin.sizes.get("nodes", MOST)
     if len(made.positions) > most:
         raise plugins.Broken(
             f"{body.builder} must give at most the {most} `nodes` that it declares, got "

@@ -83,7 +83,7 @@ def _(spec: Folding) -> Drawing:
 @drawing.register
 def _(spec: Gaits) -> Drawing:
     size = spec.width, spec.height
-    found = {name: swimmer_body(name, spec.own.get(name)) for name in spec.swimmers}
+    found = {name: swimmer_body(name, spec.plugins.get(name)) for name in spec.swimmers}
     drawn = [_drawn(n, *size, body) for n, body in found.items() if not made_elsewhere(body)]
     return Drawing(*size, tuple(drawn))
 

@@ -189,7 +189,7 @@ WITH_NUMBERS = ("direct", "weights")
 
 def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:
     """Operators must vary what is inherited; TensorNEAT's program works alone."""
-    numbers = encoding in WITH_NUMBERS or plugins.is_own(encoding)
+    numbers = encoding in WITH_NUMBERS or plugins.is_plugin(encoding)
     unfit = OF_NETWORKS if numbers else OF_NUMBERS
     for emitter in emitters:
         if emitter.operator in unfit:

@@ -3,14 +3,14 @@
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
 from .base import Part, unit
 from .body import Body, made_elsewhere, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
-from .plugins import Own, OwnName, completed
+from .plugins import PluginName, PluginVersion, complete_plugin
 
 TRAITS = {
     "rest_angle": (-3.0, 3.0),
@@ -166,19 +166,13 @@ class Grown(Sight, Shaping):
         return (*OUTPUTS, *(f"body_{name}" for name in self.free), "growth")
 
 
-class OwnControl(Actuation):
-    """Genes are numbers that a module of one's own makes movements of."""
+class PluginControl(Actuation):
+    """Genes are numbers; a plug-in turns them into movements."""
 
-    encoding: OwnName
-    """Its name."""
-    own: Own
-    """Which version it is."""
+    encoding: PluginName
+    plugin: PluginVersion
 
-    @model_validator(mode="before")
-    @classmethod
-    def complete(cls, given: Any, info: ValidationInfo) -> Any:
-        """It is told with its version."""
-        return completed(given, ("encoding",), "encoding", info)[0]
+    complete = complete_plugin(("encoding",), "encoding")
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -192,7 +186,7 @@ class OwnControl(Actuation):
 
     def genes(self, body: bodies.Body) -> int:
         """Numbers of a creature with such a body."""
-        sizes = self.own.sizes
+        sizes = self.plugin.sizes
         each = {"genes": 1, "per_joint": len(body.joints), "per_edge": len(body.edges)}
         return sum(count * sizes.get(name, 0) for name, count in each.items())
 
@@ -209,7 +203,7 @@ def kind(value: Any) -> Any:
         name = value.get("encoding", "cppn")
     else:
         name = getattr(value, "encoding", None)
-    return "own" if plugins.is_own(name) else name
+    return "plugin" if plugins.is_plugin(name) else name
 
 
 Controller = Annotated[
@@ -217,7 +211,7 @@ Controller = Annotated[
     | Annotated[Direct, Tag("direct")]
     | Annotated[Weights, Tag("weights")]
     | Annotated[Grown, Tag("cppn-body")]
-    | Annotated[SkipJsonSchema[OwnControl], Tag("own")],
+    | Annotated[SkipJsonSchema[PluginControl], Tag("plugin")],
     Discriminator(
         kind,
         custom_error_type="unknown_encoding",
@@ -279,7 +273,7 @@ def genes(control: Controller, body: bodies.Body) -> int:
     """Length of a vector of genes; 0 where they are a network's."""
     if isinstance(control, Direct):
         return sum(control.parts(body).values())
-    if isinstance(control, OwnControl):
+    if isinstance(control, PluginControl):
         return control.genes(body)
     if isinstance(control, Weights):
         return sum((a + 1) * b for a, b in pairwise(control.sizes))

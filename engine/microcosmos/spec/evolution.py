@@ -98,5 +98,5 @@ class Evolution(Part, Generic[Name, How]):
             coupling=self.coupling,
             control=self.control,
             task=self.task,
-            own=self.archive.own,
+            plugins=self.archive.plugins,
         )

@@ -7,7 +7,7 @@ from typing import Any, cast
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from ..plugins import Known
+from ..plugins import Catalogue
 from . import folding, gaits, neuroevolution, quality_diversity, refinement, scaling
 from .base import Part
 from .folding import Folding
@@ -57,7 +57,7 @@ _ALL = (
 EXPERIMENTS = {experiment.name: experiment for experiment in _ALL}
 
 
-def parse(document: Mapping[str, Any], known: Known | None = None) -> Spec:
+def parse(document: Mapping[str, Any], known: Catalogue | None = None) -> Spec:
     """The spec in a document, its `experiment` named.
 
     `known` says what there is of one's own; else it is what this process has loaded.

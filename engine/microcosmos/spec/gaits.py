@@ -1,16 +1,16 @@
 """The spec of a sweep of hand-made gaits over viscosity, and its presets."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import Field, ValidationInfo, model_validator
-from pydantic.json_schema import SkipJsonSchema
 
-from ..plugins import is_own
+from ..plugins import is_plugin
 from .base import Part, unit
-from .body import Body, Known, OwnBody, Swimmer, made_elsewhere, resolved
+from .body import Body, Known, PluginBody, Swimmer, made_elsewhere, resolved
 from .coupling import Coupling
 from .fields import Steric
-from .plugins import OR_OWN, Own, version
+from .plugins import OR_PLUGIN, PluginVersion, PluginVersions, pinned
 from .scene import Gait, Scene, refuse_too_large
 from .search import Task
 from .sources import PAPER, source
@@ -31,8 +31,8 @@ class Gaits(Part):
     """Five known swimmers, each by its own gait, at every viscosity."""
 
     experiment: Literal["gaits"] = "gaits"
-    swimmers: Annotated[tuple[Annotated[Swimmer, *OR_OWN], ...], Field(min_length=1)] = Field(
-        default=get_args(Swimmer), json_schema_extra=source(PAPER)
+    swimmers: tuple[Annotated[Swimmer, *OR_PLUGIN], ...] = Field(
+        default=get_args(Swimmer), min_length=1, json_schema_extra=source(PAPER)
     )
     """Who swims."""
     forms: Annotated[tuple[Form, ...], Field(min_length=1)] = ("ours", "strong", "paper")
@@ -67,22 +67,23 @@ class Gaits(Part):
     """Viscosity at which actuators have half of their strength, in the form `ours`."""
     steric: Steric | None = None
     """Repulsion between nodes; empty: none."""
-    own: SkipJsonSchema[dict[str, Own]] = Field(default={}, exclude_if=lambda own: not own)
-    """Versions of the gaits of one's own, by name."""
+    plugins: PluginVersions = Field(default={})
+    """Versions of the plug-in gaits, by name."""
 
     @model_validator(mode="before")
     @classmethod
     def complete(cls, given: Any, info: ValidationInfo) -> Any:
-        """Gaits of one's own are told with their versions."""
-        swimmers = given.get("swimmers") if isinstance(given, dict) else None
-        names = [n for n in swimmers if is_own(n)] if isinstance(swimmers, list | tuple) else []
-        if not names and (not isinstance(given, dict) or not given.get("own")):
+        """Pin the plug-ins among the swimmers."""
+        if not isinstance(given, dict):
             return given
-        told = given.get("own") or {}
-        if not isinstance(told, dict):
-            raise ValueError(f"`own` must be an object with gaits by name, got {told!r:.80}")
-        found = {n: version(("gait",), "swimmers", n, told.get(n), info)[0] for n in names}
-        return {**given, "own": found}
+        swimmers, held = given.get("swimmers"), given.get("plugins") or {}
+        names = [n for n in swimmers if is_plugin(n)] if isinstance(swimmers, Sequence) else []
+        if not names and not held:
+            return given
+        if not isinstance(held, dict):
+            raise ValueError(f"`plugins` must be an object of gaits by name, got {held!r:.80}")
+        found = {n: pinned(("gait",), "swimmers", n, held.get(n), info)[0] for n in names}
+        return {**given, "plugins": found}
 
     @model_validator(mode="after")
     def check(self) -> Self:
@@ -92,7 +93,7 @@ class Gaits(Part):
                 raise ValueError(f"`{name}` must differ, got {list(values)}")
         for swimmer in self.swimmers:
             place = World(width=self.width, height=self.height)
-            refuse_too_large(place, swimmer_body(swimmer, self.own.get(swimmer)), 0.1)
+            refuse_too_large(place, swimmer_body(swimmer, self.plugins.get(swimmer)), 0.1)
         return self
 
     @property
@@ -115,14 +116,14 @@ class Gaits(Part):
                     viscosity=viscosity,
                     steric=self.steric,
                 ),
-                "body": swimmer_body(swimmer, self.own.get(swimmer)),
+                "body": swimmer_body(swimmer, self.plugins.get(swimmer)),
                 "coupling": self.coupling(form),
                 "control": Gait.model_validate(
                     {
                         "swimmer": swimmer,
                         "period": self.period,
                         "ramp": self.ramp,
-                        "own": self.own.get(swimmer),
+                        "plugin": self.plugins.get(swimmer),
                     }
                 ),
                 "task": Task(steps=self.period * self.cycles),
@@ -136,11 +137,11 @@ class Gaits(Part):
         return Coupling(nu_c=self.nu_c if form == "ours" else None)
 
 
-def swimmer_body(swimmer: str, own: Own | None = None) -> Body:
-    """The body of a known swimmer, or of one of one's own."""
-    if own is None:
+def swimmer_body(swimmer: str, plugin: PluginVersion | None = None) -> Body:
+    """The body of a known swimmer, or of a plug-in's."""
+    if plugin is None:
         return Known.model_validate({"builder": swimmer})
-    body = OwnBody(builder=swimmer, own=own)
+    body = PluginBody(builder=swimmer, plugin=plugin)
     return body if made_elsewhere(body) else resolved(body)
 
 

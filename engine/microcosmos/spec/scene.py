@@ -3,7 +3,7 @@
 from math import ceil
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from ..bodies.extent import extent
@@ -15,13 +15,13 @@ from .encodings import (
     Controller,
     Direct,
     Grown,
-    OwnControl,
+    PluginControl,
     Weights,
     kind,
     lengthening,
     refuse_unfit,
 )
-from .plugins import OR_OWN, MaybeOwn, Own, completed, left_out
+from .plugins import OR_PLUGIN, MaybePlugin, PluginVersions, complete_plugin
 from .search import Task
 from .world import World
 
@@ -29,20 +29,15 @@ from .world import World
 class Gait(Part):
     """A hand-made gait of one of the known swimmers."""
 
-    swimmer: Annotated[Swimmer, *OR_OWN]
+    swimmer: Annotated[Swimmer, *OR_PLUGIN]
     """Whose gait."""
     period: int = Field(default=1200, ge=20, le=1_000_000, json_schema_extra=unit("steps"))
     """Steps of one stroke."""
     ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
     """Over how many periods the stroke grows from nothing to its full size; 0: at once."""
-    own: MaybeOwn = left_out()
-    """Which version of a gait of one's own it is."""
+    plugin: MaybePlugin = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def complete(cls, given: Any, info: ValidationInfo) -> Any:
-        """A gait of one's own is told with its version."""
-        return completed(given, ("gait",), "swimmer", info)[0]
+    complete = complete_plugin(("gait",), "swimmer")
 
 
 class Fold(Part):
@@ -74,12 +69,12 @@ class Scene(Part):
         | Annotated[Grown, Tag("cppn-body")]
         | Annotated[Gait, Tag("gait")]
         | Annotated[Fold, Tag("fold")]
-        | Annotated[SkipJsonSchema[OwnControl], Tag("own")],
+        | Annotated[SkipJsonSchema[PluginControl], Tag("plugin")],
         Discriminator(_kind),
     ] = Control()
     task: Task = Task()
-    own: SkipJsonSchema[dict[str, Own]] = Field(default={}, exclude_if=lambda own: not own)
-    """Versions of the measures of one's own that are recorded beside the usual ones."""
+    plugins: PluginVersions = Field(default={})
+    """Versions of the plug-in measures that are recorded beside the built-in ones."""
 
     @model_validator(mode="after")
     def check(self) -> Self:
@@ -90,7 +85,7 @@ class Scene(Part):
             refuse_misfit(self.world, self.body, self.control)
             return self
         refuse_too_large(self.world, self.body, 0.0)
-        if self.control.own:  # Whose body may stand there as the graph that it is.
+        if self.control.plugin:  # Whose body may stand there as the graph that it is.
             return self
         if self.body.builder != self.control.swimmer:
             raise ValueError(
@@ -123,7 +118,7 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
 def refuse_senseless(world: World, control: Controller | Gait | Fold, task: Task) -> None:
     """Energy must be there to be sensed or to count."""
     senses = isinstance(control, Sight) and control.sense_energy
-    collects = task.own is None and task.fitness != "displacement"
+    collects = task.plugin is None and task.fitness != "displacement"
     if world.energy is None and (senses or collects):
         field = "control.sense_energy" if senses else "task.fitness"
         value = True if senses else task.fitness

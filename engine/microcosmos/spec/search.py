@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 from . import measures
 from .base import Part, unit
 from .emitters import BY_SLOPES, GROWING, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
-from .plugins import OR_OWN, MaybeOwn, Own, completed, left_out
+from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION, after, source
 
 Fitness = Literal["displacement", "energy", "displacement+energy"]
@@ -19,7 +19,7 @@ class Task(Part):
 
     steps: int = Field(default=500, ge=10, le=1_000_000, json_schema_extra=unit("steps"))
     """Steps of the simulation."""
-    fitness: Annotated[Fitness, *OR_OWN] = Field(
+    fitness: Annotated[Fitness, *OR_PLUGIN] = Field(
         default="displacement", json_schema_extra=source(PAPER)
     )
     """Distance between the mean unwrapped node position at the end and at the start; energy
@@ -28,14 +28,9 @@ class Task(Part):
         default=1e-3, gt=0.0, le=1e3, json_schema_extra=unit("cells/energy")
     )
     """What a unit of collected energy is worth beside a cell of displacement."""
-    own: MaybeOwn = left_out()
-    """Which version of a fitness of one's own it is."""
+    plugin: MaybePlugin = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def complete(cls, given: Any, info: ValidationInfo) -> Any:
-        """A fitness of one's own is told with its version."""
-        return completed(given, ("fitness",), "fitness", info)[0]
+    complete = complete_plugin(("fitness",), "fitness")
 
 
 def _by_name(schema: dict[str, Any]) -> None:
@@ -53,7 +48,7 @@ def _end(schema: dict[str, Any]) -> None:
 class Descriptor(Part):
     """One axis of the archive."""
 
-    name: Annotated[measures.Name, *OR_OWN]
+    name: Annotated[measures.Name, *OR_PLUGIN]
     """What is measured; ends and scale are the measure's own unless they are given."""
     low: float = Field(default=0.0, ge=-1e30, le=1e30, json_schema_extra=_end)
     """Lower end of the axis, in raw units; what is below counts in the first bin."""
@@ -63,9 +58,7 @@ class Descriptor(Part):
     """Cells along the axis."""
     scale: measures.Scale = Field(default="linear", json_schema_extra=_by_name)
     """Whether bins are equally wide in the logarithm or in the raw value."""
-
-    own: MaybeOwn = left_out()
-    """Which version of a measure of one's own it is."""
+    plugin: MaybePlugin = None
 
     @model_validator(mode="before")
     @classmethod
@@ -76,8 +69,8 @@ class Descriptor(Part):
         usual = declared.axis if declared else known
         if not usual:
             return given
-        own = {name: getattr(usual, name) for name in ("low", "high", "scale")}
-        return own | {name: value for name, value in given.items() if value is not None}
+        ends = {name: getattr(usual, name) for name in ("low", "high", "scale")}
+        return ends | {name: value for name, value in given.items() if value is not None}
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
@@ -109,9 +102,9 @@ class Archive(Part):
     """Which of many tessellations that is."""
 
     @property
-    def own(self) -> dict[str, Own]:
-        """Versions of the measures of one's own."""
-        return {axis.name: axis.own for axis in self.descriptors if axis.own}
+    def plugins(self) -> dict[str, PluginVersion]:
+        """Versions of the plug-ins among the descriptors, by name."""
+        return {axis.name: axis.plugin for axis in self.descriptors if axis.plugin}
 
     @property
     def shape(self) -> tuple[int, ...]:

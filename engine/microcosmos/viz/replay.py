@@ -127,9 +127,9 @@ def watchable(scene: Scene) -> Scene:
 
 
 def unmeasured(scene: Scene) -> Scene:
-    """The scene without any measures of one's own."""
-    task = Task(steps=scene.task.steps) if scene.task.own else scene.task
-    return scene.model_copy(update={"task": task, "own": {}})
+    """Return the scene without plug-in measures."""
+    task = Task(steps=scene.task.steps) if scene.task.plugin else scene.task
+    return scene.model_copy(update={"task": task, "plugins": {}})
 
 
 def there_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

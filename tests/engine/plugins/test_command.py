@@ -1,4 +1,4 @@
-"""Modules of one's own on the command line."""
+"""Plug-in modules on the command line."""
 
 import json
 from pathlib import Path
@@ -11,7 +11,7 @@ from microcosmos.plugins import registry
 
 pytestmark = pytest.mark.fast
 
-EXAMPLE = str(Path(__file__).parents[3] / "examples" / "own_task.py")
+EXAMPLE = str(Path(__file__).parents[3] / "examples" / "plugin_task.py")
 
 
 @pytest.fixture(autouse=True)
@@ -27,8 +27,8 @@ def ran(*arguments, code=0):
 
 def test_what_a_module_adds_is_listed_with_its_version():
     text = ran("plugins", "--module", EXAMPLE)
-    assert "own_task.straight fitness Straight way in cells (" in text
-    assert "own_task.cross body A cross (" in text
+    assert "plugin_task.straight fitness Straight way in cells (" in text
+    assert "plugin_task.cross body A cross (" in text
 
 
 @pytest.mark.parametrize("command", ["evolve", "replay", "audit", "refine", "gradient"])
@@ -40,8 +40,8 @@ def test_a_module_that_is_none_ends_a_command_with_the_reason(command, tmp_path)
 
 
 def test_a_spec_that_needs_a_module_says_which_option_gives_it(tmp_path):
-    spec = {"experiment": "quality-diversity", "task": {"fitness": "own_task.straight"}}
+    spec = {"experiment": "quality-diversity", "task": {"fitness": "plugin_task.straight"}}
     (tmp_path / "spec.json").write_text(json.dumps(spec))
     text = ran("evolve", tmp_path / "spec.json", code=2)
-    assert "`fitness` must be known, got 'own_task.straight': none is loaded" in text
+    assert "`fitness` must be known, got 'plugin_task.straight': none is loaded" in text
     assert "--module" in text

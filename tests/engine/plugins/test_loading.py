@@ -1,4 +1,4 @@
-"""What modules of one's own declare, and what is wrong with those that are not loaded."""
+"""Loading of plug-in modules: declarations and errors."""
 
 import importlib.util
 import os
@@ -68,12 +68,12 @@ def test_what_runs_is_what_the_hash_is_of_though_the_clock_stood_still(write, mo
 
 def test_a_file_that_broke_leaves_what_was_loaded_of_it(write):
     (one,) = plugins.load(write(ONE))
-    before = sys.modules["microcosmos_own_mine"]
+    before = sys.modules["microcosmos_plugin_mine"]
     file = write(ONE + "1 / 0\n")
     with pytest.raises(ValueError, match=r"mine\.py, line 6 fails with ZeroDivisionError"):
         plugins.load(file)
     assert [plugin.declaration for plugin in plugins.loaded()] == [one]
-    assert sys.modules["microcosmos_own_mine"] is before
+    assert sys.modules["microcosmos_plugin_mine"] is before
 
 
 @pytest.mark.parametrize(

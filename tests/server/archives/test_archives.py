@@ -11,7 +11,7 @@ from answers import detail, errors, fields
 from microcosmos.archive import file
 from microcosmos.spec import parse
 from server.archives import routes as archives
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs.submission import submit
 
 

@@ -11,7 +11,7 @@ from sqlalchemy import func, select
 from sqlalchemy.exc import OperationalError
 
 from microcosmos.archive import creature
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.core.database import Sessions
 from server.tables import Result, Run
 from server.workers import registry

@@ -5,8 +5,8 @@ import errno
 import pytest
 from sqlalchemy import func, select
 
-from server.attempts.begin import claim
-from server.attempts.claim import CheckpointUnavailable
+from server.attempts.checkpoints import CheckpointUnavailable
+from server.attempts.claim import claim
 from server.storage.artifacts import Artifacts
 from server.tables import Artifact, Creature, Elite, Generation
 

@@ -7,8 +7,8 @@ from sqlalchemy import func, select, update
 from sqlalchemy.exc import OperationalError
 
 from server.attempts import leases
-from server.attempts.begin import claim
-from server.attempts.claim import Claim, ClaimLost
+from server.attempts.attempt import Attempt, ClaimLost
+from server.attempts.claim import claim
 from server.core.database import ago
 from server.runs import announce, lifecycle
 from server.tables import Elite, Generation, Run
@@ -29,7 +29,7 @@ def silence(services, run_id):
 
 
 def test_only_one_worker_gets_a_run(services, run_id):
-    assert claim(services, run_id, "first").attempt == 1
+    assert claim(services, run_id, "first").number == 1
     assert claim(services, run_id, "second") is None
 
 
@@ -45,12 +45,12 @@ def test_a_silent_workers_run_is_claimed_and_its_writes_refused(services, run_id
     first.record(report(1, {0: 1.0}), 1.0)
     silence(services, run_id)
     second = claim(services, run_id, "second")
-    assert second.attempt == 2
+    assert second.number == 2
     writes = (
         lambda: first.record(report(2), 1.0),
         lambda: first.save(1, b"data"),
         lambda: first.warn("text"),
-        first.requested,
+        first.check,
         first.finish,
         first.pause,
         first.requeue,
@@ -59,7 +59,8 @@ def test_a_silent_workers_run_is_claimed_and_its_writes_refused(services, run_id
     for write in writes:
         with pytest.raises(ClaimLost):
             write()
-    assert second.record(report(1, {0: 1.0}), 1.0) is None
+    second.record(report(1, {0: 1.0}), 1.0)
+    assert second.requested_state is None
     assert count(services, Generation) == 1
 
 
@@ -121,7 +122,8 @@ def test_resuming_a_waiting_run_allows_another_device(services, run_id):
     first.wait_for_override("it began elsewhere")
     with services.sessions.write.begin() as session:
         run = session.get_one(Run, run_id)
-        assert (run.status, run.warning) == ("paused", "it began elsewhere")
+        assert run.status == "paused"
+        assert run.warning.startswith("it began elsewhere To go on here, resume the run")
         lifecycle.resume(session, run)
     assert claim(services, run_id, "second").other_device
 
@@ -133,7 +135,7 @@ def test_resuming_an_ordinary_run_allows_no_other_device(services, run_id):
     assert not claim(services, run_id, "second").other_device
 
 
-@pytest.mark.parametrize("end", [Claim.pause, lambda held: held.wait_for_override("why")])
+@pytest.mark.parametrize("end", [Attempt.pause, lambda held: held.wait_for_override("why")])
 def test_a_cancellation_overrides_a_pause_under_way(services, run_id, row, end, attempt):
     with services.sessions.write.begin() as session:
         lifecycle.cancel(session, session.get_one(Run, run_id))

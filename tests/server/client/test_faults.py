@@ -19,7 +19,7 @@ from microcosmos.client import (
     files,
     streaming,
 )
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 def test_a_request_whose_answer_is_lost_is_repeated_safely(relay, services, spec, hasty):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from microcosmos.client import Client, Conflict, NoAnswer, NotFound, Refused, polling
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
 def test_a_spec_a_file_and_a_preset_are_submitted(client, spec, tmp_path):

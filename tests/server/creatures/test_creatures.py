@@ -9,7 +9,7 @@ from rq import SimpleWorker
 from rq.serializers import JSONSerializer
 
 from microcosmos.archive import creature
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.queue import jobs
 from server.renderings import storage as renderings
 from server.tables import REPLAY

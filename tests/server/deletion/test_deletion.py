@@ -8,7 +8,7 @@ from deletion import another, delete_for_good, files, finish, let_time_pass, row
 from sqlalchemy import select
 
 from microcosmos.archive import creature
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.deletion import bin, purge
 from server.maintenance.reconcile import reconcile
 from server.renderings.storage import save

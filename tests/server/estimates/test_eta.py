@@ -4,7 +4,7 @@ import pytest
 
 from microcosmos.archive import creature
 from microcosmos.spec import estimate, parse
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs.submission import submit
 from server.tables import Run
 from server.workers import registry

@@ -9,7 +9,7 @@ from uuid import uuid4
 import httpx
 import pytest
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.events import fanout
 from server.runs.announce import announce
 from server.services import event_stream as events

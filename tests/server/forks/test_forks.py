@@ -9,7 +9,7 @@ from sqlalchemy import select, update
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.deletion.purge import purge
 from server.forks import forking
 from server.runs.submission import submit

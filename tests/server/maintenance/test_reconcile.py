@@ -5,8 +5,8 @@ from redis import ConnectionError
 from rq.registry import StartedJobRegistry
 from sqlalchemy import update
 
-from server.attempts.begin import claim
-from server.attempts.claim import ClaimLost
+from server.attempts.attempt import ClaimLost
+from server.attempts.claim import claim
 from server.attempts.leases import job_died, job_stopped
 from server.core.database import ago
 from server.maintenance.reconcile import reconcile
@@ -109,7 +109,7 @@ def test_a_worker_that_ignores_a_cancellation_loses_the_run(
     reconcile(services)
     assert row().status == "cancelled"
     with pytest.raises(ClaimLost):
-        attempt.requested()
+        attempt.check()
 
 
 def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
@@ -130,7 +130,7 @@ def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, ro
         job_stopped(services, run_id, "worker")
         assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
         with pytest.raises(ClaimLost):
-            attempt.requested()
+            attempt.check()
     assert enqueued(services) == [str(run_id)]
 
 

@@ -6,7 +6,7 @@ import pytest
 from answers import fields
 
 from server.attempts import leases
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs import lifecycle
 from server.tables import Run
 

@@ -9,7 +9,7 @@ import pytest
 from answers import detail
 
 from microcosmos.spec import EXPERIMENTS, targets
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs.submission import submit
 
 
@@ -29,14 +29,16 @@ def test_a_worker_carries_out_a_requested_state(api, services, run_id, report):
     attempt = claim(services, run_id, "worker")
     paused = api.post(f"runs/{run_id}/pause").json()
     assert (paused["status"], paused["requested_state"]) == ("running", "paused")
-    assert attempt.record(report(1), 1.0) == "paused"
+    attempt.record(report(1), 1.0)
+    assert attempt.requested_state == "paused"
     attempt.pause()
     run = api.get(f"runs/{run_id}").json()
     assert (run["status"], run["requested_state"]) == ("paused", None)
     api.post(f"runs/{run_id}/resume")
     attempt = claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/cancel")
-    assert attempt.requested() == "cancelled"
+    attempt.check()
+    assert attempt.requested_state == "cancelled"
     attempt.cancel()
     assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"
 

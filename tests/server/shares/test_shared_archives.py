@@ -3,7 +3,7 @@
 import pytest
 
 from microcosmos.archive import file
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.renderings import storage as renderings
 from server.tables import PREVIEW, REPLAY
 

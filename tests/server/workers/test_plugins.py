@@ -6,10 +6,10 @@ import pytest
 from answers import errors
 from declared import STRICT, A, B, declared
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.workers import plugins, registry
 from server.workers.plugins import Reported
-from worker.supervisor import own_queues
+from worker.supervisor import runnable_queues
 
 
 def test_plug_ins_of_workers_appear_in_the_schemas(api, services, have):
@@ -19,8 +19,8 @@ def test_plug_ins_of_workers_appear_in_the_schemas(api, services, have):
     search = after["quality-diversity"]
     fitness = search["$defs"]["Task"]["properties"]["fitness"]
     assert fitness["enum"][-2:] == ["displacement+energy", "mine.straight"]
-    assert fitness["own"]["mine.straight"]["workers"] == ["worker"]
-    settings = search["$defs"]["Task"]["properties"]["own"]["parts"]["mine.straight"]
+    assert fitness["plugins"]["mine.straight"]["workers"] == ["worker"]
+    settings = search["$defs"]["Task"]["properties"]["plugin"]["parts"]["mine.straight"]
     assert settings["properties"]["settings"]["properties"] == STRICT["properties"]
     axis = search["$defs"]["Descriptor"]["properties"]
     assert axis["name"]["enum"][-1] == "mine.sway"
@@ -43,9 +43,9 @@ def test_a_run_pins_plug_in_versions_and_settings(api, have, mine):
     assert answer.status_code == 202, answer.text
     spec = answer.json()["spec"]
     straight = {"title": "Straight way", "unit": "cells", "sizes": {}, "source": A}
-    assert spec["task"]["own"] == {**straight, "settings": {"strictness": 1.0}}
-    assert spec["body"]["own"]["settings"] == {"strictness": 2}
-    assert spec["body"]["own"]["sizes"] == {"nodes": 40}
+    assert spec["task"]["plugin"] == {**straight, "settings": {"strictness": 1.0}}
+    assert spec["body"]["plugin"]["settings"] == {"strictness": 2}
+    assert spec["body"]["plugin"]["sizes"] == {"nodes": 40}
     axis = spec["archive"]["descriptors"][0]
     assert (axis["low"], axis["high"], axis["scale"]) == (0.001, 1.0, "log10")
     run = answer.json()["id"]
@@ -54,7 +54,7 @@ def test_a_run_pins_plug_in_versions_and_settings(api, have, mine):
     again = api.post("runs", json=spec)
     assert again.json()["spec"] == spec, "what a run has is taken as it is"
     usual = {**spec, "task": {**spec["task"], "fitness": "displacement"}}
-    assert "own" not in api.post("runs", json=usual).json()["spec"]["task"]
+    assert "plugin" not in api.post("runs", json=usual).json()["spec"]["task"]
 
 
 def test_a_plug_in_body_is_estimated_but_not_drawn(api, have, mine):
@@ -72,23 +72,23 @@ def test_a_plug_in_body_is_estimated_but_not_drawn(api, have, mine):
         ("task", {"fitness": "mine.sway"}, "task.fitness", "mine.straight on worker"),
         ("body", {"builder": "your.body"}, "body.builder", "docs/plugins.md"),
         ("control", {"encoding": "your.code"}, "control.encoding", "no worker has"),
-        ("task", {"own": {"settings": {}}}, "task.own", "must be left out"),
-        ("task", {"fitness": "mine.straight", "own": 3}, "task.own", "must be an object"),
+        ("task", {"plugin": {"settings": {}}}, "task.plugin", "must be left out"),
+        ("task", {"fitness": "mine.straight", "plugin": 3}, "task.plugin", "must be an object"),
         (
             "task",
-            {"fitness": "mine.straight", "own": {"settings": {"strictness": 11}}},
-            "task.own.settings.strictness",
+            {"fitness": "mine.straight", "plugin": {"settings": {"strictness": 11}}},
+            "task.plugin.settings.strictness",
             "11 is greater than the maximum of 10",
         ),
         (
             "task",
-            {"fitness": "mine.straight", "own": {"settings": {"color": 1}}},
-            "task.own.settings",
+            {"fitness": "mine.straight", "plugin": {"settings": {"color": 1}}},
+            "task.plugin.settings",
             "'color' was unexpected",
         ),
         (
             "task",
-            {"fitness": "mine.straight", "own": {"source": B, "title": "x"}},
+            {"fitness": "mine.straight", "plugin": {"source": B, "title": "x"}},
             "task.fitness",
             f"in version {B[:12]}; workers have {A[:12]}",
         ),
@@ -98,7 +98,8 @@ def test_a_missing_plug_in_is_refused_with_field_and_reason(
     api, have, spec, part, value, field, words
 ):
     have(plugins=declared())
-    (error,) = errors(api.post("runs", json={**spec, part: value}))
+    answer = api.post("runs", json={**spec, part: value})
+    (error,) = errors(answer)
     assert error["field"] == field
     assert words in error["message"]
 
@@ -156,7 +157,7 @@ def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, have, mine
     run = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
     with services.sessions.read() as session:
         known = Reported(session, services.settings.lease)
-        pinned = run["spec"]["body"]["own"]["source"]
+        pinned = run["spec"]["body"]["plugin"]["source"]
         (able,) = known.having(pinned)
     names = {"with": A, "other": B}
     for worker in ("without", next(name for name in names if name != able), "nobody"):
@@ -171,10 +172,12 @@ def test_the_job_is_queued_for_its_plug_in_version(api, services, have, mine, sp
     second = api.post("runs", json=spec).json()["id"]
     assert services.jobs.runs.get_job_ids() == [second]
     assert services.jobs.runs_at_hand() == {first, second}
-    jobs = [queue.get_job_ids() for queue in own_queues(services, {A})]
+    jobs = [queue.get_job_ids() for queue in runnable_queues(services, {A})]
     assert jobs == [[first], [second], []], "who came first is taken first, sweeps last"
     for plugin_versions in (set(), {B}):
-        assert [queue.get_job_ids() for queue in own_queues(services, plugin_versions)] == [
+        assert [
+            queue.get_job_ids() for queue in runnable_queues(services, plugin_versions)
+        ] == [
             [second],
             [],
         ]
@@ -193,7 +196,7 @@ def test_a_run_names_the_plug_in_it_waits_for(api, services, have, mine):
     have("other", plugins=declared(B))
     assert "; other has another version" in api.get(f"runs/{run}").json()["waiting_reason"]
     late = api.post("runs", json={**mine, "body": {"builder": "mine.cross"}}).json()
-    assert late["spec"]["body"]["own"]["source"] == B, "the version that a live worker has"
+    assert late["spec"]["body"]["plugin"]["source"] == B, "the version that a live worker has"
     have("again", plugins=declared())
     assert "free" in api.get(f"runs/{run}").json()["waiting_reason"]
 
@@ -208,7 +211,10 @@ def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services
 def test_a_run_set_aside_continues_when_resumed(api, services, run_id):
     claim(services, run_id, "worker").set_aside("mine.py is not what it was.")
     told = api.get(f"runs/{run_id}").json()
-    assert (told["status"], told["warning"]) == ("paused", "mine.py is not what it was.")
+    assert (told["status"], told["warning"]) == (
+        "paused",
+        "mine.py is not what it was. Then resume the run.",
+    )
     assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
 
 
@@ -216,13 +222,13 @@ def test_plug_ins_that_no_worker_has_together_are_named(services, have):
     have("one", plugins=declared()), have("two", plugins=declared(B))
     with services.sessions.read() as session:
         alive = Reported(session, services.settings.lease).alive
-    task = {"fitness": "mine.straight", "own": {"source": A, "title": "x"}}
-    body = {"builder": "mine.cross", "own": {"source": B, "title": "x"}}
+    task = {"fitness": "mine.straight", "plugin": {"source": A, "title": "x"}}
+    body = {"builder": "mine.cross", "plugin": {"source": B, "title": "x"}}
     assert plugins.needed_versions({"task": task, "body": body}) == [A, B]
     assert "none has them together" in plugins.missing(alive, {"task": task, "body": body})
 
 
-def test_gaits_encodings_and_bodies_of_plug_ins_are_queued(api, have, mine, sweep):
+def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sweep):
     have(plugins=declared())
     swim = {**sweep, "swimmers": ["worm", "mine.wiggler"]}
     code = {
@@ -237,22 +243,22 @@ def test_gaits_encodings_and_bodies_of_plug_ins_are_queued(api, have, mine, swee
         "steps": 20,
         "updates": 2,
     }
-    for spec, part in ((swim, "own"), (code, "control"), (fold, "body")):
+    for spec, part in ((swim, "plugins"), (code, "control"), (fold, "body")):
         assert api.post("runs/estimate", json=spec).status_code == 200, part
         answer = api.post("runs", json=spec)
         assert answer.status_code == 202, answer.text
         found = answer.json()["spec"][part]
-        version = found["mine.wiggler"] if part == "own" else found["own"]
+        version = found["mine.wiggler"] if part == "plugins" else found["plugin"]
         assert version["source"] == A
         assert (
             api.get(f"runs/{answer.json()['id']}")
             .json()["waiting_reason"]
             .startswith("A worker is")
         )
-    assert "own" not in api.post("runs", json=sweep).json()["spec"]
+    assert "plugins" not in api.post("runs", json=sweep).json()["spec"]
 
 
-def test_a_run_with_plug_ins_is_extended_unchanged(api, services, have, mine):
+def test_a_run_with_a_plugin_is_extended_as_it_is(api, services, have, mine):
     have(plugins=declared(A))
     run = api.post("runs", json=mine).json()
     claim(services, UUID(run["id"]), "worker").finish()

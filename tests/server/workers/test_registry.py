@@ -5,7 +5,7 @@ from uuid import UUID
 import pytest
 from sqlalchemy import event
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.queue.order import in_order
 from server.runs.overview import read_runs
 from server.tables import Run

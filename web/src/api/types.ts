@@ -103,8 +103,8 @@ export interface Gait {
   swimmer: string;
   period: number;
   ramp: number;
-  /** Which version it is, where it is of users' own. */
-  own?: Spec;
+  /** The version of a plug-in. */
+  plugin?: Spec;
 }
 
 /** Genes that are numbers: a controller itself, a network's weights, or a rest shape. */

@@ -9,7 +9,7 @@ from pydantic import Field, StringConstraints, ValidationError, model_validator
 
 from ...naming import LICENCE, name
 from ..base import Part, field_path
-from ..plugins import Own
+from ..plugins import PluginVersions
 from ..scene import Scene
 from ..search import Task
 from .genomes import Network
@@ -40,8 +40,8 @@ class Measured(Part):
     room: tuple[Room, Room] | None = None
     """`max_nodes` and `max_connections` of the evaluated arrays; none without a network."""
     device: str
-    own: dict[str, Own] = Field(default={}, exclude_if=lambda own: not own)
-    """Versions of the measures of one's own among the measures."""
+    plugins: PluginVersions = Field(default={})
+    """Versions of the plug-ins among the measures."""
 
     @model_validator(mode="after")
     def check_agreement(self) -> Self:
@@ -91,7 +91,7 @@ class CreatureFile(Part):
 
 def fitness_of(task: Task, measures: Mapping[str, float]) -> float:
     """Fitness in float32, as it is computed where a creature is evaluated."""
-    if task.own is not None:  # Which is among what was measured.
+    if task.plugin is not None:  # Which is among what was measured.
         return measures.get(task.fitness, np.nan)
     displacement = np.float32(measures.get("displacement", np.nan))
     energy = np.float32(task.energy_weight) * np.float32(measures.get("energy", np.nan))
@@ -122,8 +122,8 @@ def check(data: Any) -> dict[str, Any]:
 def scene_of(file: Mapping[str, Any]) -> Scene:
     """What is simulated when a parsed file is evaluated or replayed."""
     scene = Identity.model_validate(file["identity"]).scene
-    own = (file.get("measured") or {}).get("own")
-    return Scene(**{**dict(scene), "own": own}) if own else scene
+    plugins = (file.get("measured") or {}).get("plugins")
+    return Scene(**{**dict(scene), "plugins": plugins}) if plugins else scene
 
 
 def room_of(genome: Part, recorded: tuple[int, int] | None) -> tuple[int, int] | None:

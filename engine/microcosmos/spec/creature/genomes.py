@@ -93,11 +93,11 @@ class Weights(Vector):
         _refuse_other_length(self.values, self.control, body)
 
 
-class Own(Vector):
+class PluginGenome(Vector):
     """Numbers that a module of one's own makes movements of."""
 
     encoding: str
-    control: encodings.OwnControl
+    control: encodings.PluginControl
 
     @model_validator(mode="after")
     def check(self) -> Self:

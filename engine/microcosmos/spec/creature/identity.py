@@ -5,13 +5,13 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Tag, model_validator
 
 from ..base import Part
-from ..body import Body, OwnBody
+from ..body import Body, PluginBody
 from ..coupling import Coupling
 from ..encodings import kind
 from ..scene import Gait, Scene
 from ..search import Task
 from ..world import World
-from .genomes import CPPN, Direct, Fold, Grown, Own, Stroke, Weights
+from .genomes import CPPN, Direct, Fold, Grown, PluginGenome, Stroke, Weights
 
 NAMES = ("cppn", "direct", "weights", "cppn-body", "gait", "fold")
 
@@ -29,7 +29,7 @@ Genome = Annotated[
     | Annotated[Grown, Tag("cppn-body")]
     | Annotated[Stroke, Tag("gait")]
     | Annotated[Fold, Tag("fold")]
-    | Annotated[Own, Tag("own")],
+    | Annotated[PluginGenome, Tag("plugin")],
     Discriminator(
         _kind,
         custom_error_type="unknown_encoding",
@@ -56,9 +56,9 @@ class Identity(Part):
     @model_validator(mode="after")
     def check_fit(self) -> Self:
         scene = self.scene
-        if isinstance(self.body, OwnBody):
+        if isinstance(self.body, PluginBody):
             raise ValueError(f"`body` must be the graph that it is, got {self.body.builder!r}")
-        if isinstance(self.genome, Direct | Weights | Fold | Own):
+        if isinstance(self.genome, Direct | Weights | Fold | PluginGenome):
             self.genome.refuse_other_length(scene.body)
         return self
 

@@ -1,4 +1,4 @@
-"""A task of one's own over HTTP: on a worker that has its module, beside one that has not."""
+"""A plug-in task over HTTP: on a worker with its module, beside one without."""
 
 import json
 import shutil
@@ -14,16 +14,16 @@ from microcosmos.archive import file
 
 pytestmark = pytest.mark.long
 
-EXAMPLE = ROOT / "examples" / "own_task.py"
+EXAMPLE = ROOT / "examples" / "plugin_task.py"
 SMALL = {
     "experiment": "quality-diversity",
     "world": {"width": 24, "height": 24},
-    "body": {"builder": "own_task.cross", "own": {"settings": {"long": 3}}},
+    "body": {"builder": "plugin_task.cross", "plugin": {"settings": {"long": 3}}},
     "control": {"period": 20},
-    "task": {"fitness": "own_task.straight", "steps": 20},
+    "task": {"fitness": "plugin_task.straight", "steps": 20},
     "archive": {
         "descriptors": [
-            {"name": "own_task.sway", "bins": 4},
+            {"name": "plugin_task.sway", "bins": 4},
             {"name": "displacement", "bins": 4},
         ]
     },
@@ -68,7 +68,7 @@ def hire(own_place, module):
 
 
 def having(place):
-    """The worker that has something of one's own."""
+    """The worker with the plug-in module."""
     workers = place.http.get("/api/v1/workers").raise_for_status().json()
     return next((one for one in workers if one["plugins"]), None)
 
@@ -77,15 +77,12 @@ def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire
     refused = own_place.http.post("/api/v1/runs", json=SMALL)
     assert refused.status_code == 422
     told = {one["field"]: one["message"] for one in refused.json()["errors"]}
-    assert "no worker has 'own_task.straight'" in told["task.fitness"]
+    assert "no worker has 'plugin_task.straight'" in told["task.fitness"]
     assert "docs/plugins.md" in told["body.builder"]
 
     worker = hire()
-    assert {one["name"] for one in worker["plugins"]} == {
-        "own_task.straight",
-        "own_task.sway",
-        "own_task.cross",
-    }
+    names = [f"plugin_task.{name}" for name in ("straight", "sway", "cross")]
+    assert {one["name"] for one in worker["plugins"]} == set(names)
     (failed,) = worker["unloaded"]
     assert failed["module"].endswith("broken.py")
     assert "AttributeError" in failed["reason"]
@@ -97,12 +94,13 @@ def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire
     tree, attributes = file.load(own_place.archive(run))
     spec = json.loads(attributes["spec"])
     assert spec == done["spec"]
-    assert spec["task"]["own"]["source"] == sha256(EXAMPLE.read_bytes()).hexdigest()
-    assert json.loads(attributes["measures"])[-2:] == ["own_task.straight", "own_task.sway"]
+    assert spec["task"]["plugin"]["source"] == sha256(EXAMPLE.read_bytes()).hexdigest()
+    measures = json.loads(attributes["measures"])
+    assert measures[-2:] == ["plugin_task.straight", "plugin_task.sway"]
     archive = own_place.http.get(
-        f"/api/v1/runs/{run}/archive", params={"measures": "own_task.straight"}
+        f"/api/v1/runs/{run}/archive", params={"measures": "plugin_task.straight"}
     ).json()
-    assert archive["measures"]["own_task.straight"] == archive["fitness"]
+    assert archive["measures"]["plugin_task.straight"] == archive["fitness"]
     assert archive["fitness"] == tree["archive"]["fitness"].tolist()
 
     module.write_text(f"{EXAMPLE.read_text()}# Changed.\n")
@@ -114,7 +112,7 @@ def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire
     again = own_place.http.post("/api/v1/runs", json=spec).json()
     waiting = own_place.read(again["id"])
     assert waiting["status"] == "queued"
-    assert "Waits for a worker that has own_task.cross" in waiting["waiting_reason"]
+    assert "Waits for a worker that has plugin_task.cross" in waiting["waiting_reason"]
     assert f"{worker['name']} has another version" in waiting["waiting_reason"]
     shutil.copy(EXAMPLE, module)
     finished = own_place.wait(again["id"], "finished", seconds=240)

@@ -1,9 +1,10 @@
-"""A task of one's own: swim straight, told apart by sway, with a body that is built here.
+"""A plug-in: a fitness (straight swimming), a descriptor (sway) and a body (a cross).
 
-    microcosmos evolve spec.json --module examples/own_task.py
+    microcosmos evolve spec.json --module examples/plugin_task.py
 
-A name in a spec is the file's name, a dot and the name below: `own_task.straight`. On a worker
-with `MICROCOSMOS_MODULES=examples/own_task.py` the page offers all three; see docs/plugins.md.
+A name in a spec is the file's name, a dot and the name below: `plugin_task.straight`. On a
+worker with `MICROCOSMOS_MODULES=examples/plugin_task.py` the page offers all three; see
+docs/plugins.md.
 """
 
 from pathlib import Path
@@ -73,12 +74,12 @@ def cross(settings: Cross) -> bodies.Body:
 SPEC: dict[str, Any] = {
     "experiment": "quality-diversity",
     "world": {"width": 32, "height": 32},
-    "body": {"builder": "own_task.cross"},
+    "body": {"builder": "plugin_task.cross"},
     "control": {"period": 50, "angle_scale": 0.3, "length_scale": 0.2},
-    "task": {"steps": 200, "fitness": "own_task.straight"},
+    "task": {"steps": 200, "fitness": "plugin_task.straight"},
     "archive": {
         "descriptors": [
-            {"name": "own_task.sway", "bins": 10},
+            {"name": "plugin_task.sway", "bins": 10},
             {"name": "bending_effort", "bins": 10},
         ]
     },
@@ -86,7 +87,7 @@ SPEC: dict[str, Any] = {
 }
 
 
-def main(archive: Path = Path("own_task.h5"), **changes: Any) -> Path:
+def main(archive: Path = Path("plugin_task.h5"), **changes: Any) -> Path:
     """Evolve crosses that swim straight; the archive file."""
     microcosmos.prepare()
     plugins.load(__file__)
