@@ -7,7 +7,7 @@ import { hasArchive, useExperiments, useRunDetail } from "../store/fetch";
 import { lazy } from "../ui/lazy";
 import { useRefusal } from "../store/principal";
 import { useStore } from "../store/store";
-import { editRun } from "../store/edit";
+import { editRun } from "../store/commands";
 import { forceFreeShare } from "../ui/coupling";
 import { RunActivity } from "./RunActivity";
 import { endReasonOf } from "./endReason";

@@ -1,7 +1,7 @@
 /** Tags and note of a run, edited in place. */
 
 import type { Run } from "../api/types";
-import { addTag, editRun, removeNote, removeTag } from "../store/edit";
+import { addTag, editRun, removeNote, removeTag } from "../store/commands";
 import { setQuery } from "../store/router";
 import { InlineText } from "../ui/InlineText";
 import { useDisclosure } from "../ui/disclosure";

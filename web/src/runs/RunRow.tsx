@@ -2,9 +2,8 @@
 
 import type { Experiment, Run } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { restore } from "../store/lifecycle";
 import { useStore } from "../store/store";
-import { editRun } from "../store/edit";
+import { editRun, restore } from "../store/commands";
 import { forceFreeShare } from "../ui/coupling";
 import { DASH, moment, number, short, titleOf } from "../ui/format";
 import { NotForceFree } from "../ui/NotForceFree";

@@ -1,11 +1,10 @@
 /** The commons: listed shares as moving tiles. */
 
-import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import type { Share } from "../api/types";
-import { type Motion, decodeMotion } from "../decode/motion";
+import { decodeMotion } from "../decode/motion";
 import { usePages } from "../store/paging";
-import { poll } from "../store/polling";
+import { usePolled } from "../store/polling";
 import { Empty, Page, useTitle } from "../ui/Page";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { text } from "./text";
@@ -30,15 +29,8 @@ export function CommonsPage() {
 }
 
 function Tile({ share }: { share: Share }) {
-  const [motion, setMotion] = useState<Motion | null>(null);
-  useEffect(() => {
-    const silent = () => {}; // The tile stays still; the page of the share shows the error.
-    return poll(async () => decoded(await api.readCover(share)), {
-      value: setMotion,
-      note: silent,
-      error: silent,
-    });
-  }, [share.slug]);
+  // Without a motion the tile stays empty; the page of the share shows the error.
+  const { value: motion } = usePolled(async () => decoded(await api.readCover(share)), [share.slug]);
   return (
     <a class="commons-tile card" href={`/s/${share.slug}`} target="_self">
       <SwimmingBody motion={motion} />
