@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .. import device, neat, search, spec
+from .. import device, genomes, neat, search, spec
 from ..archive.initial import counters, genes_of
 from ..experiments import Experiment, reevaluation
 from ..experiments.evolution import Evolution, Programs
@@ -138,22 +138,22 @@ def begun(plan: Plan, chosen: spec.Evolution, files: Sequence[Mapping[str, Any]]
         raise ValueError(
             f"`search.initial` needs the file of each creature; got none of {lacking[0]}"
         )
-    genomes = genes_of(chosen, [given[name] for name in chosen.search.initial])
-    genotypes = [plan.encoding.read(genome) for genome in genomes]
+    genes = genes_of(chosen, [given[name] for name in chosen.search.initial])
+    genotypes = [genomes.read(genome, plan.encoding.room) for genome in genes]
     names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.initial]
     rows = jax.tree.map(lambda *parts: np.stack(parts), *genotypes)
     return replace(
         plan,
         initial=InitialCreatures(np.stack(names), rows),
-        counters=_counters(plan, genomes),
+        counters=_counters(plan, genes),
     )
 
 
-def _counters(plan: Plan, genomes: list[dict[str, Any]]) -> neat.Counters:
+def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
     """Numbers after all genes that the search begins with."""
     if plan.encoding.room is None:
         return plan.counters
-    connections, nodes = counters(genomes)
+    connections, nodes = counters(genes)
     return neat.Counters(
         jnp.maximum(plan.counters.innovation, connections),
         jnp.maximum(plan.counters.node, nodes),

@@ -17,7 +17,6 @@ DENSITIES = {"saturated": fields.saturated, "raw": fields.unsaturated}
 def build_folding(chosen: spec.Folding) -> folding.Folding:
     """Folds, their program compiled when it is first used."""
     descent = build_descent(chosen)
-    assert descent.task.encoding is not None
     return folding.Folding(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         names=tuple(target.name for target in chosen.targets),
@@ -26,7 +25,6 @@ def build_folding(chosen: spec.Folding) -> folding.Folding:
         updates=chosen.updates,
         block=chosen.block,
         frame=frame(chosen.scene),
-        encoding=descent.task.encoding,
         device=device.device_kind(),
     )
 

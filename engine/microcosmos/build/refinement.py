@@ -6,7 +6,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from .. import device, search, spec
+from .. import device, genomes, search, spec
 from ..archive import creature
 from ..experiments import refinement
 from ..spec.refinement import parsed
@@ -22,7 +22,7 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
     scene, room = _scene(chosen, found), creature.room(found)
     task, names = build_task(scene, room=room), _names(chosen)
     assert task.encoding is not None
-    genotype = task.encoding.read(found["identity"]["genome"])
+    genotype = genomes.read(found["identity"]["genome"], task.encoding.room)
     return refinement.Refinement(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         genotype=jax.tree.map(lambda x: np.asarray(x)[None], genotype),
