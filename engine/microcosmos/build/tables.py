@@ -1,4 +1,4 @@
-"""From the specs of sweeps and measurements to the experiments that carry them out."""
+"""Build gait sweeps and measurements of scaling."""
 
 import json
 from collections.abc import Callable
@@ -15,13 +15,13 @@ from .scene import build_world
 
 
 def build_gaits(chosen: spec.Gaits) -> gaits.Gaits:
-    """A sweep, its programs compiled when they are first used."""
+    """Build a gait sweep, whose programs are compiled on first use."""
     strokes = tuple(_stroke(chosen, form, swimmer) for form, swimmer in chosen.strokes)
     return gaits.Gaits(_json(chosen), strokes, chosen.block, device.device_kind())
 
 
 def build_scaling(chosen: spec.Scaling) -> scaling.Scaling:
-    """A measurement."""
+    """Build a measurement of wall time."""
 
     def measure(nodes: int, stop: Callable[[], bool]) -> tuple[dict[str, Any], ...]:
         plan = timing.Plan(chosen.steps, chosen.part_steps, device.compiler_options(), stop)
@@ -35,7 +35,7 @@ def build_scaling(chosen: spec.Scaling) -> scaling.Scaling:
 
 
 def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[timing.Scene, world.State]:
-    """A box with many straight filaments at random places, and their shape at rest."""
+    """Build a box with many straight filaments at random places, at rest."""
     one = bodies.chain(chosen.filament, SPACING)
     centres = chosen.centres(nodes).tolist()
     crowd = bodies.together([bodies.placed(one, centre) for centre in centres])
