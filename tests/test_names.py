@@ -27,8 +27,6 @@ LEFT = {
     "engine/microcosmos/client/formatting.py:pace",
     "engine/microcosmos/client/formatting.py:standing",
     "engine/microcosmos/experiments/state.py:quarantine",
-    "engine/microcosmos/neat/offspring.py:standing",
-    "engine/microcosmos/neat/rng.py:left",
     "engine/microcosmos/search/folding.py:pace",
     "engine/microcosmos/search/measures.py:pace",
     "engine/microcosmos/search/plugin_measures.py:pace",
