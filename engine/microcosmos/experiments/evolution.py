@@ -89,9 +89,7 @@ class Evolution:
         after = replace(
             after,
             generation=state.generation + 1,
-            evaluations=state.evaluations
-            + offspring.taught.simulated
-            + len(evaluation.fitness),
+            evaluations=state.evaluations + simulated,
             diverged=state.diverged + int(np.count_nonzero(evaluation.status)),
             elites=elites,
             counters=offspring.counters,

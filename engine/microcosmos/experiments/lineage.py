@@ -176,9 +176,7 @@ def _elite(
     measures: dict[str, float] = dict(zip(plan.measures, values.tolist(), strict=True))
     creature = naming.name(whole)
     named = tuple(bytes(parent).hex() for parent in parents if parent.any())
-    if (
-        search.OPERATORS[operator] == "fork"
-    ):  # It may be that creature.
+    if search.OPERATORS[operator] == "fork":  # It may be that creature.
         named = tuple(name for name in named if name != creature)
     measured = measurement(
         fitness,
