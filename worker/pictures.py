@@ -26,9 +26,9 @@ def make(services: Services, creature: str, kind: str) -> bytes:
         return PICTURES[kind](read_replay(_replay(services, creature)))
     file = renderings.creature(services, creature)
     if kind in (AUDIT, MEASUREMENT):
-        from microcosmos import audit  # Loads JAX.
+        from microcosmos.audit import audit, measurement  # Loads JAX.
 
-        report = audit.audit if kind == AUDIT else audit.measurement
+        report = audit if kind == AUDIT else measurement
         return json.dumps(report(file), allow_nan=False).encode()
     if kind == REPLAY:
         return record(file)
