@@ -1,7 +1,7 @@
 """QDax's MAP-Elites on our creatures, with one of three emitters.
 
-`iso+line` varies directly encoded swimmers; `cma-mega` climbs the simulator's own slopes; `neat`
-is our NEAT, on swimmers that networks control. Needs `pip install "microcosmos[qdax]"`.
+`iso+line` varies directly encoded swimmers, `cma-mega` climbs the simulator's own slopes, and
+`neat` is our NEAT, on swimmers that networks control. Needs `pip install "microcosmos[qdax]"`.
 """
 
 import sys

@@ -5,9 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 from microcosmos.viz.film import gif, mp4
-from microcosmos.viz.preview import preview
 from microcosmos.viz.replay_file import Replay, read_replay
-from microcosmos.viz.strip import strip
+from microcosmos.viz.strip import preview, strip
 from server.renderings import storage as renderings
 from server.services.services import Services
 from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
