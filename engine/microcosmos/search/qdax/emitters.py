@@ -19,7 +19,7 @@ from .repertoires import needed, order, to_repertoire
 
 
 class Pending(eqx.Module):
-    """The state of a QDax emitter, and the outcome of its last children, which it learns next."""
+    """The state of a QDax emitter, and the outcome of its last children to learn next."""
 
     emitter: PyTree[Array]
     genes: Float[Array, "slot gene"]
