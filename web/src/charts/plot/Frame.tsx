@@ -10,7 +10,7 @@ export interface Room {
   bottom: number;
 }
 
-/** A second axis above, named at places of the first one. */
+/** A second axis above, with labels at values of the first one. */
 export interface Upper {
   title: string;
   ticks: { at: number; text: string }[];
@@ -24,7 +24,7 @@ interface Props {
   shaded: boolean;
 }
 
-/** Pixels that a named value needs along each axis. */
+/** Pixels per label along each axis. */
 const [WIDE, HIGH] = [52, 44];
 
 export function Frame({ x, y, room, upper, shaded }: Props) {
@@ -83,7 +83,7 @@ function UpperAxis({ title, ticks, across, room, middle }: UpperProps) {
   );
 }
 
-/** From the last one down, those that have room beside the one before. */
+/** The ticks with enough room, from the last one down. */
 function apart(ticks: Upper["ticks"], across: (value: number) => number): Upper["ticks"] {
   return ticks.reduceRight<Upper["ticks"]>((kept, tick) => {
     const crowded = kept[0] && across(kept[0].at) - across(tick.at) < WIDE;
