@@ -147,11 +147,7 @@ def test_a_token_is_not_wrong_without_the_database(serve, monkeypatch):
 def test_servers_on_one_host_keep_a_cookie_each(serve):
     """A browser sends the cookies of all ports of a host, as this client does."""
     first, second = SecretStr("first"), SecretStr("second")
-    with (
-        serve(token=first) as one,
-        serve(token=second) as other,
-        httpx.Client() as browser,
-    ):
+    with serve(token=first) as one, serve(token=second) as other, httpx.Client() as browser:
         for address, token in ((one, first), (other, second)):
             asked = {"token": token.get_secret_value()}
             assert browser.post(f"{address}/api/v1/session", json=asked).status_code == 200

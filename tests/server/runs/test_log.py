@@ -70,11 +70,7 @@ def test_a_failed_attempt_logs_its_traceback_and_the_next_its_start(
     attempt.fail("Traceback:\nZeroDivisionError: twice nothing")
     claim(services, run_id, "another")
     assert log()[-4:] == [
-        (
-            "error",
-            1,
-            "Attempt 1 ended badly: Traceback:\nZeroDivisionError: twice nothing",
-        ),
+        ("error", 1, "Attempt 1 ended badly: Traceback:\nZeroDivisionError: twice nothing"),
         ("info", 1, "Queued for another attempt."),
         ("info", 2, "Attempt 2 begins on worker another, from the checkpoint of generation 1."),
         ("warning", 2, "Went back: what was recorded of generations 2 to 3 is dropped."),
