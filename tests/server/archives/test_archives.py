@@ -1,12 +1,12 @@
 """The archive as columns, now and in the past, and as files."""
 
 import hashlib
-import json
 from uuid import UUID
 
 import numpy as np
 import pytest
 from answers import detail, errors, fields
+from reports import archive_file
 
 from microcosmos.archive import file
 from microcosmos.spec import parse
@@ -16,30 +16,12 @@ from server.runs.submission import submit
 
 
 @pytest.fixture
-def h5(spec) -> bytes:
-    """The file of an archive with one elite."""
-    archive = {
-        "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
-        "measures": np.array([[0.01, 1.0]]),
-        "fitness": np.array([2.5]),
-        "generation": np.array([3]),
-        "creature": np.zeros((1, 32), np.uint8),
-        "cell": np.array([17]),
-    }
-    attributes = {
-        "format": file.FORMAT,
-        "spec": json.dumps(spec),
-        "measures": json.dumps(["bending_effort", "stretching_effort"]),
-    }
-    return file.dump({"archive": archive}, attributes)
-
-
-@pytest.fixture
-def saved(h5, attempt, record) -> bytes:
-    """A run has this checkpoint."""
+def saved(spec, attempt, record) -> bytes:
+    """The checkpoint of the run, an archive with one elite."""
     record(1)
-    attempt.save(1, h5)
-    return h5
+    content = archive_file(spec)
+    attempt.save(1, content)
+    return content
 
 
 def test_the_archive_is_the_last_elite_of_each_cell(api, run_id, spec, record):
@@ -178,11 +160,10 @@ def test_an_unknown_measure_is_refused_with_the_known_ones(api, run_id, record):
 
 
 @pytest.mark.parametrize("descriptors", [(0.5,), (1.0, 2.0, 3.0)])
-def test_elites_have_any_number_of_descriptors(api, services, run_id, descriptors, record):
+def test_elites_have_any_number_of_descriptors(api, run_id, descriptors, record, published):
     record(1, {5: 1.0}, descriptors)
     assert api.get(f"runs/{run_id}/archive").json()["descriptors"] == [list(descriptors)]
-    entries = services.redis.xrange(services.events.stream)
-    (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"elites"]
+    (told,) = [data for kind, data in published() if kind == "elites"]
     assert told["descriptors"] == [list(descriptors)]
 
 

@@ -267,11 +267,9 @@ def test_the_number_of_generations_is_checked(api, run_id, row, end):
     assert row().generations == 4
 
 
-def test_an_extension_is_published(api, services, run_id, end):
+def test_an_extension_is_published(api, run_id, end, published):
     end(1)
-    before = services.redis.xlen(services.events.stream)
+    before = len(published())
     extended(api, run_id)
-    told = services.redis.xrange(services.events.stream)[before:]
-    assert [fields[b"event"] for _, fields in told] == [b"run"]
-    assert b'"status": "queued"' in told[0][1][b"data"]
-    assert b'"generations": 5' in told[0][1][b"data"]
+    ((kind, run),) = published()[before:]
+    assert (kind, run["status"], run["generations"]) == ("run", "queued", 5)

@@ -7,6 +7,7 @@ import httpx
 import numpy as np
 import pytest
 from answers import detail
+from reports import replay
 from sqlalchemy import select
 
 from microcosmos.archive import creature
@@ -118,24 +119,6 @@ def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
     assert api.get(f"creatures/{known}/replay").content == b"of now again"
 
 
-def recorded(positions: np.ndarray) -> bytes:
-    """A replay with these positions, (frame, node, 2), and some fluid behind them."""
-    frames, nodes, _ = positions.shape
-    header = {
-        "format": "microcosmos-replay/2",
-        "frames": frames,
-        "every": 5,
-        "steps": 5 * (frames - 1),
-        "nodes": nodes,
-        "edges": [[0, 1], [1, 2]],
-        "size": [8, 4],
-        "vorticity": {"scale": 1.0},
-    }
-    told = json.dumps(header).encode()
-    fluid = np.ones((frames, 8, 4), np.int8).tobytes()
-    return struct.pack("<I", len(told)) + told + positions.astype("<f4").tobytes() + fluid
-
-
 def read(data: bytes) -> tuple[dict, np.ndarray]:
     (length,) = struct.unpack_from("<I", data)
     header = json.loads(data[4 : 4 + length])
@@ -146,7 +129,7 @@ def read(data: bytes) -> tuple[dict, np.ndarray]:
 @pytest.mark.parametrize(("frames", "stride"), [(7, 1), (96, 1), (97, 2), (1001, 11)])
 def test_a_motion_is_every_kth_frame_of_the_replay(api, services, known, frames, stride):
     positions = np.random.default_rng(0).normal(size=(frames, 3, 2)).astype(np.float32)
-    renderings.save(services, known, REPLAY, recorded(positions))
+    renderings.save(services, known, REPLAY, replay(positions))
     answer = api.get(f"creatures/{known}/motion")
     header, motion = read(answer.content)
     np.testing.assert_array_equal(motion, positions[::stride])

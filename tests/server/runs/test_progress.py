@@ -1,7 +1,6 @@
 """Progress of runs: steering, curves, species and the targets of a folding."""
 
 import base64
-import json
 from concurrent.futures import ThreadPoolExecutor
 from uuid import uuid4
 
@@ -141,9 +140,8 @@ def test_curves_without_summaries_have_no_other_columns(api, run_id, record):
     assert api.get(f"runs/{run_id}/generations").json()["summary"] == {}
 
 
-def test_events_of_generations_carry_the_summary(services, run_id, told):
-    entries = services.redis.xrange(services.events.stream)
-    events = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"generation"]
+def test_events_of_generations_carry_the_summary(run_id, told, published):
+    events = [data for kind, data in published() if kind == "generation"]
     assert [event["summary"].get("corrected") for event in events[3:6]] == [None, 2.5, None]
 
 
