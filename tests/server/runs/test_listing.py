@@ -82,7 +82,10 @@ def test_a_name_is_announced_like_other_changes(api, services, run_id, published
     assert (kind, run["name"]) == ("run", "new")
 
 
-def test_an_unknown_run_cannot_be_named(api):
+def test_recording_keeps_the_name_of_a_run(api, run_id, record, attempt):
+    api.patch(f"runs/{run_id}", json={"name": "mine"})
+    record(1, {1: 1.0})
+    assert api.get(f"runs/{run_id}").json()["name"] == "mine"
     gone = "00000000-0000-0000-0000-000000000000"
     assert api.patch(f"runs/{gone}", json={"name": "a"}).status_code == 404
 
@@ -252,9 +255,3 @@ def test_a_cursor_may_hold_any_possible_value(api):
         for value in values:
             answer = api.get("runs", params={"sort": sort, "cursor": crafted(sort, value)})
             assert (answer.status_code, answer.json()) == (200, {"items": [], "next": None})
-
-
-def test_recording_keeps_the_name_of_a_run(api, run_id, record, attempt):
-    api.patch(f"runs/{run_id}", json={"name": "mine"})
-    record(1, {1: 1.0})
-    assert api.get(f"runs/{run_id}").json()["name"] == "mine"

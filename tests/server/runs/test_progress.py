@@ -50,11 +50,13 @@ def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run
 
 
 def test_forbidden_actions_are_conflicts_with_a_reason(api, services, run_id):
-    answer = api.post(f"runs/{run_id}/resume")
-    assert detail(answer, 409) == "to resume a run it must be paused; it is queued"
+    refused = detail(api.post(f"runs/{run_id}/resume"), 409)
+    assert refused == "to resume a run it must be paused; it is queued"
     claim(services, run_id, "worker").finish()
     for action in ("pause", "resume", "cancel"):
         assert "it is finished" in detail(api.post(f"runs/{run_id}/{action}"), 409)
+        assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
+        assert api.post(f"runs/nonsense/{action}").status_code == 422
 
 
 def test_progress_is_what_was_recorded(api, run_id, attempt, record):
@@ -98,12 +100,6 @@ def test_concurrent_actions_do_not_block_each_other(api, run_id):
     assert sorted(answer.status_code for answer in answers) == [202] + 23 * [409]
 
 
-def test_an_unknown_run_cannot_be_steered(api):
-    for action in ("pause", "resume", "cancel"):
-        assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
-        assert api.post(f"runs/nonsense/{action}").status_code == 422
-
-
 @pytest.fixture
 def told(record):
     """Twelve generations, of which every fifth tells a score."""
@@ -142,18 +138,20 @@ def test_a_run_that_ended_early_is_done(api, run_id, attempt, record):
 
 
 def test_species_are_listed_by_generation(api, run_id, record):
+    record(1, summary={"species": "0:10 3:6"})
+    record(2, summary={"device_seconds": 1.0})
+    record(3, summary={"species": "3:16"})
+    for query in ({}, {"points": 2}):
+        assert api.get(f"runs/{run_id}/species", params=query).json() == {
+            "generation": [1, 3],
+            "number": [[0, 3], [3]],
+            "members": [[10, 6], [16]],
+        }
+
+
+def test_a_run_without_species_has_none(api, run_id, record):
     record(1)
     assert api.get(f"runs/{run_id}/species").json()["generation"] == []
-    record(2, summary={"species": "0:10 3:6"})
-    record(3, summary={"device_seconds": 1.0})
-    record(4, summary={"species": "3:16"})
-    assert api.get(f"runs/{run_id}/species").json() == {
-        "generation": [2, 4],
-        "number": [[0, 3], [3]],
-        "members": [[10, 6], [16]],
-    }
-    thin = api.get(f"runs/{run_id}/species", params={"points": 2}).json()
-    assert thin["generation"] == [2, 4]
 
 
 def test_thinned_curves_sum_reasons_of_divergence(api, run_id, record):
