@@ -194,12 +194,13 @@ def run_id(services) -> UUID:
 
 
 @pytest.fixture
-def end(attempt, record):
+def end(record, request):
     """Carries the run out up to a generation and finishes it."""
 
     def end(generations, summary=None):
         for generation in range(1, generations + 1):
             record(generation, {generation: 1.0}, summary=summary)
+        attempt = request.getfixturevalue("attempt")
         attempt.save(generations, b"state after %d" % generations)
         attempt.finish()
 
