@@ -30,7 +30,7 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
   const { size } = draft.changed;
   const equal = size > 0 || base.kind !== "preset" ? equalPreset(spec, experiments) : null;
   return (
-    <p class="base-bar" role="status">
+    <p class="base-bar flow" role="status">
       <span>
         {draft.restored && text.restoredDraft}
         {text.changes(size)} <BaseName base={base} />
@@ -38,7 +38,7 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
         {equal && text.equalPreset(equal.name)}.
       </span>
       {base.fork && (
-        <span class="base-fork">
+        <span class="flow">
           <ForkSourceText fork={base.fork} />
           <button type="button" class="plain" onClick={draft.dropFork}>
             {text.startRandom}

@@ -27,7 +27,7 @@ export function BodyDrawing({ drawing }: Props) {
         ))}
       </div>
       {pictures.length > 0 && (
-        <div class="targets" role="group" aria-label={text.targets}>
+        <div class="targets flow" role="group" aria-label={text.targets}>
           {pictures.map((picture) => (
             <Target key={picture.name} picture={picture} />
           ))}

@@ -46,7 +46,7 @@ export function ForkCard({ fork, errors }: { fork: Fork; errors: readonly FieldE
     <Card id="fork" kind="sweep-card" title={text.fork}>
       <p class="help">{text.forkAbout}</p>
       {fork.name !== null && (
-        <div class="sweep-entries">
+        <div class="sweep-entries flow">
           <NameEntry title={text.runName} value={fork.name} onChange={fork.onName} />
         </div>
       )}
@@ -63,7 +63,7 @@ interface NameProps {
 
 export function NameEntry({ title, value, onChange }: NameProps) {
   return (
-    <label class="sweep-name-field">
+    <label class="sweep-name-field over">
       <span>{title}</span>
       <input
         type="text"

@@ -44,7 +44,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
         />
       ))}
       <Messages messages={[problems.total, ...complaintsOf(errors, "grid")]} />
-      <p class="sweep-foot">
+      <p class="sweep-foot flow">
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
           {text.addAxis(axes.length === 0)}
         </button>
@@ -62,9 +62,9 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
 function Entries({ sweeping }: { sweeping: SweepForm }) {
   const { seeded, seeds, name, problems, change } = sweeping;
   return (
-    <div class="sweep-entries">
+    <div class="sweep-entries flow">
       {seeded && (
-        <label class="sweep-seeds">
+        <label class="sweep-seeds over">
           <span>{text.seeds}</span>
           <input
             type="text"

@@ -40,7 +40,7 @@ function Extend({ run }: { run: Run }) {
   };
   return (
     <form
-      class="run-choice"
+      class="run-choice flow small"
       onSubmit={(event) => void send(event)}
       onKeyDown={(event) => event.key === "Escape" && setOpen(false)}
     >

@@ -54,7 +54,7 @@ export function SearchCard({ run, curves, query, beside }: Props & { curves: Col
   const plots = arrangePlots(workOf, curves, beside.others, look);
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
-    <Card id="search" kind="search-card" title={text.search}>
+    <Card id="search" kind="wide-curves" title={text.search}>
       <Curves plots={plots} x={placesOf(curves, look)} look={look} />
       <DivergedTable run={run} reasons={divergedBy(curves)} />
     </Card>

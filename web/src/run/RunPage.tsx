@@ -118,7 +118,7 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
       {run.experiment === "neuroevolution" && (
         <PopulationCards run={run} elites={detail?.elites ?? NO_ELITES} />
       )}
-      <div class="run-columns run-record">
+      <div class="run-columns even">
         <div class="stack">
           <LogCard run={run} query={query} />
           <FilesCard run={run} about={text.filesAbout(hasArchive(run), moment(run.created_at), run)} />
@@ -145,7 +145,7 @@ function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
     ["files", text.files],
   ].filter((section) => section !== false);
   return (
-    <nav class="sections" aria-label={text.sections}>
+    <nav class="sections flow small" aria-label={text.sections}>
       {sections.map(([id, name]) => (
         <a key={id} href={`#${id}`}>
           {name}

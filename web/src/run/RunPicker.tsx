@@ -42,7 +42,11 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
     onChoose(id);
   };
   return (
-    <form class="run-choice" onSubmit={choose} onKeyDown={(event) => event.key === "Escape" && onClose()}>
+    <form
+      class="run-choice flow small"
+      onSubmit={choose}
+      onKeyDown={(event) => event.key === "Escape" && onClose()}
+    >
       {none ? (
         <span class={error ? "wrong-text" : "quiet"} role="status">
           {none}

@@ -9,10 +9,8 @@ import "./run.css";
 
 export const STATES = ["queued", "running", "paused", "finished", "failed", "cancelled"] as const;
 
-const REQUESTED = { paused: text.pausing, cancelled: text.cancelling };
-
 export function StatusBadge({ run }: { run: Run }) {
-  const status = run.requested_state ? REQUESTED[run.requested_state] : run.status;
+  const status = run.requested_state ? text.requested[run.requested_state] : run.status;
   return <span class={`badge ${run.status}`}>{status}</span>;
 }
 

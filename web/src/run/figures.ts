@@ -63,12 +63,6 @@ export function keyFigureOf(run: Run): Figure {
   return [name === text.qdScore ? name : name.toLowerCase(), value];
 }
 
-const GENERATIONS: Record<string, string> = {
-  gaits: text.strokes,
-  scaling: text.sizes,
-  folding: text.updates,
-  refinement: text.steps,
-};
-
 /** The name of a generation of a run. */
-export const generationsOf = (run: Run) => GENERATIONS[run.experiment] ?? text.generation;
+export const generationsOf = ({ experiment }: Run) =>
+  (text.generations as Record<string, string>)[experiment] ?? text.generation;

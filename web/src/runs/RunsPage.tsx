@@ -143,7 +143,7 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
 
 function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   return (
-    <p class="chosen" role="status">
+    <p class="chosen flow" role="status">
       <span>
         {text.selected(ids.length)}
         {ids.length === 1 && text.selectAnother}

@@ -7,23 +7,10 @@ import { text } from "./text";
 
 export const NEWEST = "-created";
 
+type Sort = NonNullable<RunQuery["sort"]>;
+
 /** The orders of the menu. */
-export const ORDERS: [sort: NonNullable<RunQuery["sort"]>, title: string][] = [
-  [NEWEST, text.newest],
-  ["created", text.oldest],
-  ["name", text.name],
-  ["-name", text.nameFalling],
-  ["status", text.stateRising],
-  ["-status", text.stateFalling],
-  ["-progress", text.mostProgress],
-  ["progress", text.leastProgress],
-  ["-evaluations", text.mostEvaluations],
-  ["evaluations", text.fewestEvaluations],
-  ["-qd_score", text.highestQdScore],
-  ["qd_score", text.lowestQdScore],
-  ["-best", text.highestFitness],
-  ["best", text.lowestFitness],
-];
+export const ORDERS = Object.entries(text.orders) as [sort: Sort, title: string][];
 
 /** The query of an address; unknown values are ignored. */
 export function queryOf(address: URLSearchParams): RunQuery {
@@ -53,7 +40,7 @@ const listOf = (address: URLSearchParams, key: string) => (address.get(key) ?? "
 /** True if any filter is set. */
 export const isFiltered = ({ sort: _, deleted: __, ...filters }: RunQuery) => Object.keys(filters).length > 0;
 
-/** What to ask the server for: as long as nothing is asked of them, runs of sweeps stand as one. */
+/** True if each sweep is shown as one row: while the address asks for nothing. */
 export const groupsSweeps = (query: RunQuery) => Object.keys(query).length === 0;
 
 /** The order after a click on a column: by the column, then reversed, then the default. */

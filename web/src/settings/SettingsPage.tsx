@@ -15,10 +15,10 @@ export function SettingsPage() {
   return (
     <Page title={text.settings} error={error} loading={!value && text.loading}>
       {value && (
-        <div class="settings">
+        <>
           <PrincipalCard principal={value} />
           {value.scope === "admin" && <Tokens own={value.token} />}
-        </div>
+        </>
       )}
     </Page>
   );
@@ -26,12 +26,6 @@ export function SettingsPage() {
 
 /** The port of this page. */
 const PORT = globalThis.location?.port || "80";
-
-const SCOPE_TEXT = {
-  read: text.scopeRead,
-  write: text.scopeWrite,
-  admin: text.scopeAdmin,
-};
 
 function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { principal: Principal }) {
   const leave = () => void signOut().then(() => location.reload(), showFailure);
@@ -45,7 +39,7 @@ function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { pri
   return (
     <Card id="you" title={needed ? name : text.thisMachine} head={head}>
       <p>
-        {SCOPE_TEXT[scope]}
+        {text.allowed[scope]}
         {expires_at && text.validUntil(day(expires_at))}
       </p>
       {!needed && (

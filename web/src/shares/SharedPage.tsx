@@ -119,7 +119,7 @@ function ImportHint({ share, sha }: { share: Share; sha: string }) {
     </>
   );
   return (
-    <Card id="import" kind="import-hint" title={text.importTitle} head={head}>
+    <Card id="import" title={text.importTitle} head={head}>
       <p>{text.importHint}</p>
       <pre class="command" tabIndex={0}>
         {command}

@@ -59,7 +59,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
       </section>
       <Card
         id="curves"
-        kind="sweep-curves"
+        kind="wide-curves"
         title={text.curves}
         head={<span class="quiet small">{text.curvesAbout}</span>}
       >

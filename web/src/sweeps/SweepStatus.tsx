@@ -26,7 +26,7 @@ export function SweepProgress({ sweep }: { sweep: Sweep }) {
 /** How many runs are in each state. */
 export function SweepStates({ sweep }: { sweep: Sweep }) {
   return (
-    <span class="sweep-states">
+    <span class="sweep-states flow">
       {STATES.filter((state) => sweep.status_counts[state]).map((state) => (
         <span key={state} class={`badge ${state}`}>
           {sweep.status_counts[state]} {state}

@@ -82,7 +82,7 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
   const peers = all.filter((row) => formOf(String(row.form)).free === free);
   return (
     <div class="sweep">
-      <p class="sweep-title">
+      <p class="sweep-title flow">
         <b>{title}</b> <span class="quiet">{about}</span> {!free && <NotForceFree />}
       </p>
       <Plot
@@ -102,7 +102,7 @@ function Key({ rows }: { rows: ResultRow[] }) {
   const doubtful = rows.some((row) => row.status === "ok" && (row.limited || row.warnings));
   const failed = rows.some((row) => row.status !== "ok");
   return (
-    <p class="quiet small marks">
+    <p class="quiet small marks flow">
       <span>{text.marks}</span>
       {doubtful && (
         <span>

@@ -16,7 +16,7 @@ import "./population.css";
 
 export function PopulationCards({ run, elites }: { run: Run; elites: Elites }) {
   return (
-    <div class="population">
+    <div class="run-columns even">
       <SpeciesCard run={run} />
       <BestNetwork run={run} elites={elites} />
     </div>
