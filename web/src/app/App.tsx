@@ -67,7 +67,6 @@ const LINKS: [href: string, name: string, page: string | null][] = [
 ];
 const HELP: (typeof LINKS)[0] = ["/help/", text.help, null];
 
-/** The navigation of a signed-in user. */
 function Navigation({ page }: { page: string }) {
   const refusal = useRefusal();
   const health = useFetched(readHealth, []);

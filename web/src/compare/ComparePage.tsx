@@ -100,6 +100,5 @@ function Plots({ runs, curves, query }: PlotsProps) {
 /** Each run has its own x values. */
 const NO_X: readonly number[] = [];
 
-/** One line a run. */
 const oneLinePerRun = (curves: Columns): Plot[] =>
   scoresOf(curves).map((plot) => ({ ...plot, series: plot.series.slice(0, 1) }));

@@ -12,7 +12,6 @@ import { titleOfBase } from "./sources";
 import type { DraftState } from "./draftState";
 import { text } from "./text";
 
-/** A creature from a file, which may be unknown to this server. */
 export interface CreatureFile {
   sha: string;
   text: string;

@@ -40,7 +40,7 @@ export function BodyDrawing({ drawing }: Props) {
 
 function World({ body, drawing }: { body: DrawnBody; drawing: Drawing }) {
   const { width, height, picture_size: side } = drawing;
-  // A thin line on the screen, in cells.
+  // Width of a thin line, in cells.
   const thin = (Math.max(width, height) / 300) * Math.min(2, drawing.bodies.length);
   const clip = `world-${body.name.replace(/\W/g, "-")}`;
   const label = `${words(body.name)}: ${caption(body)}`;

@@ -58,7 +58,6 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
   );
 }
 
-/** The number of seeds and the name of the sweep. */
 function Entries({ sweeping }: { sweeping: SweepForm }) {
   const { seeded, seeds, name, problems, change } = sweeping;
   return (
@@ -88,7 +87,6 @@ export function goToSweep(): void {
   card?.querySelector<HTMLElement>("input, button")?.focus({ preventScroll: true });
 }
 
-/** The value of a field as a person would type it. */
 function textOf(value: Json): string {
   if (value === null || typeof value === "object") return "";
   return typeof value === "number" && Math.abs(value) < 1e-4 ? number(value, 6) : String(value);
@@ -98,7 +96,6 @@ interface RowProps {
   fields: readonly Leaf[];
   axis: Axis;
   messages: (string | null)[];
-  /** Paths of all axes. */
   taken: string[];
   onChange: (axis: Axis) => void;
   onRemove: () => void;

@@ -43,7 +43,7 @@ vi.mock("../api/client", () => ({
   readCreature: async () => CREATURE,
 }));
 
-/** As the server applies it. */
+/** Apply a patch as the server does. */
 function patched(document: Json | undefined, patch: Json): Json {
   if (patch === null || typeof patch !== "object" || Array.isArray(patch)) return patch;
   const object = document && typeof document === "object" && !Array.isArray(document);
@@ -57,11 +57,11 @@ function patched(document: Json | undefined, patch: Json): Json {
 
 describe("a merge patch", () => {
   it.each<[string, from: Spec, to: Spec, patch: Spec]>([
-    ["omits equal values", { a: 1, b: { c: [1, { d: 0 }] } }, { b: { c: [1, { d: 0 }] }, a: 1 }, {}],
+    ["omits equal values", { a: 1, b: { c: [1, { d: null }] } }, { b: { c: [1, { d: null }] }, a: 1 }, {}],
     ["names differing fields", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1, c: 4 }, d: 3 }, { a: { c: 4 } }],
     ["removes by null", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1 } }, { a: { c: null }, d: null }],
     ["replaces lists whole", { a: [1, { b: 2 }] }, { a: [1, { b: 2 }, 3] }, { a: [1, { b: 2 }, 3] }],
-    ["makes values parts", { a: null, b: [1] }, { a: { c: 1 }, b: {} }, { a: { c: 1 }, b: {} }],
+    ["makes values parts", { a: null, b: [1] }, { a: { c: 1 }, b: { d: 2 } }, { a: { c: 1 }, b: { d: 2 } }],
     ["empties a part", { a: { b: 1 } }, { a: {} }, { a: { b: null } }],
     ["puts an empty part in place of a value", { a: 1 }, { a: {} }, { a: {} }],
   ])("%s", (_, from, to, patch) => {

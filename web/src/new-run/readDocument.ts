@@ -12,7 +12,7 @@ export const TAKEN = text.accepted;
 
 const HDF5 = "\u0089HDF";
 
-/** Read a text; throw an `Error` that says what is accepted. */
+/** Read a text; throw an `Error` that names the accepted documents. */
 export function readText(document: string, refine = false): Found {
   if (document.startsWith(HDF5) || document.startsWith("\ufffdHDF")) {
     throw new Error(text.noHdf5(TAKEN));
@@ -28,7 +28,7 @@ function parsed(document: string): Json {
   }
 }
 
-/** Tell which kind a document is; a creature becomes the spec of a search or a refinement. */
+/** The kind and the spec of a document; a creature becomes a search or a refinement. */
 export function readDocument(document: Json, refine = false): Found {
   if (!isObject(document)) throw new Error(text.notADocument(TAKEN, named(document)));
   const { identity, spec, id } = document;

@@ -63,7 +63,6 @@ function Extend({ run }: { run: Run }) {
   );
 }
 
-/** The run that a fork started from. */
 export function ForkedFrom({ run }: { run: Run }) {
   const from = run.forked_from;
   if (!from) return null;

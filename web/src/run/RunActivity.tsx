@@ -7,7 +7,6 @@ import { duration } from "../ui/format";
 import { text } from "./text";
 import "../replay/replay.css";
 
-/** A sentence; null once there are generations. */
 export function activityOf(run: Run): string | null {
   if (run.status === "queued") return run.waiting_reason ?? text.waitingForWorker;
   if (run.status !== "running" || run.generation > 0) return null;

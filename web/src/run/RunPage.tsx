@@ -131,7 +131,6 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
 
 const NO_ELITES: Elites = new Map();
 
-/** Links to the cards of the page. */
 function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
   const search = "search" in spec;
   const sections = [

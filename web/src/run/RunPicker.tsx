@@ -1,4 +1,4 @@
-/** A button that turns into a choice of another run. */
+/** A button that opens a choice of another run. */
 
 import { useEffect, useRef } from "preact/hooks";
 import type { Run } from "../api/types";
@@ -10,7 +10,6 @@ import { text } from "./text";
 
 interface Props {
   run: Run;
-  /** What the button says. */
   label: string;
   fits: (other: Run) => boolean;
   onChoose: (id: string) => void;

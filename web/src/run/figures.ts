@@ -20,7 +20,6 @@ const summaryOf = (run: Run, name: string) => {
   return typeof value === "number" ? value : null;
 };
 
-/** The figures on the page of a run. */
 export function figuresOf(run: Run): Figure[] {
   const value = (name: string) => summaryOf(run, name);
   const memory = value("peak_memory_bytes");
@@ -55,7 +54,6 @@ export function figuresOf(run: Run): Figure[] {
 /** Positions of the figure that lists show; the first one for other experiments. */
 const KEYS: Record<string, number> = { refinement: 1, neuroevolution: 2 };
 
-/** The figure of a run in a list. */
 export function keyFigureOf(run: Run): Figure {
   // Small measurements have no exponent: the list shows their memory.
   const small = run.experiment === "scaling" && summaryOf(run, "exponent") === null;

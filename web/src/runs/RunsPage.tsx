@@ -160,7 +160,6 @@ function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   );
 }
 
-/** A link to the sweep whose runs are listed. */
 function SweepBanner({ sweep }: { sweep: string }) {
   if (sweep === WITHOUT_SWEEP) return null;
   return (
@@ -191,7 +190,6 @@ function NothingListed({ query }: { query: RunQuery }) {
   );
 }
 
-/** An invitation to the tour, shown on the first visit. */
 function Welcome() {
   const demonstration = useStore((state) => [...state.runs.values()].find((run) => run.demonstration));
   if (wasGuided() || !demonstration) return null;

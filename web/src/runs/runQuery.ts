@@ -9,7 +9,6 @@ export const NEWEST = "-created";
 
 type Sort = NonNullable<RunQuery["sort"]>;
 
-/** The orders of the menu. */
 export const ORDERS = Object.entries(text.orders) as [sort: Sort, title: string][];
 
 /** The query of an address; unknown values are ignored. */
@@ -29,7 +28,6 @@ export function queryOf(address: URLSearchParams): RunQuery {
   };
 }
 
-/** Removes all filters. */
 export const NO_FILTERS = { q: null, status: null, experiment: null, tag: null, sweep: null };
 
 /** In place of a sweep id: runs outside sweeps. */
@@ -37,7 +35,6 @@ export const WITHOUT_SWEEP = "none";
 
 const listOf = (address: URLSearchParams, key: string) => (address.get(key) ?? "").split(",").filter(Boolean);
 
-/** True if any filter is set. */
 export const isFiltered = ({ sort: _, deleted: __, ...filters }: RunQuery) => Object.keys(filters).length > 0;
 
 /** True if each sweep is shown as one row: while the address asks for nothing. */

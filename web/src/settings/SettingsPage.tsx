@@ -24,7 +24,6 @@ export function SettingsPage() {
   );
 }
 
-/** The port of this page. */
 const PORT = globalThis.location?.port || "80";
 
 function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { principal: Principal }) {

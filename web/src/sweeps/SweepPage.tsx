@@ -83,7 +83,7 @@ const shownOf = (summary: CaseSummary, place: number): ShownCase => ({
   dash: dashOf(place),
 });
 
-/** The cases that the address asks for, else the first ones. */
+/** The cases in the address, or the first ones. */
 function chosenOf(query: URLSearchParams, count: number): number[] {
   const all = [...Array(count).keys()];
   const asked = query.get("cases");

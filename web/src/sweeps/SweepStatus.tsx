@@ -23,7 +23,6 @@ export function SweepProgress({ sweep }: { sweep: Sweep }) {
   return <Progress label={text.progress} share={sweep.progress} kind={kind} />;
 }
 
-/** How many runs are in each state. */
 export function SweepStates({ sweep }: { sweep: Sweep }) {
   return (
     <span class="sweep-states flow">

@@ -11,7 +11,6 @@ declare module "vitest" {
 
 export const EXPERIMENTS = inject("experiments");
 
-/** Name, experiment and preset. */
 export const PRESETS = EXPERIMENTS.flatMap((one) =>
   one.presets.map((preset) => [`${one.experiment}/${preset.name}`, one, preset] as const),
 );

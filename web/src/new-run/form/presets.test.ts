@@ -32,7 +32,7 @@ function retyped(field: Field, value: Json): Json {
   }
 }
 
-/** The document as the form alone would write it, field by field. */
+/** The document that the form writes, field by field. */
 function rebuilt(field: Field, document: Json, made: Json): Json {
   const into = (fields: Field[], start: Json) =>
     fields.reduce((changed, each) => rebuilt(each, document, changed), start);

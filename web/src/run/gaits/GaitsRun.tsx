@@ -9,7 +9,9 @@ import { Plot, type Point } from "../../charts/plot/Plot";
 import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
-import { MarkReplay, useLastMark } from "./MarkReplay";
+import { ReplayLoop } from "../../replay/Loop";
+import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { useDebounced } from "../../store/throttle";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import { text } from "./text";
 import "./gaits.css";
@@ -97,7 +99,6 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
   );
 }
 
-/** The meaning of the kinds of marks that are shown. */
 function Key({ rows }: { rows: ResultRow[] }) {
   const doubtful = rows.some((row) => row.status === "ok" && (row.limited || row.warnings));
   const failed = rows.some((row) => row.status !== "ok");
@@ -117,3 +118,42 @@ function Key({ rows }: { rows: ResultRow[] }) {
     </p>
   );
 }
+
+/** A moving pointer passes marks that are not meant. */
+const SETTLE_MS = 120;
+
+/** The last mark under a resting pointer; leaving it keeps its replay. */
+function useLastMark(near: Point | null): Point | null {
+  const [last, setLast] = useState<Point | null>(null);
+  useDebounced(near?.href ? near : null, SETTLE_MS, setLast);
+  return last;
+}
+
+function MarkReplay({ point }: { point: Point | null }) {
+  return (
+    <aside class="mark-replay" aria-label={text.replay}>
+      {point ? <Playing key={point.href} point={point} /> : <p class="quiet small">{text.pointAtMark}</p>}
+    </aside>
+  );
+}
+
+function Playing({ point }: { point: Point }) {
+  const rendering = useReplays([shaOf(point.href!)]);
+  const replay = rendering.replays?.[0];
+  const [name, ...figures] = point.says;
+  return (
+    <>
+      <RecordingStatus {...rendering} what={text.simulating} />
+      {replay && <ReplayLoop replay={replay} name={text.swimming(name)} />}
+      <p class="small">
+        <b>{name}</b>
+        <br />
+        <span class="quiet">{figures.join(", ")}</span>
+        <br />
+        <a href={point.href}>{text.openCreature}</a>
+      </p>
+    </>
+  );
+}
+
+const shaOf = (href: string) => href.split("/").at(-1)!.split("?")[0]!;

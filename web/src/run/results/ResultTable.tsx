@@ -1,4 +1,4 @@
-/** All figures of a run's result, in the order that one wants. */
+/** The results of a run as a sortable table. */
 
 import { Fragment } from "preact";
 import type { ResultRow, Value } from "../../api/types";
@@ -6,7 +6,7 @@ import { short } from "../../ui/format";
 import { type Column, type Order, columnsOf, sortRows } from "./columns";
 import { text } from "./text";
 
-/** What is doubtful about a row. */
+/** The column of warnings. */
 const NOTE = "warnings";
 
 interface Props {
@@ -18,7 +18,7 @@ interface Props {
 
 export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
   const columns = columnsOf(rows);
-  // Warnings are sentences and have a line of their own; one form alone is named above the plot.
+  // Warnings have a line of their own; a single form is named above the plot.
   const shown = columns.filter(({ name }) => name !== NOTE && (name !== "form" || several(rows, name)));
   const watchable = rows.some((row) => row.creature !== null);
   return (
@@ -93,7 +93,7 @@ function Cell({ column, value }: { column: Column; value: Value }) {
   return mark ? <span class={`mark-word ${mark}`}>{written}</span> : <>{written}</>;
 }
 
-/** Values that people should not overlook. */
+/** The kind of highlight of a value. */
 function markOf(name: string, value: Value): "wrong" | "warned" | null {
   if (name === "status" && value !== "ok") return "wrong";
   const doubtful = (name === "force_free" && value === false) || (name === "limited" && Number(value) > 0);

@@ -1,4 +1,4 @@
-/** What a run was asked to do: readable, as JSON, and beside another run's. */
+/** The spec of a run: as sections, as JSON, and compared with another run. */
 
 import { useMemo } from "preact/hooks";
 import * as api from "../../api/client";

@@ -1,16 +1,16 @@
-/** What differs between specs: flat paths, and the value that each spec has there. */
+/** Differences between specs: paths, and the value of each spec. */
 
 import type { Json, Spec } from "../../api/types";
 import { DASH, number } from "../../ui/format";
 
 export interface Difference {
-  /** As errors of the server name it: `descriptors.0.bins`. */
+  /** As in errors of the server: `descriptors.0.bins`. */
   path: string;
   /** One for each spec, in their order; undefined where a spec has no such field. */
   values: (Json | undefined)[];
 }
 
-/** Only the fields in which the specs are not all the same, in the order of the specs. */
+/** The fields whose values differ between specs. */
 export function differences(specs: readonly Spec[]): Difference[] {
   const flat = specs.map((spec) => new Map(leavesOf(spec, "")));
   const paths = [...new Set(flat.flatMap((leaves) => [...leaves.keys()]))];
@@ -30,7 +30,7 @@ export function written(value: Json | undefined): string {
   return JSON.stringify(value);
 }
 
-/** Lists of plain values are one value: their items mean nothing alone. */
+/** Lists of plain values are one value. */
 function leavesOf(value: Json, path: string): [path: string, value: Json][] {
   if (Array.isArray(value) && value.some(isParted)) {
     return value.flatMap((item, i) => leavesOf(item, `${path}.${i}`));
@@ -46,6 +46,5 @@ function isRecord(value: Json): value is Spec {
   return value !== null && typeof value === "object" && !Array.isArray(value);
 }
 
-/** Leaves are plain, or lists of what is plain. */
 const same = (one: Json | undefined, other: Json | undefined) =>
   JSON.stringify(one) === JSON.stringify(other);
