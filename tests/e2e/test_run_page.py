@@ -13,9 +13,7 @@ CHANGED = "before => before !== document.querySelector('#curves canvas').toDataU
 
 
 @pytest.mark.e2e
-def test_a_run_is_told_from_the_queue_to_its_end_and_compared_with_another(
-    idle_page: Page, idle
-):
+def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(idle_page: Page, idle):
     page, services, address = idle_page, idle.services, idle.product.url
     other = Written(services, 7)
     other.begin("worker 1")
@@ -139,7 +137,7 @@ def see_what_differs_in_the_spec(page: Page, other: Written) -> None:
     card.get_by_role("button", name="Compare specs").click()
     card.get_by_label("Compare specs").select_option(str(other.id))
     card.get_by_role("button", name="Compare", exact=True).click()
-    found = card.get_by_role("table", name=re.compile("1 field"))
+    found = card.get_by_role("region", name="Differences from another run")
     expect(found.get_by_role("row", name=re.compile("Seed"))).to_have_text("Seed87")
     assert f"against={other.id}" in page.url
 

@@ -3,6 +3,7 @@
 import type { RunQuery } from "../api/types";
 import { STATES } from "../run/RunStatus";
 import { isUuid } from "../store/router";
+import type { SortOrder } from "../ui/Table";
 import { text } from "./text";
 
 export const NEWEST = "-created";
@@ -47,7 +48,7 @@ export function nextSort(sort: string | undefined, key: string, falling: boolean
   return sort === second ? null : first;
 }
 
-export function ariaSort(sort: string | undefined, key: string) {
+export function ariaSort(sort: string | undefined, key: string): SortOrder {
   if (sort === key) return "ascending";
   return sort === `-${key}` ? "descending" : "none";
 }

@@ -11,7 +11,7 @@ import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
 import { ReplayLoop } from "../../replay/Loop";
 import { RecordingStatus, useReplays } from "../../replay/recordings";
-import { useDebounced } from "../../store/throttle";
+import { useDebounced } from "../../store/timing";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import { text } from "./text";
 import "./gaits.css";

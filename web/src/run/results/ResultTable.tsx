@@ -3,6 +3,7 @@
 import { Fragment } from "preact";
 import type { ResultRow, Value } from "../../api/types";
 import { short } from "../../ui/format";
+import { Heading, type SortOrder } from "../../ui/Table";
 import { type Column, type Order, columnsOf, sortRows } from "./columns";
 import { text } from "./text";
 
@@ -28,7 +29,12 @@ export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
           <tr>
             {watchable && <th scope="col">{text.replay}</th>}
             {shown.map((column) => (
-              <Heading key={column.name} {...{ column, order, onOrder }} />
+              <Heading
+                key={column.name}
+                {...column}
+                order={orderOf(column.name, order)}
+                onSort={() => onOrder({ by: column.name, down: order.by === column.name && !order.down })}
+              />
             ))}
           </tr>
         </thead>
@@ -66,21 +72,9 @@ export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
   );
 }
 
-function Heading({ column, order, onOrder }: { column: Column } & Pick<Props, "order" | "onOrder">) {
-  const mine = order.by === column.name;
-  const sorted = mine ? (order.down ? "descending" : "ascending") : "none";
-  const next = { by: column.name, down: mine ? !order.down : false };
-  return (
-    <th scope="col" aria-sort={sorted} class={column.numeric ? "numeric" : ""}>
-      <button type="button" class="plain" onClick={() => onOrder(next)}>
-        {column.title}
-        <span class="arrow" aria-hidden="true">
-          {mine ? (order.down ? "▾" : "▴") : ""}
-        </span>
-      </button>
-      {column.unit && <span class="unit">{column.unit}</span>}
-    </th>
-  );
+function orderOf(name: string, { by, down }: Order): SortOrder {
+  if (by !== name) return "none";
+  return down ? "descending" : "ascending";
 }
 
 function several(rows: ResultRow[], name: string): boolean {
