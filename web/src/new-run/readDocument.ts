@@ -8,15 +8,9 @@ export type Found =
   | { kind: "run"; spec: Spec; id: string }
   | { kind: "creature"; spec: Spec; creature: Creature };
 
-export const TAKEN = text.accepted;
-
-const HDF5 = "\u0089HDF";
-
 /** Read a text; throw an `Error` that names the accepted documents. */
 export function readText(document: string, refine = false): Found {
-  if (document.startsWith(HDF5) || document.startsWith("\ufffdHDF")) {
-    throw new Error(text.noHdf5(TAKEN));
-  }
+  if (/^[\u0089\ufffd]HDF/.test(document)) throw new Error(text.noHdf5);
   return readDocument(parsed(document), refine);
 }
 
@@ -24,13 +18,13 @@ function parsed(document: string): Json {
   try {
     return JSON.parse(document);
   } catch (error) {
-    throw new Error(text.noJson(TAKEN, (error as Error).message));
+    throw new Error(text.noJson((error as Error).message));
   }
 }
 
 /** The kind and the spec of a document; a creature becomes a search or a refinement. */
 export function readDocument(document: Json, refine = false): Found {
-  if (!isObject(document)) throw new Error(text.notADocument(TAKEN, named(document)));
+  if (!isObject(document)) throw new Error(text.notADocument(named(document)));
   const { identity, spec, id } = document;
   if (isObject(identity)) {
     const creature = document as unknown as Creature;
@@ -43,7 +37,7 @@ export function readDocument(document: Json, refine = false): Found {
 
 function known(spec: Spec, field: string): Spec {
   if (typeof spec.experiment === "string") return spec;
-  throw new Error(text.noExperiment(field, named(spec.experiment), TAKEN));
+  throw new Error(text.noExperiment(field, named(spec.experiment)));
 }
 
 function named(value: Json | undefined): string {
