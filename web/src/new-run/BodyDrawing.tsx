@@ -6,18 +6,8 @@ import { GRID, branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
 import { count, words } from "../ui/format";
 import { text } from "./text";
 
-interface Props {
-  drawing: Drawing | null;
-}
-
-export function BodyDrawing({ drawing }: Props) {
-  if (!drawing) {
-    return (
-      <div class="body-drawing">
-        <p class="quiet">{text.noDrawing}</p>
-      </div>
-    );
-  }
+export function BodyDrawing({ drawing }: { drawing: Drawing | null }) {
+  if (!drawing) return <p class="body-drawing quiet">{text.noDrawing}</p>;
   const { width, height, bodies, pictures } = drawing;
   return (
     <figure class="body-drawing">
@@ -58,12 +48,9 @@ function World({ body, drawing }: { body: DrawnBody; drawing: Drawing }) {
         <rect class="water" width={width} height={height} />
         <rect width={width} height={height} fill={`url(#${clip}-grid)`} />
         {side > 0 && (
-          <rect
+          <path
             class="target-place"
-            x={(width - side) / 2}
-            y={(height - side) / 2}
-            width={side}
-            height={side}
+            d={`M${(width - side) / 2} ${(height - side) / 2}h${side}v${side}h-${side}z`}
             stroke-width={2 * thin}
             stroke-dasharray={`${6 * thin}`}
           />

@@ -93,7 +93,7 @@ function SpecView({ editor, illegible, onProblem, draft, current, view, show, ta
           </button>
         )}
       </div>
-      {view === "form" && <SpecForm form={form} state={state} />}
+      {view === "form" && <SpecForm parts={parts} state={state} />}
       {view === "json" && (
         <JsonView
           key={draft.revision}

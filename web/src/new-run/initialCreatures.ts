@@ -1,8 +1,8 @@
 /** Initial creatures in specs and forms, and patches between specs. */
 
-import type { Json, Spec } from "../api/types";
+import type { Spec } from "../api/types";
+import { differences, isObject } from "../run/spec/difference";
 import type { Section } from "./form/fields";
-import { isObject } from "./readDocument";
 
 /** True if runs of a spec fill an archive and can start from creatures. */
 export const isSearch = (spec: Spec): boolean => isObject(spec.search);
@@ -24,26 +24,12 @@ export const withoutInitial = (form: Section): Section => ({
 /** The merge patch (RFC 7396) from one document to another; null removes a member. */
 export function mergePatch(from: Spec, to: Spec): Spec {
   const patch: Spec = {};
-  for (const key of Object.keys(from)) {
-    if (!(key in to)) patch[key] = null;
-  }
+  for (const key of Object.keys(from)) if (!(key in to)) patch[key] = null;
   for (const [key, value] of Object.entries(to)) {
     const before = from[key];
-    if (same(before, value)) continue;
+    if (before !== undefined && differences([{ value: before }, { value }]).length === 0) continue;
     // A part of a patch that is missing in the document is merged into an empty one.
     patch[key] = isObject(value) ? mergePatch(isObject(before) ? before : {}, value) : value;
   }
   return patch;
-}
-
-/** Whether two values are the same, in whatever order their members stand. */
-function same(a: Json | undefined, b: Json | undefined): boolean {
-  if (isObject(a) && isObject(b)) {
-    const keys = Object.keys(a);
-    return keys.length === Object.keys(b).length && keys.every((key) => key in b && same(a[key], b[key]));
-  }
-  if (Array.isArray(a) && Array.isArray(b)) {
-    return a.length === b.length && a.every((item, i) => same(item, b[i]));
-  }
-  return a === b;
 }

@@ -1,6 +1,7 @@
 /** Read a pasted or dropped document: a spec, a run, or a creature. */
 
 import type { Creature, Json, Spec, Gait } from "../api/types";
+import { isObject } from "../run/spec/difference";
 import { text } from "./text";
 
 export type Found =
@@ -44,10 +45,6 @@ function named(value: Json | undefined): string {
   if (value === undefined) return text.nothing;
   if (Array.isArray(value)) return text.list;
   return value === null ? "null" : `${typeof value} ${JSON.stringify(value).slice(0, 40)}`;
-}
-
-export function isObject(value: Json | undefined): value is Spec {
-  return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
 /** Encodings with numeric genes, which NEAT's mutations do not vary. */

@@ -39,10 +39,7 @@ export function PublishDialog({ opened, ...props }: Props & { opened: number }) 
   );
 }
 
-interface FormProps extends Props {
-  onDone: (share: Share) => void;
-  onEnd: () => void;
-}
+type FormProps = Props & { onDone: (share: Share) => void; onEnd: () => void };
 
 function PublishForm({ of, title, file, onDone, onEnd }: FormProps) {
   const { busy, error, onSubmit } = useSubmit(async (form) =>

@@ -19,15 +19,14 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
   const { value: entries, error, earlier } = useLog(run);
   const level = LEVELS.find((name) => name === query.get("level")) ?? "info";
   const shown = atLeast(entries ?? [], level);
-  const head = (
+  const note = shown.length > 0 && text.entries(count(shown.length), earlier !== null);
+  const actions = (
     <>
-      {shown.length > 0 && <span class="quiet">{text.entries(count(shown.length), earlier !== null)}</span>}
       {earlier && (
         <button class="slim" onClick={earlier}>
           {text.showEarlier}
         </button>
       )}
-      <span class="spring" />
       <Select
         title={text.show}
         choices={Object.entries(text.levels)}
@@ -42,7 +41,7 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
     </>
   );
   return (
-    <Card id="log" title={text.log} head={head}>
+    <Card id="log" title={text.log} {...{ note, actions }}>
       {error && <p class="banner wrong">{error}</p>}
       {!entries && !error && <p class="quiet waiting">{text.loadingLog}</p>}
       {entries && shown.length === 0 && (

@@ -128,12 +128,7 @@ function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: O
   );
 }
 
-interface ChipProps {
-  colour: string;
-  children: ComponentChildren;
-}
-
-function Chip({ colour, children }: ChipProps) {
+function Chip({ colour, children }: { colour: string; children: ComponentChildren }) {
   return (
     <span class="chip">
       <i style={{ background: `var(${colour})` }} />

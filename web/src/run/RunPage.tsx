@@ -37,12 +37,7 @@ const PopulationCards = lazy(
 );
 const ScalingRun = lazy(async () => (await import("./scaling/ScalingRun")).ScalingRun, "section");
 
-interface Props {
-  id: string;
-  query: URLSearchParams;
-}
-
-export function RunPage({ id, query }: Props) {
+export function RunPage({ id, query }: { id: string; query: URLSearchParams }) {
   const { error } = useRunDetail(id);
   const run = useStore((state) => state.runs.get(id));
   const detail = useStore((state) => state.details.get(id));

@@ -28,15 +28,13 @@ const PORT = globalThis.location?.port || "80";
 
 function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { principal: Principal }) {
   const leave = () => void signOut().then(() => location.reload(), showFailure);
-  const head = (
-    <>
-      <span class="badge">{scope}</span>
-      <span class="spring" />
-      {needed && <button onClick={leave}>{text.signOut}</button>}
-    </>
-  );
   return (
-    <Card id="you" title={needed ? name : text.thisMachine} head={head}>
+    <Card
+      id="you"
+      title={needed ? name : text.thisMachine}
+      note={<span class="badge">{scope}</span>}
+      actions={needed && <button onClick={leave}>{text.signOut}</button>}
+    >
       <p>
         {text.allowed[scope]}
         {expires_at && text.validUntil(day(expires_at))}

@@ -71,9 +71,8 @@ export function Finals({ cases, generation }: { cases: ShownCase[]; generation: 
       cell: ({ summary }: ShownCase) => <Figure spread={summary.finals[name]} write={write} />,
     })),
   ];
-  const head = <span class="quiet small">{text.figuresAbout(generation)}</span>;
   return (
-    <Card id="finals" title={text.figures} head={head}>
+    <Card id="finals" title={text.figures} note={text.figuresAbout(generation)}>
       <Table label={text.figuresOfCases} columns={columns} rows={cases} keyOf={({ place }) => place} />
     </Card>
   );

@@ -1,7 +1,7 @@
 /** Changes of a spec, and the preset that it equals. */
 
 import type { Experiment, Json, Preset, Spec } from "../../api/types";
-import { isObject } from "../readDocument";
+import { isObject } from "../../run/spec/difference";
 import { join } from "./schema";
 
 /** Paths of differing values; parts and lists of another shape differ as a whole. */

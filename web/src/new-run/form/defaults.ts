@@ -2,7 +2,7 @@
 
 import type { Json, Schema, Spec } from "../../api/types";
 import { tagOf } from "./fields";
-import { isObject } from "../readDocument";
+import { isObject } from "../../run/spec/difference";
 import { defaultOf, notNull, resolve } from "./schema";
 
 export function completed(schema: Schema, spec: Spec): Spec {

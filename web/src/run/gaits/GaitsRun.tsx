@@ -33,7 +33,7 @@ export function GaitsRun({ run, query }: ResultsProps) {
         id="displacement"
         kind="plot-card"
         title={text.title}
-        head={forms.length > 1 && <Forms forms={forms} chosen={asked} />}
+        actions={forms.length > 1 && <Forms forms={forms} chosen={asked} />}
       >
         {missing ? (
           <p class="quiet waiting">{missing}</p>
@@ -57,15 +57,12 @@ export function GaitsRun({ run, query }: ResultsProps) {
 function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
   const choices = forms.map((form): [string, string] => [form, formOf(form).title]);
   return (
-    <>
-      <span class="spring" />
-      <Segments
-        label={text.form}
-        choices={[...choices, [REPLAYS, text.sideBySide]]}
-        value={chosen}
-        onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
-      />
-    </>
+    <Segments
+      label={text.form}
+      choices={[...choices, [REPLAYS, text.sideBySide]]}
+      value={chosen}
+      onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
+    />
   );
 }
 

@@ -20,9 +20,8 @@ export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
   const against = query.get("against");
   const json = useMemo(() => JSON.stringify(run.spec, null, 2), [run.spec]);
   const href = `data:application/json;charset=utf-8,${encodeURIComponent(json)}`;
-  const head = (
+  const actions = (
     <>
-      <span class="spring" />
       <RunPicker
         run={run}
         label={text.compareSpec}
@@ -38,7 +37,7 @@ export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
     </>
   );
   return (
-    <Card id="spec" kind="spec-card" title={text.spec} head={head}>
+    <Card id="spec" kind="spec-card" title={text.spec} actions={actions}>
       {against && <DifferenceTo key={against} run={run} id={against} />}
       <Sections run={run} />
       <details>
