@@ -27,7 +27,7 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
   const { size } = draft.changed;
   const equal = size > 0 || base.kind !== "preset" ? equalPreset(spec, experiments) : null;
   return (
-    <p class="base-bar flow" role="status">
+    <p class="base-bar row" role="status">
       <span>
         {draft.restored && text.restoredDraft}
         {text.changes(size)} <BaseName base={base} />
@@ -35,7 +35,7 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
         {equal && text.equalPreset(equal.name)}.
       </span>
       {base.fork && (
-        <span class="flow">
+        <span class="row">
           <ForkSourceText fork={base.fork} />
           <button type="button" class="plain" onClick={draft.dropFork}>
             {text.startRandom}

@@ -17,7 +17,7 @@ export function BodyDrawing({ drawing }: { drawing: Drawing | null }) {
         ))}
       </div>
       {pictures.length > 0 && (
-        <div class="targets flow" role="group" aria-label={text.targets}>
+        <div class="targets row" role="group" aria-label={text.targets}>
           {pictures.map((picture) => (
             <Target key={picture.name} picture={picture} />
           ))}

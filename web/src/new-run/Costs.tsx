@@ -25,7 +25,7 @@ export function Costs({ estimate, runs = 1, problem }: Props) {
   const { queue, seconds } = estimate;
   const shared = runs > 1 && seconds !== null && queue.workers > 1;
   return (
-    <dl class="costs flow" aria-label={text.estimate}>
+    <dl class="costs row" aria-label={text.estimate}>
       <Cost name={runs > 1 ? text.timeOfRuns(count(runs)) : text.time}>
         {about(estimate) ?? text.unknown}
         {shared && <span class="quiet">{text.onWorkers(queue.workers, rough(seconds / queue.workers))}</span>}

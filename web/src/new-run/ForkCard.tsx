@@ -44,7 +44,7 @@ export function ForkCard({ fork, errors }: { fork: Fork; errors: readonly FieldE
     <Card id="fork" kind="sweep-card" title={text.fork}>
       <p class="help">{text.forkAbout}</p>
       {fork.name !== null && (
-        <div class="sweep-entries flow">
+        <div class="sweep-entries row">
           <NameEntry title={text.runName} value={fork.name} onChange={fork.onName} />
         </div>
       )}

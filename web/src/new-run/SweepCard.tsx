@@ -44,7 +44,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
         />
       ))}
       <Messages messages={[problems.total, ...complaintsOf(errors, "grid")]} />
-      <p class="sweep-foot flow">
+      <p class="sweep-foot row">
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
           {text.addAxis(axes.length === 0)}
         </button>
@@ -61,7 +61,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
 function Entries({ sweeping }: { sweeping: SweepForm }) {
   const { seeded, seeds, name, problems, change } = sweeping;
   return (
-    <div class="sweep-entries flow">
+    <div class="sweep-entries row">
       {seeded && (
         <label class="sweep-seeds over">
           <span>{text.seeds}</span>

@@ -13,7 +13,7 @@ interface Props {
 export function InlineForm({ onSubmit, onClose, closeButton, children }: Props) {
   return (
     <form
-      class="run-choice flow small"
+      class="run-choice row small"
       onSubmit={(event) => {
         event.preventDefault();
         onSubmit();

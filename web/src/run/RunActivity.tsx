@@ -28,7 +28,7 @@ export function RunActivity({ run }: { run: Run }) {
   useRunRefresh(run.id, run.status === "queued" || run.status === "running");
   if (!activity) return null;
   return (
-    <p class="activity flow">
+    <p class="activity row">
       <span class="ripple small-ripple" aria-hidden="true" />
       <span role="status">{activity}</span>
       {elapsed && <span class="quiet">{text.elapsed(run.status === "queued", elapsed)}</span>}

@@ -139,7 +139,7 @@ function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
     ["files", text.files],
   ].filter((section) => section !== false);
   return (
-    <nav class="sections flow small" aria-label={text.sections}>
+    <nav class="sections row small" aria-label={text.sections}>
       {sections.map(([id, name]) => (
         <a key={id} href={`#${id}`}>
           {name}

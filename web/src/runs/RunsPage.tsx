@@ -140,7 +140,7 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
 
 function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   return (
-    <p class="chosen flow" role="status">
+    <p class="chosen row" role="status">
       <span>
         {text.selected(ids.length)}
         {ids.length === 1 && text.selectAnother}

@@ -44,7 +44,7 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
     setName("");
   });
   return (
-    <form class="new-token flow" onSubmit={onSubmit}>
+    <form class="new-token row" onSubmit={onSubmit}>
       <label class="over">
         {text.owner}
         <input

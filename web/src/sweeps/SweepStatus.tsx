@@ -25,7 +25,7 @@ export function SweepProgress({ sweep }: { sweep: Sweep }) {
 
 export function SweepStates({ sweep }: { sweep: Sweep }) {
   return (
-    <span class="sweep-states flow">
+    <span class="sweep-states row">
       {STATES.filter((state) => sweep.status_counts[state]).map((state) => (
         <span key={state} class={`badge ${state}`}>
           {sweep.status_counts[state]} {state}

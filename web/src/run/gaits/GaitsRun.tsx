@@ -81,7 +81,7 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
   const peers = all.filter((row) => formOf(String(row.form)).free === free);
   return (
     <div class="sweep">
-      <p class="sweep-title flow">
+      <p class="sweep-title row">
         <b>{title}</b> <span class="quiet">{about}</span> {!free && <NotForceFree />}
       </p>
       <Plot
@@ -100,7 +100,7 @@ function Key({ rows }: { rows: ResultRow[] }) {
   const doubtful = rows.some((row) => row.status === "ok" && (row.limited || row.warnings));
   const failed = rows.some((row) => row.status !== "ok");
   return (
-    <p class="quiet small marks flow">
+    <p class="quiet small marks row">
       <span>{text.marks}</span>
       {doubtful && (
         <span>
