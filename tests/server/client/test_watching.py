@@ -4,13 +4,14 @@ import pytest
 
 from microcosmos.client import Client, NoAnswer, polling
 from microcosmos.client.errors import Refused
+from microcosmos.client.views import watch
 from server.attempts.claim import claim
 
 
 class Kept:
     """A view that keeps what it was shown."""
 
-    def __init__(self, react=lambda standing: None):
+    def __init__(self, react=lambda state: None):
         self.shown: list[tuple[str, int, list[int]]] = []
         self.react = react
 
@@ -19,11 +20,11 @@ class Kept:
 
     def __exit__(self, *_: object) -> None: ...
 
-    def show(self, standing: polling.Standing) -> None:
-        record = standing.record
-        curve = list(standing.curves["generation"])
+    def show(self, state: polling.RunState) -> None:
+        record = state.record
+        curve = list(state.curves["generation"])
         self.shown.append((record["status"], record["generation"], curve))
-        self.react(standing)
+        self.react(state)
 
 
 @pytest.fixture
@@ -32,8 +33,8 @@ def worked(services, run_id, report):
     attempt = claim(services, run_id, "worker")
     left = [1, 2, 3, None]
 
-    def go_on(standing: polling.Standing) -> None:
-        reached = (standing.curves["generation"] or [0])[-1]
+    def go_on(state: polling.RunState) -> None:
+        reached = (state.curves["generation"] or [0])[-1]
         if left and reached == 4 - len(left):
             generation = left.pop(0)
             if generation:
@@ -45,10 +46,8 @@ def worked(services, run_id, report):
 
 
 def test_a_run_is_followed_by_events(client, run, worked):
-    from microcosmos.client.watching import watch
-
     view = Kept(worked)
-    assert watch(client.connection, run.id, view) == "finished"
+    assert watch(polling.follow(client.connection, run.id), "Run x", view) == "finished"
     status, generation, curve = view.shown[-1]
     assert (status, generation, curve) == ("finished", 3, [1, 2, 3])
     curves = [curve for _, _, curve in view.shown]
@@ -63,8 +62,8 @@ def test_where_no_stream_comes_through_it_is_asked_for(client, run, worked, monk
     monkeypatch.setattr(polling, "events", none)
     monkeypatch.setattr(polling, "POLL", 0.01)
     view = Kept(worked)
-    for standing in polling.follow(client.connection, run.id):
-        view.show(standing)
+    for state in polling.follow(client.connection, run.id):
+        view.show(state)
     assert view.shown[-1] == ("finished", 3, [1, 2, 3])
 
 
@@ -87,12 +86,12 @@ def test_a_server_that_is_away_for_a_while_is_waited_for(
         view.show(next(found))
         monkeypatch.setattr(client.connection, "read", read)
         troubles = []
-        for standing in found:
-            troubles.append(standing.trouble)
-            if standing.trouble is None:
-                worked(standing)
+        for state in found:
+            troubles.append(state.problem)
+            if state.problem is None:
+                worked(state)
         assert troubles.count("No server answers.") >= 1
-        assert (troubles[-1], standing.record["status"]) == (None, "finished")
+        assert (troubles[-1], state.record["status"]) == (None, "finished")
 
 
 def test_what_was_never_there_is_an_error_at_once():
@@ -108,6 +107,6 @@ def test_a_rewound_run_forgets_what_came_after(client, services, run, run_id, re
             attempt.save(1, b"state")
     found = polling.follow(client.connection, run.id)
     assert next(found).curves["generation"] == [1, 2, 3]
-    while (standing := next(found)).curves["generation"] == [1, 2, 3]:
+    while (state := next(found)).curves["generation"] == [1, 2, 3]:
         claim(services, run_id, "worker")
-    assert standing.curves["generation"] == [1]
+    assert state.curves["generation"] == [1]
