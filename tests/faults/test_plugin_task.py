@@ -73,9 +73,7 @@ def having(place):
     return next((one for one in workers if one["plugins"]), None)
 
 
-def test_it_is_refused_then_evolves_where_it_is_and_waits_where_it_is_not(
-    own_place, hire, module
-):
+def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire, module):
     refused = own_place.http.post("/api/v1/runs", json=SMALL)
     assert refused.status_code == 422
     told = {one["field"]: one["message"] for one in refused.json()["errors"]}

@@ -36,7 +36,7 @@ def settings(tmp_path, monkeypatch):
     return make
 
 
-def test_a_worker_tells_what_it_has_and_what_it_could_not_load(settings):
+def test_a_worker_reports_its_plug_ins_and_failed_modules(settings):
     found = plugins.list_plugins(settings(mine=GOOD, broken="nothing", gone="raise SystemExit"))
     assert [one["name"] for one in found.plugins] == ["mine.stick"]
     assert len(found.plugin_versions) == 1
@@ -90,32 +90,32 @@ from server.settings import Settings
 from worker.evolution import carry_out
 
 said = {}
-attempt = SimpleNamespace(
-    spec=json.loads(sys.argv[1]),
-    services=SimpleNamespace(settings=Settings()),
-    use=lambda device: None,
-    restore=lambda: None,
-    initial=lambda: [],
-    set_aside=lambda text: said.update(aside=text),
-    refuse=lambda text: said.update(refused=text),
-)
-carry_out(attempt)
+for spec in json.loads(sys.argv[1]):
+    attempt = SimpleNamespace(
+        spec=spec,
+        services=SimpleNamespace(settings=Settings()),
+        use=lambda device: None,
+        restore=lambda: None,
+        initial=lambda: [],
+        set_aside=lambda text: said.update(aside=text),
+        refuse=lambda text: said.update(refused=text),
+    )
+    carry_out(attempt)
 print(json.dumps(said))
 """
 
 
-def test_a_run_that_came_to_the_wrong_worker_is_set_aside_or_refused_not_tried_again(settings):
+def test_a_run_on_the_wrong_worker_is_set_aside_or_refused(settings):
     wrong = GOOD.replace("...", "return 3")
     chosen = settings(mine=wrong)
     (stick,) = plugins.list_plugins(chosen).plugins
     spec = {"experiment": "quality-diversity", "task": {"steps": 20}}
-
-    def said(source):
+    specs = []
+    for source in ("a" * 64, stick["source"]):
         version = {"source": source, "title": "A stick"}
-        document = {**spec, "body": {"builder": "mine.stick", "plugin": version}}
-        command = [sys.executable, "-c", CARRY_OUT, json.dumps(document)]
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
-        return json.loads(done.stdout.splitlines()[-1])
-
-    assert "must be of version aaaaaaaaaaaa, got version" in said("a" * 64)["aside"]
-    assert "mine.stick must give a body, got int" in said(stick["source"])["refused"]
+        specs.append({**spec, "body": {"builder": "mine.stick", "plugin": version}})
+    command = [sys.executable, "-c", CARRY_OUT, json.dumps(specs)]
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
+    said = json.loads(done.stdout.splitlines()[-1])
+    assert "must be of version aaaaaaaaaaaa, got version" in said["aside"]
+    assert "mine.stick must give a body, got int" in said["refused"]

@@ -74,7 +74,7 @@ def test_a_full_disk_keeps_the_last_checkpoint_until_there_is_room(
     assert held.restore() == b"third"
 
 
-def test_a_run_whose_end_cannot_be_saved_waits_paused_with_the_reason(
+def test_a_run_whose_end_cannot_be_saved_pauses_with_the_reason(
     services, run_id, row, report, disk
 ):
     with claimed(services, run_id, "worker", never) as held:
@@ -96,7 +96,7 @@ def test_a_run_that_is_done_is_saved_before_it_is_finished(services, run_id, row
 @pytest.mark.parametrize(
     ("action", "status"), [(lifecycle.pause, "paused"), (lifecycle.cancel, "cancelled")]
 )
-def test_a_wish_is_seen_between_blocks_and_obeyed_with_a_checkpoint(
+def test_a_requested_state_is_carried_out_between_blocks(
     services, run_id, row, report, monkeypatch, action, status
 ):
     monkeypatch.setattr(attempt, "CHECK_SECONDS", 0)
@@ -110,7 +110,7 @@ def test_a_wish_is_seen_between_blocks_and_obeyed_with_a_checkpoint(
     assert row().checkpoint_generation == 1
 
 
-def test_told_to_stop_it_hands_the_run_back_without_a_mark(services, run_id, row, report):
+def test_a_stopping_worker_requeues_the_run_at_no_cost(services, run_id, row, report):
     with claimed(services, run_id, "worker", never) as held:
         write(held, report(1), lambda: b"1")
         held.stop_requested = lambda: True
@@ -119,9 +119,7 @@ def test_told_to_stop_it_hands_the_run_back_without_a_mark(services, run_id, row
     assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
 
 
-def test_a_failure_is_kept_and_the_third_without_a_checkpoint_is_the_last(
-    services, run_id, row
-):
+def test_the_third_failure_without_a_checkpoint_is_final(services, run_id, row):
     for status in ("queued", "queued", "failed"):
         with claimed(services, run_id, "worker", never):
             raise ArithmeticError("the engine broke")
@@ -129,7 +127,7 @@ def test_a_failure_is_kept_and_the_third_without_a_checkpoint_is_the_last(
     assert "ArithmeticError: the engine broke" in row().error
 
 
-def test_who_has_lost_a_run_ends_without_a_word(services, run_id, row, report):
+def test_a_worker_that_lost_its_run_ends_silently(services, run_id, row, report):
     with claimed(services, run_id, "first", never) as held:
         with services.sessions.write.begin() as session:
             session.execute(update(Run).values(heartbeat_at=None))
@@ -139,9 +137,7 @@ def test_who_has_lost_a_run_ends_without_a_word(services, run_id, row, report):
     assert (row().worker, row().attempt, row().generation) == ("second", 2, 0)
 
 
-def test_a_run_whose_files_are_not_there_waits_paused_with_the_reason(
-    services, run_id, row, report
-):
+def test_a_run_without_its_files_pauses_with_the_reason(services, run_id, row, report):
     with claimed(services, run_id, "worker", never) as held:
         write(held, report(1), lambda: b"state")
     folder = services.settings.data / "artifacts"
@@ -153,7 +149,7 @@ def test_a_run_whose_files_are_not_there_waits_paused_with_the_reason(
     assert "Check MICROCOSMOS_ARTIFACTS_URL" in row().warning
 
 
-def test_a_run_that_another_computes_is_not_to_be_had(services, run_id):
+def test_a_running_run_cannot_be_claimed(services, run_id):
     with (
         claimed(services, run_id, "first", never),
         claimed(services, run_id, "second", never) as held,
@@ -186,7 +182,7 @@ def test_a_generation_waits_for_a_database_that_is_away(services, run_id, row, r
     assert row().generation == 1
 
 
-def test_told_to_stop_it_does_not_wait_for_the_database(services, run_id, report, away):
+def test_a_stopping_worker_does_not_wait_for_the_database(services, run_id, report, away):
     held = claim(services, run_id, "worker")
     held.patience, held.stop_requested = 60.0, lambda: True
     away(1)

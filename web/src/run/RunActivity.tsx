@@ -1,8 +1,8 @@
 /** The activity of a run before its first generation. */
 
 import type { Run } from "../api/types";
-import { useRunRefresh } from "../store/refresh";
-import { useNow } from "../store/runPage";
+import { useRunRefresh } from "../store/fetch";
+import { useTick } from "../store/timing";
 import { duration } from "../ui/format";
 import { text } from "./text";
 import "../replay/replay.css";
@@ -24,7 +24,8 @@ export function elapsedOf({ status, started_at, queued_at }: Run, now: number): 
 
 export function RunActivity({ run }: { run: Run }) {
   const activity = activityOf(run);
-  const elapsed = elapsedOf(run, useNow(activity !== null));
+  useTick(1000, activity !== null);
+  const elapsed = elapsedOf(run, Date.now());
   useRunRefresh(run.id, run.status === "queued" || run.status === "running");
   if (!activity) return null;
   return (

@@ -2,7 +2,7 @@
 
 import type { Queue, Worker } from "../api/types";
 import { useStore } from "../store/store";
-import { useWorkers } from "../store/refresh";
+import { useWorkers } from "../store/fetch";
 import { Card, Empty, Page, Progress } from "../ui/Page";
 import { bytes, count, duration, labelOf, number, percent, short } from "../ui/format";
 import { text } from "./text";

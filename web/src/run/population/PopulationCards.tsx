@@ -4,9 +4,8 @@ import { useMemo } from "preact/hooks";
 import * as api from "../../api/client";
 import type { Genes, Genome, Run } from "../../api/types";
 import { networkOf } from "../../decode/network";
-import type { Elites } from "../../store/elites";
-import { useFetched } from "../../store/fetch";
-import { useSpecies } from "../../store/runPage";
+import { type Elites, fittest } from "../../store/elites";
+import { useFetched, useSpecies } from "../../store/fetch";
 import { number, short } from "../../ui/format";
 import { Card } from "../../ui/Page";
 import { NetworkGraph } from "../../creature/NetworkGraph";
@@ -38,11 +37,7 @@ function SpeciesCard({ run }: { run: Run }) {
 }
 
 function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
-  const best = useMemo(
-    () =>
-      [...elites.values()].reduce((a, b) => (b.fitness > (a?.fitness ?? -Infinity) ? b : a), null as Best),
-    [elites],
-  );
+  const best = useMemo(() => fittest(elites)?.[1] ?? null, [elites]);
   const sha = best?.creature ?? null;
   const { value, error } = useFetched(async () => (sha ? await api.readCreature(sha) : null), [sha]);
   const genome = value?.identity.genome;
@@ -64,7 +59,5 @@ function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
     </Card>
   );
 }
-
-type Best = { creature: string; fitness: number; generation: number } | null;
 
 const isNetwork = (genome: Genome): genome is Genes => "nodes" in genome;

@@ -1,10 +1,13 @@
-"""The server does what its OpenAPI document says, whatever it is asked."""
+"""The OpenAPI document and docs/operation.md are true."""
 
 import json
 import os
+import re
 import struct
+from pathlib import Path
 from typing import Any
 
+import httpx
 import numpy as np
 import pytest
 import schemathesis
@@ -20,14 +23,18 @@ from schemathesis.specs.openapi.checks import (
 )
 
 from microcosmos.archive import creature, file
+from microcosmos.spec import EXPERIMENTS, estimate
 from server.app import create_app
 from server.attempts.claim import claim
 from server.auth import tokens
 from server.creatures import storage as creatures
 from server.renderings import storage as renderings
+from server.settings import Settings
 from server.tables import REPLAY
+from worker.device import TAKEN
+from worker.supervisor import PATIENCE
 
-EXAMPLES = int(os.environ.get("EXAMPLES", "8"))
+EXAMPLES = int(os.environ.get("EXAMPLES", "4"))
 """Requests to each operation, right ones and wrong ones; `EXAMPLES=500` looks longer."""
 CHECKS = [
     not_a_server_error,
@@ -47,16 +54,12 @@ HERE = settings(
 
 
 @pytest.fixture
-def database() -> str:
-    return "sqlite"
-
-
-@pytest.fixture
-def known(services, spec, run_id, sweep_id, report, identity, table) -> dict[str, list[str]]:
+def known(
+    services, spec, run_id, sweep_id, report, identity, table, attempt, record
+) -> dict[str, list[str]]:
     """What paths may name so that there is something to answer: by the parameter."""
-    attempt = claim(services, run_id, "worker")
     for generation in (1, 2):
-        attempt.record(report(generation, {generation: 1.0}), 1.0)
+        record(generation, {generation: 1.0})
     attempt.save(2, checkpoint(spec))
     claim(services, sweep_id, "worker").record(table(1, {"number": 1, "speed": 0.5}), 1.0)
     kept = creature.document(identity(3), None, None)
@@ -100,7 +103,8 @@ def replay() -> bytes:
     return struct.pack("<I", len(told)) + told + bytes(16)
 
 
-def test_no_request_breaks_the_server_or_its_promise(serve, services, known):
+@pytest.mark.parametrize("database", ["sqlite"])
+def test_no_request_breaks_the_server_or_its_document(serve, services, known):
     schema = schemathesis.openapi.from_dict(create_app(services).openapi())
     wrong: list[str] = []
     reached: set[str] = set()
@@ -137,3 +141,60 @@ def broken(
 
     ask()
     return wrong[:3]
+
+
+TEXT = (Path(__file__).parents[2] / "docs" / "operation.md").read_text()
+ELSEWHERE = {"database_url", "redis_url", "artifacts_url", "token", "max_bytes", "data"}
+ELSEWHERE |= {"public_url", "modules"}
+"""Whose defaults are said in words."""
+
+
+def rows(heading):
+    """The cells of the tables under a heading."""
+    part = TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    lines = [line for line in part.splitlines() if line.startswith("| `")]
+    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
+
+
+def names(field, info):
+    return set(getattr(info.validation_alias, "choices", ())) or {
+        f"MICROCOSMOS_{field.upper()}"
+    }
+
+
+def test_every_setting_is_there_with_its_default_and_no_other():
+    told = {name: row[1] for row in rows("Settings") for name in re.findall(r"`(\w+)`", row[0])}
+    fields = Settings.model_fields
+    known = {name: field for field, info in fields.items() for name in names(field, info)}
+    assert told.keys() == known.keys()
+    for name, field in known.items():
+        if field not in ELSEWHERE:
+            default = fields[field].default
+            default = str(default).lower() if isinstance(default, bool) else default
+            shown = f"{default:g}" if isinstance(default, float) else str(default)
+            assert told[name].strip("`") == shown, name
+
+
+def test_every_metric_is_there_and_no_other(address):
+    found = httpx.get(f"{address}/metrics", verify=False).text
+    there = set(re.findall(r"^# TYPE (\w+)", found, re.MULTILINE))
+    told = {
+        n for row in rows("Health and figures") for n in re.findall(r"microcosmos_\w+", row[0])
+    }
+    assert told == there
+
+
+@pytest.mark.parametrize("row", rows("Size"), ids=lambda row: row[0])
+def test_documented_sizes_match_the_estimates(row):
+    experiment, name = re.match(r"`(.*)/(.*)`", row[0]).groups()
+    presets = {preset.name: preset.spec for preset in EXPERIMENTS[experiment].presets}
+    found = estimate(presets[name])
+    assert row[1] == f"{found.evaluations:,}"
+    assert row[2] == f"{found.memory_bytes / 2**20:.0f} MiB"
+    assert float(row[3]) == pytest.approx(found.cell_steps, rel=0.05)
+
+
+def test_documented_times_and_shares_match_the_code():
+    assert f"{PATIENCE:g} s" in TEXT
+    assert f"{TAKEN:g} divided by their number" in TEXT
+    assert f"have {TAKEN / 2:g} of its memory" in TEXT

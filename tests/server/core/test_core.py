@@ -1,4 +1,4 @@
-"""Other users of a machine do not look into the data folder."""
+"""The data folder's mode, and JSON that people send."""
 
 import os
 import stat
@@ -7,6 +7,7 @@ import pytest
 
 from server import main as alone
 from server.core import database
+from server.core.uploads import parse
 from server.local import launcher
 from server.settings import Settings
 
@@ -33,7 +34,7 @@ def open_database(folder):
     database.connect(f"sqlite:///{folder / 'microcosmos.sqlite'}").engine.dispose()
 
 
-def test_a_new_data_folder_is_its_users_alone(tmp_path, monkeypatch):
+def test_a_new_data_folder_is_private(tmp_path, monkeypatch):
     ways = {
         "all": lambda folder: launcher.occupy(Settings(data=folder)),
         "alone": lambda folder: begin_alone(folder, monkeypatch),
@@ -45,7 +46,7 @@ def test_a_new_data_folder_is_its_users_alone(tmp_path, monkeypatch):
         assert mode(tmp_path / name) == 0o755, "folders above it are as usual"
 
 
-def test_a_folder_that_somebody_opened_stays_so_and_is_told(tmp_path, capsys):
+def test_an_open_data_folder_stays_open_with_a_warning(tmp_path, capsys):
     (tmp_path / "data").mkdir()
     launcher.occupy(Settings(data=tmp_path / "data"))
     assert mode(tmp_path / "data") == 0o755
@@ -53,3 +54,8 @@ def test_a_folder_that_somebody_opened_stays_so_and_is_told(tmp_path, capsys):
     (tmp_path / "other").mkdir()
     launcher.occupy(Settings(data=tmp_path / "other", auth="required"))
     assert f"other users can look into {tmp_path / 'other'}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("body", [b'"\\\\u0000"', '"\U0001f41f"'.encode(), b'"\\ud83d\\udc1f"'])
+def test_unusual_text_is_accepted(body):
+    assert parse(body) in ("\\u0000", "\U0001f41f")

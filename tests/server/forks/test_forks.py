@@ -1,25 +1,27 @@
-"""A new run that begins from creatures of another."""
+"""Forking a run, and extending it."""
 
+from concurrent.futures import ThreadPoolExecutor
 from uuid import UUID
 
 import pytest
+from answers import detail, fields
 from sqlalchemy import select, update
 
 from microcosmos.archive import creature
-from microcosmos.spec import parse
+from microcosmos.spec import EXPERIMENTS, parse
 from server.attempts.claim import claim
 from server.deletion.purge import purge
 from server.forks import forking
+from server.runs.submission import submit
 from server.tables import InitialCreature, Run
 
 
 @pytest.fixture
-def ended(services, run_id, report):
+def ended(run_id, attempt, record):
     """A run of three generations: cells 0 to 2, the first taken again by a later elite."""
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {0: 1.0, 1: 2.0}), 1.0)
-    attempt.record(report(2, {0: 3.0}, (0.5, 0.5)), 1.0)
-    attempt.record(report(3, {2: 4.0}, (0.9, 0.9)), 1.0)
+    record(1, {0: 1.0, 1: 2.0})
+    record(2, {0: 3.0}, (0.5, 0.5))
+    record(3, {2: 4.0}, (0.9, 0.9))
     attempt.finish()
     return run_id
 
@@ -48,16 +50,14 @@ def names(identity, *numbers):
         ({"region": {"bending_effort": [0, 1], "stretching_effort": [0.8, 1]}}, None, (3002,)),
     ],
 )
-def test_it_begins_from_those_who_live_there(fork, identity, start, generation, numbers):
+def test_a_fork_starts_from_the_chosen_elites(fork, identity, start, generation, numbers):
     answer = fork(start, **({} if generation is None else {"generation": generation}))
     assert answer.status_code == 202
     assert answer.json()["spec"]["search"]["initial"] == names(identity, *numbers)
     assert answer.json()["forked_from"]["creatures"] == len(numbers)
 
 
-def test_the_rest_of_the_spec_is_the_other_runs_but_for_the_patch(
-    fork, api, ended, services, identity
-):
+def test_a_fork_takes_the_spec_with_the_patch(fork, api, ended, services, identity):
     patch = {"world": {"viscosity": 0.2}, "search": {"batch": 8, "stop": {"fitness": 5.0}}}
     run = fork({"cells": [1]}, spec=patch, name=" Thicker ").json()
     spec = api.get(f"runs/{ended}").json()["spec"]
@@ -72,12 +72,12 @@ def test_the_rest_of_the_spec_is_the_other_runs_but_for_the_patch(
     assert creature.parse(file)["sha256"] == names(identity, 1001)[0]
 
 
-def test_null_takes_a_choice_back_to_its_default(fork):
+def test_null_resets_a_field_to_its_default(fork):
     run = fork({"archive": True}, spec={"control": {"period": None}}).json()
     assert run["spec"]["control"]["period"] != 50
 
 
-def test_null_is_none_where_there_can_be_none():
+def test_null_clears_an_optional_field():
     """As the form says that lengths are not driven: their default would drive them."""
     grown = {"experiment": "quality-diversity", "control": {"encoding": "cppn-body"}}
     before = parse(grown).model_dump(mode="json")
@@ -106,7 +106,7 @@ def test_null_is_none_where_there_can_be_none():
         ({"archive": True}, {"experiment": "gaits"}, "experiment"),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_field(fork, api, start, spec, field):
+def test_an_invalid_fork_is_refused_with_its_field(fork, api, start, spec, field):
     answer = fork(start, spec=spec)
     assert answer.status_code == 422
     assert field in [error["field"] for error in answer.json()["errors"]]
@@ -121,12 +121,11 @@ def test_the_same_key_is_the_same_fork(fork):
     assert fork({"cells": [2]}, headers=headers).status_code == 422
 
 
-def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {0: 1.0}), 1.0)
+def test_the_same_key_is_the_same_fork_after_more_generations(api, run_id, attempt, record):
+    record(1, {0: 1.0})
     asked = {"json": {"from": {"archive": True}}, "headers": {"Idempotency-Key": "a key"}}
     first = api.post(f"runs/{run_id}/fork", **asked)
-    attempt.record(report(2, {1: 2.0}), 1.0)
+    record(2, {1: 2.0})
     attempt.finish()
     second = api.post(f"runs/{run_id}/fork", **asked)
     assert (first.status_code, second.status_code) == (202, 200)
@@ -137,18 +136,15 @@ def test_the_same_key_is_the_same_fork_though_the_run_went_on(api, services, run
     assert api.post(f"runs/{other}/fork", **asked).status_code == 422
 
 
-def test_a_spec_with_an_origin_can_be_submitted_as_it_is(api, ended, spec, identity):
+def test_a_spec_with_initial_creatures_is_submitted(api, ended, spec, identity):
     initial = names(identity, 2000)
     search = {**spec["search"], "initial": initial}
     assert api.post("runs", json={**spec, "search": search}).status_code == 202
     answer = api.post("runs", json={**spec, "search": {**search, "initial": ["cd" * 32]}})
-    assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == "search.initial"
+    assert fields(answer)[0] == "search.initial"
 
 
-def test_what_a_fork_begins_from_outlives_the_run_that_it_was_in(
-    fork, api, services, ended, identity
-):
+def test_initial_creatures_of_a_fork_outlive_their_run(fork, api, services, ended, identity):
     kept, gone = names(identity, 2000)[0], names(identity, 3002)[0]
     forked = fork({"creatures": [kept]}).json()["id"]
     assert api.delete(f"runs/{ended}").status_code == 200
@@ -172,14 +168,12 @@ def for_good(api, services, run_id):
     assert api.get(f"runs/{run_id}").status_code == 404
 
 
-def test_nothing_begins_from_a_run_in_the_bin(fork, api, ended):
+def test_a_run_in_the_bin_is_not_forked(fork, api, ended):
     api.delete(f"runs/{ended}")
     assert fork({"archive": True}).status_code == 404
 
 
-def test_a_fork_comes_back_from_the_bin_though_what_it_was_forked_from_is_gone(
-    fork, api, services, ended, identity
-):
+def test_a_fork_is_restored_after_its_source_is_purged(fork, api, services, ended, identity):
     forked = UUID(fork({"cells": [1]}).json()["id"])
     api.post(f"runs/{forked}/pause")
     api.delete(f"runs/{forked}")
@@ -189,3 +183,95 @@ def test_a_fork_comes_back_from_the_bin_though_what_it_was_forked_from_is_gone(
     assert api.post(f"runs/{forked}/resume").json()["status"] == "queued"
     (file,) = claim(services, forked, "worker").initial()
     assert file["sha256"] == names(identity, 1001)[0]
+
+
+@pytest.fixture
+def run_id(services) -> UUID:
+    """A queued run of four generations."""
+    demo = EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump(mode="json")
+    demo["search"]["generations"] = 4
+    return submit(services, parse(demo))[0].id
+
+
+@pytest.fixture
+def end(attempt, record):
+    """Carries the run out up to a generation and finishes it."""
+
+    def end(generations, summary=None):
+        for generation in range(1, generations + 1):
+            record(generation, {generation: 1.0}, summary=summary)
+        attempt.save(generations, b"state after %d" % generations)
+        attempt.finish()
+
+    return end
+
+
+def test_a_finished_run_is_queued_again_and_goes_on_where_it_ended(
+    api, services, run_id, report, flush, end
+):
+    end(4)
+    flush()
+    answer = api.post(f"runs/{run_id}/extend", json={"generations": 3})
+    assert answer.status_code == 202
+    run = answer.json()
+    assert (run["status"], run["generation"], run["generations"]) == ("queued", 4, 7)
+    assert run["spec"]["search"]["generations"] == 7
+    assert run["finished_at"] is None
+    assert services.jobs.runs.get_job_ids() == [str(run_id)]
+    attempt = claim(services, run_id, "worker")
+    assert (attempt.generation, attempt.restore()) == (4, b"state after 4")
+    assert attempt.spec["search"]["generations"] == 7
+    attempt.record(report(5), 1.0)
+    assert len(api.get(f"runs/{run_id}/generations").json()["generation"]) == 5
+    texts = [entry["text"] for entry in api.get(f"runs/{run_id}/log").json()["entries"]]
+    assert "Extended by 3 generations to 7: queued again." in texts
+
+
+@pytest.mark.postgresql
+def test_one_of_many_concurrent_extensions_succeeds(api, run_id, row, end):
+    end(2)
+    with ThreadPoolExecutor(8) as pool:
+        asked = [pool.submit(extended, api, run_id) for _ in range(8)]
+        answers = [future.result() for future in asked]
+    assert sorted(answer.status_code for answer in answers) == [202] + 7 * [409]
+    assert row().generations == 5
+    refused = next(answer for answer in answers if answer.status_code == 409)
+    assert refused.json()["detail"] == "to extend a run it must be finished; it is queued"
+
+
+def extended(api, run_id, generations=1):
+    return api.post(f"runs/{run_id}/extend", json={"generations": generations})
+
+
+def test_only_a_finished_run_is_extended(api, run_id):
+    answer = extended(api, run_id)
+    assert detail(answer, 409) == "to extend a run it must be finished; it is queued"
+
+
+def test_a_run_that_reached_its_goal_is_not_extended(api, run_id, end):
+    end(2, summary={"ended": "fitness after generation 2"})
+    assert "(fitness after generation 2)" in detail(extended(api, run_id), 409)
+
+
+def test_a_run_without_generations_is_not_extended(api, services, sweep_id):
+    claim(services, sweep_id, "worker").finish()
+    assert fields(extended(api, sweep_id), 409)[0] == "search.generations"
+
+
+def test_the_number_of_generations_is_checked(api, run_id, row, end):
+    end(1)
+    for sent in ({"generations": 0}, {"generations": "many"}, {}, {"more": 1}):
+        answer = api.post(f"runs/{run_id}/extend", json=sent)
+        assert fields(answer)[0] in ("generations", "more")
+    assert fields(extended(api, run_id, 1_000_000))[0] == "search.generations"
+    assert row().generations == 4
+
+
+def test_an_extension_is_published(api, services, run_id, end):
+    end(1)
+    before = services.redis.xlen(services.events.stream)
+    extended(api, run_id)
+    told = services.redis.xrange(services.events.stream)[before:]
+    assert [fields[b"event"] for _, fields in told] == [b"run"]
+    assert b'"status": "queued"' in told[0][1][b"data"]
+    assert b'"generations": 5' in told[0][1][b"data"]

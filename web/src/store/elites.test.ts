@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { walkThrough } from "./history";
+import { walkThrough } from "./elites";
 
-describe("the past of an archive", () => {
+describe("the history of an archive", () => {
   const columns = { cell: [1, 2, 1], fitness: [1, 2, 3], descriptors: [[0], [0], [0]] };
   const history = {
     ...columns,
@@ -21,7 +21,7 @@ describe("the past of an archive", () => {
     expect([...then.values()].map(({ creature }) => creature)).toEqual(creatures);
   });
 
-  it("is the same whichever way one came to it", () => {
+  it("is the same in any order of generations", () => {
     const walk = walkThrough(history);
     const seen = [4, 1, 0, 3, 4].map((generation) =>
       [...walk(generation).values()].map(({ creature }) => creature).join(""),

@@ -1,8 +1,9 @@
-"""What is deleted for good leaves nothing behind and takes nothing of others."""
+"""The bin and the purge: deleted runs come back whole or leave nothing."""
 
 from pathlib import Path
 
 import pytest
+from answers import detail
 from deletion import another, delete_for_good, files, finish, let_time_pass, rows
 from sqlalchemy import select
 
@@ -27,6 +28,69 @@ from server.tables import (
 pytestmark = pytest.mark.postgresql
 
 
+def test_a_deleted_run_is_hidden_and_restored_unchanged(api, services, run_id, report):
+    finish(services, run_id, report(1, {0: 1.0}))
+    api.patch(f"runs/{run_id}", json={"tags": ["mine"]})
+    before = api.get(f"runs/{run_id}").json()
+    deleted = api.delete(f"runs/{run_id}")
+    assert deleted.status_code == 200
+    assert deleted.json()["deleted_at"]
+    assert deleted.json()["purge_at"] > deleted.json()["deleted_at"]
+    assert api.get("runs").json()["items"] == api.get("tags").json() == []
+    assert [r["id"] for r in api.get("runs?deleted=true").json()["items"]] == [str(run_id)]
+    assert api.get(f"runs/{run_id}").json() == deleted.json()
+    for path in ("archive", "archive.h5", "generations", "log"):
+        answer = api.get(f"runs/{run_id}/{path}")
+        assert answer.status_code == 404, path
+    answer = api.get(f"runs/{run_id}/archive")
+    assert "is in the bin until" in answer.json()["detail"]
+    for action in ("resume", "cancel", "extend"):
+        sent = {"json": {"generations": 1}} if action == "extend" else {}
+        assert api.post(f"runs/{run_id}/{action}", **sent).status_code == 404
+    assert api.post(f"runs/{run_id}/restore").json() == before
+    assert api.get("runs?deleted=true").json()["items"] == []
+    assert api.get(f"runs/{run_id}/archive").json()["cell"] == [0]
+
+
+def test_queued_and_running_runs_are_not_deleted(api, services, run_id):
+    attempt = None
+    for standing in ("queued", "running"):
+        assert f"cancel it first; it is {standing}" in detail(api.delete(f"runs/{run_id}"), 409)
+        attempt = attempt or claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/pause")
+    attempt.pause()
+    assert api.delete(f"runs/{run_id}").json()["status"] == "paused"
+    assert api.delete(f"runs/{run_id}").status_code == 404
+
+
+def test_only_runs_in_the_bin_are_restored_in_time(api, services, run_id):
+    api.post(f"runs/{run_id}/cancel")
+    assert "it is cancelled" in detail(api.post(f"runs/{run_id}/restore"), 409)
+    api.delete(f"runs/{run_id}")
+    let_time_pass(services, run_id)
+    answer = api.post(f"runs/{run_id}/restore")
+    assert answer.status_code == 409
+    assert api.get(f"runs/{run_id}").json()["deleted_at"]
+
+
+def test_the_bin_keeps_runs_for_a_day(api, services, run_id, report):
+    finish(services, run_id, report(1, {0: 1.0}))
+    api.delete(f"runs/{run_id}")
+    before = rows(services), files(services)
+    reconcile(services)
+    assert (rows(services), files(services)) == before
+    with services.sessions.read() as session:
+        run = session.get_one(Run, run_id)
+    assert (run.purge_at - run.deleted_at).total_seconds() == 86_400
+
+
+def test_a_purge_is_published(api, services, run_id):
+    api.post(f"runs/{run_id}/cancel")
+    delete_for_good(api, services, run_id)
+    told = [f[b"event"] for _, f in services.redis.xrange(services.events.stream)]
+    assert told[-2:] == [b"run", b"purge"]
+
+
 @pytest.fixture
 def child(identity):
     """A report whose one elite is a creature with parents."""
@@ -42,7 +106,7 @@ def child(identity):
     return make
 
 
-def test_nothing_is_left_behind(api, services, spec, report, run_id):
+def test_a_purge_leaves_no_row_or_file(api, services, spec, report, run_id):
     other = another(services, spec, 7)
     finish(services, other, report(1, {3: 1.0}))
     before = rows(services), files(services)
@@ -70,7 +134,7 @@ def test_nothing_is_left_behind(api, services, spec, report, run_id):
     assert api.get(f"creatures/{next(iter(named))}").status_code == 404
 
 
-def test_nothing_that_others_use_is_lost(api, services, spec, report, identity, child, run_id):
+def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, child, run_id):
     """Shared with another run, brought by somebody, begun from, or an ancestor of one such."""
     doomed, other = another(services, spec, 1), another(services, spec, 2)
     shared, brought, parent, grandparent, alone = (
@@ -169,7 +233,7 @@ def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
     assert purge.take_apart(services)
 
 
-def test_a_creature_that_comes_into_use_while_it_is_judged_stays(
+def test_a_creature_that_comes_into_use_during_a_purge_stays(
     services, run_id, spec, report, api
 ):
     """Another run writes the same creature between the purge of one and the collection."""
