@@ -12,7 +12,7 @@ from typer.core import TyperGroup
 from ..archive.creature import parse
 from ..archive.file import HDF5, load
 from ..viz.figures import drawing, experiments
-from ..viz.files import check, export
+from ..viz.film import check, export
 from .app import CACHE, app, console, fail, failing, with_options
 from .modules import Modules, load_modules, prepare_engine
 

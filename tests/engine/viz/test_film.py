@@ -9,8 +9,7 @@ import pytest
 from PIL import Image
 
 from microcosmos.viz import film as module
-from microcosmos.viz.files import export
-from microcosmos.viz.film import gif, mp4
+from microcosmos.viz.film import export, gif, mp4
 from microcosmos.viz.raster import frame
 
 pytestmark = pytest.mark.long
