@@ -10,7 +10,7 @@ from ...spec.emitters import PopulationEmitter
 from .axes import Axis, chosen
 from .groups import Group
 from .reading import Archive, Search
-from .regions import Layout
+from .sheet import Layout
 
 FITNESS = {
     "displacement": "Fitness is the displacement of the mean node",
