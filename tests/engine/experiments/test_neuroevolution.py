@@ -8,7 +8,7 @@ import pytest
 
 from microcosmos.archive import creature, file
 from microcosmos.build import build
-from microcosmos.build.experiments import begun
+from microcosmos.build.experiments import with_initial
 from microcosmos.spec import parse
 
 
@@ -123,7 +123,7 @@ def test_a_population_begins_with_creatures_of_before(experiment, course, search
     names = sorted(file["sha256"] for file in files)
     chosen = searching(initial=names, generations=3)
     text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
-    plan = begun(replace(experiment.plan, spec=text, generations=3), chosen, files)
+    plan = with_initial(replace(experiment.plan, spec=text, generations=3), chosen, files)
     fork = replace(experiment, plan=plan)
     after, report = fork.advance(fork.init())
     mine = {elite.creature: elite for elite in report.elites}

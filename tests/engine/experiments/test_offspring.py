@@ -9,7 +9,7 @@ import pytest
 from microcosmos.archive import creature
 from microcosmos.archive.initial import counters, fitting, genes_of, renumbered
 from microcosmos.build import build
-from microcosmos.build.experiments import begun
+from microcosmos.build.experiments import with_initial
 from microcosmos.experiments.offspring import next_offspring
 from microcosmos.naming import decode, encode
 from microcosmos.search import OPERATORS, never
@@ -88,7 +88,7 @@ def test_in_its_own_world_a_creature_is_itself_and_not_its_child(
     chosen = small(search={"initial": [files[3]["sha256"]], "generations": 2})
     text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
     plan = replace(experiment.plan, spec=text, generations=2)
-    again = replace(experiment, plan=begun(plan, chosen, files))
+    again = replace(experiment, plan=with_initial(plan, chosen, files))
     state, report = again.advance(again.init())
     same = next(e for e in report.elites if e.creature == files[3]["sha256"])
     assert (same.operator, same.parents) == ("fork", ())
@@ -104,7 +104,7 @@ def test_in_its_own_world_a_creature_is_itself_and_not_its_child(
 def test_new_genes_get_numbers_that_no_ancestor_has(small, files):
     chosen = small(search={"initial": names_of(files)})
     after, _ = counters(genes_of(chosen, files))
-    plan = begun(build_plan_of(chosen), chosen, files)
+    plan = with_initial(build_plan_of(chosen), chosen, files)
     assert int(plan.counters.innovation) == after > 6
 
 
@@ -191,7 +191,7 @@ def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish):
     )
     text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
     plan = replace(first.plan, spec=text, generations=3)
-    fork = replace(first, plan=begun(plan, chosen, [best]))
+    fork = replace(first, plan=with_initial(plan, chosen, [best]))
     before = fork.init()
     after, report = fork.advance(before)
     assert str(after.emitters[0]) == str(before.emitters[0]), "it neither asked nor was told"
