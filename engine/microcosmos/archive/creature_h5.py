@@ -85,7 +85,6 @@ def _by_link(values: Mapping[str, float]) -> Tree:
 
 
 def _arrays(genome: Mapping[str, Any]) -> Tree:
-    """What of a genome is a list or a row of numbers, with the numbers decoded."""
     found: Tree = {}
     for name, value in genome.items():
         if name in ("bias", "weight", "values"):

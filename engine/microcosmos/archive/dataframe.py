@@ -59,7 +59,6 @@ def _empty(peer: Any, data: bytes, genes: int, fields: dict[str, np.ndarray]) ->
 
 
 def _middles(filled: Any, index: np.ndarray) -> np.ndarray:
-    """The middle of cells, in a pyribs archive."""
     if hasattr(filled, "centroids"):
         return filled.centroids[index]
     place = np.stack(np.unravel_index(index, filled.dims), 1) + 0.5

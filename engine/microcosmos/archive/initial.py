@@ -140,7 +140,6 @@ def _ends(genome: Genes) -> dict[int, tuple[int, int]]:
 
 
 def _moved(genome: Genes, by: int, fixed: int, plain: dict[int, tuple[int, int]]) -> Genes:
-    """The genome with its own nodes and connections numbered so much higher."""
     ends = _ends(genome)
 
     def node(number: int) -> int:

@@ -43,7 +43,6 @@ def parents(file: Mapping[str, Any]) -> list[str]:
 
 
 def _refuse_strangers(file: Mapping[str, Any], ancestors: list[dict[str, Any]]) -> None:
-    """Everybody has to be a parent of the creature, or of another that is."""
     by_name = {one["sha256"]: one for one in ancestors}
     known, nearest = {file["sha256"]}, parents(file)
     while nearest:

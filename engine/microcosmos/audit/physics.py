@@ -161,7 +161,6 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
 
 
 def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
-    """What the simulation itself shows."""
     free = scene.coupling.force_free
     return [
         _row("displacement", "displacement", found.distance, "cells", "", None, ""),
@@ -199,7 +198,6 @@ def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
 def _remeasured(
     name: str, how: str, nominal: Found, again: Found, scale: float
 ) -> dict[str, Any]:
-    """How far the same gait goes the same way in another simulation."""
     along = float(again.way @ nominal.way) * scale / max(nominal.distance, 1e-12)
     share = along / max(nominal.distance, 1e-12)
     low, high = AGREES

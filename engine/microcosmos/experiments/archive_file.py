@@ -142,7 +142,6 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
 
 
 def _centroids(cells: search.Cells) -> dict[str, Any]:
-    """Centroids, unless the cells are a grid's."""
     return {"centroids": cells.centroids} if isinstance(cells, search.Voronoi) else {}
 
 
@@ -167,7 +166,6 @@ def _unrepeated(state: State, cells: np.ndarray) -> dict[str, Any]:
 
 
 def _end(plan: Plan, state: State) -> dict[str, Any] | None:
-    """Reason and last generation of a run that has ended, else None."""
     if not state.ended and state.generation < plan.generations:
         return None
     reason = ENDS[state.ended] or "generations"
@@ -197,7 +195,6 @@ def _initial(state: State, group: file.Tree | None) -> InitialCreatures | None:
 
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
-    """Genotypes as rows of NumPy arrays."""
     form = state.elites.genotypes
     return jax.tree.unflatten(jax.tree.structure(form), [columns[name] for name in vars(form)])
 

@@ -140,7 +140,6 @@ def _emitted(
 def _gathered(
     plan: Plan, state: State, initial: InitialCreatures
 ) -> tuple[search.Elites, np.ndarray]:
-    """An archive of the initial creatures, and their names by cell."""
     count = min(plan.cell_count, len(initial.creature))
     nobody = search.no_elites(plan.cell_count, len(search.MEASURES), plan.genotype)
     genotypes = jax.tree.map(
@@ -159,7 +158,6 @@ def _replaced(
     initial: InitialCreatures,
     places: np.ndarray,
 ) -> Offspring:
-    """The offspring with initial creatures in its first slots."""
     children, count = offspring.children, len(places)
 
     def put(values: Any, new: Any) -> np.ndarray:
@@ -191,7 +189,6 @@ def _teach(
     block: int,
     stop: Callable[[], bool],
 ) -> tuple[search.Children, tuple[Any, ...], Taught]:
-    """Children and emitters' states after all lessons, given for each emitter."""
     parts, kept, taught, first = [], [], Taught(), 0
     for lesson, count, state in zip(lessons, slots, states, strict=True):
         offspring = jax.tree.map(lambda x, a=first, b=first + count: x[a:b], children)

@@ -91,7 +91,6 @@ def figures(programs: Programs, state: State) -> tuple[float, float, float]:
 
 
 def _spread(rows: np.ndarray, cells: np.ndarray, count: int) -> np.ndarray:
-    """Rows of some cells as rows of all, zeros elsewhere."""
     everywhere = np.zeros((count, *rows.shape[1:]), rows.dtype)
     everywhere[cells] = rows
     return everywhere

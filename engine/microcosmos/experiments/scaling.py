@@ -48,7 +48,6 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
 
 
 def _exponent(points: list[tuple[float, float]]) -> float | None:
-    """The slope of the line through the logarithms; None where there are too few points."""
     points = [(n, t) for n, t in points if t > 0]
     if len(points) < 2:
         return None

@@ -163,8 +163,6 @@ def _median(part: Step, scene: Scene, start: world.State, plan: Plan) -> float:
 
 
 def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Plan) -> Any:
-    """A program of so many steps, run once."""
-
     def run(scene, state):
         return jax.lax.scan(lambda s, _: (step(scene, s), None), state, None, length=steps)[0]
 
@@ -174,7 +172,6 @@ def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Plan) -> 
 
 
 def _time(program: Any, scene: Any, start: Any, calls: int, plan: Plan) -> tuple[float, Any]:
-    """Seconds of a call, and the end."""
     state, seconds = start, 0.0
     for _ in range(calls):
         if plan.stop():

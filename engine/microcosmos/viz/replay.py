@@ -96,7 +96,6 @@ def record(file: Mapping[str, Any]) -> bytes:
 def _comparison(
     file: Mapping[str, Any], scene: Scene, measures: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Fitness and descriptors as recorded and in this replay."""
     replayed = {name: float(value) for name, value in measures.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
@@ -225,8 +224,6 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
 def _filmed(
     task: search.Task, driven: Drive, frames: int, every: int, changes: bool
 ) -> tuple[Film, world.State, world.Measures]:
-    """The film, the last state, and the observations of all steps."""
-
     def frame(state):
         u = world.flow(task.world, state)
         return state.positions, vorticity(u), u, state.energy if changes else None

@@ -1,4 +1,4 @@
-"""Reading the bytes of a replay (`docs/formats.md`) with NumPy alone."""
+"""Reader of replays (`docs/formats.md`) with NumPy alone."""
 
 import json
 import struct
@@ -25,10 +25,10 @@ class ReplayError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """What drives a body, and more of the fluid around it."""
+    """The drive of a body, and more of the fluid around it."""
 
     angles: np.ndarray
-    """(frame, joint): rest angles as applied in the step before the frame, in rad."""
+    """(frame, joint): rest angles of the step before the frame, in rad."""
 
     lengths: np.ndarray
     """(frame, edge): rest lengths likewise, in cells."""
@@ -37,7 +37,7 @@ class Drive:
     """(frame, 2, x, y) of the fluid, in cells a step."""
 
     energy: np.ndarray
-    """(plane, x, y): one plane a frame, one for all where nothing changes it, or none."""
+    """(plane, x, y): one plane a frame, one for all if nothing changes it, or none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Replay:
     """(frame, x, y) int8: the vorticity in units of `quantum`."""
 
     drive: Drive | None = None
-    """None where only the motion is known."""
+    """None if only the motion is known."""
 
     @property
     def frames(self) -> int:
@@ -99,12 +99,12 @@ class Replay:
         return self.quantum * max(1, strong.max(initial=1))
 
     def step(self, number: int) -> int:
-        """How many steps had been taken at a frame."""
+        """The number of steps before a frame."""
         return number * self.header["every"]
 
 
 def read_replay(data: bytes) -> Replay:
-    """The replay in these bytes. Raises `ReplayError` where they are not sound."""
+    """The replay in these bytes. Raises `ReplayError` if they are invalid."""
     header, start = _header(data)
     frames, nodes, (width, height) = (header[key] for key in ("frames", "nodes", "size"))
     edges, joints, planes = _counts(header)
@@ -132,7 +132,6 @@ def read_replay(data: bytes) -> Replay:
 
 
 def _counts(header: dict[str, Any]) -> tuple[int, int, int]:
-    """Edges, joints, and planes of energy."""
     joints, energy = header.get("joints"), header.get("energy")
     count = len(header["edges"])
     pairs = f"a list of pairs of edges below {count}"
@@ -153,7 +152,6 @@ def _counts(header: dict[str, Any]) -> tuple[int, int, int]:
 
 
 def _header(data: bytes) -> tuple[dict[str, Any], int]:
-    """The header, and where the positions begin."""
     _need(len(data) >= 4, "bytes", "at least 4 of them", len(data))
     (length,) = struct.unpack_from("<I", data)
     _need(4 + length <= len(data), "header", f"{length} bytes", len(data) - 4)

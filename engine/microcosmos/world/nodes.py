@@ -56,7 +56,6 @@ def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
 
 
 def _body_mean(world: World, values: Vectors) -> Vectors:
-    """For every node the mean over its body."""
     ones = jnp.ones_like(values)
     if world.present is not None:
         ones = ones * world.present[:, None]

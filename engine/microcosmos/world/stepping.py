@@ -97,7 +97,6 @@ def move(world: World, state: State, rest: filaments.Rest, velocity: Vectors) ->
 
 
 def _points(world: World, state: State) -> Float[Array, "point 2"]:
-    """Where the bodies act on the fluid."""
     if world.form.layers == 1:
         return state.positions
     grown = edges_there(world)
@@ -111,7 +110,6 @@ def _windows(world: World, state: State) -> coupling.Windows:
 
 
 def _held(motion: Motion, forced: coupling.Forced, groups: Groups) -> Float[Array, "node"]:
-    """1 for nodes whose displacement, or whose body's force, was cut."""
     dtype, layers = motion.target.dtype, len(groups.member) // len(motion.target)
     pressed = groups.each((forced.scale < 1).astype(dtype))[::layers]
     return jnp.maximum(pressed, (motion.shortened < 1).astype(dtype))

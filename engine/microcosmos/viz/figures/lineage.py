@@ -15,18 +15,18 @@ NOBODY = -1
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Entries of the archive as numbers, and their parents'."""
+    """Entries of an archive and their parents, by number."""
 
     parents: np.ndarray
-    """(entry, 2): entries, −1 for nobody; an only parent is the first."""
+    """(entry, 2) entries, −1 for none; an only parent is the first."""
     generation: np.ndarray
     fitness: np.ndarray
     cell: np.ndarray
     tips: np.ndarray
-    """The entries of the elites that are there now, in the order of the archive's rows."""
+    """The entries of the present elites, in the order of the archive's rows."""
 
     def ancestors(self, entry: int) -> list[int]:
-        """An entry and all that it descends from, the youngest first."""
+        """An entry and all its ancestors, the youngest first."""
         return self.closure([entry], both=True)
 
     def closure(self, entries: Iterable[int], *, both: bool) -> list[int]:
@@ -42,10 +42,7 @@ class Family:
 
 
 def family(found: Archive) -> Family:
-    """The family of an archive's elites.
-
-    Raises `ValueError` where an elite is not among those that came into the archive.
-    """
+    """The family of an archive's elites. Raises `ValueError` if the lineage lacks one."""
     columns = found.lineage
     names = [bytes(row) for row in columns["creature"]]
     number: dict[bytes, int] = {}
@@ -68,13 +65,12 @@ def family(found: Archive) -> Family:
 
 
 def _first(parents: list[int]) -> list[int]:
-    """Whoever is there first."""
     return parents if parents[0] != NOBODY else parents[::-1]
 
 
 def heights(found: Family, entries: list[int]) -> dict[int, float]:
-    """Of each entry its place across the tree: childless ones evenly, others between the
-    children whose first parent they are. `entries` are closed under first parents.
+    """The height of each entry in the tree: childless ones evenly, others between those whose
+    first parent they are. `entries` include all first parents.
     """
     children: dict[int, list[int]] = {NOBODY: []}
     for entry in sorted(entries):
@@ -96,7 +92,7 @@ def heights(found: Family, entries: list[int]) -> dict[int, float]:
 
 
 OTHERS = "#a9b4b9"
-"""Elites that are not the one."""
+"""Colour of other elites."""
 
 
 def lineage(
@@ -143,7 +139,6 @@ def lineage(
 def _branches(
     panel: Any, tree: Family, places: dict[int, float], entries: list[int], **look: Any
 ) -> None:
-    """From each first parent along its height's time, then across to the child's height."""
     from matplotlib.collections import LineCollection
 
     lines = []
@@ -159,7 +154,6 @@ def _branches(
 
 
 def _living(panel: Any, tree: Family, places: dict[int, float], last: int) -> None:
-    """Elites live on to the end."""
     from matplotlib.collections import LineCollection
 
     tips = tree.tips.tolist()

@@ -67,7 +67,6 @@ def _sources() -> dict[str, str]:
 
 
 def _head(network: Network, body: str) -> str:
-    """What the module is, and the functions that it uses."""
     sources = _sources()
     used = [name for name in sources if re.search(rf"\b{name}\(", body)]
     if "mean" in used and "total" not in used:
@@ -117,7 +116,6 @@ def _feed_forward(network: Network) -> list[str]:
 
 
 def _recurrent(network: Network) -> list[str]:
-    """Every node from the values before, `steps` times over."""
     keys = [key for key in network.keys if key >= network.inputs]
     start = "np.nan" if network.rule == "live" else "0.0"
     lines = [f"    n{key} = np.full_like(x0, {start})" for key in keys]
@@ -182,7 +180,6 @@ def _listed(network: Network, keys) -> str:
 
 
 def _wrapped(line: str, indent: int = 4) -> list[str]:
-    """A statement in lines of at most 96 columns, broken inside of its brackets."""
     name, equals, value = line.partition(" = ")
     if len(line) + indent > 96 and equals:
         line = f"{name}\u00a0=\u00a0({value})"  # No break beside the sign.

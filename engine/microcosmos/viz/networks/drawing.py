@@ -53,7 +53,6 @@ def svg(network: Network) -> str:
 
 
 def _frame(network: Network, drawn: Layout) -> tuple[float, float, float, float]:
-    """Left, top, width and height of everything, names and legend included."""
     points = [point for way in drawn.ways.values() for point in way]
     points += drawn.place.values()
     loops = any(len(way) > 1 and way[-1][0] <= way[0][0] for way in drawn.ways.values())
@@ -90,7 +89,6 @@ def _link(network: Network, pair: tuple[int, int], weight: float, drawn: Layout)
 
 
 def _path(network: Network, pair: tuple[int, int], drawn: Layout) -> str:
-    """A smooth way from a node's right side to another's left, level at every column."""
     way = list(drawn.ways[pair])
     source, target = pair
     way[0] = (way[0][0] + _width(network, source) / 2, way[0][1])
@@ -122,7 +120,6 @@ def _node(network: Network, key: int, drawn: Layout) -> str:
 
 
 def _legend(x: float, y: float) -> list[str]:
-    """What colours and widths of connections mean."""
     entries = (("positive", 0.0, "positive weight"), ("negative", 135.0, "negative weight"))
     return [
         f'<path class="link {sign}" d="M{x + at:.1f} {y:.1f} h22" stroke-width="3"/>'

@@ -78,7 +78,6 @@ def _beyond(one: Network, other: Network) -> str:
 
 
 def _nodes(network: Network) -> list[_Node]:
-    """What is computed, in the order in which it is; sources by their rows."""
     row = {key: place for place, key in enumerate(network.keys)}
     incoming: dict[int, list[tuple[int, float]]] = {key: [] for key in network.keys}
     for (source, target), weight in zip(network.pairs, network.weight, strict=True):

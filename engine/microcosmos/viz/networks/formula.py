@@ -37,7 +37,6 @@ def _value(network: Network, key: int, names: dict[int, str]) -> str:
 
 
 def _sum(bias: float, terms: list[tuple[float, str]]) -> str:
-    """Terms joined by their signs."""
     parts = [(bias, _number(bias))] if bias or not terms else []
     parts += [(weight, _term(abs(weight), name)) for weight, name in terms]
     first = parts[0]

@@ -59,7 +59,6 @@ def _columns(network: Network) -> dict[int, int]:
 
 
 def _chain(pair: tuple[int, int], column: dict[int, int]) -> list[Item]:
-    """A connection's ends, and the places between them in the columns that it crosses."""
     source, target = pair
     between = range(column[source] + 1, column[target])
     return [source, *((source, target, level) for level in between), target]

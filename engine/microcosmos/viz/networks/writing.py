@@ -98,7 +98,6 @@ def _written(network: Network, max_nodes: int | None, max_conns: int | None) -> 
 
 
 def _described(network: Network) -> dict[str, Any]:
-    """What does not depend on the layout of the arrays."""
     recurrent = network.steps is not None
     used = {*network.activation, network.output_transform}
     return {
@@ -119,7 +118,6 @@ def _described(network: Network) -> dict[str, Any]:
 
 
 def _padded(field: str, columns: Sequence, rows: int) -> np.ndarray:
-    """Columns as float32 rows, the rest NaN."""
     needed = len(columns[0])
     if needed > rows:
         raise ValueError(f"`{field}` must be at least {needed}, got {rows}")
