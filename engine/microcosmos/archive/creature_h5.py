@@ -52,8 +52,8 @@ def _tree(file: Mapping[str, Any]) -> Tree:
 def load(data: bytes) -> dict[str, Any]:
     """The creature file in these bytes, checked as any other; `ValueError` where it is none.
 
-    It must be as `dump` writes it: arrays that differ from the identity would be believed by
-    whoever reads them, and what lies outside of the file is nobody's business.
+    It must equal what `dump` writes: other readers would trust arrays that differ from the
+    identity, and nothing outside the file may be read.
     """
     try:
         with h5py.File(BytesIO(data), "r") as file:
@@ -73,10 +73,7 @@ def load(data: bytes) -> dict[str, Any]:
 
 
 def link(name: str) -> str:
-    """Anybody's name as one of HDF5, which has paths: what would be one is percent-encoded.
-
-    `%` alone stands for a name without letters.
-    """
+    """A name for HDF5, with its path characters percent-encoded; `%` alone for an empty one."""
     return re.sub("[%/.\0]", lambda found: f"%{ord(found[0]):02X}", name) or "%"
 
 

@@ -1,4 +1,4 @@
-"""Archives in the libraries of others: a data frame, and an archive of pyribs'."""
+"""Archives for other libraries: a pandas data frame, and an archive of pyribs."""
 
 import importlib
 import json
@@ -12,7 +12,7 @@ from .export import columns, ends
 from .file import load
 
 Source = bytes | str | os.PathLike
-"""An archive file, or where it is."""
+"""An archive file, or its path."""
 
 
 def to_pandas(archive: Source) -> Any:
@@ -24,12 +24,11 @@ def to_pandas(archive: Source) -> Any:
 
 
 def to_ribs(archive: Source) -> Any:
-    """A `GridArchive` or `CVTArchive` of pyribs' with our elites and every measure as a field.
+    """A `GridArchive` or `CVTArchive` of pyribs with our elites and every measure as a field.
 
-    Ranges of a grid are on the axes' own scales, around centroids from 0 to 1 on those.
-
-    Borders of bins round otherwise there: an elite on one is told to be in the middle of its
-    cell. Raises `ImportError` without pyribs.
+    Ranges of a grid are on the axes' own scales, around centroids from 0 to 1 on those. pyribs
+    rounds borders of bins differently: an elite on one moves to the middle of its cell. Raises
+    `ImportError` without pyribs.
     """
     data = _bytes(archive)
     found, peer = columns(data), _needed("ribs.archives", "ribs[visualize]")

@@ -17,7 +17,7 @@ Tree = dict[str, Any]
 def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
     """A file with a group for each mapping and a dataset for each array, in sorted order.
 
-    Neither names nor times of a machine are in it.
+    It holds neither names nor times of a machine.
     """
     with h5py.File.in_memory(libver=("v110", "v110"), track_order=False) as file:
         for name in sorted(attributes):
@@ -29,10 +29,7 @@ def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
 
 
 def load(data: bytes) -> tuple[Tree, dict[str, str]]:
-    """The arrays and attributes of a file of ours.
-
-    Raises `ValueError` where it is not one.
-    """
+    """The arrays and attributes of our file. Raises `ValueError` for any other."""
     try:
         with h5py.File(BytesIO(data), "r") as file:
             attributes = {name: bytes(value).decode() for name, value in file.attrs.items()}

@@ -1,4 +1,4 @@
-"""The result of a run that fills no archive, as it stands in its file."""
+"""Reader of the result of a run without an archive."""
 
 import json
 from dataclasses import dataclass
@@ -9,14 +9,14 @@ from .file import load
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of flat values, and the run that they are of."""
+    """Rows of flat values, and their kind of experiment."""
 
     experiment: str
     rows: list[dict[str, Any]]
 
 
 def read_table(data: bytes) -> Table:
-    """The table in a run's file. Raises `ValueError` where there is none."""
+    """The table in a run's file. Raises `ValueError` if it has none."""
     tree, attributes = load(data)
     loop = tree.get("loop", {})
     if "rows" not in loop:

@@ -28,7 +28,7 @@ class Forced(eqx.Module):
     forcing: Vectors
     target: Vectors
     scale: Float[Array, "group"]
-    """What each body's forcing was multiplied by to stay within the limit; 1 if nothing."""
+    """Factor of each body's forcing to stay within the limit."""
 
 
 def unprojected(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:

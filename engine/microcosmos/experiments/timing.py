@@ -1,4 +1,4 @@
-"""How long a step takes and what it needs, as a whole and part by part."""
+"""Time and memory of a step, as a whole and part by part."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -15,18 +15,18 @@ from .. import coupling, filaments, fluid, world
 from ..archive.report import Value
 from ..search import Stopped
 
-TOLD = 1000
-"""Steps that times are told for."""
+REPORTED = 1000
+"""Steps that reported times are for."""
 
 CHUNK = 10
-"""Steps of one call of a program, between which a wish to stop is asked for."""
+"""Steps of one call of a program; a run can stop between calls."""
 
 REPEATS = 3
-"""Of each part; the median counts."""
+"""Repeats of each part; the median counts."""
 
 
 class Scene(eqx.Module):
-    """What a step needs besides the state; an argument, lest the compiler works on it."""
+    """The constants of a step, as an argument, so that the compiler does not fold them."""
 
     box: world.World
     rest: filaments.Rest
@@ -37,7 +37,7 @@ Step = Callable[[Scene, world.State], world.State]
 
 @dataclass(frozen=True)
 class Plan:
-    """How long is measured."""
+    """The length of the measurement."""
 
     steps: int
     part_steps: int
@@ -57,7 +57,7 @@ def step_row(scene: Scene, start: world.State, plan: Plan) -> dict[str, Value]:
         "method": "microcosmos",
         "nodes": len(start.positions),
         "steps": CHUNK * calls,
-        "seconds": seconds * TOLD / CHUNK,
+        "seconds": seconds * REPORTED / CHUNK,
         **{name: _median(part, scene, start, plan) for name, part in parts},
         "memory_bytes": _memory(whole),
         "status": "ok" if finite else "non-finite",
@@ -76,7 +76,7 @@ def pairs_row(positions: Float[Array, "node 2"], size: tuple[int, int], plan: Pl
         "method": "all-pairs",
         "nodes": len(positions),
         "steps": REPEATS,
-        "seconds": seconds * TOLD,
+        "seconds": seconds * REPORTED,
         "fluid": None,
         "coupling": None,
         "constraints": None,
@@ -134,7 +134,7 @@ def _couple(scene: Scene, state: world.State) -> world.State:
         limit=box.limits.force,
     )
     force = coupling.spread(forced.forcing, at, box.size)
-    # Every step depends on the one before, so that none can be left out.
+    # Every step depends on the one before, so that the compiler drops none.
     return replace(state, positions=state.positions + 1e-6 * forced.target + force[0, 0, 0])
 
 
@@ -159,7 +159,7 @@ def _median(part: Step, scene: Scene, start: world.State, plan: Plan) -> float:
     """Seconds of 1,000 steps of a part."""
     program = _compile(part, scene, start, plan.part_steps, plan)
     found = [_time(program, scene, start, 1, plan)[0] for _ in range(REPEATS)]
-    return float(np.median(found)) * TOLD / plan.part_steps
+    return float(np.median(found)) * REPORTED / plan.part_steps
 
 
 def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Plan) -> Any:
@@ -183,7 +183,7 @@ def _time(program: Any, scene: Any, start: Any, calls: int, plan: Plan) -> tuple
 
 
 def _memory(program: Any) -> int | None:
-    """Bytes of a program's arguments, results and temporaries, where it says so."""
+    """Bytes of a program's arguments, results and temporaries, if known."""
     found = program.memory_analysis()
     if found is None:
         return None

@@ -44,7 +44,7 @@ class Rods(eqx.Module):
 
 
 class Rest(eqx.Module):
-    """The shape that the constraints ask for, now or at all times."""
+    """The target of the constraints, now or at all times."""
 
     angle: Float[Array, "*time joint"]
     length: Float[Array, "*time edge"]

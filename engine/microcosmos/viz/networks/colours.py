@@ -1,4 +1,4 @@
-"""How drawn networks look, and what is said of them."""
+"""Colours and labels of drawn networks."""
 
 from .network import Network
 
@@ -13,57 +13,54 @@ ACTIVATION = {
     "abs": "#f6bfb4",
     "square": "#f2e59a",
 }
-"""Light, so that dark letters can be read on them in either scheme."""
+"""Light colours, on which dark letters are readable in either scheme."""
 
 OTHER, INPUT = "#cfd8dc", "#ffffff"
 POSITIVE, NEGATIVE = "#3a86c8", "#d9643a"
 
 
 def fill(network: Network, key: int) -> str:
-    """The colour of a node."""
     if key < network.inputs:
         return INPUT
     return ACTIVATION.get(activation(network, key), OTHER)
 
 
 def activation(network: Network, key: int) -> str:
-    """The activation of a node, the transform of its own where it is an output's."""
-    name = network.activation[network.keys.index(key)]
+    """The activation of a node; an output also has the transform."""
+    name = network.node[key].activation
     transform = network.output_transform
     return transform if key in network.outputs and transform and name == "identity" else name
 
 
 def label(network: Network, key: int) -> str:
-    """What is written on a node."""
     if key < network.inputs:
         return network.names[key]
     name = activation(network, key)
-    aggregation = network.aggregation[network.keys.index(key)]
+    aggregation = network.node[key].aggregation
     return name if aggregation == "sum" else f"{aggregation} {name}"
 
 
 def value_text(network: Network, key: int) -> str:
-    """What a node is, for whoever points at it."""
-    row = network.keys.index(key)
+    """The description of a node, for a tooltip."""
     if key < network.inputs:
         return network.names[key]
     name = network.names.get(key, f"node {key}")
-    return f"{name}: {label(network, key)}, bias {network.bias[row]:.4g}"
+    return f"{name}: {label(network, key)}, bias {network.node[key].bias:.4g}"
 
 
 def thickness(network: Network, weight: float, least: float, most: float) -> float:
-    """Of a connection, in proportion to its weight."""
-    largest = max(map(abs, network.weight))
+    """The width of a connection, in proportion to its weight."""
+    largest = max(abs(link.weight) for link in network.links)
     return least + (most - least) * (abs(weight) / largest if largest else 0.0)
 
 
 def described(network: Network) -> str:
-    """A network in one sentence."""
+    """The network in one sentence."""
     kind = f"recurrent network ({network.steps} steps)" if network.steps else "network"
     inputs, outputs = _count(network.inputs, "input"), _count(len(network.outputs), "output")
     hidden = _count(len(network.hidden), "hidden node")
     return f"A {kind} with {inputs}, {outputs}, {hidden} and " + _count(
-        len(network.source), "connection"
+        len(network.links), "connection"
     )
 
 

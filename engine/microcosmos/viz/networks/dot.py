@@ -23,11 +23,12 @@ def dot(network: Network) -> str:
         )
     for rank, keys in (("min", range(network.inputs)), ("max", network.outputs)):
         lines.append(f"  {{rank={rank}; {' '.join(f'{key};' for key in keys)}}}")
-    for (source, target), weight in zip(network.pairs, network.weight, strict=True):
+    for link in network.links:
         lines.append(
-            f"  {source} -> {target} [penwidth={thickness(network, weight, 0.5, 4.0):.2f}, "
-            f"color={_quoted(POSITIVE if weight >= 0 else NEGATIVE)}, "
-            f"tooltip={_quoted(f'{weight:.4g}')}];"
+            f"  {link.source} -> {link.target} "
+            f"[penwidth={thickness(network, link.weight, 0.5, 4.0):.2f}, "
+            f"color={_quoted(POSITIVE if link.weight >= 0 else NEGATIVE)}, "
+            f"tooltip={_quoted(f'{link.weight:.4g}')}];"
         )
     return "\n".join([*lines, "}", ""])
 

@@ -70,12 +70,9 @@ def _width(network: Network, key: int) -> float:
 
 
 def _links(network: Network, drawn: Layout) -> list[str]:
-    """The thin ones last, so that no thick one hides them."""
-    links = zip(network.pairs, network.weight, strict=True)
-    return [
-        _link(network, pair, weight, drawn)
-        for pair, weight in sorted(links, key=lambda link: -abs(link[1]))
-    ]
+    """Thin links come last, so that no thick one hides them."""
+    links = sorted(network.links, key=lambda link: -abs(link.weight))
+    return [_link(network, (x.source, x.target), x.weight, drawn) for x in links]
 
 
 def _link(network: Network, pair: tuple[int, int], weight: float, drawn: Layout) -> str:
