@@ -91,14 +91,24 @@ def page(package: griffe.Module) -> str:
 
 
 def public(package: griffe.Module) -> list[tuple[str, Any]]:
-    """The names that a package exports; those of its modules where it exports none."""
-    homes = [package] if package.exports else package.modules.values()
+    """The names that a package exports; those of its modules if it exports none."""
+    homes = [package] if exported(package) else package.modules.values()
     pairs = [
         (f"{home.path}.{name}", find(home, name))
         for home in homes
-        for name in (map(str, home.exports) if home.exports else defined(home))
+        for name in exported(home) or defined(home)
     ]
     return [(path, one) for path, one in pairs if one and not one.is_module]
+
+
+def exported(module: griffe.Module) -> list[str]:
+    """The names in `__all__`, or those that the file of a package imports."""
+    if module.exports:
+        return list(map(str, module.exports))
+    members = module.members.items()
+    ours = f"{module.path}."
+    names = [name for name, one in members if one.is_alias and one.target_path.startswith(ours)]
+    return sorted(names) if module.is_init_module else []
 
 
 def defined(module: griffe.Module) -> list[str]:
