@@ -79,7 +79,7 @@ def _palette(pictures: list[np.ndarray]) -> Any:
 
 def _refuse_without_encoder() -> None:
     if ENCODER not in require("av").codecs_available:
-        raise RuntimeError(
+        raise ValueError(
             f"An MP4 needs PyAV with {ENCODER}, which this one was built without; "
             "make a GIF instead."
         )

@@ -27,13 +27,13 @@ export function Choices({
     setQuery({ x, y, [axis]: name, ...(name === other && { [axis === "x" ? "y" : "x"]: old }) });
   };
   return (
-    <div class="archive-choices">
-      <p class="axis-choice">
+    <div class="row archive-choices">
+      <p class="row">
         <Select title={text.across} {...{ choices, value: x }} onChange={choose("x")} />
         <Select title={text.up} {...{ choices, value: y }} onChange={choose("y")} />
         <span class="quiet small">{kindOf(archive)}</span>
       </p>
-      <p class="axis-choice">
+      <p class="row">
         <Select
           title={text.colour}
           choices={coloursOf(archive)}

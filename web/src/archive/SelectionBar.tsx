@@ -59,7 +59,7 @@ export function SelectionBar({ run, elites, at, chosen, onChoose }: Props) {
   const creatures = new Set(cells.map((cell) => elites.get(cell)!.creature)).size;
   const which = text.creatures(count(creatures), at === null ? null : count(at));
   return (
-    <div class="chosen-bar">
+    <div class="row chosen-bar">
       <span role="status">{chosen.size > 0 && text.selected(which)}</span>
       {/* Outside the live region: it would be read at every step of the slider. */}
       {chosen.size === 0 && creatures > 0 && <span>{which}</span>}

@@ -14,7 +14,7 @@ interface Props {
 export function Slices({ slices, onChange }: Props) {
   if (slices.length === 0) return null;
   return (
-    <div class="slices">
+    <div class="row slices">
       {slices.map((slice) => (
         <One key={slice.axis.name} slice={slice} onChange={onChange} />
       ))}

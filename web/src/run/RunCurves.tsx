@@ -108,7 +108,7 @@ function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: O
   const without = (id: string) => set(ids.filter((other) => other !== id));
   const nameOf = (id: string) => others.find(({ name }) => name.endsWith(short(id)))?.name ?? short(id);
   return (
-    <div class="beside-runs" role="group" aria-label={text.comparedRuns}>
+    <div class="row beside-runs" role="group" aria-label={text.comparedRuns}>
       {ids.length > 0 && <Chip colour="--series-1">{text.thisRun}</Chip>}
       {ids.map((id, i) => (
         <Chip key={id} colour={`--series-${2 + i}`}>
