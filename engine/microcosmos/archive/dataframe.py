@@ -1,6 +1,5 @@
 """Archives for other libraries: a pandas data frame, and an archive of pyribs."""
 
-import importlib
 import json
 import os
 from pathlib import Path
@@ -8,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..optional import require
 from .export import columns, ends
 from .file import load
 
@@ -20,7 +20,7 @@ def to_pandas(archive: Source) -> Any:
 
     `ribs.archives.ArchiveDataFrame` takes it as it is. Raises `ImportError` without pandas.
     """
-    return _needed("pandas").DataFrame(columns(_bytes(archive)))
+    return require("pandas", "pandas").DataFrame(columns(_bytes(archive)))
 
 
 def to_ribs(archive: Source) -> Any:
@@ -31,7 +31,7 @@ def to_ribs(archive: Source) -> Any:
     `ImportError` without pyribs.
     """
     data = _bytes(archive)
-    found, peer = columns(data), _needed("ribs.archives", "ribs[visualize]")
+    found, peer = columns(data), require("ribs.archives", "ribs[visualize]")
     solution, measures = _beside(found, "solution_"), _beside(found, "measures_")
     fields = list(found)[list(found).index("threshold") + 1 : -1]
     fields = {name: np.asarray(found[name]) for name in fields}
@@ -74,11 +74,3 @@ def _beside(found: dict[str, Any], prefix: str) -> np.ndarray:
 
 def _bytes(archive: Source) -> bytes:
     return archive if isinstance(archive, bytes) else Path(archive).read_bytes()
-
-
-def _needed(module: str, package: str | None = None) -> Any:
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        name = module.partition(".")[0]
-        raise ImportError(f'`{name}` is needed: pip install "{package or name}"') from error

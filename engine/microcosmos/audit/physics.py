@@ -161,36 +161,21 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
 
 
 def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
-    free = scene.coupling.force_free
+    """The quantities of the simulation itself, some with a largest value."""
+    pushed = "" if scene.coupling.force_free else ": this form of the coupling lets it"
+    fast, limited = "the flow is so fast that it is compressible", "limits act on its motion"
+    bounded = (
+        ("mach", "largest Mach number", found.mach, "", units.FASTEST, fast),
+        ("limited", "node steps at a limit", found.limited, "share", units.LIMITED, limited),
+        ("impulse", "net impulse on the fluid", found.impulse, "lattice units", IMPULSE,
+         "it pushes itself" + pushed),
+    )  # fmt: skip
     return [
         _row("displacement", "displacement", found.distance, "cells", "", None, ""),
         _row("reynolds", "Reynolds number", found.reynolds, "", "", None, ""),
-        _row(
-            "mach",
-            "largest Mach number",
-            found.mach,
-            "",
-            f"at most {units.FASTEST}",
-            found.mach <= units.FASTEST,
-            "the flow is so fast that it is compressible",
-        ),
-        _row(
-            "limited",
-            "node steps at a limit",
-            found.limited,
-            "share",
-            f"at most {units.LIMITED:g}",
-            found.limited <= units.LIMITED,
-            "limits act: they decide in part how it swims",
-        ),
-        _row(
-            "impulse",
-            "net impulse on the fluid",
-            found.impulse,
-            "lattice units",
-            f"at most {IMPULSE:g}",
-            found.impulse <= IMPULSE,
-            "it pushes itself" + ("" if free else ": this form of the coupling lets it"),
+        *(
+            _row(name, quantity, value, unit, f"at most {most:g}", value <= most, note)
+            for name, quantity, value, unit, most, note in bounded
         ),
     ]
 

@@ -10,6 +10,7 @@ from .. import bodies, build, search, spec, world
 from ..bodies.extent import extent
 from ..filaments import Rest
 from ..genomes import Drive
+from ..viz.replay import graph_among, present_parts
 
 
 def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, np.ndarray]:
@@ -20,14 +21,13 @@ def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, 
     body, start, rods = spec.shape(scene.body), driven.start, driven.world.rods
     there = driven.world.present
     nodes = np.ones(len(body.positions), bool) if there is None else np.asarray(there)
-    edges: np.ndarray = np.all(nodes[body.edges], axis=1)
-    joints: np.ndarray = np.all(edges[body.joints], axis=1)
-    numbers, edge_numbers = np.cumsum(nodes) - 1, np.cumsum(edges) - 1
+    edges, joints = present_parts(scene, nodes)
+    edge_pairs, joint_pairs = graph_among(scene, nodes)
     return (
         bodies.Body(
             positions=np.asarray(start.positions, float)[nodes],
-            edges=numbers[body.edges[edges]],
-            joints=edge_numbers[body.joints[joints]],
+            edges=edge_pairs,
+            joints=joint_pairs,
             rest_length=body.rest_length[edges],
             rest_angle=body.rest_angle[joints],
             stretch=np.asarray(rods.stretch, float)[edges],

@@ -8,7 +8,7 @@ import numpy as np
 
 from .axes import fitness_label
 from .reading import Archive
-from .style import GREY, INK, blank, palette
+from .style import GREY, INK, blank, colour_bar, shades
 
 NOBODY = -1
 
@@ -106,9 +106,6 @@ def lineage(
     from; the ancestors of the elite of `cell` (none: the fittest) in the colours of their
     fitness, second parents by dashed lines.
     """
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
     tree = family(found)
     own = int(tree.tips[found.row(cell)])
     above = tree.ancestors(own)
@@ -118,12 +115,11 @@ def lineage(
     figure = blank(width, float(np.clip(0.9 * ends, 55, 0.62 * width)))
     panel = figure.add_subplot()
     values = tree.fitness[above]
-    low, high = float(values.min()), float(values.max())
-    shades = ScalarMappable(Normalize(low, high if high > low else low + 1), palette(colours))
+    colouring = shades(values, colours)
     _branches(panel, tree, places, whole, colors=[OTHERS], linewidths=0.4, zorder=1)
     last = max(int(tree.generation.max()), len(found.curves["best"]))
     _living(panel, tree, places, last)
-    colour = shades.to_rgba(values)
+    colour = colouring.to_rgba(values)
     _branches(panel, tree, places, above, colors=[INK], linewidths=2.0, zorder=2)
     _branches(panel, tree, places, above, colors=colour, linewidths=1.3, zorder=3)
     _crossings(panel, tree, places, above)
@@ -131,8 +127,7 @@ def lineage(
     panel.scatter(x, y, s=9, c=colour, edgecolors=INK, linewidths=0.4, zorder=4)
     panel.scatter([x[0]], [y[0]], s=34, facecolors="none", edgecolors=INK, lw=0.8, zorder=5)
     _dress(panel, last)
-    bar = figure.colorbar(shades, ax=panel, label=fitness_label(found), pad=0.01, aspect=28)
-    bar.outline.set_linewidth(0.5)
+    colour_bar(panel, colouring, fitness_label(found), pad=0.01, aspect=28)
     return figure
 
 

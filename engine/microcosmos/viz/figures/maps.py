@@ -7,7 +7,7 @@ import numpy as np
 from ...spec.measures import MEASURES
 from .axes import Axis, chosen, dress, fitness_label, label
 from .reading import Archive
-from .style import EMPTY, GREY, INK, blank, palette
+from .style import EMPTY, GREY, INK, blank, colour_bar, palette
 
 
 def archive(
@@ -27,17 +27,16 @@ def archive(
     figure = blank(width, width * (0.78 if len(along) == 2 else 0.6))
     panel = figure.add_subplot()
     scale = _scale(shown, _logarithmic(found, colour))
-    shades = {"cmap": palette(colours), "norm": scale}
+    look = {"cmap": palette(colours), "norm": scale}
     draw = _bars if len(along) == 1 else _cells if _whole(found, along) else _bins
-    drawn = draw(panel, found, along, shown, shades)
+    drawn = draw(panel, found, along, shown, look)
     dress(panel, along)
     if len(along) == 2:
         x, y = (found.measures[axis.name][found.best] for axis in along)
         x, y = (np.clip(v, a.low, a.high) for v, a in zip((x, y), along, strict=True))
         for edge, size in (("white", 1.8), (INK, 0.8)):
             panel.plot(x, y, "o", ms=5, mfc="none", mec=edge, mew=size, clip_on=False)
-    bar = figure.colorbar(drawn, ax=panel, label=title, pad=0.02, aspect=28)
-    bar.outline.set_linewidth(0.5)
+    colour_bar(panel, drawn, title, pad=0.02, aspect=28)
     return figure
 
 

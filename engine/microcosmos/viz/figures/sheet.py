@@ -9,7 +9,7 @@ import numpy as np
 from .axes import Axis, chosen, fitness_label
 from .maps import fittest
 from .reading import Archive
-from .style import GREY, INK, PALE, blank, palette
+from .style import GREY, INK, PALE, blank, colour_bar, shades
 
 
 @dataclass(frozen=True)
@@ -110,9 +110,6 @@ def sheet(
     """Each region's swimmer at some moments, all at one scale: pale at the start, at the end
     in the colour of its fitness, with the path of its middle.
     """
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
     if not 1 <= moments <= 50:
         raise ValueError(f"`moments` must be from 1 to 50, got {moments}.")
     side = 0.86 * width / plan.columns
@@ -120,19 +117,17 @@ def sheet(
     panel = figure.add_subplot()
     panel.set(xlim=(0, plan.columns), ylim=(0, plan.rows), aspect="equal")
     fitness = found.fitness[[region.elite for region in plan.regions]]
-    low, high = float(fitness.min()), float(fitness.max())
-    shades = ScalarMappable(Normalize(low, high if high > low else low + 1), palette(colours))
+    colouring = shades(fitness, colours)
     scale = FILLED / max(_extent(motion, moments) for motion in motions)
-    digits = max(0, 2 - int(np.floor(np.log10(max(abs(low), abs(high), 1e-9)))))
+    digits = max(0, 2 - int(np.floor(np.log10(max(np.abs(fitness).max(), 1e-9)))))
     names = dict(zip(reading_order(plan.regions), numerals(len(motions)), strict=True))
     for number, (region, motion) in enumerate(zip(plan.regions, motions, strict=True)):
         corner = np.array([region.column, region.row])
-        _body(panel, motion, corner + 0.5, scale, moments, shades.to_rgba(fitness[number]))
+        _body(panel, motion, corner + 0.5, scale, moments, colouring.to_rgba(fitness[number]))
         _named(panel, corner, names[number], f"{fitness[number]:.{digits}f}")
     _dress(panel, plan)
     _bar(panel, plan, scale, side)
-    bar = figure.colorbar(shades, ax=panel, label=fitness_label(found), pad=0.01, aspect=32)
-    bar.outline.set_linewidth(0.5)
+    colour_bar(panel, colouring, fitness_label(found), pad=0.01, aspect=32)
     return figure
 
 
