@@ -76,6 +76,4 @@ def test_a_library_that_is_missing_is_named_with_what_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "PIL", None)
     command = r'PIL is needed: pip install "microcosmos\[figures\]"'
     with pytest.raises(ImportError, match=command):
-        ImportError, match=r'PIL is needed: pip install "microcosmos\[figures\]"'
-    ):
         require("PIL")
