@@ -1,6 +1,8 @@
 """HDF5 files as bytes: nested arrays and attributes, the same content giving the same bytes."""
 
+import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
 
@@ -54,3 +56,23 @@ def _read(group: h5py.Group) -> Tree:
         name: _read(item) if isinstance(item, h5py.Group) else item[()]
         for name, item in group.items()
     }
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of flat values, and their kind of experiment."""
+
+    experiment: str
+    rows: list[dict[str, Any]]
+
+
+def read_table(data: bytes) -> Table:
+    """The table in a run's file. Raises `ValueError` if it has none."""
+    tree, attributes = load(data)
+    loop = tree.get("loop", {})
+    if "rows" not in loop:
+        raise ValueError(
+            "a table is needed, as sweeps, measurements and foldings have; got an archive"
+        )
+    experiment = json.loads(attributes["spec"])["experiment"]
+    return Table(experiment, json.loads(bytes(loop["rows"])))

@@ -5,9 +5,6 @@ from . import emitters as emitters
 from . import folding as folding
 from . import gradients as gradients
 from . import reevaluation as reevaluation
-from .blocks import Stopped as Stopped
-from .blocks import evaluate_blocks as evaluate_blocks
-from .blocks import never as never
 from .cells import Axis as Axis
 from .cells import Cells as Cells
 from .cells import Grid as Grid
@@ -22,14 +19,17 @@ from .evaluation import STATUSES as STATUSES
 from .evaluation import Actuator as Actuator
 from .evaluation import Evaluation as Evaluation
 from .evaluation import Goal as Goal
+from .evaluation import Stopped as Stopped
 from .evaluation import Task as Task
 from .evaluation import block_program as block_program
 from .evaluation import drive as drive
 from .evaluation import elsewhere as elsewhere
 from .evaluation import evaluate as evaluate
+from .evaluation import evaluate_blocks as evaluate_blocks
 from .evaluation import mapped as mapped
 from .evaluation import measured as measured
 from .evaluation import motion_of as motion_of
+from .evaluation import never as never
 from .evaluation import simulate as simulate
 from .gradients import Slopes as Slopes
 from .gradients import slopes as slopes

@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from microcosmos.archive.table import read_table
+from microcosmos.archive.file import read_table
 from microcosmos.cli import app, draw
 
 run_command = import_module("microcosmos.cli.run")

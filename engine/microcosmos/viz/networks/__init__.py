@@ -1,7 +1,7 @@
 """Networks outside of JAX: evaluated, exchanged with TensorNEAT, drawn and written out."""
 
 from .code import numpy_code as numpy_code
-from .dot import dot as dot
+from .drawing import dot as dot
 from .drawing import svg as svg
 from .evaluation import agree as agree
 from .evaluation import evaluate as evaluate
