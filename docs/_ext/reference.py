@@ -119,7 +119,7 @@ def defined(module: griffe.Module) -> list[str]:
 
 
 def find(package: griffe.Module, name: str) -> Any:
-    """What a name stands for; None for a name that is assigned in a group."""
+    """The object of a name; None for a name that is assigned in a group."""
     one = package.members.get(name)
     try:
         return one.final_target if one and one.is_alias else one

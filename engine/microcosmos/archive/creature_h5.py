@@ -57,17 +57,17 @@ def load(data: bytes) -> dict[str, Any]:
     """
     try:
         with h5py.File(BytesIO(data), "r") as file:
-            told = hdf5_guard.texts(file, ATTRIBUTES)
-            if told["format"] != FORMAT:
-                raise ValueError(f"`format` must be {FORMAT}, got {told['format']:.60}")
-            parts = {part: json.loads(told[part]) for part in PARTS}
+            texts = hdf5_guard.texts(file, ATTRIBUTES)
+            if texts["format"] != FORMAT:
+                raise ValueError(f"`format` must be {FORMAT}, got {texts['format']:.60}")
+            parts = {part: json.loads(texts[part]) for part in PARTS}
             identity = json.loads(hdf5_guard.text(file, "identity"))
-            found = parse({"identity": identity, "sha256": told["sha256"], **parts})
+            found = parse({"identity": identity, "sha256": texts["sha256"], **parts})
             hdf5_guard.refuse_other(file, _tree(found))
     except (OSError, RuntimeError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"a creature's HDF5 file must be HDF5: {error}") from error
     expected = _attributes(found)
-    if wrong := [name for name in told if told[name] != expected[name]]:
+    if wrong := [name for name in texts if texts[name] != expected[name]]:
         raise ValueError(f"attributes must be as they are written here, got other {wrong}")
     return found
 

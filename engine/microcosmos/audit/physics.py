@@ -107,7 +107,7 @@ def _made(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Re
     try:
         body, joints, edges = body_of(scene, driven)
     except ValueError as error:
-        needed = "a body that can be built anew"
+        needed = "a body that can be built again"
         raise creature.CreatureError("identity.genome", needed, str(error)) from error
     angle, length = rest.angle[:, joints], rest.length[:, edges]
     return body, Rest(jnp.asarray(angle), jnp.asarray(length))

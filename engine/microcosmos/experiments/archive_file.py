@@ -174,7 +174,7 @@ def _end(plan: Plan, state: State) -> dict[str, Any] | None:
 def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Module:
     """The module with the rows of some cells replaced.
 
-    NumPy places them: JAX would compile each column anew for each number of cells.
+    NumPy places them: JAX would compile again for each number of cells.
     """
 
     def placed(before: Any, rows: Any) -> Any:

@@ -22,7 +22,7 @@ class Programs:
     """The compiled parts of reevaluation."""
 
     disturb: Callable[..., Disturbance]
-    """From a generation and a sample's number to the conditions in every cell."""
+    """The conditions in every cell, from a generation and a sample's number."""
     evaluate_block: Callable[..., search.Evaluation]
     add: Callable[..., Repeats]
     correct: Callable[..., Float[Array, "cell"]]

@@ -45,7 +45,7 @@ def _versions(held: dict[str, Any], wanted: dict[str, Any]) -> str:
     path, then = next((path, of) for path, of in _sources(held) if now.get(path) != of)
     return (
         f"`{path}` must be {then[:12]}, the version with which the run was computed, got "
-        f"{now.get(path, 'none')[:12]}: go on with the module as it was, or begin anew"
+        f"{now.get(path, 'none')[:12]}: continue with that version, or begin a new run"
     )
 
 

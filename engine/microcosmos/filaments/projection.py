@@ -33,7 +33,7 @@ class Rods(eqx.Module):
     """The graph of a body and its stiffnesses."""
 
     edges: Int[Array, "edge 2"]
-    """Of all bodies; colours may be those of a first chunk of bodies, which then are equal."""
+    """Edges of all bodies; colours may be of a first chunk of equal bodies."""
     edge_colours: tuple[Pairing, ...]
     joint_colours: tuple[Pairing, ...]
     stretch: Float[Array, "edge"]

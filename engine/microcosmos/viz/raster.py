@@ -84,7 +84,7 @@ class Theme:
     """Colours (red, green, blue)."""
 
     vorticity: tuple[Colour, ...]
-    """From the most negative to the most positive, evenly spaced; zero is the background."""
+    """Colours from the most negative vorticity to the most positive; zero is the background."""
 
     ink: Colour
     halo: Colour

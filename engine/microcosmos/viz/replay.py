@@ -99,8 +99,8 @@ def _comparison(
     replayed = {name: float(value) for name, value in measures.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
-    told = creature.scene_of(file).task
-    fitness = fitness_of(told, replayed) if told == scene.task else None
+    task = creature.scene_of(file).task
+    fitness = fitness_of(task, replayed) if task == scene.task else None
     names = list(measured.get("descriptors", ())) or ["bending_effort", "stretching_effort"]
     return {
         "fitness": {
@@ -116,8 +116,8 @@ def _comparison(
 
 
 def watchable(scene: Scene) -> Scene:
-    """The scene without measures of one's own that are not to be had here: what is seen of a
-    creature does not depend on them."""
+    """The scene, without plug-in measures if they are missing here: the motion does not depend
+    on them."""
     try:
         build_measures(scene)
     except plugins.Missing:
