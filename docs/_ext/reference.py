@@ -23,17 +23,10 @@ def setup(app: Sphinx) -> dict[str, Any]:
 def write(app: Sphinx) -> None:
     """Write `reference/*.md` beside the other sources."""
     root = griffe.load("microcosmos", search_paths=[app.srcdir.parent / "engine"])
-    folder = app.srcdir / "reference"
-    folder.mkdir(exist_ok=True)
     packages = [one for one in inner(root) if one.path.split(".")[1] not in COMMANDS]
     packages.sort(key=name)
-    wanted = {f"{name(one)}.md": page(one) for one in packages}
-    wanted["index.md"] = index(root, packages)
-    for path in folder.glob("*.md"):
-        if path.name not in wanted:
-            path.unlink()
-    for file, text in wanted.items():
-        update(folder / file, text)
+    pages = {name(one): page(one) for one in packages}
+    write_pages(app.srcdir / "reference", pages | {"index": index(root, packages)})
 
 
 def inner(package: griffe.Module) -> list[griffe.Module]:
@@ -46,10 +39,16 @@ def name(package: griffe.Module) -> str:
     return package.path.removeprefix("microcosmos.")
 
 
-def update(path: Path, text: str) -> None:
-    """Write a page whose text has changed: Sphinx reads what is newer."""
-    if not path.exists() or path.read_text() != text:
-        path.write_text(text)
+def write_pages(folder: Path, pages: dict[str, str]) -> None:
+    """Write the pages that have changed, because Sphinx reads newer files; remove others."""
+    folder.mkdir(exist_ok=True)
+    for path in folder.glob("*.md"):
+        if path.stem not in pages:
+            path.unlink()
+    for name, text in pages.items():
+        path = folder / f"{name}.md"
+        if not path.exists() or path.read_text() != text:
+            path.write_text(text)
 
 
 def index(root: griffe.Module, packages: list[griffe.Module]) -> str:
