@@ -6,7 +6,6 @@ from .delta import ROMA as ROMA
 from .delta import Kernel as Kernel
 from .delta import Windows as Windows
 from .delta import divided as divided
-from .delta import hat as hat
 from .delta import interpolate as interpolate
 from .delta import only as only
 from .delta import peskin as peskin

@@ -27,7 +27,6 @@ from .evaluation import elsewhere as elsewhere
 from .evaluation import evaluate as evaluate
 from .evaluation import evaluate_blocks as evaluate_blocks
 from .evaluation import mapped as mapped
-from .evaluation import measured as measured
 from .evaluation import motion_of as motion_of
 from .evaluation import never as never
 from .evaluation import simulate as simulate
@@ -50,7 +49,6 @@ from .measures import motion as motion
 from .measures import observe as observe
 from .strokes import STROKE_MEASURES as STROKE_MEASURES
 from .strokes import Conditions as Conditions
-from .strokes import Watched as Watched
 from .strokes import impulse as impulse
 from .strokes import swim as swim
 from .strokes import watch as watch

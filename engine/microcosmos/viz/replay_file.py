@@ -107,7 +107,8 @@ def read_replay(data: bytes) -> Replay:
     """The replay in these bytes. Raises `ReplayError` if they are invalid."""
     header, start = _header(data)
     frames, nodes, (width, height) = (header[key] for key in ("frames", "nodes", "size"))
-    edges, joints, planes = _counts(header)
+    edges, joints = len(header["edges"]), len(header["joints"])
+    planes = int(header["energy"]["frames"])
     shapes: list[tuple[tuple[int, ...], Any]] = [
         ((frames, nodes, 2), "<f4"),
         ((frames, joints), "<f4"),
@@ -131,26 +132,6 @@ def read_replay(data: bytes) -> Replay:
     return Replay(header, positions, levels, Drive(angles, lengths, *flow))
 
 
-def _counts(header: dict[str, Any]) -> tuple[int, int, int]:
-    joints, energy = header.get("joints"), header.get("energy")
-    count = len(header["edges"])
-    pairs = f"a list of pairs of edges below {count}"
-    _need(isinstance(joints, list), "joints", pairs, joints)
-    for joint in joints or ():
-        _need(_is_pair(joint, lambda k: _is_node(k, count)), "joints", pairs, joint)
-    _need(isinstance(energy, dict), "energy", "its scale and frames", energy)
-    assert isinstance(energy, dict)
-    assert isinstance(joints, list)
-    planes, scale = energy.get("frames"), energy.get("scale")
-    needed = f"0, 1 or {header['frames']}"
-    _need(planes in (0, 1, header["frames"]), "energy.frames", needed, planes)
-    _need(_is_scale(scale), "energy.scale", "a positive number", scale)
-    speed = header.get("velocity")
-    speed = speed.get("scale") if isinstance(speed, dict) else speed
-    _need(_is_scale(speed), "velocity.scale", "a positive number", speed)
-    return count, len(joints), int(planes or 0)
-
-
 def _header(data: bytes) -> tuple[dict[str, Any], int]:
     _need(len(data) >= 4, "bytes", "at least 4 of them", len(data))
     (length,) = struct.unpack_from("<I", data)
@@ -168,18 +149,29 @@ def _header(data: bytes) -> tuple[dict[str, Any], int]:
 
 def _check(header: dict[str, Any]) -> None:
     for field in ("frames", "every", "nodes"):
-        found = header.get(field)
-        _need(_is_count(found), field, "a whole number from 1", found)
-    size, edges, curl = (header.get(key) for key in ("size", "edges", "vorticity"))
+        _need(_is_count(header.get(field)), field, "a whole number from 1", header.get(field))
+    size = header.get("size")
     _need(_is_pair(size, _is_count), "size", "width and height", size)
-    scale = curl.get("scale") if isinstance(curl, dict) else curl
-    _need(_is_scale(scale), "vorticity.scale", "a positive number", scale)
-    pairs = f"a list of pairs of nodes below {header['nodes']}"
-    _need(isinstance(edges, list), "edges", pairs, edges)
-    for edge in edges or ():
-        _need(_is_pair(edge, lambda k: _is_node(k, header["nodes"])), "edges", pairs, edge)
+    _check_pairs(header, "edges", header["nodes"])
+    _check_pairs(header, "joints", len(header["edges"]))
+    for field in ("vorticity", "velocity", "energy"):
+        plane: Any = header.get(field)
+        _need(isinstance(plane, dict), field, "an object with its scale", plane)
+        scale = plane.get("scale")
+        sound = isinstance(scale, int | float) and 0 < scale < float("inf")
+        _need(sound, f"{field}.scale", "a positive number", scale)
+    planes, frames = header["energy"].get("frames"), header["frames"]
+    _need(planes in (0, 1, frames), "energy.frames", f"0, 1 or {frames}", planes)
     if "member" in header:
         _check_member(header["member"], header["nodes"])
+
+
+def _check_pairs(header: dict[str, Any], field: str, count: int) -> None:
+    pairs: Any = header.get(field)
+    needed = f"a list of pairs of numbers below {count}"
+    _need(isinstance(pairs, list), field, needed, pairs)
+    for pair in pairs:
+        _need(_is_pair(pair, lambda k: type(k) is int and 0 <= k < count), field, needed, pair)
 
 
 def _check_member(member: Any, nodes: int) -> None:
@@ -191,14 +183,6 @@ def _check_member(member: Any, nodes: int) -> None:
 
 def _is_count(value: Any) -> bool:
     return type(value) is int and value >= 1
-
-
-def _is_scale(value: Any) -> bool:
-    return isinstance(value, int | float) and 0 < value < float("inf")
-
-
-def _is_node(value: Any, nodes: int) -> bool:
-    return type(value) is int and 0 <= value < nodes
 
 
 def _is_pair(value: Any, sound: Callable[[Any], bool]) -> bool:

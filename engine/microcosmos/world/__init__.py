@@ -17,6 +17,5 @@ from .present import mean as mean
 from .rolling import follow as follow
 from .rolling import keep as keep
 from .rolling import rollout as rollout
-from .stepping import Motion as Motion
 from .stepping import move as move
 from .stepping import step as step
