@@ -24,8 +24,6 @@ OLD = {
     *("beginning", "keeping", "following", "most", "KEPT", "AT_ONCE", "DECISIVE"),
 }
 LEFT = {
-    "engine/microcosmos/neat/offspring.py:standing",
-    "engine/microcosmos/neat/rng.py:left",
     "server/auth/bootstrap.py:told",
     "server/creatures/initial.py:DECISIVE",
     "server/deletion/garbage.py:AT_ONCE",

@@ -14,10 +14,9 @@ FILES = [
     for path in sorted((ROOT / folder).rglob("*.py"))
     if "node_modules" not in path.parts
 ]
-LONG_FILES = {"engine/microcosmos/spec/body.py"}
+LONG_FILES: set[str] = set()
 """Files that are still too long; this list may only shrink."""
 LONG_FUNCTIONS = {
-    "engine/microcosmos/neat/species.py:assign",
     "server/app.py:create_app",
     "server/tables/migrations/versions/0001_all_tables.py:upgrade",
 }

@@ -168,8 +168,8 @@ def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
         "limits act: they decide in part how it swims",
     )
     bounded = (
-        ("mach", "largest Mach number", found.mach, "", units.FASTEST, fast),
-        ("limited", "node steps at a limit", found.limited, "share", units.LIMITED, limited),
+        ("mach", "largest Mach number", found.mach, "", units.MAX_MACH, fast),
+        ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limited),
         ("impulse", "net impulse on the fluid", found.impulse, "lattice units", IMPULSE,
          "it pushes itself" + pushed),
     )  # fmt: skip
