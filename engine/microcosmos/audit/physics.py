@@ -163,13 +163,11 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
 def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
     """The quantities of the simulation itself, some with a largest value."""
     pushed = "" if scene.coupling.force_free else ": this form of the coupling lets it"
-    fast, limited = (
-        "the flow is so fast that it is compressible",
-        "limits act: they decide in part how it swims",
-    )
+    fast = "the flow is so fast that it is compressible"
+    limits = "limits act: they decide in part how it swims"
     bounded = (
         ("mach", "largest Mach number", found.mach, "", units.MAX_MACH, fast),
-        ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limited),
+        ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limits),
         ("impulse", "net impulse on the fluid", found.impulse, "lattice units", IMPULSE,
          "it pushes itself" + pushed),
     )  # fmt: skip
