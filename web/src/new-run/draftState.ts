@@ -15,7 +15,7 @@ import {
 } from "../store/draft";
 import { dismissToast, offerUndo } from "../store/toasts";
 import { setQuery } from "../store/router";
-import { changedPaths } from "./form/changes";
+import { changedPaths } from "./form/document";
 import { withInitial } from "./initialCreatures";
 import { addressed, load, ofPreset } from "./sources";
 import { text } from "./text";
