@@ -107,7 +107,7 @@ const NO_X: readonly number[] = [];
 const oneLinePerRun = (curves: Columns): Plot[] =>
   scoresOf(curves).map((plot) => ({ ...plot, series: plot.series.slice(0, 1) }));
 
-export interface Compared {
+interface Compared {
   run: Run;
   name: string;
   /** Index of the line's colour and dash. */
@@ -126,7 +126,7 @@ const FIGURES: Written[] = [
   [text.device, (run) => run.device ?? DASH],
 ];
 
-export function Figures({ runs }: { runs: Compared[] }) {
+function Figures({ runs }: { runs: Compared[] }) {
   const rows = FIGURES.map(([title, write]) => ({ title, values: runs.map(({ run }) => write(run)) }));
   return (
     <Card id="figures" title={text.figures}>
@@ -135,7 +135,7 @@ export function Figures({ runs }: { runs: Compared[] }) {
   );
 }
 
-export function Specs({ runs }: { runs: Compared[] }) {
+function Specs({ runs }: { runs: Compared[] }) {
   const specs = runs.map(({ run }) => run.spec);
   const differing = useMemo(() => differences(specs), specs);
   const rows = differing.map(({ path, values }) => ({ title: path, values: values.map(written) }));

@@ -155,8 +155,8 @@ export function readSeeds(input: string): { seeds: number; problem: string | nul
 }
 
 /** The largest number of runs in one request. */
-export const MOST = 1000;
+const MOST = 1000;
 
 /** True if an experiment depends on a random seed. */
-export const hasSeed = ({ schema }: Experiment) =>
+const hasSeed = ({ schema }: Experiment) =>
   "seed" in ((schema.properties ?? {}) as Record<string, Json>);

@@ -2,8 +2,8 @@ import { describe, expect, it } from "vitest";
 import { NO_CURVES } from "../../store/curves";
 import type { Run } from "../../api/types";
 import { ticksOf } from "../../charts/plot/scale";
-import { placeOf } from "./fold";
-import { courseOf } from "./learning";
+import { placeOf } from "./FoldPlayer";
+import { courseOf } from "./LearningRun";
 
 describe("a course", () => {
   const curves = (summary: Record<string, number[]>) => ({ ...NO_CURVES, generation: [1, 2, 3], summary });

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { ResultRow, Run } from "../../api/types";
 import { figuresOf, keyFigureOf } from "../figures";
-import { timeLines } from "./scaling";
+import { timeLines } from "./ScalingRun";
 
 const row = (values: Partial<ResultRow>): ResultRow => ({ creature: null, ...values });
 
