@@ -7,19 +7,6 @@ import { complaint, leavesOf, typed } from "./form/document";
 import type { Leaf, Section } from "./form/fields";
 import { text } from "./text";
 
-export interface SweepForm {
-  seeded: boolean;
-  seeds: string;
-  axes: readonly Axis[];
-  name: string;
-  fields: readonly Leaf[];
-  problems: { seeds: string | null; axes: (string | null)[]; total: string | null };
-  total: number;
-  /** The request; null for a single run or invalid values. */
-  sent: SweepRequest | null;
-  change: (change: Partial<Typed>) => void;
-}
-
 interface Typed {
   seeds: string;
   axes: readonly Axis[];
@@ -29,13 +16,15 @@ interface Typed {
 const SINGLE: Typed = { seeds: "1", axes: [], name: "" };
 
 /** Keep typed values while the spec changes; report fields that no longer exist. */
-export function useSweepForm(form: Section, spec: Spec, experiment: Experiment): SweepForm {
+export function useSweepForm(form: Section, spec: Spec, experiment: Experiment) {
   const [typed, setTyped] = useState(SINGLE);
   useEffect(() => setTyped(SINGLE), [experiment]);
   const read = useMemo(() => readAll(form, spec, hasSeed(experiment), typed), [form, spec, typed]);
   const change = (next: Partial<Typed>) => setTyped((now) => ({ ...now, ...next }));
   return { ...typed, ...read, change };
 }
+
+export type SweepForm = ReturnType<typeof useSweepForm>;
 
 function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   const fields = sweepable(form, spec);
@@ -50,7 +39,8 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   const right = !problem && !many && readings.every((one) => one.problem === null);
   const grid = Object.fromEntries(typed.axes.map(({ path }, i) => [path, readings[i]!.values]));
   const wanted = right && (total > 1 || typed.axes.length > 0);
-  const sent = wanted ? { spec, seeds, grid, name: typed.name.trim() || null } : null;
+  // A single run is no sweep.
+  const sent: SweepRequest | null = wanted ? { spec, seeds, grid, name: typed.name.trim() || null } : null;
   return { seeded, fields, problems, total, sent };
 }
 
@@ -158,5 +148,4 @@ export function readSeeds(input: string): { seeds: number; problem: string | nul
 const MOST = 1000;
 
 /** True if an experiment depends on a random seed. */
-const hasSeed = ({ schema }: Experiment) =>
-  "seed" in ((schema.properties ?? {}) as Record<string, Json>);
+const hasSeed = ({ schema }: Experiment) => "seed" in ((schema.properties ?? {}) as Record<string, Json>);
