@@ -60,7 +60,7 @@ SHAPED = (
 install_import_hook([f"microcosmos.{name}" for name in SHAPED], "beartype.beartype")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 
-from microcosmos import bodies, filaments, spec, world  # noqa: E402
+from microcosmos import genomes, spec, world  # noqa: E402
 from microcosmos.build import build_world  # noqa: E402
 
 
@@ -91,44 +91,46 @@ def immerse():
     return put
 
 
-@pytest.fixture
-def chain():
-    """A function that makes a straight filament with nodes one cell apart."""
+@pytest.fixture(scope="session")
+def require_slope():
+    """A function that compares a gradient with central differences along a random direction.
 
-    def straight(nodes):
-        return bodies.chain(nodes, 1.0)
+    The directional derivative is returned.
+    """
 
-    return straight
-
-
-@pytest.fixture
-def ring():
-    """A function that makes a closed filament with nodes one cell apart."""
-
-    def closed(nodes):
-        return bodies.ring(nodes, 1.0)
-
-    return closed
-
-
-@pytest.fixture
-def erratic():
-    """A function that draws large rest angles and lengths anew every 20 steps."""
-
-    def gait(body, steps, dtype, seed=0):
+    def compare(value, inputs, *, h=1e-6, rtol=1e-6, seed=0, along=None):
         random = np.random.default_rng(seed)
-        draws = -(-steps // 20)
-        turn = random.uniform(-1, 1, (draws, len(body.joints)))
-        change = random.uniform(-0.3, 0.3, (draws, len(body.edges)))
-        rest = _rest(body, turn, dtype, change)
-        return jax.tree.map(lambda x: jnp.repeat(x, 20, 0)[:steps], rest)
+        if along is None:
+            along = jax.tree.map(lambda x: jnp.asarray(random.normal(size=x.shape)), inputs)
+        both = jax.jit(jax.value_and_grad(value))
+        products = jax.tree.map(lambda g, d: jnp.sum(g * d), both(inputs)[1], along)
+        slope = sum(jax.tree.leaves(products))
+        ahead, behind = (
+            both(jax.tree.map(lambda x, d, s=step: x + s * d, inputs, along))[0]
+            for step in (h, -h)
+        )
+        np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), rtol=rtol)
+        return slope
 
-    return gait
+    return compare
 
 
-def _rest(body, turn, dtype, change=0.0):
-    """Rest shapes over time: `turn` added to angles, lengths stretched by `change`."""
-    length = body.rest_length[None] * (1 + change * np.ones((len(turn), len(body.edges))))
-    return filaments.Rest(
-        jnp.asarray(body.rest_angle[None] + turn, dtype), jnp.asarray(length, dtype)
-    )
+@pytest.fixture(scope="session")
+def network_of():
+    """A function that makes a CPPN from its links, activations and biases."""
+
+    def make(links, inputs, activations, biases, *, dtype="float32", room=(12, 16)):
+        genes, names = genomes.empty(*room), list(genomes.ACTIVATIONS)
+        used, count = inputs + len(activations), len(links)
+        genes.node_used[:used], genes.node_id[:used] = True, np.arange(used)
+        genes.activation[inputs:used] = [names.index(name) for name in activations]
+        genes.bias[inputs:used] = biases
+        genes.connection_used[:count] = genes.enabled[:count] = True
+        genes.innovation[:count] = np.arange(count)
+        genes.source[:count], genes.target[:count] = np.transpose(list(links))
+        genes.weight[:count] = list(links.values())
+        return jax.tree.map(
+            lambda x: jnp.asarray(x, dtype if x.dtype == np.float32 else None), genes
+        )
+
+    return make

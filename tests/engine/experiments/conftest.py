@@ -107,7 +107,7 @@ def specs():
 
 
 @pytest.fixture(scope="session")
-def course_of():
+def course_of(carry_out):
     """A function that gives the whole run of a spec by its name in `SPECS`."""
 
     @cache
@@ -120,18 +120,18 @@ def course_of():
             pytest.skip(f"{PACKAGES[name]} is not installed: make peers, make tensorneat")
         spec = parse(document)
         experiment = build(spec)
-        return Course(*_carried_out(experiment), experiment, spec)
+        return Course(*carry_out(experiment), experiment, spec)
 
     return course
 
 
-@pytest.fixture(scope="session")
-def course(course_of):
-    """The search that fills an archive."""
-    return course_of("quality-diversity")
+@pytest.fixture(scope="module")
+def course(request, course_of):
+    """The whole run of the module's `EXPERIMENT`, or of the search that fills an archive."""
+    return course_of(getattr(request.module, "EXPERIMENT", "quality-diversity"))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def experiment(course):
     return course.experiment
 
@@ -149,16 +149,16 @@ def small():
 @pytest.fixture(scope="session")
 def carry_out():
     """A function that gives states and reports of a whole run, the initial state first."""
-    return _carried_out
 
+    def run(experiment):
+        states, reports = [experiment.init()], []
+        while not experiment.done(states[-1]):
+            state, report = experiment.advance(states[-1])
+            states.append(state)
+            reports.append(report)
+        return states, reports
 
-def _carried_out(experiment):
-    states, reports = [experiment.init()], []
-    while not experiment.done(states[-1]):
-        state, report = experiment.advance(states[-1])
-        states.append(state)
-        reports.append(report)
-    return states, reports
+    return run
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""A sweep of gaits: its rows, what they agree with, and what has no numbers."""
+"""A sweep of gaits: its rows, their agreement with creatures, and rows without numbers."""
 
 import json
 import math
@@ -17,14 +17,7 @@ from microcosmos.spec import EXPERIMENTS
 from microcosmos.viz.replay import FRAMES, interval
 
 
-@pytest.fixture(scope="module")
-def course(course_of):
-    return course_of("gaits")
-
-
-@pytest.fixture(scope="module")
-def sweep(course):
-    return course.experiment
+EXPERIMENT = "gaits"
 
 
 def file_of(row):
@@ -79,15 +72,15 @@ def test_soft_actuators_have_a_larger_sperm_number(course):
     assert len(set(paper)) == 1
 
 
-def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
-    stroke = sweep.strokes[0]
+def test_a_simulation_that_does_not_stay_finite_has_no_numbers(experiment):
+    stroke = experiment.strokes[0]
     names = search.STROKE_MEASURES
     values = np.ones((3, len(names)), np.float32)
     values[1, names.index("mach")] = np.nan
     values[2, names.index("mach")] = 2.0
     found = search.Evaluation(*map(jnp.asarray, (values[:, 0], values, np.array([0, 1, 2]))))
     found = jax.device_get(found)
-    broken = Gaits(sweep.spec, (replace(stroke, program=None),), 3, sweep.device)
+    broken = Gaits(experiment.spec, (replace(stroke, program=None),), 3, experiment.device)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "evaluate_blocks", lambda *_, **__: found)
         state, report = broken.advance(broken.init())
@@ -102,8 +95,8 @@ def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
     assert broken.restore(broken.save(state)) == state
 
 
-def test_the_spacing_that_warns_is_the_widest(sweep):
-    assert all(stroke.spacing <= units.WIDEST for stroke in sweep.strokes)
+def test_the_spacing_that_warns_is_the_widest(experiment):
+    assert all(stroke.spacing <= units.WIDEST for stroke in experiment.strokes)
 
 
 @pytest.mark.fast

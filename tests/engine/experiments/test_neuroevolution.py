@@ -12,14 +12,7 @@ from microcosmos.build.experiments import begun
 from microcosmos.spec import parse
 
 
-@pytest.fixture(scope="module")
-def course(course_of):
-    return course_of("neuroevolution")
-
-
-@pytest.fixture(scope="module")
-def experiment(course):
-    return course.experiment
+EXPERIMENT = "neuroevolution"
 
 
 @pytest.fixture(scope="module")

@@ -16,12 +16,10 @@ from microcosmos.search import MEASURES
 from microcosmos.spec import parse
 
 
-@pytest.fixture(scope="module")
-def course(course_of):
-    return course_of("refinement")
+EXPERIMENT = "refinement"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def spec(course):
     return course.spec
 
