@@ -8,6 +8,7 @@ without optimising. What is marked `optimised` is about the very bits that come 
 import hashlib
 import os
 import platform
+import signal
 from pathlib import Path
 
 QUICK = (
@@ -60,8 +61,11 @@ SHAPED = (
 install_import_hook([f"microcosmos.{name}" for name in SHAPED], "beartype.beartype")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 
-from microcosmos import genomes, spec, world  # noqa: E402
-from microcosmos.build import build_world  # noqa: E402
+from typer.testing import CliRunner  # noqa: E402
+
+from microcosmos import cli, genomes, spec, world  # noqa: E402
+from microcosmos.archive import creature  # noqa: E402
+from microcosmos.build import build, build_world  # noqa: E402
 
 
 @pytest.fixture
@@ -82,8 +86,8 @@ def dtype(request):
 def immerse():
     """A function that puts a body at rest in the middle of a fluid at rest."""
 
-    def put(body, dtype, *, viscosity, size=(64, 64), magic="capped", **coupling):
-        place = spec.World(width=size[0], height=size[1], viscosity=viscosity, magic=magic)
+    def put(body, dtype, *, viscosity, size=(64, 64), fluid=True, **coupling):
+        place = spec.World(width=size[0], height=size[1], viscosity=viscosity, fluid=fluid)
         box = build_world(place, spec.Coupling(**coupling), body, dtype)
         positions = body.positions - body.positions.mean(0) + np.array(size) / 2
         return box, world.at_rest(box, jnp.asarray(positions, dtype))
@@ -93,23 +97,25 @@ def immerse():
 
 @pytest.fixture(scope="session")
 def require_slope():
-    """A function that compares a gradient with central differences along a random direction.
+    """A function that compares a gradient with central differences along random directions.
 
-    The directional derivative is returned.
+    Other directions can be given. The slope along the last one is returned.
     """
 
-    def compare(value, inputs, *, h=1e-6, rtol=1e-6, seed=0, along=None):
+    def compare(value, inputs, *, h=1e-6, rtol=1e-6, seed=0, directions=()):
         random = np.random.default_rng(seed)
-        if along is None:
-            along = jax.tree.map(lambda x: jnp.asarray(random.normal(size=x.shape)), inputs)
+        inputs = jax.tree.map(np.asarray, inputs)
         both = jax.jit(jax.value_and_grad(value))
-        products = jax.tree.map(lambda g, d: jnp.sum(g * d), both(inputs)[1], along)
-        slope = sum(jax.tree.leaves(products))
-        ahead, behind = (
-            both(jax.tree.map(lambda x, d, s=step: x + s * d, inputs, along))[0]
-            for step in (h, -h)
-        )
-        np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), rtol=rtol)
+        gradient = jax.device_get(both(inputs)[1])
+        anywhere = jax.tree.map(lambda x: random.normal(size=x.shape), inputs)
+        for along in directions or [anywhere]:
+            ahead, behind = (
+                both(jax.tree.map(lambda x, d, s=step: x + s * d, inputs, along))[0]
+                for step in (h, -h)
+            )
+            products = jax.tree.map(lambda g, d: np.sum(g * d), gradient, along)
+            slope = sum(jax.tree.leaves(products))
+            np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), rtol=rtol)
         return slope
 
     return compare
@@ -134,3 +140,41 @@ def network_of():
         )
 
     return make
+
+
+@pytest.fixture(scope="session")
+def best():
+    """The creature file of the best of two random creatures."""
+    chosen = spec.parse(
+        {
+            "experiment": "quality-diversity",
+            "world": {"width": 32, "height": 32},
+            "body": {"nodes": 8},
+            "control": {"period": 20},
+            "task": {"steps": 40},
+            "search": {"generations": 1, "batch": 2, "block": 2},
+        }
+    )
+    experiment = build(chosen)
+    return creature.parse(experiment.best(experiment.advance(experiment.init())[0]))
+
+
+@pytest.fixture
+def invoke(tmp_path, monkeypatch):
+    """A function that runs a command in this process and returns its output on one line.
+
+    The working folder is empty; signal handlers and JAX stay as the tests have them.
+    """
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "1000")
+    monkeypatch.setattr("microcosmos.device.prepare", lambda **_: None)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+
+    def run(*arguments, code=0):
+        done = CliRunner().invoke(cli.app, [str(argument) for argument in arguments])
+        assert done.exit_code == code, done.output
+        return " ".join(done.output.split())
+
+    yield run
+    for number, handler in before.items():
+        signal.signal(number, handler)

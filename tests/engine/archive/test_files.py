@@ -8,15 +8,13 @@ import signal
 from io import BytesIO
 
 import h5py
-import jax
 import numpy as np
 import pytest
 
 from microcosmos.archive import creature, creature_h5, export, file
 from microcosmos.archive.atomic import write_whole
-from microcosmos.build import build
 from microcosmos.naming import decode
-from microcosmos.spec import parse, shape
+from microcosmos.spec import shape
 
 
 @pytest.mark.fast
@@ -84,45 +82,27 @@ def test_a_write_that_fails_leaves_the_old_file_and_nothing_beside_it(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-SPEC = parse(
-    {
-        "experiment": "quality-diversity",
-        "world": {"width": 32, "height": 32},
-        "body": {"nodes": 8},
-        "task": {"steps": 20},
-        "search": {"generations": 1, "batch": 2, "block": 2},
-    }
-)
-
-
-@pytest.fixture(scope="module")
-def file():
-    with jax.numpy_rank_promotion("raise"):
-        experiment = build(SPEC)
-        return creature.parse(experiment.best(experiment.advance(experiment.init())[0]))
-
-
-def test_it_gives_back_the_file_it_was_made_of(file):
-    credited = {**file, "credit": ["Ada", "Bob"], "licence": "CC0-1.0"}
-    assert creature_h5.load(creature_h5.dump(file)) == file
+def test_it_gives_back_the_file_it_was_made_of(best):
+    credited = {**best, "credit": ["Ada", "Bob"], "licence": "CC0-1.0"}
+    assert creature_h5.load(creature_h5.dump(best)) == best
     assert creature_h5.load(creature_h5.dump(credited)) == credited
 
 
-def test_the_same_creature_gives_the_same_bytes(file):
-    shuffled = json.loads(json.dumps(dict(reversed(file.items()))))
-    assert creature_h5.dump(creature.parse(shuffled)) == creature_h5.dump(file)
+def test_the_same_creature_gives_the_same_bytes(best):
+    shuffled = json.loads(json.dumps(dict(reversed(best.items()))))
+    assert creature_h5.dump(creature.parse(shuffled)) == creature_h5.dump(best)
 
 
-def test_body_genes_and_figures_are_arrays(file):
-    genome, body = file["identity"]["genome"], shape(creature.scene_of(file).body)
-    with h5py.File(BytesIO(creature_h5.dump(file)), "r") as found:
-        assert found.attrs["sha256"].decode() == file["sha256"]
+def test_body_genes_and_figures_are_arrays(best):
+    genome, body = best["identity"]["genome"], shape(creature.scene_of(best).body)
+    with h5py.File(BytesIO(creature_h5.dump(best)), "r") as found:
+        assert found.attrs["sha256"].decode() == best["sha256"]
         np.testing.assert_array_equal(found["body/positions"], body.positions)
         weights = found["genome/connections/weight"]
         np.testing.assert_array_equal(weights, decode(genome["connections"]["weight"]))
         names = [name.decode() for name in found["genome/nodes/activation"]]
         assert names == list(genome["nodes"]["activation"])
-        measured = file["measured"]
+        measured = best["measured"]
         assert found["measured/fitness"][()] == measured["fitness"]
         for group in ("measures", "descriptors"):
             arrays = {name: item[()] for name, item in found[f"measured/{group}"].items()}
@@ -147,28 +127,28 @@ NAMES = [
 NAMES += ["measures", "1/2 é", " ", "%2E", "x" * 100_000]
 
 
-def test_names_that_could_be_paths_are_names(file):
+def test_names_that_could_be_paths_are_names(best):
     measures = {name: float(number) for number, name in enumerate(NAMES)}
-    measured = {**file["measured"], "measures": {**file["measured"]["measures"], **measures}}
-    named = creature.parse({**file, "measured": measured})
+    measured = {**best["measured"], "measures": {**best["measured"]["measures"], **measures}}
+    named = creature.parse({**best, "measured": measured})
     data = creature_h5.dump(named)
     assert creature_h5.load(data) == named
     assert len({creature_h5.link(name) for name in NAMES}) == len(NAMES)
     with h5py.File(BytesIO(data), "r") as found:
-        assert found["measured/fitness"][()] == file["measured"]["fitness"]
+        assert found["measured/fitness"][()] == best["measured"]["fitness"]
         group = found["measured/measures"]
         assert {name: group[creature_h5.link(name)][()] for name in NAMES} == measures
 
 
-def test_a_creature_has_a_limited_number_of_measures(file):
-    many = {**file["measured"]["measures"], **{f"f{i}": 0.0 for i in range(1000)}}
+def test_a_creature_has_a_limited_number_of_measures(best):
+    many = {**best["measured"]["measures"], **{f"f{i}": 0.0 for i in range(1000)}}
     with pytest.raises(creature.CreatureError, match="at most 1000") as caught:
-        creature.parse({**file, "measured": {**file["measured"], "measures": many}})
+        creature.parse({**best, "measured": {**best["measured"], "measures": many}})
     assert caught.value.field == "measured.measures"
 
 
-def test_what_was_never_measured_is_left_out(file):
-    bare = creature.parse(creature.document(file["identity"], None, None))
+def test_what_was_never_measured_is_left_out(best):
+    bare = creature.parse(creature.document(best["identity"], None, None))
     data = creature_h5.dump(bare)
     assert creature_h5.load(data) == bare
     with h5py.File(BytesIO(data), "r") as found:
@@ -181,8 +161,8 @@ def test_other_bytes_are_refused(data):
         creature_h5.load(data)
 
 
-def test_a_file_that_was_tampered_with_is_refused(file):
-    changed = {**file, "sha256": "0" * 64}
+def test_a_file_that_was_tampered_with_is_refused(best):
+    changed = {**best, "sha256": "0" * 64}
     with pytest.raises(creature.CreatureError, match="sha256"):
         creature_h5.load(creature_h5.dump(changed))
 
@@ -190,8 +170,8 @@ def test_a_file_that_was_tampered_with_is_refused(file):
 @pytest.mark.parametrize(
     "link", [h5py.ExternalLink("other.h5", "/"), h5py.SoftLink("/identity")]
 )
-def test_what_lies_elsewhere_is_refused(file, link):
-    stored = BytesIO(creature_h5.dump(file))
+def test_what_lies_elsewhere_is_refused(best, link):
+    stored = BytesIO(creature_h5.dump(best))
     with h5py.File(stored, "r+") as found:
         del found["body/positions"]
         found["body/positions"] = link

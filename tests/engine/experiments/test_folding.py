@@ -17,7 +17,6 @@ from microcosmos.spec import parse
 from microcosmos.viz.figures import experiments
 from microcosmos.viz.replay_file import read_replay
 
-
 EXPERIMENT = "folding"
 
 

@@ -16,7 +16,6 @@ from microcosmos.experiments.gaits import Gaits
 from microcosmos.spec import EXPERIMENTS
 from microcosmos.viz.replay import FRAMES, interval
 
-
 EXPERIMENT = "gaits"
 
 

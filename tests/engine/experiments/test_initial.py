@@ -1,15 +1,11 @@
 """A run from the command line that begins from creatures in files."""
 
 import json
-import signal
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from microcosmos import device
 from microcosmos.archive import creature, creature_h5, file
-from microcosmos.cli import app
 from microcosmos.cli.fork import begun, creatures
 
 
@@ -27,21 +23,14 @@ def best(experiment, course):
 
 
 @pytest.fixture
-def evolve(tmp_path, monkeypatch):
-    """A function that runs the command; signals and JAX stay as the tests have them."""
-    monkeypatch.setattr(device, "prepare", lambda **_: None)
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+def evolve(invoke, tmp_path):
+    """A function that runs the command on a spec."""
 
     def run(spec, *arguments, code=0):
         (tmp_path / "spec.json").write_text(json.dumps(spec.model_dump(mode="json")))
-        command = ["evolve", str(tmp_path / "spec.json"), *map(str, arguments)]
-        done = CliRunner().invoke(app, command)
-        assert done.exit_code == code, done.output
-        return " ".join(done.output.split())
+        return invoke("evolve", "spec.json", *arguments, code=code)
 
-    yield run
-    for number, handler in before.items():
-        signal.signal(number, handler)
+    return run
 
 
 def test_an_archive_gives_the_creature_files_of_its_elites(archive, experiment, course, best):

@@ -11,7 +11,6 @@ from microcosmos.build import build
 from microcosmos.build.experiments import begun
 from microcosmos.spec import parse
 
-
 EXPERIMENT = "neuroevolution"
 
 

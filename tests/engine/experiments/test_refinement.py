@@ -15,7 +15,6 @@ from microcosmos.build import build_cells
 from microcosmos.search import MEASURES
 from microcosmos.spec import parse
 
-
 EXPERIMENT = "refinement"
 
 

@@ -1,9 +1,11 @@
-"""What modules of one's own declare, and what is wrong with those that are not loaded."""
+"""Modules of one's own: what they declare, what is refused, and their commands."""
 
 import importlib.util
+import json
 import os
 import sys
 from hashlib import sha256
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -163,3 +165,28 @@ def test_errors_of_a_function_are_named_as_its_own(write):
         plugins.Broken, match=r"mine\.far .*, line 5\) failed with AttributeError"
     ):
         plugins.find(("fitness",), "mine.far", one.source)(7, settings={})
+
+
+EXAMPLE = str(Path(__file__).parents[3] / "examples" / "own_task.py")
+
+
+def test_the_declarations_of_a_module_are_listed_with_its_version(invoke):
+    text = invoke("plugins", "--module", EXAMPLE)
+    assert "own_task.straight fitness Straight way in cells (" in text
+    assert "own_task.cross body A cross (" in text
+
+
+@pytest.mark.parametrize("command", ["evolve", "replay", "audit", "refine", "gradient"])
+def test_a_module_that_is_none_ends_a_command_with_the_reason(command, invoke, tmp_path):
+    (tmp_path / "file.json").write_text("{}")
+    (tmp_path / "bad.py").write_text("1 / 0")
+    text = invoke(command, tmp_path / "file.json", "--module", tmp_path / "bad.py", code=2)
+    assert "ZeroDivisionError: division by zero" in text
+
+
+def test_a_spec_that_needs_a_module_says_which_option_gives_it(invoke, tmp_path):
+    spec = {"experiment": "quality-diversity", "task": {"fitness": "own_task.straight"}}
+    (tmp_path / "spec.json").write_text(json.dumps(spec))
+    text = invoke("evolve", tmp_path / "spec.json", code=2)
+    assert "`fitness` must be known, got 'own_task.straight': none is loaded" in text
+    assert "--module" in text

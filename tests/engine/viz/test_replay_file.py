@@ -3,27 +3,12 @@
 import numpy as np
 import pytest
 
-from microcosmos.build import build
-from microcosmos.spec import parse
 from microcosmos.viz.raster import THEMES, frame
 from microcosmos.viz.replay import record
 from microcosmos.viz.replay_file import Replay, ReplayError, read_replay
 
-SPEC = parse(
-    {
-        "experiment": "quality-diversity",
-        "world": {"width": 32, "height": 32},
-        "body": {"nodes": 8},
-        "control": {"period": 20},
-        "task": {"steps": 40},
-        "search": {"generations": 1, "batch": 2, "block": 2},
-    }
-)
 
-
-def test_what_the_simulator_records_is_read_and_drawn():
-    experiment = build(SPEC)
-    best = experiment.best(experiment.advance(experiment.init())[0])
+def test_a_recorded_replay_is_read_and_drawn(best):
     replay = read_replay(record(best))
     assert replay.header["creature"] == best["sha256"]
     assert (replay.frames, replay.size, replay.step(-1 % replay.frames)) == (41, (32, 32), 40)
