@@ -6,9 +6,11 @@ without optimising. What is marked `optimised` is about the very bits that come 
 """
 
 import hashlib
+import json
 import os
 import platform
 import signal
+import struct
 from pathlib import Path
 
 QUICK = (
@@ -70,7 +72,6 @@ from microcosmos.build import build, build_world  # noqa: E402
 
 @pytest.fixture
 def float64():
-    """JAX computes in float64."""
     with jax.enable_x64(True):
         yield jnp.dtype("float64")
 
@@ -143,8 +144,7 @@ def network_of():
 
 
 @pytest.fixture(scope="session")
-def best():
-    """The creature file of the best of two random creatures."""
+def newcomer():
     chosen = spec.parse(
         {
             "experiment": "quality-diversity",
@@ -157,6 +157,37 @@ def best():
     )
     experiment = build(chosen)
     return creature.parse(experiment.best(experiment.advance(experiment.init())[0]))
+
+
+@pytest.fixture(scope="session")
+def replay_bytes():
+    """A function that writes a replay of positions, edges and vorticity levels, all else 0."""
+
+    def write(positions, edges, levels, /, scale=0.01, **change):
+        frames, nodes, _ = positions.shape
+        header = {
+            "format": "microcosmos-replay/2",
+            "frames": frames,
+            "every": 5,
+            "nodes": nodes,
+            "edges": edges,
+            "joints": [],
+            "size": list(levels.shape[1:]),
+            "vorticity": {"scale": scale},
+            "velocity": {"scale": 1.0},
+            "energy": {"scale": 1.0, "frames": 0},
+        }
+        text = json.dumps(header | change).encode()
+        text += b" " * (-len(text) % 4)
+        arrays = (
+            positions.astype("<f4"),
+            np.zeros((frames, len(edges)), "<f4"),
+            levels.astype(np.int8),
+            np.zeros((frames, 2, *levels.shape[1:]), np.int8),
+        )
+        return struct.pack("<I", len(text)) + text + b"".join(x.tobytes() for x in arrays)
+
+    return write
 
 
 @pytest.fixture

@@ -167,20 +167,9 @@ def test_room_for_fewer_genes_than_there_are_is_refused(file):
     )
 
 
-NETWORK = {
-    "nodes": {
-        "id": [0, 1, 2, 3, 4, 9],
-        "activation": ["identity"] * 3 + ["sin", "tanh", "gaussian"],
-        "bias": encode([0, 0, 0, 0.5, -1, 2]),
-    },
-    "connections": {
-        "innovation": [0, 4, 7, 8],
-        "source": [0, 1, 9, 9],
-        "target": [3, 4, 9, 4],
-        "enabled": [True, True, True, True],
-        "weight": encode([1, -2, 0.25, 3]),
-    },
-}
+GENOME = IDENTITY["genome"]
+CYCLE = {"source": [0, 1, 9, 9], "enabled": [True] * 4}
+NETWORK = {"nodes": GENOME["nodes"], "connections": GENOME["connections"] | CYCLE}
 
 
 def document(control, genes):
@@ -246,7 +235,6 @@ def test_a_network_that_grows_has_outputs_for_what_is_free():
 
 
 def one(number, *parents):
-    """A gait of so many steps, with parents."""
     sweep = next(p.spec for p in EXPERIMENTS["gaits"].presets)
     scene = sweep.scene("ours", "worm", 0.5)
     written = scene.model_dump(mode="json")
@@ -274,7 +262,7 @@ def test_a_family_is_taken_apart_as_it_was_put_together():
     assert pedigree.split(young) == (young, [])
 
 
-def test_nobody_comes_along_who_is_no_ancestor():
+def test_a_creature_that_is_no_ancestor_is_refused():
     oldest, stranger = one(40), one(100)
     young = one(80, oldest)
     with pytest.raises(creature.CreatureError, match=r"`ancestors.1` needs an ancestor"):

@@ -82,27 +82,27 @@ def test_a_write_that_fails_leaves_the_old_file_and_nothing_beside_it(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_it_gives_back_the_file_it_was_made_of(best):
-    credited = {**best, "credit": ["Ada", "Bob"], "licence": "CC0-1.0"}
-    assert creature_h5.load(creature_h5.dump(best)) == best
+def test_a_creature_file_survives_hdf5(newcomer):
+    credited = {**newcomer, "credit": ["Ada", "Bob"], "licence": "CC0-1.0"}
+    assert creature_h5.load(creature_h5.dump(newcomer)) == newcomer
     assert creature_h5.load(creature_h5.dump(credited)) == credited
 
 
-def test_the_same_creature_gives_the_same_bytes(best):
-    shuffled = json.loads(json.dumps(dict(reversed(best.items()))))
-    assert creature_h5.dump(creature.parse(shuffled)) == creature_h5.dump(best)
+def test_the_same_creature_gives_the_same_bytes(newcomer):
+    shuffled = json.loads(json.dumps(dict(reversed(newcomer.items()))))
+    assert creature_h5.dump(creature.parse(shuffled)) == creature_h5.dump(newcomer)
 
 
-def test_body_genes_and_figures_are_arrays(best):
-    genome, body = best["identity"]["genome"], shape(creature.scene_of(best).body)
-    with h5py.File(BytesIO(creature_h5.dump(best)), "r") as found:
-        assert found.attrs["sha256"].decode() == best["sha256"]
+def test_body_genes_and_figures_are_arrays(newcomer):
+    genome, body = newcomer["identity"]["genome"], shape(creature.scene_of(newcomer).body)
+    with h5py.File(BytesIO(creature_h5.dump(newcomer)), "r") as found:
+        assert found.attrs["sha256"].decode() == newcomer["sha256"]
         np.testing.assert_array_equal(found["body/positions"], body.positions)
         weights = found["genome/connections/weight"]
         np.testing.assert_array_equal(weights, decode(genome["connections"]["weight"]))
         names = [name.decode() for name in found["genome/nodes/activation"]]
         assert names == list(genome["nodes"]["activation"])
-        measured = best["measured"]
+        measured = newcomer["measured"]
         assert found["measured/fitness"][()] == measured["fitness"]
         for group in ("measures", "descriptors"):
             arrays = {name: item[()] for name, item in found[f"measured/{group}"].items()}
@@ -127,28 +127,31 @@ NAMES = [
 NAMES += ["measures", "1/2 é", " ", "%2E", "x" * 100_000]
 
 
-def test_names_that_could_be_paths_are_names(best):
+def test_names_that_could_be_paths_are_names(newcomer):
     measures = {name: float(number) for number, name in enumerate(NAMES)}
-    measured = {**best["measured"], "measures": {**best["measured"]["measures"], **measures}}
-    named = creature.parse({**best, "measured": measured})
+    measured = {
+        **newcomer["measured"],
+        "measures": {**newcomer["measured"]["measures"], **measures},
+    }
+    named = creature.parse({**newcomer, "measured": measured})
     data = creature_h5.dump(named)
     assert creature_h5.load(data) == named
     assert len({creature_h5.link(name) for name in NAMES}) == len(NAMES)
     with h5py.File(BytesIO(data), "r") as found:
-        assert found["measured/fitness"][()] == best["measured"]["fitness"]
+        assert found["measured/fitness"][()] == newcomer["measured"]["fitness"]
         group = found["measured/measures"]
         assert {name: group[creature_h5.link(name)][()] for name in NAMES} == measures
 
 
-def test_a_creature_has_a_limited_number_of_measures(best):
-    many = {**best["measured"]["measures"], **{f"f{i}": 0.0 for i in range(1000)}}
+def test_a_creature_has_a_limited_number_of_measures(newcomer):
+    many = {**newcomer["measured"]["measures"], **{f"f{i}": 0.0 for i in range(1000)}}
     with pytest.raises(creature.CreatureError, match="at most 1000") as caught:
-        creature.parse({**best, "measured": {**best["measured"], "measures": many}})
+        creature.parse({**newcomer, "measured": {**newcomer["measured"], "measures": many}})
     assert caught.value.field == "measured.measures"
 
 
-def test_what_was_never_measured_is_left_out(best):
-    bare = creature.parse(creature.document(best["identity"], None, None))
+def test_a_creature_without_measurement_has_no_measured_group(newcomer):
+    bare = creature.parse(creature.document(newcomer["identity"], None, None))
     data = creature_h5.dump(bare)
     assert creature_h5.load(data) == bare
     with h5py.File(BytesIO(data), "r") as found:
@@ -161,8 +164,8 @@ def test_other_bytes_are_refused(data):
         creature_h5.load(data)
 
 
-def test_a_file_that_was_tampered_with_is_refused(best):
-    changed = {**best, "sha256": "0" * 64}
+def test_a_file_that_was_tampered_with_is_refused(newcomer):
+    changed = {**newcomer, "sha256": "0" * 64}
     with pytest.raises(creature.CreatureError, match="sha256"):
         creature_h5.load(creature_h5.dump(changed))
 
@@ -170,8 +173,8 @@ def test_a_file_that_was_tampered_with_is_refused(best):
 @pytest.mark.parametrize(
     "link", [h5py.ExternalLink("other.h5", "/"), h5py.SoftLink("/identity")]
 )
-def test_what_lies_elsewhere_is_refused(best, link):
-    stored = BytesIO(creature_h5.dump(best))
+def test_links_out_of_the_file_are_refused(newcomer, link):
+    stored = BytesIO(creature_h5.dump(newcomer))
     with h5py.File(stored, "r+") as found:
         del found["body/positions"]
         found["body/positions"] = link

@@ -39,7 +39,7 @@ def test_a_ray_that_pushes_itself_does_not():
     assert "it pushes itself: this form of the coupling lets it" in verdict["reasons"]
 
 
-@pytest.mark.parametrize("senses", [False, True])
+@pytest.mark.parametrize("senses", [pytest.param(False, marks=pytest.mark.long), True])
 def test_creatures_with_networks_are_audited_too(senses):
     scene = spec.Scene(
         world=spec.World(width=32, height=32, energy=spec.Energy() if senses else None),
@@ -93,7 +93,7 @@ def test_refinement_keeps_the_body_the_gait_and_the_dimensionless_numbers():
     )
 
 
-def test_what_diverges_or_takes_too_long_is_refused():
+def test_an_audit_that_takes_too_long_is_refused():
     scene = GAITS.scene("ours", "worm", 0.5)
     longer = scene.model_copy(update={"task": spec.Task(steps=1_000_000)})
     with pytest.raises(creature.CreatureError, match=r"task\.steps"):
@@ -111,7 +111,6 @@ SCENE = {
 
 @pytest.fixture(scope="module")
 def file():
-    """A creature that nobody has measured."""
     scene = spec.Scene.model_validate(SCENE)
     encoding = build_encoding(scene, (8, 8))
     newcomer = jax.tree.map(np.asarray, encoding.newcomer(key=jax.random.key(1)))
@@ -129,6 +128,6 @@ def test_the_report_agrees_with_finite_differences_and_tells_of_time_and_starts(
     assert report.limited == 0
 
 
-def test_what_a_creature_has_not_is_refused(file):
+def test_a_derivative_by_absent_genes_is_refused(file):
     with pytest.raises(ValueError, match="`by` must be of"):
         gradient(file, by=("weights",))

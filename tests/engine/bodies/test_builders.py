@@ -193,7 +193,7 @@ def test_a_networkx_graph_becomes_its_body():
         (lambda: bodies.together([]), "at least one body"),
     ],
 )
-def test_what_cannot_be_built_is_refused(build, reason):
+def test_measures_that_make_no_body_are_refused(build, reason):
     with pytest.raises(ValueError, match=reason):
         build()
 
@@ -218,7 +218,7 @@ def test_the_mean_square_distance_of_ends_is_that_of_a_freely_rotating_chain():
     assert abs(found / expected - 1) < 0.06
 
 
-def test_it_may_cross_itself_where_other_bodies_may_not():
+def test_a_walk_may_cross_itself_and_other_bodies_may_not():
     body = bodies.walk(300, 0.4, 1.0, 0)
     assert body.crossing
     assert bodies.together([body, body]).crossing

@@ -11,7 +11,6 @@ pytestmark = pytest.mark.fast
 
 
 def change(name, index, value):
-    """A chain of six nodes with one entry changed."""
     body = bodies.chain(6, 1.0)
     array = getattr(body, name).copy()
     array[index] = value
@@ -19,7 +18,6 @@ def change(name, index, value):
 
 
 def two(**changed):
-    """Two chains in one world, with arrays replaced."""
     pair = bodies.together([bodies.chain(4, 1.0), bodies.placed(bodies.chain(4, 1.0), (2, 5))])
     return lambda: replace(pair, **changed)
 

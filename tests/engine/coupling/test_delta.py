@@ -248,7 +248,7 @@ def test_transfers_by_chunks_have_the_gradient_of_the_plain_ones(field, monkeypa
 
 
 @pytest.mark.parametrize("kernel", [coupling.PESKIN, coupling.HAT])
-def test_what_spreading_needs_besides_its_arguments_does_not_grow(kernel):
+def test_the_temporary_memory_of_spreading_is_bounded(kernel):
     size = (64, 64)
 
     def needed(points):

@@ -123,7 +123,6 @@ def test_forcing_can_be_differentiated(scene, require_slope):
 
 @pytest.fixture
 def curved(float64):
-    """Two bent filaments and the normals at their nodes."""
     one = bodies.arc(12, 1.0, 0.4)
     pair = bodies.together([bodies.placed(one, (14.0, 20.0)), bodies.placed(one, (30.0, 24.0))])
     rods, positions = build_rods(pair, float64), jnp.asarray(pair.positions)
@@ -147,7 +146,7 @@ def test_one_layer_is_the_nodes(curved):
 
 
 @pytest.mark.parametrize("layers", [1, 2])
-def test_what_points_have_of_their_node_is_what_the_node_gets_back(layers, curved):
+def test_values_at_points_average_to_the_values_at_nodes(layers, curved):
     _, positions, _ = curved
     back = coupling.at_nodes(coupling.at_points(positions, layers), layers)
     np.testing.assert_allclose(back, positions, rtol=1e-15)
@@ -164,7 +163,6 @@ def test_edges_that_cancel_have_no_normal_and_no_nan(float64):
 
 
 def forced(body, points, target, velocity, rho, layers, limit):
-    """Freed of force and torque of each body."""
     which = groups.Groups(jnp.asarray(body.member), 2).repeated(layers)
 
     @jax.jit
@@ -201,7 +199,7 @@ def test_each_of_two_bodies_exerts_neither_force_nor_torque(layers, limit, curve
         np.testing.assert_allclose(np.sum(x[:, 0] * q[:, 1] - x[:, 1] * q[:, 0]), 0, atol=1e-12)
 
 
-def test_with_layers_the_shape_that_was_asked_for_is_kept(curved):
+def test_layers_keep_the_requested_shape(curved):
     body, positions, normals = curved
     points = coupling.points(positions, normals, 2)
     asked = jnp.asarray(0.05 * np.random.default_rng(0).normal(size=positions.shape))

@@ -6,9 +6,12 @@ from dataclasses import replace
 from functools import cache
 from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 
+from microcosmos.archive import creature
 from microcosmos.build import build
+from microcosmos.build.experiments import begun
 from microcosmos.spec import parse
 
 SMALL = {
@@ -37,7 +40,6 @@ NUMBERS = {"encoding": "direct", "period": 20}
 
 
 def learner(control, **emitter):
-    """A search by one emitter that learns."""
     search = {"generations": 5, "batch": 8, "block": 4, "emitters": [emitter]}
     return TINY | {"control": control, "search": search}
 
@@ -88,7 +90,7 @@ SPECS = {
     },
 }
 PACKAGES = {"cma-me": "qdax", "tensorneat": "tensorneat"}
-"""What some need beside what is installed."""
+"""Optional packages that some runs need."""
 
 
 class Course(NamedTuple):
@@ -102,7 +104,6 @@ class Course(NamedTuple):
 
 @pytest.fixture(scope="session")
 def specs():
-    """The document of each run."""
     return SPECS
 
 
@@ -138,8 +139,6 @@ def experiment(course):
 
 @pytest.fixture(scope="session")
 def small():
-    """A function that makes the small spec, parts of it changed."""
-
     def make(**changes):
         return parse(SMALL | {k: {**SMALL.get(k, {}), **v} for k, v in changes.items()})
 
@@ -163,8 +162,6 @@ def carry_out():
 
 @pytest.fixture(scope="session")
 def finish():
-    """A function that carries a run on to its end; the file."""
-
     def run(experiment, state):
         while not experiment.done(state):
             state, _ = experiment.advance(state)
@@ -175,8 +172,6 @@ def finish():
 
 @pytest.fixture(scope="session")
 def lasting():
-    """A function that gives an experiment another number of generations, and its programs."""
-
     def change(experiment, generations):
         spec = json.loads(experiment.plan.spec)
         spec["search"]["generations"] = generations
@@ -186,3 +181,27 @@ def lasting():
         )
 
     return change
+
+
+@pytest.fixture(scope="session")
+def elite_files():
+    """A function that gives creature files of elites at the end of a run, at most so many."""
+
+    def files(course, most=None):
+        state = course.states[-1]
+        cells = np.flatnonzero(state.elites.occupied).tolist()[:most]
+        return [creature.parse(course.experiment.creature(state, cell)) for cell in cells]
+
+    return files
+
+
+@pytest.fixture(scope="session")
+def forked_from():
+    """A function that gives a run from creatures with the programs of another."""
+
+    def fork(experiment, chosen, files):
+        text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
+        plan = replace(experiment.plan, spec=text, generations=chosen.search.generations)
+        return replace(experiment, plan=begun(plan, chosen, files))
+
+    return fork

@@ -2,7 +2,6 @@
 
 import json
 
-import numpy as np
 import pytest
 
 from microcosmos.archive import creature, creature_h5, file
@@ -11,7 +10,6 @@ from microcosmos.cli.fork import begun, creatures
 
 @pytest.fixture(scope="module")
 def archive(experiment, course, tmp_path_factory):
-    """The small run's file."""
     path = tmp_path_factory.mktemp("beginning") / "archive.h5"
     path.write_bytes(experiment.save(course[0][-1]))
     return path
@@ -24,8 +22,6 @@ def best(experiment, course):
 
 @pytest.fixture
 def evolve(invoke, tmp_path):
-    """A function that runs the command on a spec."""
-
     def run(spec, *arguments, code=0):
         (tmp_path / "spec.json").write_text(json.dumps(spec.model_dump(mode="json")))
         return invoke("evolve", "spec.json", *arguments, code=code)
@@ -33,12 +29,9 @@ def evolve(invoke, tmp_path):
     return run
 
 
-def test_an_archive_gives_the_creature_files_of_its_elites(archive, experiment, course, best):
-    state = course[0][-1]
-    cells = np.flatnonzero(state.elites.occupied).tolist()
-    found = creatures(archive)
-    assert found == [creature.parse(experiment.creature(state, cell)) for cell in cells]
-    assert best in found
+def test_an_archive_gives_the_creature_files_of_its_elites(archive, course, best, elite_files):
+    assert creatures(archive) == elite_files(course)
+    assert best in creatures(archive)
 
 
 def test_a_creature_is_read_as_json_or_hdf5(best, tmp_path):
@@ -77,7 +70,7 @@ def test_a_spec_that_names_creatures_takes_only_those_of_the_files(
     assert "--from needs the creatures that `search.initial` names; got none of 0000" in text
 
 
-def test_what_cannot_be_begun_from_is_refused(small, archive, evolve, tmp_path):
+def test_a_file_without_fitting_creatures_is_refused(small, archive, evolve, tmp_path):
     (tmp_path / "note.txt").write_text("a note")
     (tmp_path / "broken.h5").write_bytes(archive.read_bytes()[:2000])
     for name in ("note.txt", "broken.h5"):

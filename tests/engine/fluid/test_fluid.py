@@ -113,7 +113,7 @@ def test_empty_surroundings_compile_to_collision_and_streaming_alone(float64):
 
 
 @pytest.mark.parametrize("direction", range(1, 9))
-def test_what_would_enter_a_wall_comes_back_the_way_it_came(direction, float64):
+def test_walls_reverse_populations(direction, float64):
     solid = jnp.zeros(SIZE, bool).at[5, 5].set(True)
     f, surroundings = random_populations(), fluid.Surroundings(solid=solid)
     f = without_fluid_in(solid, f)

@@ -26,8 +26,6 @@ def none_before(monkeypatch):
 
 @pytest.fixture
 def write(tmp_path):
-    """A function that writes a module's file."""
-
     def write(text, name="mine.py"):
         (tmp_path / name).write_text(text)
         return tmp_path / name
@@ -56,7 +54,7 @@ def test_a_file_that_is_loaded_again_takes_the_place_of_what_it_was(write):
         plugins.find(("fitness",), "mine.far", first.source)
 
 
-def test_what_runs_is_what_the_hash_is_of_though_the_clock_stood_still(write, monkeypatch):
+def test_a_module_changed_within_a_second_is_loaded_anew(write, monkeypatch):
     """Python would take what it compiled of a file of the same size and second."""
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     for value in ("1", "2"):
@@ -105,7 +103,7 @@ def test_a_file_that_broke_leaves_what_was_loaded_of_it(write):
         (HEAD + '@plugins.encoding("e", title="E")\ndef e(g, c): ...', "must be at least 1"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_with_a_module_is_said_and_ends_nobody(write, text, words):
+def test_a_module_with_a_mistake_is_reported_and_others_load(write, text, words):
     file = write(text)
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         plugins.load(file)
@@ -124,7 +122,7 @@ def test_two_modules_of_one_name_are_refused(write, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["mine.txt", "none.py"])
-def test_what_is_no_python_file_is_refused(write, name):
+def test_a_file_that_is_not_python_is_refused(write, name):
     write(ONE, "mine.txt")
     with pytest.raises(ValueError, match="must be a Python file"):
         plugins.load(name)

@@ -15,8 +15,6 @@ from microcosmos.spec import Control
 
 @pytest.fixture
 def loss(immerse, network_of):
-    """A function that makes, for a precision, the function to differentiate and its inputs."""
-
     def make(dtype, **form):
         body, random = bodies.chain(24, 1.0), np.random.default_rng(0)
         ends = [(0, 3), (1, 3), (2, 3), (1, 4), (2, 4), (0, 5), (1, 5), (5, 3), (5, 4)]

@@ -20,7 +20,6 @@ def swim(box, start, rest):
 
 @pytest.fixture
 def wild(immerse, float64):
-    """A filament that is asked to fold up at once."""
     body = bodies.chain(24, 1.0)
     box, start = immerse(body, float64, viscosity=0.1, size=(48, 48))
     turn = np.random.default_rng(0).uniform(-1, 1, len(body.joints))
@@ -122,8 +121,6 @@ FORM = {"projection": "force", "theta_feedback": 0, "limits": False}
 
 @pytest.fixture
 def dry(immerse, float64):
-    """A function that makes a chain without a fluid, and rest shapes of many steps."""
-
     def make(angle, steps, **form):
         body = bodies.chain(9, 1.0)
         given = {"viscosity": 0.05, "size": (48, 48), "fluid": False} | FORM | form

@@ -73,7 +73,7 @@ def test_large_pictures_are_made_small_enough_for_a_spec(tmp_path):
     assert targets.png(tmp_path / "large.png").shape == (targets.MOST, targets.MOST // 2)
 
 
-def test_what_is_no_picture_or_shows_nothing_is_refused(tmp_path):
+def test_a_file_that_shows_nothing_is_refused(tmp_path):
     (tmp_path / "text.png").write_bytes(b"no picture")
     Image.fromarray(np.full((3, 3), 255, np.uint8)).save(tmp_path / "white.png")
     with pytest.raises(ValueError, match="must be a picture"):

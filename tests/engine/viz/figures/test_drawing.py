@@ -34,7 +34,6 @@ TINY = {
 
 @pytest.fixture(scope="module")
 def archive(tmp_path_factory):
-    """The file of a small run."""
     path = tmp_path_factory.mktemp("run") / "tiny.h5"
     assert local.evolve(spec.parse(TINY), path)
     return path
