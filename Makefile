@@ -12,8 +12,8 @@ WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist 
 # Tests start hundreds of processes, which need not read all sources anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run install web test test-all test-long mutants check peers bench acceptance validate pictures docs texts \
-	release-check lock
+.PHONY: run install web style-python style-page test test-all test-long mutants check peers bench \
+	acceptance validate pictures docs texts release-check lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -36,13 +36,19 @@ web/dist/index.html: $(WEB_SOURCES) | install
 	@$(NPM) ci --silent
 	@$(NPM) run --silent build
 
-STYLE = $(BIN)/ruff format --check . && $(BIN)/ruff check . \
-	&& PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright && $(BIN)/lint-imports \
-	&& $(BIN)/python web/scripts/openapi.py | diff - web/openapi.json \
-	&& $(NPM) run --silent generated && $(NPM) run --silent check && $(NPM) test --silent
+# Style, types and import rules of Python and of the page, at the same time.
+STYLE = $(MAKE) --no-print-directory -j2 -Otarget style-python style-page
+
+style-python: install
+	@$(BIN)/ruff format --check . && $(BIN)/ruff check . && $(BIN)/lint-imports
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright
+
+style-page: install web
+	@$(BIN)/python web/scripts/openapi.py | diff - web/openapi.json
+	@$(NPM) run --silent generated && $(NPM) run --silent check && $(NPM) test --silent
 
 check: install web
-	$(STYLE)
+	@$(STYLE)
 	$(BIN)/pytest -m fast tests/engine
 
 # `make test` is everything essential; `make test-all` adds the tests marked `long` (see

@@ -31,8 +31,8 @@ from .estimates import routes as queue_api
 from .events import routes as events_api
 from .events.fanout import Hub
 from .forks import routes as forks_api
-from .maintenance import health, metrics_routes
-from .maintenance.metrics import Counting, Requests
+from .maintenance import routes as health_api
+from .maintenance.metrics import CountRequests, Metrics
 from .maintenance.reconcile import reconciling
 from .renderings import measurement_routes as measurements_api
 from .renderings import routes as renderings_api
@@ -75,8 +75,8 @@ def create_app(services: Services) -> FastAPI:
         open_share=partial(open_share, services),
     )
     app.add_middleware(Discretion, share_header=HEADER)
-    app.state.requests = requests = Requests()
-    app.add_middleware(Counting, requests=requests)
+    app.state.metrics = metrics = Metrics(services)
+    app.add_middleware(CountRequests, metrics=metrics)
     api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
     for noun in (
         experiments_api,
@@ -96,13 +96,14 @@ def create_app(services: Services) -> FastAPI:
         workers_api,
         queue_api,
         tokens_api,
+        health_api,
     ):
         api.include_router(noun.router)
     api.include_router(_description(app))
     api.include_router(nowhere.router, dependencies=[MAY_READ])
     app.include_router(api)
-    app.include_router(metrics_routes.router)
-    for public in (health.router, share_page.router, page.router):
+    app.include_router(health_api.outside)
+    for public in (share_page.router, page.router):
         app.include_router(public, dependencies=[PUBLIC])
     return app
 

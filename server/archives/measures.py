@@ -8,7 +8,7 @@ from typing import Literal
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
-from microcosmos.spec import Own, used
+from microcosmos.spec import PluginVersion, plugins_in
 from microcosmos.spec.measures import MEASURES
 
 from ..core.errors import ProblemError
@@ -41,27 +41,27 @@ def recorded(session: Session, run: Run) -> list[Measure]:
     one = select(Creature.measured).join(Elite, Elite.creature == Creature.sha256)
     measured = session.scalars(one.where(Elite.run_id == run.id).limit(1)).first()
     names = measured["measures"] if measured else list(MEASURES)
-    mine = {one.name: one.own for one in used(run.spec)}
+    mine = {one.name: one.version for one in plugins_in(run.spec)}
     ends = {axis.name: axis for axis in axes(run)}
     return [
         _told(name, mine.get(name), ends.get(name))
-        for name in dict.fromkeys((*names, *_own_axes(run)))
+        for name in dict.fromkeys((*names, *_plugin_axes(run)))
     ]
 
 
-def _own_axes(run: Run) -> list[str]:
-    """Descriptors of users' own, which are recorded as well."""
-    return [axis["name"] for axis in run.spec["archive"]["descriptors"] if axis.get("own")]
+def _plugin_axes(run: Run) -> list[str]:
+    """Names of plug-in descriptors, which are recorded as well."""
+    return [axis["name"] for axis in run.spec["archive"]["descriptors"] if axis.get("plugin")]
 
 
-def _told(name: str, own: Own | None, axis: Axis | None) -> Measure:
+def _told(name: str, plugin: PluginVersion | None, axis: Axis | None) -> Measure:
     """A measure under its title; one that is not known any more is told by its name."""
     known = MEASURES.get(name)
-    if own is not None:
+    if plugin is not None:
         low, high = (axis.low, axis.high) if axis else (None, None)
         scale = axis.scale if axis else "linear"
         return Measure(
-            name=name, title=own.title, unit=own.unit, low=low, high=high, scale=scale
+            name=name, title=plugin.title, unit=plugin.unit, low=low, high=high, scale=scale
         )
     if known is None:
         title = name.replace("_", " ").capitalize()

@@ -7,7 +7,8 @@ from uuid import UUID
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from ..core.sizes import size
+from microcosmos.sizes import size
+
 from ..queue.order import in_order
 from ..services.services import Services
 from ..specs.stored import known

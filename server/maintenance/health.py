@@ -1,57 +1,181 @@
-"""Routes of liveness and readiness."""
+"""Health report: what the server finds out about its database, disk, Redis and queues."""
 
+import shutil
+import time
+from pathlib import Path
 from typing import Literal
+from urllib.parse import urlsplit
+from uuid import uuid4
 
-from fastapi import APIRouter, Response
+import psutil
 from redis import RedisError
 from sqlalchemy import text
 from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
 
-from ..core import page
+from microcosmos.version import VERSION
+
 from ..core.schemas import Wire
-from ..services.deps import ServicesDep
 from ..services.services import Services
+from ..tables import migrations
+from ..workers import registry
 
-router = APIRouter(tags=["health"])
+PROBE = bytes(4096)
 Answer = Literal["ok", "unreachable"]
 
 
-class Health(Wire):
-    status: Literal["ok"] = "ok"
-    help: bool
-    """The documentation is served at `/help/`."""
+class DatabaseHealth(Wire):
+    """The database, and the migration that its tables have."""
+
+    dialect: str
+    version: str | None
+    location: str
+    """Host and database, or the file; never a password."""
+    reachable: bool
+    error: str | None
+    revision: str | None
+    """None before the first start."""
+    newest_revision: str
+    """The revision that this version of the server knows as the last one."""
 
 
-class Readiness(Wire):
-    database: Answer
-    redis: Answer
+class DiskHealth(Wire):
+    """The store of checkpoints and renderings."""
+
+    location: str
+    free_bytes: int | None
+    """None where the store is not a folder of this machine, as `total_bytes`."""
+    total_bytes: int | None
+    file_system: str | None
+    writable: bool
+    write_seconds: float | None
+    """Seconds that 4096 bytes took to reach the disk."""
+    error: str | None
 
 
-@router.get("/healthz")
-def alive() -> Health:
-    return Health(help=page.HELP.is_dir())
+class RedisHealth(Wire):
+    location: str
+    reachable: bool
+    error: str | None
+    version: str | None
+    policy: str | None
+    """`maxmemory-policy`; with any but `noeviction` a full Redis drops jobs."""
 
 
-@router.get("/readyz", responses={503: {"model": Readiness}})
-def ready(services: ServicesDep, response: Response) -> Readiness:
-    found = Readiness(database=_database(services), redis=_redis(services))
-    if "unreachable" in (found.database, found.redis):
-        response.status_code = 503
-    return found
+class HealthReport(Wire):
+    version: str
+    database: DatabaseHealth
+    disk: DiskHealth
+    redis: RedisHealth
+    queues: dict[str, int]
+    """Jobs that wait, by queue; empty where Redis does not answer."""
+    workers: dict[str, int]
+    """Live workers by status; empty where the database does not answer."""
 
 
-def _database(services: Services) -> Answer:
+def database_answers(session: Session) -> Answer:
     try:
-        with services.sessions.read() as session:
-            session.execute(text("SELECT 1"))
+        session.execute(text("SELECT 1"))
     except SQLAlchemyError:
         return "unreachable"
     return "ok"
 
 
-def _redis(services: Services) -> Answer:
+def redis_answers(services: Services) -> Answer:
     try:
         services.redis.ping()
     except RedisError:
         return "unreachable"
     return "ok"
+
+
+def database(services: Services) -> DatabaseHealth:
+    engine = services.sessions.engine
+    url = engine.url
+    revision, version, error = None, None, None
+    try:
+        revision = migrations.revision(services.sessions)
+        with services.sessions.read() as session:
+            found = "sqlite_version()" if url.get_backend_name() == "sqlite" else "version()"
+            version = session.execute(text(f"SELECT {found}")).scalar_one()
+    except SQLAlchemyError as failed:
+        error = str(getattr(failed, "orig", None) or failed)
+    return DatabaseHealth(
+        dialect=url.get_backend_name(),
+        version=version,
+        location=f"{url.host or ''}{'/' if url.host else ''}{url.database or ''}",
+        reachable=error is None,
+        error=error,
+        revision=revision,
+        newest_revision=migrations.newest(),
+    )
+
+
+def disk(services: Services) -> DiskHealth:
+    """Write a small file to the store and delete it."""
+    store = services.artifacts
+    path, seconds, error = f"probe-{uuid4().hex}", None, None
+    started = time.monotonic()
+    try:
+        store.write(path, PROBE)
+        seconds = time.monotonic() - started
+        store.delete(path)
+    except Exception as failed:  # Each kind of store has errors of its own.
+        error = f"{type(failed).__name__}: {failed}"
+    folder = Path(store.root) if store.local else None
+    there = folder and next(one for one in (folder, *folder.parents) if one.exists())
+    usage = there and shutil.disk_usage(there)
+    return DiskHealth(
+        location=str(store.root),
+        free_bytes=usage.free if usage else None,
+        total_bytes=usage.total if usage else None,
+        file_system=_file_system(there) if there else None,
+        writable=error is None,
+        write_seconds=seconds,
+        error=error,
+    )
+
+
+def _file_system(folder: Path) -> str | None:
+    holding = [
+        mount
+        for mount in psutil.disk_partitions(all=True)
+        if folder.resolve().is_relative_to(mount.mountpoint)
+    ]
+    nearest = max(holding, key=lambda mount: len(mount.mountpoint), default=None)
+    return nearest.fstype if nearest else None
+
+
+def redis(services: Services) -> RedisHealth:
+    address = urlsplit(services.settings.redis_url)
+    info, error = {}, None
+    try:
+        info = dict(services.redis.info())  # pyright: ignore
+    except RedisError as failed:
+        error = str(failed)
+    return RedisHealth(
+        location=f"{address.hostname or address.path}:{address.port or 6379}",
+        reachable=error is None,
+        error=error,
+        version=info.get("redis_version"),
+        policy=info.get("maxmemory_policy"),
+    )
+
+
+def report(services: Services) -> HealthReport:
+    found, messages = database(services), redis(services)
+    workers: dict[str, int] = {}
+    if found.reachable:
+        with services.sessions.read() as session:
+            live = registry.live(session, services.settings.lease)
+        workers = {
+            status: sum(one.status == status for one in live) for status in ("idle", "busy")
+        }
+    return HealthReport(
+        version=VERSION,
+        database=found,
+        disk=disk(services),
+        redis=messages,
+        queues=services.jobs.lengths() if messages.reachable else {},
+        workers=workers,
+    )

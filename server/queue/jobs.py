@@ -1,4 +1,4 @@
-"""The queues: messages that a run or a rendering is to be made. The truth is in SQL."""
+"""Job queues: messages that a run or a rendering is to be computed. The truth is in SQL."""
 
 import logging
 import re
@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from hashlib import sha256
 from typing import Any
-from uuid import UUID
 
 from redis import Redis, RedisError
 from redis.backoff import ExponentialBackoff
@@ -19,25 +18,24 @@ from rq.results import Result
 from rq.serializers import JSONSerializer
 from rq.utils import as_text
 
-from ..tables import AUDIT, MEASUREMENT, REPLAY, Run
+from ..tables import AUDIT, MEASUREMENT, REPLAY
 
 log = logging.getLogger(__name__)
 
-EVOLVE = "worker.jobs.evolve"
+EVOLVE = "worker.job_process.main"
 RENDER = "worker.jobs.render"
-OWN = "-own-"
-"""Begins the second part of names of queues that only some workers listen to."""
+PLUGINS = "-plugins-"
+"""Between the name of a queue and the hash of the plug-ins that its workers must have."""
 TIMEOUTS = {AUDIT: 3600, MEASUREMENT: 3600}
 RENDER_SECONDS = 600
-"""How long a rendering may take, those of `TIMEOUTS` aside."""
-KEPT: Any = {"result_ttl": 0, "failure_ttl": 3600}
-"""Seconds for which Redis keeps what became of a run's job."""
-FAILURE_KEPT = 60
-"""Seconds for which a failed rendering is remembered, before it may be tried again."""
+"""Time limit of the renderings that `TIMEOUTS` does not name."""
+FAILURE_SECONDS = 60
+"""Redis keeps a failed rendering so long; then it may be tried again."""
+NAMES = ("runs", "sweeps", "renderings", "audits")
 
 
 def open_redis(url: str) -> Redis:
-    """A client that gives up soon, so that nobody waits long for a Redis that is gone."""
+    """Return a client that soon gives up on a Redis that does not answer."""
     retry = Retry(ExponentialBackoff(cap=0.5), 2)
     return Redis.from_url(url, socket_timeout=5, socket_connect_timeout=2, retry=retry)
 
@@ -49,46 +47,49 @@ class Jobs:
         self.redis = redis
         self.slug = re.sub(r"[^\w-]", "-", prefix)
         self.runs, self.sweeps, self.renderings, self.audits = (
-            self._queue(f"{prefix}{name}")
-            for name in ("runs", "sweeps", "renderings", "audits")
+            self._queue(f"{prefix}{name}") for name in NAMES
         )
 
     @property
     def evolving(self) -> list[Queue]:
-        """Where runs wait that every worker can carry out, in the order in which workers look.
+        """Queues of runs that every worker can compute, in the order in which workers look.
 
-        Runs of sweeps wait aside, so that a hundred of them hold up nobody's single run.
+        Sweeps have a queue of their own, so that a hundred runs hold up nobody's single run.
         """
         return [self.runs, self.sweeps]
 
-    def evolve(
-        self, run_id: UUID, of_sweep: bool = False, plugin_versions: Sequence[str] | None = None
-    ) -> None:
-        """Ask for a run to be computed, in place of any earlier request."""
-        self.forget(str(run_id))
-        queue = self.evolving_with(plugin_versions, of_sweep)
-        queue.enqueue(EVOLVE, str(run_id), job_id=str(run_id), job_timeout=-1, **KEPT)
-
     def enqueue(self, runs: Iterable[Any]) -> None:
-        """Enqueue runs by `id`, `sweep` and `plugin_versions`.
+        """Enqueue runs, given by `id`, `sweep` and `plugin_versions`, in their order.
 
-        Where Redis does not answer they stay queued in SQL, and the reconciler enqueues them.
+        A job replaces any earlier one of its run. Where Redis does not answer the runs stay
+        queued in SQL, and the reconciler enqueues them.
         """
+        names: dict[Queue, list[str]] = {}
+        for run in runs:
+            queue = self.evolving_with(run.plugin_versions, run.sweep is not None)
+            names.setdefault(queue, []).append(str(run.id))
         try:
-            for run in runs:
-                self.evolve(run.id, run.sweep is not None, run.plugin_versions)
+            for queue, some in names.items():
+                self._replace(queue, some)
         except RedisError as error:
             log.warning("runs stay queued until Redis answers: %s", error)
 
-    def evolve_new(self, runs: Iterable[Run]) -> None:
-        """Ask for runs of a sweep that were never asked for, in their order."""
-        jobs: dict[Queue, list[Any]] = {}
-        for run in runs:
-            queue, name = self.evolving_with(run.plugin_versions, of_sweep=True), str(run.id)
-            job = Queue.prepare_data(EVOLVE, (name,), job_id=name, timeout=-1, **KEPT)
-            jobs.setdefault(queue, []).append(job)
-        for queue, some in jobs.items():
-            queue.enqueue_many(some)
+    def _replace(self, queue: Queue, names: Sequence[str]) -> None:
+        for job in Job.fetch_many(names, self.redis, JSONSerializer):
+            if job:
+                self._forget(job)
+        data = [
+            Queue.prepare_data(
+                EVOLVE, (name,), job_id=name, timeout=-1, result_ttl=0, failure_ttl=3600
+            )
+            for name in names
+        ]
+        with self.redis.pipeline() as pipeline:
+            # In one transaction: another process may enqueue the same run at the same time.
+            for name in names:
+                pipeline.lrem(queue.key, 0, name)
+            queue.enqueue_many(data, pipeline=pipeline)
+            pipeline.execute()
 
     def render(
         self,
@@ -96,13 +97,9 @@ class Jobs:
         kind: str = REPLAY,
         meta: dict[str, Any] | None = None,
         *,
-        patient: bool = False,
+        anonymous: bool = False,
     ) -> None:
-        """Ask for a rendering to be made.
-
-        Replays come first, unless who asks is `patient`: somebody waits to watch. What takes
-        minutes has a queue of its own.
-        """
+        """Enqueue a rendering. Replays go first, unless the holder of a share orders them."""
         job_id = self.rendering_id(creature, kind)
         self.forget(job_id)
         queue = self.audits if kind in TIMEOUTS else self.renderings
@@ -111,20 +108,20 @@ class Jobs:
             creature,
             kind,
             job_id=job_id,
-            at_front=kind == REPLAY and not patient,
+            at_front=kind == REPLAY and not anonymous,
             job_timeout=TIMEOUTS.get(kind, RENDER_SECONDS),
             result_ttl=0,
-            failure_ttl=FAILURE_KEPT,
+            failure_ttl=FAILURE_SECONDS,
             meta=meta,
         )
 
     def give_up(self, job: Job, reason: str) -> None:
-        """Count a job as failed that its worker can say nothing about any more."""
-        self.forget(job.id)
+        """Count a job as failed whose worker cannot report any more."""
+        self._forget(job)
         job.set_status(JobStatus.FAILED)
         with self.redis.pipeline() as pipeline:
-            job.failed_job_registry.add(job, FAILURE_KEPT, reason, pipeline)
-            Result.create_failure(job, FAILURE_KEPT, reason, pipeline=pipeline)
+            job.failed_job_registry.add(job, FAILURE_SECONDS, reason, pipeline)
+            Result.create_failure(job, FAILURE_SECONDS, reason, pipeline=pipeline)
             pipeline.execute()
 
     def rendering_id(self, creature: str, kind: str = REPLAY) -> str:
@@ -137,49 +134,61 @@ class Jobs:
         return None
 
     def forget(self, job_id: str) -> None:
+        if job := self.find(job_id):
+            self._forget(job)
+
+    def _forget(self, job: Job) -> None:
         """Remove a job with every trace of its executions.
 
-        RQ's own way raises where a worker died: what it knows of an execution expires
-        before the entry that leads there.
+        RQ's own way raises where a worker died: the data of an execution expires before the
+        entry that leads to it.
         """
-        if job := self.find(job_id):
-            executions = job.execution_registry
-            for execution in executions.get_execution_ids():
-                self.redis.zrem(job.started_job_registry.key, f"{job_id}:{execution}")
-            self.redis.delete(executions.key)
-            # A job that ends at this moment deletes itself.
-            with suppress(InvalidJobOperation):
-                job.delete()
+        executions = job.execution_registry
+        for execution in executions.get_execution_ids():
+            self.redis.zrem(job.started_job_registry.key, f"{job.id}:{execution}")
+        self.redis.delete(executions.key)
+        with suppress(InvalidJobOperation):  # A job that ends now deletes itself.
+            job.delete()
 
     def evolving_with(self, plugin_versions: Sequence[str] | None, of_sweep: bool) -> Queue:
-        """Where runs wait that need these versions of users' own modules: only workers that
-        have them listen."""
+        """Return the queue of runs that need these plug-ins: workers that have them listen."""
         queue = self.sweeps if of_sweep else self.runs
         if not plugin_versions:
             return queue
         name = sha256("".join(sorted(plugin_versions)).encode()).hexdigest()[:16]
-        return self._queue(f"{queue.name}{OWN}{name}")
+        return self._queue(f"{queue.name}{PLUGINS}{name}")
 
     def evolving_anywhere(self) -> list[Queue]:
-        """All queues of runs that Redis knows."""
+        """Return all queues of runs that Redis knows."""
         found = [as_text(name) for name in self.redis.smembers(Queue.redis_queues_keys)]  # pyright: ignore
         names = [name.removeprefix(Queue.redis_queue_namespace_prefix) for name in found]
-        ours = tuple(queue.name + OWN for queue in self.evolving)
-        own = sorted(name for name in names if name.startswith(ours))
-        return [*self.evolving, *map(self._queue, own)]
+        ours = tuple(queue.name + PLUGINS for queue in self.evolving)
+        special = sorted(name for name in names if name.startswith(ours))
+        return [*self.evolving, *map(self._queue, special)]
+
+    def _all(self) -> list[Queue]:
+        return [*self.evolving_anywhere(), self.renderings, self.audits]
 
     def _queue(self, name: str) -> Queue:
         return Queue(name, connection=self.redis, serializer=JSONSerializer)
 
     def runs_at_hand(self) -> set[str]:
-        """Jobs of runs that wait in the queue or that a worker has taken."""
+        """Return the ids of runs that wait in a queue or that a worker has taken."""
         found: set[str] = set()
         for queue in self.evolving_anywhere():
             started = queue.started_job_registry.get_job_ids(cleanup=False)
             found |= {*queue.get_job_ids(), *started}
         return found
 
+    def lengths(self) -> dict[str, int]:
+        """Return the number of jobs that wait, by name; queues with plug-ins are added up."""
+        lengths: dict[str, int] = dict.fromkeys(NAMES, 0)
+        for queue in self._all():
+            kind = next(one for one in NAMES if queue.name.startswith(getattr(self, one).name))
+            lengths[kind] += len(queue)
+        return lengths
+
     def clean(self) -> None:
-        """Drop jobs whose worker has died; idle workers do it too, but none may be idle."""
-        for queue in (*self.evolving_anywhere(), self.renderings, self.audits):
+        """Drop jobs whose worker has died. Idle workers do it too, but none may be idle."""
+        for queue in self._all():
             clean_registries(queue)

@@ -1,4 +1,4 @@
-"""The order in which queued runs are taken, and putting them back into their queue."""
+"""The order of queued runs, and their return to the queue."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -24,7 +24,7 @@ def in_order(session: Session, *where: Any) -> Sequence[QueuedRun]:
 
 
 def requeue(sessions: Sessions, jobs: Jobs, *run_ids: UUID) -> None:
-    """Enqueue those of some runs that are queued."""
+    """Enqueue those of the runs that are queued."""
     with sessions.read() as session:
         found = in_order(session, Run.id.in_(run_ids))
     jobs.enqueue(found)

@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session
 
 from ..core.errors import ProblemError
 from ..creatures.schemas import Rendering
-from ..queue.jobs import FAILURE_KEPT
+from ..queue.jobs import FAILURE_SECONDS
 from ..services.services import Services
 from ..storage import ranges
 from ..tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP, Creature
@@ -38,18 +38,18 @@ def kept(
     return ranges.file(request, services.artifacts, artifact, headers, MEDIA_TYPES[kind])
 
 
-def ordered(services: Services, sha: str, kind: str, *, patient: bool = False) -> Response:
+def ordered(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
     """Says that a rendering is being made, or why it cannot be.
 
-    Strangers, who are `patient`, are not told why: words of errors may name files and hosts.
+    The holder of a share is not told why: the words of errors may name files and hosts.
     """
     try:
-        renderings.order(services, sha, kind, patient=patient)
+        renderings.order(services, sha, kind, anonymous=anonymous)
     except renderings.RenderingFailed as error:
-        why = "" if patient else f": {error}"
+        why = "" if anonymous else f": {error}"
         detail = f"The {WORDS.get(kind, kind)} could not be made{why}. "
         detail += "It can be tried again in a minute."
-        headers = {"Retry-After": str(FAILURE_KEPT)}
+        headers = {"Retry-After": str(FAILURE_SECONDS)}
         raise ProblemError(500, "Rendering failed", detail, headers=headers) from error
     return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})
 

@@ -29,7 +29,7 @@ def _reader(kind: str) -> Callable[..., Response]:
         there = kept(request, row, session, services, kind)
         if there is None and share and kind != REPLAY:
             raise ProblemError(404, "Not found", f"The share holds no {WORDS[kind]} of it.")
-        return there or ordered(services, row.sha256, kind, patient=share is not None)
+        return there or ordered(services, row.sha256, kind, anonymous=share is not None)
 
     read.__name__ = f"read_{kind.replace('.', '_')}"
     read.__doc__ = f"The {WORDS.get(kind, kind)}, or 202 while it is made."
@@ -63,4 +63,4 @@ def read_motion(
 ) -> Response:
     """The body's motion alone, of the same recording as the replay; or 202 while it is made."""
     there = kept_motion(request, row, session, services)
-    return there or ordered(services, row.sha256, REPLAY, patient=share is not None)
+    return there or ordered(services, row.sha256, REPLAY, anonymous=share is not None)

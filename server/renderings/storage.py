@@ -36,11 +36,11 @@ def find(session: Session, creature: str, kind: str = REPLAY) -> Artifact | None
 
 
 def order(
-    services: Services, creature: str, kind: str = REPLAY, *, patient: bool = False
+    services: Services, creature: str, kind: str = REPLAY, *, anonymous: bool = False
 ) -> None:
     """Have a rendering made, once; `RenderingFailed` says why the last try gave none.
 
-    Who is `patient` waits behind everybody else, and asks again where many wait already.
+    An `anonymous` order waits behind all others, and is put off where many wait already.
     """
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     status = job.get_status(refresh=False) if job else None
@@ -50,8 +50,8 @@ def order(
         result = job.latest_result()
         text = (result.exc_string if result else None) or "the renderer ended without a word"
         raise RenderingFailed(REFUSAL.sub("", _reason(text)))
-    if not (patient and services.jobs.renderings.count >= STRANGERS):
-        services.jobs.render(creature, kind, patient=patient)
+    if not (anonymous and services.jobs.renderings.count >= STRANGERS):
+        services.jobs.render(creature, kind, anonymous=anonymous)
 
 
 def underway(services: Services, creature: str, kind: str) -> bool:

@@ -78,7 +78,7 @@ def read_targets(run: RunDep) -> list[Target]:
         raise ProblemError(404, "No pictures", detail)
     chosen = parse(run.spec)
     assert isinstance(chosen, Folding)
-    longest = min(chosen.size, targets.MOST)
+    longest = min(chosen.size, targets.MAX_PIXELS)
     fitted = [(one.name, targets.fitted(one.ink, longest)) for one in chosen.targets]
     return [
         Target(

@@ -39,7 +39,7 @@ class OneCell:
     """The smallest archive, as far as an estimate looks at it."""
 
     cells: int = 1
-    own: dict[str, Any] = field(default_factory=dict)
+    plugins: dict[str, Any] = field(default_factory=dict)
 
 
 def memory_limit(services: Services, session: Session) -> int:

@@ -99,7 +99,7 @@ def read_preview(
     """Return a picture of the creature, or of the best of the archive; 202 while it is made."""
     cover = session.get_one(Creature, share.cover)
     there = reading.kept(request, cover, session, services, PREVIEW)
-    return there or reading.ordered(services, share.cover, PREVIEW, patient=True)
+    return there or reading.ordered(services, share.cover, PREVIEW, anonymous=True)
 
 
 Limit = Annotated[int, Query(ge=1, le=200)]

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from microcosmos import spec as words
-from microcosmos.spec import Spec, Used, used
+from microcosmos.spec import PluginUse, Spec, plugins_in
 
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
@@ -34,7 +34,8 @@ def parsing(services: Services) -> Iterator[Parse]:
 
 def _parse(known: Reported, document: Mapping[str, Any]) -> Spec:
     spec = words.parse(document, known)
-    unknown = [one for one in used(spec.model_dump(mode="json")) if not _knows(known, one)]
+    complete = spec.model_dump(mode="json")
+    unknown = [one for one in plugins_in(complete) if not _knows(known, one)]
     if unknown:
         errors = [_unknown(known, one) for one in unknown]
         detail = "; ".join(f"{error.field}: {error.message}" for error in errors)
@@ -42,12 +43,12 @@ def _parse(known: Reported, document: Mapping[str, Any]) -> Spec:
     return spec
 
 
-def _knows(known: Reported, one: Used) -> bool:
-    return any((one.name, one.own.source) == (d.name, d.source) for d in known.known)
+def _knows(known: Reported, one: PluginUse) -> bool:
+    return any((one.name, one.version.source) == (d.name, d.source) for d in known.known)
 
 
-def _unknown(known: Reported, one: Used) -> FieldError:
+def _unknown(known: Reported, one: PluginUse) -> FieldError:
     there = sorted({d.source[:12] for d in known.known if d.name == one.name})
     have = f"workers have {', '.join(there)}" if there else HELP
-    message = f"no worker has {one.name!r} in version {one.own.source[:12]}; {have}"
-    return FieldError(field=one.path, message=message, got=one.own.source)
+    message = f"no worker has {one.name!r} in version {one.version.source[:12]}; {have}"
+    return FieldError(field=one.path, message=message, got=one.version.source)

@@ -1,4 +1,4 @@
-"""Schemas of experiments with what workers have of users' own among the choices."""
+"""Schemas of experiments with the plug-ins of workers among the choices."""
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
@@ -6,15 +6,15 @@ from functools import cache
 from typing import Any
 
 from microcosmos.plugins import Declaration
-from microcosmos.spec import OwnControl
+from microcosmos.spec import PluginControl
 
 Schema = dict[str, Any]
 Having = Callable[[str], list[str]]
 """From a version to the names of the workers that have it."""
 
 
-def with_own(schema: Schema, offered: Sequence[Declaration], having: Having) -> Schema:
-    """The same with more choices; each is told under `own` with who has it."""
+def with_plugins(schema: Schema, offered: Sequence[Declaration], having: Having) -> Schema:
+    """The same with more choices; `plugins` lists the workers that offer each."""
     whole = deepcopy(schema)
     parts = whole.get("$defs", {})
     kinds = {kind: [one for one in offered if one.kind in kind] for kind in CHOICES}
@@ -42,13 +42,13 @@ def _choose(
     """More words for a choice, their units, and settings that go with some of them."""
     properties = owner["properties"]
     properties[field]["enum"] += [one.name for one in mine]
-    properties[field]["own"] = {one.name: _told(one, having) for one in mine}
+    properties[field]["plugins"] = {one.name: _told(one, having) for one in mine}
     for other in properties.values():
         if other.get("unit_of") == field:
             other["units"] |= {one.name: one.unit for one in mine}
     settings = {one.name: _settings(one, parts) for one in mine if one.settings}
     if settings:
-        properties["own"] = {"settings_of": field, "parts": settings}
+        properties["plugin"] = {"settings_of": field, "parts": settings}
 
 
 def _part(one: Declaration, tag: str, parts: Schema, having: Having) -> Schema:
@@ -58,22 +58,22 @@ def _part(one: Declaration, tag: str, parts: Schema, having: Having) -> Schema:
     if one.kind == "encoding":
         properties |= deepcopy(_actuation())
     if one.settings:
-        properties["own"] = _settings(one, parts)
+        properties["plugin"] = _settings(one, parts)
     about = [
         told["about"] or f"{one.title}.",
-        f"Of one's own: on {', '.join(told['workers'])}.",
+        f"Plug-in on {', '.join(told['workers'])}.",
     ]
     return {
         "type": "object",
         "title": one.title,
         "description": " ".join(about),
         "properties": properties,
-        "own": told,
+        "plugin": told,
     }
 
 
 def _settings(one: Declaration, parts: Schema) -> Schema:
-    """What stands at `own`: the settings, shown as if they were fields beside it."""
+    """The schema of `plugin`: the settings, shown as if they were fields beside it."""
     settings = _moved(dict(one.settings or {}), f"{one.name}.")
     for name, part in settings.pop("$defs", {}).items():
         parts[f"{one.name}.{name}"] = part
@@ -101,6 +101,6 @@ def _told(one: Declaration, having: Having) -> Schema:
 
 @cache
 def _actuation() -> Schema:
-    """Fields that every encoding of one's own has."""
-    properties = OwnControl.model_json_schema()["properties"]
-    return {n: part for n, part in properties.items() if n not in ("encoding", "own")}
+    """Fields of every plug-in encoding."""
+    properties = PluginControl.model_json_schema()["properties"]
+    return {n: part for n, part in properties.items() if n not in ("encoding", "plugin")}

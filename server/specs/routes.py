@@ -9,7 +9,7 @@ from microcosmos.spec import EXPERIMENTS, Experiment
 from ..auth.authorize import MAY_READ
 from ..services.deps import ServicesDep, SessionDep
 from ..workers import plugins
-from .plugin_schemas import with_own
+from .plugin_schemas import with_plugins
 from .schemas import ExperimentRead, PresetRead
 
 router = APIRouter(prefix="/experiments", tags=["experiments"])
@@ -17,13 +17,13 @@ router = APIRouter(prefix="/experiments", tags=["experiments"])
 
 @router.get("", dependencies=[MAY_READ])
 def list_experiments(services: ServicesDep, session: SessionDep) -> list[ExperimentRead]:
-    """With what live workers have of users' own among the choices."""
+    """Return the experiments, with the plug-ins of live workers among the choices."""
     known = plugins.reported(services, session)
     offered = known.offered()
     if not offered:
         return built_in()
     return [
-        one.model_copy(update={"schema_": with_own(one.schema_, offered, known.having)})
+        one.model_copy(update={"schema_": with_plugins(one.schema_, offered, known.having)})
         for one in built_in()
     ]
 

@@ -42,7 +42,7 @@ class Artifacts:
             with self.files.open(beside, "wb") as file:
                 file.write(data)
                 file.flush()
-                if self._local:
+                if self.local:
                     os.fsync(file.fileno())
             self._rename(beside, target)
         except BaseException:
@@ -81,7 +81,7 @@ class Artifacts:
             self.files.rm(self._full(path), recursive=True)
 
     def _rename(self, beside: str, target: str) -> None:
-        if not self._local:
+        if not self.local:
             self.files.mv(beside, target)
             return
         Path(beside).replace(target)
@@ -92,7 +92,7 @@ class Artifacts:
             os.close(folder)
 
     @property
-    def _local(self) -> bool:
+    def local(self) -> bool:
         return isinstance(self.files, LocalFileSystem)
 
     def _full(self, path: str) -> str:

@@ -1,10 +1,8 @@
 """From a plan to a sweep and its queued runs, in one transaction."""
 
-import logging
 from datetime import timedelta
 from uuid import UUID
 
-from redis import RedisError
 from sqlalchemy import select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
@@ -19,8 +17,6 @@ from ..tables import LogEntry, Run, Sweep
 from ..workers import plugins
 from .planning import Plan, refuse_origins
 from .steering import announce
-
-log = logging.getLogger(__name__)
 
 
 def submit_sweep(
@@ -39,10 +35,7 @@ def submit_sweep(
             raise
         return known, False
     # Committed before they are enqueued: workers must find the rows.
-    try:
-        services.jobs.evolve_new(runs)
-    except RedisError as error:
-        log.warning("runs of sweep %s stay queued until Redis answers: %s", sweep.id, error)
+    services.jobs.enqueue(runs)
     announce(services, sweep.id)
     return sweep.id, True
 

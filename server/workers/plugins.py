@@ -11,7 +11,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from microcosmos.plugins import Declaration
-from microcosmos.spec import used
+from microcosmos.spec import plugins_in
 
 from ..services.services import Services
 from ..tables import Plugin, Worker
@@ -55,7 +55,7 @@ class Reported:
     def settings(self, declared: Declaration, given: Mapping[str, Any]) -> dict[str, Any]:
         if declared.settings is None:
             if given:
-                raise ValueError(f"`own.settings` must be empty for {declared.name}, got some")
+                raise ValueError(f"`plugin.settings` must be empty for {declared.name}")
             return {}
         whole = {**declared.defaults, **given}
         # Without a registry it would fetch what a schema refers to.
@@ -63,13 +63,14 @@ class Reported:
         try:
             error = next(validator.iter_errors(whole), None)
         except Unresolvable as wrong:
-            raise ValueError(f"`own.settings` of {declared.name} refer to {wrong}") from wrong
+            needed = f"`plugin.settings` of {declared.name} refer to {wrong}"
+            raise ValueError(needed) from wrong
         if error:
-            place = ".".join(map(str, ("own.settings", *error.absolute_path)))
+            place = ".".join(map(str, ("plugin.settings", *error.absolute_path)))
             raise ValueError(f"`{place}` must be as {declared.name} has it: {error.message}")
         return whole
 
-    def nobody(self, kind: str, name: str) -> str:
+    def explain_unknown(self, kind: str, name: str) -> str:
         there = [f"{one.name} on {self._on(one)}" for one in self.offered() if one.kind == kind]
         have = f"; workers have {', '.join(there)}" if there else ""
         return f"no worker has {name!r} as a {kind}{have}; {HELP}"
@@ -84,7 +85,7 @@ def reported(services: Services, session: Session) -> Reported:
 
 def needed_versions(document: Any) -> list[str] | None:
     """Versions that a worker must have for a spec; None where there are none."""
-    return sorted({one.own.source for one in used(document)}) or None
+    return sorted({one.version.source for one in plugins_in(document)}) or None
 
 
 def versions_of(worker: Worker) -> set[str]:
@@ -99,9 +100,9 @@ def fit(worker: Worker | None, needed: Sequence[str] | None) -> bool:
 def missing(alive: Sequence[Worker], document: Any) -> str:
     """A sentence about a run that none of the live workers can carry out."""
     gone = {
-        one.name: one.own.source
-        for one in used(document)
-        if not any(one.own.source in versions_of(worker) for worker in alive)
+        one.name: one.version.source
+        for one in plugins_in(document)
+        if not any(one.version.source in versions_of(worker) for worker in alive)
     }
     if not gone:
         return "Waits for a worker that has all of its own modules; none has them together."

@@ -40,23 +40,18 @@ def example(name, needs="jax"):
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_their_map_elites_evolves_our_creatures():
-    repertoire = example("qdax_map_elites", "qdax").main(generations=2, batch=4, **TINY)
+@pytest.mark.parametrize("emitter", ["iso+line", "neat"])
+def test_their_map_elites_evolves_our_creatures_and_networks(emitter):
+    module = example("qdax_map_elites", "qdax")
+    repertoire = module.main(emitter, generations=3, batch=4, **TINY)
     assert np.isfinite(repertoire.fitnesses).any()
 
 
-@pytest.mark.filterwarnings("ignore")
 def test_their_cma_mega_climbs_our_slopes():
-    module = example("qdax_cma_mega", "qdax")
+    module = example("qdax_map_elites", "qdax")
     longer = {**TINY, "task": {"steps": 80}}
-    repertoire = module.main(generations=4, batch=8, **longer)
+    repertoire = module.main("cma-mega", generations=4, batch=8, **longer)
     assert np.isfinite(repertoire.fitnesses).sum() > 1
-
-
-@pytest.mark.filterwarnings("ignore")
-def test_their_map_elites_evolves_our_networks():
-    repertoire = example("qdax_neat", "qdax").main(generations=3, batch=4, **TINY)
-    assert np.isfinite(repertoire.fitnesses).any()
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -96,25 +91,25 @@ def test_a_rest_shape_is_designed_for_a_viscosity():
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_task_of_ones_own_evolves_and_its_file_says_which_version_it_is(tmp_path):
-    module = example("own_task")
+def test_a_plugin_task_evolves_and_its_file_names_the_version(tmp_path):
+    module = example("plugin_task")
     search = {"generations": 2, "batch": 4, "block": 4}
-    path = module.main(tmp_path / "own.h5", task={"steps": 20}, search=search)
-    source = sha256((EXAMPLES / "own_task.py").read_bytes()).hexdigest()
+    path = module.main(tmp_path / "plugin.h5", task={"steps": 20}, search=search)
+    source = sha256((EXAMPLES / "plugin_task.py").read_bytes()).hexdigest()
     with h5py.File(path) as file:  # Without the module.
         spec, names = (json.loads(bytes(file.attrs[name])) for name in ("spec", "measures"))
         rows, fitness = file["archive/measures"][:], file["archive/fitness"][:]
         sway = file["archive/descriptors"][:, 0]
     for part in (spec["task"], spec["body"], spec["archive"]["descriptors"][0]):
-        assert part["own"]["source"] == source
+        assert part["plugin"]["source"] == source
     values = {name: rows[:, names.index(name)] for name in names}
     straight = values["displacement"] * values["straightness"]
     np.testing.assert_allclose(fitness, straight, rtol=1e-5)
-    np.testing.assert_array_equal(values["own_task.straight"], fitness)
-    np.testing.assert_array_equal(values["own_task.sway"], sway)
+    np.testing.assert_array_equal(values["plugin_task.straight"], fitness)
+    np.testing.assert_array_equal(values["plugin_task.sway"], sway)
     creature = json.loads(path.with_suffix(".best.json").read_bytes())
-    assert creature["identity"]["task"]["fitness"] == "own_task.straight"
-    assert creature["identity"]["task"]["own"]["source"] == source
+    assert creature["identity"]["task"]["fitness"] == "plugin_task.straight"
+    assert creature["identity"]["task"]["plugin"]["source"] == source
     assert creature["identity"]["body"]["builder"] == "graph"
     assert check(parse(creature)).exact
 

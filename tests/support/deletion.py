@@ -5,7 +5,7 @@ from pathlib import Path
 from sqlalchemy import func, select, update
 
 from microcosmos.spec import parse
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.maintenance.reconcile import reconcile
 from server.runs.submission import submit
 from server.tables import (

@@ -13,15 +13,15 @@ import numpy as np
 from .. import device, neat, search, spec
 from ..archive.initial import counters, genes_of
 from ..experiments import Experiment, reevaluation
-from ..experiments.evolution import Evolution, Programs
-from ..experiments.learning import Lessons
+from ..experiments.evolution import Evolution
+from ..experiments.offspring import Lessons, Programs
 from ..experiments.state import InitialCreatures, Limits, Plan, Reevaluation
 from ..search.emitters.tensorneat import TensorNeat
 from .cells import build_cells
 from .creatures import build_block, build_disturbed_block, frame
 from .emitters import build_emitters
 from .folding import build_folding
-from .plugins import measures_of, own_of
+from .plugins import measures_of, plugin_versions
 from .refinement import build_refinement
 from .scene import build_encoding, build_task
 from .tables import build_gaits, build_scaling
@@ -75,11 +75,13 @@ def build_lessons(
     def lessons(words: spec.Emitter, emitter: search.Emitter) -> Lessons | None:
         if not isinstance(emitter, search.emitters.Learner):
             return None
-        segment, options = getattr(words, "segment", None), device.compiler_options()
+        segment = getattr(words, "segment", None)
         return Lessons(
             number=emitter.lessons,
             asks=jax.jit(emitter.asks),
-            slopes=search.slopes_program(task, descriptors, segment, options),
+            slopes=search.block_program(
+                lambda one: search.slopes(task, one, descriptors, segment)
+            ),
             learn=jax.jit(emitter.learn),
         )
 
@@ -123,7 +125,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         reevaluation=build_reevaluation(chosen),
         force_free=chosen.coupling.force_free,
         measures=measures_of(scene),
-        own=own_of(scene),
+        plugins=plugin_versions(scene),
     )
 
 

@@ -12,10 +12,10 @@ from ..bodies import swimmers
 
 def build_measures(scene: spec.Scene) -> tuple[search.Measure, ...]:
     """What is measured of a scene's creatures beside the usual measures, by name."""
-    task, found = scene.task, dict(scene.own)
+    task, found = scene.task, dict(scene.plugins)
     kinds = dict.fromkeys(found, "descriptor")
-    if task.own is not None:
-        found[task.fitness], kinds[task.fitness] = task.own, "fitness"
+    if task.plugin is not None:
+        found[task.fitness], kinds[task.fitness] = task.plugin, "fitness"
     return tuple(_measure(kinds[name], name, found[name]) for name in sorted(found))
 
 
@@ -24,16 +24,16 @@ def measures_of(scene: spec.Scene) -> tuple[str, ...]:
     return search.MEASURES + tuple(measure.name for measure in build_measures(scene))
 
 
-def own_of(scene: spec.Scene) -> dict[str, Any]:
-    """Versions of the measures of one's own that creatures are recorded with."""
-    return {name: own.model_dump(mode="json") for name, own in sorted(scene.own.items())}
+def plugin_versions(scene: spec.Scene) -> dict[str, Any]:
+    """Return the versions of the plug-ins among a scene's measures, by name."""
+    return {name: scene.plugins[name].model_dump(mode="json") for name in sorted(scene.plugins)}
 
 
-def _measure(kind: str, name: str, own: spec.Own) -> search.Measure:
-    plugin = plugins.find((kind,), name, own.source)
+def _measure(kind: str, name: str, version: spec.PluginVersion) -> search.Measure:
+    plugin = plugins.find((kind,), name, version.source)
 
     def of(motion: search.Motion) -> Array:
-        found = _array(name, plugin(motion, settings=own.settings))
+        found = _array(name, plugin(motion, settings=version.settings))
         if found.shape != ():
             raise plugins.Broken(f"{name} must give one number, got shape {found.shape}")
         return found.astype(motion.path.dtype)
@@ -41,14 +41,14 @@ def _measure(kind: str, name: str, own: spec.Own) -> search.Measure:
     return search.Measure(name, of)
 
 
-def build_act(control: spec.OwnControl, controls: genomes.Controls) -> Any:
+def build_act(control: spec.PluginControl, controls: genomes.Controls) -> Any:
     """What an encoding of one's own makes of genes."""
-    name, own = control.encoding, control.own
-    plugin = plugins.find(("encoding",), name, own.source)
+    name, version = control.encoding, control.plugin
+    plugin = plugins.find(("encoding",), name, version.source)
     needed = (len(controls.joint_nodes), len(controls.edges))
 
     def act(genes: Array, clock: genomes.Clock) -> tuple[Array, Array]:
-        found = plugin(genes, clock, settings=own.settings)
+        found = plugin(genes, clock, settings=version.settings)
         if not isinstance(found, tuple | list) or len(found) != 2:
             raise plugins.Broken(f"{name} must give what joints and what edges do, got another")
         angle, length = (_array(name, one) for one in found)
@@ -64,11 +64,11 @@ def build_act(control: spec.OwnControl, controls: genomes.Controls) -> Any:
 
 
 def swimmer_of(gait: spec.Gait) -> swimmers.Swimmer:
-    """A known swimmer, or one of one's own."""
-    if gait.own is None:
+    """A known swimmer, or one of one's version."""
+    if gait.plugin is None:
         return swimmers.SWIMMERS[gait.swimmer]()
-    plugin = plugins.find(("gait",), gait.swimmer, gait.own.source)
-    found = plugin(settings=gait.own.settings)
+    plugin = plugins.find(("gait",), gait.swimmer, gait.plugin.source)
+    found = plugin(settings=gait.plugin.settings)
     if not isinstance(found, swimmers.Swimmer):
         raise plugins.Broken(f"{gait.swimmer} must give a `swimmers.Swimmer`, got another")
     return found

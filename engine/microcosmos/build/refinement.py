@@ -12,7 +12,7 @@ from ..experiments import refinement
 from ..spec.refinement import parsed
 from .cells import build_cells
 from .creatures import build_block, frame
-from .plugins import measures_of, own_of
+from .plugins import measures_of, plugin_versions
 from .scene import build_task
 
 
@@ -22,12 +22,13 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
     scene, room = _scene(chosen, found), creature.room(found)
     task, names = build_task(scene, room=room), _names(chosen)
     assert task.encoding is not None
-    options = device.compiler_options()
     genotype = task.encoding.read(found["identity"]["genome"])
     return refinement.Refinement(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         genotype=jax.tree.map(lambda x: np.asarray(x)[None], genotype),
-        slopes=search.slopes_program(task, names, chosen.segment, options),
+        slopes=search.block_program(
+            lambda one: search.slopes(task, one, names, chosen.segment)
+        ),
         evaluate_block=build_block(scene, room),
         cells=build_cells(chosen.archive, measures_of(scene)),
         names=names,
@@ -40,14 +41,14 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         provenance=found["provenance"],
         device=device.device_kind(),
         measures=measures_of(scene),
-        own=own_of(scene),
+        plugins=plugin_versions(scene),
     )
 
 
 def _scene(chosen: spec.Refinement, found: dict[str, Any]) -> spec.Scene:
     """The creature's, with what its own archive and this one measure."""
     scene = creature.scene_of(found)
-    return scene.model_copy(update={"own": {**scene.own, **chosen.archive.own}})
+    return scene.model_copy(update={"plugins": {**scene.plugins, **chosen.archive.plugins}})
 
 
 def _names(chosen: spec.Refinement) -> tuple[str, ...]:

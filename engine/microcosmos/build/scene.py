@@ -49,14 +49,14 @@ def build_task(
         build_goal(scene.task),
         extent(body),
         placements=build_placements(scene.world),
-        own=build_measures(scene),
+        plugin_measures=build_measures(scene),
     )
 
 
 def build_goal(task: spec.Task) -> search.Goal:
     """What fitness is made of."""
-    if task.own is not None:
-        return search.Goal(own=task.fitness)
+    if task.plugin is not None:
+        return search.Goal(plugin=task.fitness)
     displacement, energy = GOALS[task.fitness]
     return search.Goal(displacement, energy * task.energy_weight)
 

@@ -1,4 +1,4 @@
-"""Whether a file can be gone on from: the same spec, on the same kind of device."""
+"""Check that a run can resume from a file: the same spec, the same kind of device."""
 
 import json
 from collections.abc import Iterator
@@ -41,7 +41,7 @@ def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
 
 
 def _versions(held: dict[str, Any], wanted: dict[str, Any]) -> str:
-    """Which module of one's own is not what it was."""
+    """Name the plug-in whose version changed."""
     now = dict(_sources(wanted))
     path, then = next((path, of) for path, of in _sources(held) if now.get(path) != of)
     return (
@@ -51,7 +51,7 @@ def _versions(held: dict[str, Any], wanted: dict[str, Any]) -> str:
 
 
 def _sources(spec: Any, path: str = "") -> Iterator[tuple[str, str]]:
-    """The versions of what is of one's own, by their paths."""
+    """Yield the versions of plug-ins with their paths."""
     parts = spec.items() if isinstance(spec, dict) else enumerate(spec)
     for name, part in parts:
         if name == "source":
@@ -61,7 +61,7 @@ def _sources(spec: Any, path: str = "") -> Iterator[tuple[str, str]]:
 
 
 def _unversioned(spec: Any) -> Any:
-    """A spec without the versions of what is of one's own."""
+    """Return a spec without the versions of its plug-ins."""
     if isinstance(spec, dict):
         return {name: _unversioned(part) for name, part in spec.items() if name != "source"}
     return [_unversioned(part) for part in spec] if isinstance(spec, list) else spec

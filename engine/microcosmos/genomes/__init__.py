@@ -10,7 +10,7 @@ from .genes import empty, from_genes, take, to_genes
 from .genotype import Genotype, Vector, words
 from .grown import Grown
 from .layers import Layers, forward
-from .plugin import Clock, Own
+from .plugin import Clock, PluginEncoding
 from .recurrent import advance
 from .shaping import Plan
 from .waves import fourier, phases, table, wave
@@ -30,8 +30,8 @@ __all__ = [
     "Genotype",
     "Grown",
     "Layers",
-    "Own",
     "Plan",
+    "PluginEncoding",
     "Vector",
     "Weights",
     "added",

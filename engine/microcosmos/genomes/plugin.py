@@ -33,7 +33,7 @@ Act = Callable[[Array, Clock], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
-class Own:
+class PluginEncoding:
     """Controller alone: everybody has the same body."""
 
     controls: Controls

@@ -1,17 +1,17 @@
-"""What users add of their own: fitnesses, descriptors, bodies, gaits and encodings; no JAX."""
+"""Plug-ins of users: fitnesses, descriptors, bodies, gaits and encodings; no JAX."""
 
-from .declaration import KINDS, Axis, Declaration, is_own
+from .declaration import KINDS, Axis, Declaration, is_plugin
 from .declaring import body, descriptor, encoding, fitness, gait
 from .loading import Unloaded, load, load_all, load_module
-from .registry import LOADED, Broken, Known, Missing, Plugin, find, loaded
+from .registry import LOADED, Broken, Catalogue, Missing, Plugin, find, loaded
 
 __all__ = [
     "KINDS",
     "LOADED",
     "Axis",
     "Broken",
+    "Catalogue",
     "Declaration",
-    "Known",
     "Missing",
     "Plugin",
     "Unloaded",
@@ -21,7 +21,7 @@ __all__ = [
     "find",
     "fitness",
     "gait",
-    "is_own",
+    "is_plugin",
     "load",
     "load_all",
     "load_module",

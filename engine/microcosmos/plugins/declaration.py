@@ -15,7 +15,7 @@ FULL_NAME = re.compile(rf"{NAME}\.{NAME}")
 Size = Annotated[int, Field(ge=0, le=65_536)]
 
 
-def is_own(name: object) -> bool:
+def is_plugin(name: object) -> bool:
     """Whether a name is of something of one's own: nothing built in has a dot in its name."""
     return isinstance(name, str) and FULL_NAME.fullmatch(name) is not None
 

@@ -49,7 +49,7 @@ def load_module(module: ModuleType, namespace: str) -> tuple[Declaration, ...]:
 
 
 def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
-    name = f"microcosmos_own_{file.stem}"
+    name = f"microcosmos_plugin_{file.stem}"
     found = importlib.util.spec_from_file_location(name, file)
     assert found is not None
     module = importlib.util.module_from_spec(found)

@@ -40,7 +40,7 @@ class Plugin:
             raise Broken(f"{what} failed with {type(error).__name__}: {error}") from error
 
 
-class Known(Protocol):
+class Catalogue(Protocol):
     """Whoever knows which versions of a name there are."""
 
     def versions(self, kind: str, name: str) -> Sequence[Declaration]:
@@ -51,7 +51,7 @@ class Known(Protocol):
         """All settings, checked; `ValueError` names the one that is wrong."""
         ...
 
-    def nobody(self, kind: str, name: str) -> str:
+    def explain_unknown(self, kind: str, name: str) -> str:
         """A sentence about a name that is not known."""
         ...
 
@@ -76,17 +76,17 @@ class Loaded:
         model = _plugins[declared.kind, declared.name].model
         if model is None:
             if given:
-                raise ValueError(f"`own.settings` must be empty for {declared.name}, got some")
+                raise ValueError(f"`plugin.settings` must be empty for {declared.name}")
             return {}
         try:
             return model.model_validate(dict(given)).model_dump(mode="json")
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
-            place = ".".join(map(str, ("own.settings", *first["loc"])))
+            place = ".".join(map(str, ("plugin.settings", *first["loc"])))
             came = "" if "got" in first["msg"] else f"; got {first['input']!r:.80}"
             raise ValueError(f"`{place}` needs {first['msg']}{came}") from error
 
-    def nobody(self, kind: str, name: str) -> str:
+    def explain_unknown(self, kind: str, name: str) -> str:
         known = [name for one, name in _plugins if one == kind]
         have = f"loaded are {', '.join(known)}" if known else "none is loaded"
         return f"{have}; give its module with --module, {HELP}"

@@ -1,26 +1,25 @@
-"""Everything a run can be, validated: the only place where a default is written."""
+"""Specs: validated models of everything that a run can be, with all defaults."""
 
 from .base import Part, field_path
-from .body import Body, Chain, Known, OwnBody, made_elsewhere, shape
+from .body import Body, Chain, PluginBody, SwimmerBody, is_unavailable, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
 from .drawing import Drawing, drawing
 from .emitters import Emitter
-from .encodings import Controller, Direct, Free, Grown, OwnControl, Weights, genes, lengthening
+from .encodings import Bounds, Controller, Direct, Grown, PluginControl, Weights, gene_count
 from .estimate import Estimate, estimate
 from .evolution import Evolution
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
-from .fields import Energy, Steric
 from .folding import Digit, Folding, Picture, picture
 from .gaits import FORMS, Gaits
 from .neuroevolution import Neuroevolution
-from .plugins import Own, Used, used
+from .plugins import PluginUse, PluginVersion, plugins_in
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement
 from .scaling import Scaling
 from .scene import Fold, Gait, Scene
 from .search import Archive, Descriptor, Generations, Reevaluation, Search, Stop, Task
-from .world import World
+from .world import Energy, Steric, World
 
 __all__ = [
     "EXPERIMENTS",
@@ -28,6 +27,7 @@ __all__ = [
     "OUTPUTS",
     "Archive",
     "Body",
+    "Bounds",
     "Chain",
     "Control",
     "Controller",
@@ -43,19 +43,18 @@ __all__ = [
     "Experiment",
     "Fold",
     "Folding",
-    "Free",
     "Gait",
     "Gaits",
     "Generations",
     "Genome",
     "Grown",
-    "Known",
     "Neuroevolution",
-    "Own",
-    "OwnBody",
-    "OwnControl",
     "Part",
     "Picture",
+    "PluginBody",
+    "PluginControl",
+    "PluginUse",
+    "PluginVersion",
     "Preset",
     "QualityDiversity",
     "Reevaluation",
@@ -66,18 +65,17 @@ __all__ = [
     "Spec",
     "Steric",
     "Stop",
+    "SwimmerBody",
     "Task",
-    "Used",
     "Weights",
     "World",
     "drawing",
     "estimate",
     "field_path",
-    "genes",
-    "lengthening",
-    "made_elsewhere",
+    "gene_count",
+    "is_unavailable",
     "parse",
     "picture",
+    "plugins_in",
     "shape",
-    "used",
 ]

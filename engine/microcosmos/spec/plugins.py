@@ -1,144 +1,143 @@
-"""What a spec says of something of one's own: which version, and with which settings."""
+"""Plug-ins in a spec: their versions and settings."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import Field, PlainSerializer, ValidationInfo, WrapValidator
+from pydantic import Field, PlainSerializer, ValidationInfo, WrapValidator, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import plugins
-from ..plugins import Known, is_own
+from ..plugins import Catalogue, is_plugin
 from .base import Part
 
-CONTEXT = "own"
-"""Where `parse` is told whom to ask for versions; else it is what this process has loaded."""
+CONTEXT = "plugins"
+"""The key of the validation context under which `parse` passes a catalogue of plug-ins."""
 
 
-class Own(Part):
-    """A version of something of one's own; all but the settings follows from its name."""
+class PluginVersion(Part):
+    """The version and settings of a plug-in. All but the settings follows from its name."""
 
     source: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
-    """SHA-256 of its module's source."""
+    """SHA-256 of the module's source."""
     title: Annotated[str, Field(min_length=1, max_length=100)]
-    """What people call it."""
+    """Title for people."""
     unit: Annotated[str, Field(max_length=40)] = ""
-    """That of a measure."""
+    """Unit of a measure."""
     sizes: dict[str, Annotated[int, Field(ge=0, le=65_536)]] = Field(default={})
-    """What a body or an encoding needs room for."""
+    """Most nodes of a body, or numbers of genes of an encoding."""
     settings: dict[str, Any] = Field(default={})
-    """Those that it declares."""
+    """Values of the declared settings."""
 
 
-def _built_in_or_own(value: Any, built_in: Any) -> Any:
-    return value if is_own(value) else built_in(value)
+def _built_in_or_plugin(value: Any, built_in: Any) -> Any:
+    return value if is_plugin(value) else built_in(value)
 
 
-# The schema stays that of the words that are built in: whoever knows more adds to it.
-OR_OWN = (WrapValidator(_built_in_or_own), PlainSerializer(str, return_type=str))
-"""Makes a choice of words one that takes names of one's own as well."""
+# The JSON schema lists the built-in names alone; the server adds the plug-ins of its workers.
+OR_PLUGIN = (WrapValidator(_built_in_or_plugin), PlainSerializer(str, return_type=str))
+"""Annotations that let a choice of built-in names accept names of plug-ins."""
 
-OwnName = Annotated[str, Field(pattern=rf"^{plugins.declaration.FULL_NAME.pattern}$")]
-
-
-def left_out() -> Any:
-    """A field that is not written where there is nothing of one's own."""
-    return Field(default=None, exclude_if=lambda value: not value)
-
-
-MaybeOwn = SkipJsonSchema[Own | None]
-"""In no schema: it comes with names that are not in it either."""
+PluginName = Annotated[str, Field(pattern=rf"^{plugins.declaration.FULL_NAME.pattern}$")]
+MaybePlugin = Annotated[
+    SkipJsonSchema[PluginVersion | None], Field(exclude_if=lambda plugin: not plugin)
+]
+PluginVersions = Annotated[
+    SkipJsonSchema[dict[str, PluginVersion]], Field(exclude_if=lambda plugins: not plugins)
+]
 
 
-def version(
-    kinds: tuple[str, ...], field: str, name: str, own: Any, info: ValidationInfo
+def pinned(
+    kinds: tuple[str, ...], field: str, name: str, given: Any, info: ValidationInfo
 ) -> tuple[Any, plugins.Declaration | None]:
-    """What there is to be said of a name of one's own, and its declaration if it is known.
+    """Return the version and settings of a plug-in, and its declaration if it is available.
 
-    A version that a spec already names is believed where it is not known: files must stay
-    readable where nobody can carry them out.
+    A version that a spec already names is accepted where it is not available: files must stay
+    readable on machines that cannot run them.
     """
-    if isinstance(own, Own):
-        own = own.model_dump()
-    given: Mapping[str, Any] = own if isinstance(own, Mapping) else {}
-    if own is not None and given is not own:
-        raise ValueError(f"`own` must be an object with `settings`, got {own!r:.80}")
-    known: Known = (info.context or {}).get(CONTEXT, plugins.LOADED)
+    if isinstance(given, PluginVersion):
+        given = given.model_dump()
+    if given is not None and not isinstance(given, Mapping):
+        raise ValueError(f"`plugin` must be an object with `settings`, got {given!r:.80}")
+    known: Catalogue = (info.context or {}).get(CONTEXT, plugins.LOADED)
     found = [one for kind in kinds for one in known.versions(kind, name)]
-    source = given.get("source")
+    source = (given or {}).get("source")
     declared = next((one for one in found if source in (None, one.source)), None)
     if declared is None and source is None:
-        raise ValueError(
-            f"`{field}` must be known, got {name!r}: {known.nobody(kinds[0], name)}"
-        )
+        reason = known.explain_unknown(kinds[0], name)
+        raise ValueError(f"`{field}` must be known, got {name!r}: {reason}")
     if declared is None:
-        return own, None
-    settings = given.get("settings") or {}
+        return given, None
+    settings = (given or {}).get("settings") or {}
     if not isinstance(settings, Mapping):
-        raise ValueError(f"`own.settings` must be an object, got {settings!r:.80}")
-    told = {
+        raise ValueError(f"`plugin.settings` must be an object, got {settings!r:.80}")
+    version = {
         "source": declared.source,
         "title": declared.title,
         "unit": declared.unit,
         "sizes": dict(declared.sizes),
         "settings": known.settings(declared, settings),
     }
-    return told, declared
+    return version, declared
 
 
 def completed(
     given: Any, kinds: tuple[str, ...], field: str, info: ValidationInfo
 ) -> tuple[Any, plugins.Declaration | None]:
-    """A part whose `field` may name something of one's own, with the version that it means."""
+    """Pin the plug-in that `field` names, if it names one, in the part's `plugin`."""
     if not isinstance(given, dict):
         return given, None
-    name, own = given.get(field), given.get("own")
-    if is_own(name):
-        told, declared = version(kinds, field, str(name), own, info)
-        return {**given, "own": told}, declared
-    if isinstance(own, Own) or (isinstance(own, Mapping) and "source" in own):
-        # A spec that was complete got another word: what belonged to the one before goes.
-        return {key: value for key, value in given.items() if key != "own"}, None
-    if own is not None:
-        raise ValueError(f"`own` must be left out where `{field}` is {name!r}, got some")
+    name, plugin = given.get(field), given.get("plugin")
+    if is_plugin(name):
+        version, declared = pinned(kinds, field, str(name), plugin, info)
+        return {**given, "plugin": version}, declared
+    if isinstance(plugin, PluginVersion) or (
+        isinstance(plugin, Mapping) and "source" in plugin
+    ):
+        # The name in a complete spec was replaced: the version of the former plug-in goes.
+        return {key: value for key, value in given.items() if key != "plugin"}, None
+    if plugin is not None:
+        raise ValueError(f"`plugin` must be left out where `{field}` is {name!r}")
     return given, None
 
 
+def complete_plugin(kinds: tuple[str, ...], field: str) -> Any:
+    """Return a validator that pins the plug-in that `field` names."""
+
+    def complete(cls, given: Any, info: ValidationInfo) -> Any:
+        return completed(given, kinds, field, info)[0]
+
+    return model_validator(mode="before")(complete)
+
+
 @dataclass(frozen=True)
-class Used:
-    """Something of one's own that a document names."""
+class PluginUse:
+    """A plug-in that a document names."""
 
     path: str
-    """Of the field with its name."""
+    """Path of the field with its name."""
     name: str
-    own: Own
+    version: PluginVersion
 
 
 NAMING = ("fitness", "name", "builder", "encoding", "swimmer")
-"""Fields that hold names of one's own."""
+"""Fields that may name a plug-in."""
 
 
-def used(document: Any, path: str = "") -> Iterator[Used]:
-    """Everything of one's own in a spec or a creature file, as JSON has them."""
+def plugins_in(document: Any, path: str = "") -> Iterator[PluginUse]:
+    """Yield the plug-ins of a spec or a creature file in JSON."""
     if isinstance(document, list):
         for number, part in enumerate(document):
-            yield from used(part, f"{path}{number}.")
+            yield from plugins_in(part, f"{path}{number}.")
     if not isinstance(document, dict):
         return
-    own = document.get("own")
-    if isinstance(own, dict):
-        yield from _versions(document, own, path)
-    for name, part in document.items():
-        if name != "own":
-            yield from used(part, f"{path}{name}.")
-
-
-def _versions(document: Mapping[str, Any], own: Mapping[str, Any], path: str) -> Iterator[Used]:
-    """Of the field beside it, or of names by which there are several."""
-    for field in NAMING:
-        if is_own(document.get(field)):
-            yield Used(f"{path}{field}", str(document[field]), Own.model_validate(own))
-            return
-    for name, version in own.items():
-        if is_own(name):
-            yield Used(f"{path}own", name, Own.model_validate(version))
+    named = next((field for field in NAMING if is_plugin(document.get(field))), None)
+    for field, part in document.items():
+        if field == "plugin" and named and isinstance(part, dict):
+            version = PluginVersion.model_validate(part)
+            yield PluginUse(f"{path}{named}", document[named], version)
+        elif field == "plugins" and isinstance(part, dict):
+            for name, version in part.items():
+                yield PluginUse(f"{path}plugins", name, PluginVersion.model_validate(version))
+        else:
+            yield from plugins_in(part, f"{path}{field}.")

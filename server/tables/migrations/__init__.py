@@ -1,10 +1,12 @@
-"""The database's tables, brought up to date."""
+"""Migrations: bring the tables up to date, and tell which revision they have."""
 
 from pathlib import Path
 from typing import Any
 
 from alembic import command
 from alembic.config import Config
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, text
 
 from ...core.database import Sessions
@@ -31,8 +33,21 @@ def check(sessions: Sessions) -> None:
         command.check(config(connection))
 
 
-def config(connection: Connection) -> Config:
-    """Alembic's settings, for a connection whose transaction the caller ends."""
+def revision(sessions: Sessions) -> str | None:
+    """Return the revision of the tables; None before the first migration."""
+    with sessions.engine.connect() as connection:
+        return MigrationContext.configure(connection).get_current_revision()
+
+
+def newest() -> str:
+    """Return the last revision that this version knows."""
+    head = ScriptDirectory.from_config(config()).get_current_head()
+    assert head is not None
+    return head
+
+
+def config(connection: Connection | None = None) -> Config:
+    """Return Alembic's settings, for a connection whose transaction the caller ends."""
     settings = Config(attributes={"connection": connection})
     settings.set_main_option("script_location", str(Path(__file__).parent).replace("%", "%%"))
     return settings

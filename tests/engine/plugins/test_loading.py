@@ -1,4 +1,4 @@
-"""Modules of one's own: what they declare, what is refused, and their commands."""
+"""Plug-in modules: declarations, errors and commands."""
 
 import importlib.util
 import json
@@ -68,12 +68,12 @@ def test_a_module_changed_within_a_second_is_loaded_anew(write, monkeypatch):
 
 def test_a_file_that_broke_leaves_what_was_loaded_of_it(write):
     (one,) = plugins.load(write(ONE))
-    before = sys.modules["microcosmos_own_mine"]
+    before = sys.modules["microcosmos_plugin_mine"]
     file = write(ONE + "1 / 0\n")
     with pytest.raises(ValueError, match=r"mine\.py, line 6 fails with ZeroDivisionError"):
         plugins.load(file)
     assert [plugin.declaration for plugin in plugins.loaded()] == [one]
-    assert sys.modules["microcosmos_own_mine"] is before
+    assert sys.modules["microcosmos_plugin_mine"] is before
 
 
 @pytest.mark.parametrize(
@@ -165,13 +165,13 @@ def test_errors_of_a_function_are_named_as_its_own(write):
         plugins.find(("fitness",), "mine.far", one.source)(7, settings={})
 
 
-EXAMPLE = str(Path(__file__).parents[3] / "examples" / "own_task.py")
+EXAMPLE = str(Path(__file__).parents[3] / "examples" / "plugin_task.py")
 
 
 def test_the_declarations_of_a_module_are_listed_with_its_version(invoke):
     text = invoke("plugins", "--module", EXAMPLE)
-    assert "own_task.straight fitness Straight way in cells (" in text
-    assert "own_task.cross body A cross (" in text
+    assert "plugin_task.straight fitness Straight way in cells (" in text
+    assert "plugin_task.cross body A cross (" in text
 
 
 @pytest.mark.parametrize("command", ["evolve", "replay", "audit", "refine", "gradient"])
@@ -183,8 +183,8 @@ def test_a_module_that_is_none_ends_a_command_with_the_reason(command, invoke, t
 
 
 def test_a_spec_that_needs_a_module_says_which_option_gives_it(invoke, tmp_path):
-    spec = {"experiment": "quality-diversity", "task": {"fitness": "own_task.straight"}}
+    spec = {"experiment": "quality-diversity", "task": {"fitness": "plugin_task.straight"}}
     (tmp_path / "spec.json").write_text(json.dumps(spec))
     text = invoke("evolve", tmp_path / "spec.json", code=2)
-    assert "`fitness` must be known, got 'own_task.straight': none is loaded" in text
+    assert "`fitness` must be known, got 'plugin_task.straight': none is loaded" in text
     assert "--module" in text

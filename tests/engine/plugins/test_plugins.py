@@ -1,4 +1,4 @@
-"""Fitnesses, descriptors, bodies, gaits and encodings of one's own, in specs and in runs."""
+"""Fitnesses, descriptors, bodies, gaits and encodings as plug-ins, in specs and in runs."""
 
 import json
 from pathlib import Path
@@ -12,7 +12,7 @@ from microcosmos.archive import creature, creature_h5
 from microcosmos.audit.reproducibility import check
 from microcosmos.build import build
 from microcosmos.plugins import registry
-from microcosmos.spec import estimate, parse, used
+from microcosmos.spec import estimate, parse, plugins_in
 from microcosmos.viz.replay import record
 from microcosmos.viz.replay_file import read_replay
 
@@ -70,11 +70,15 @@ def pulse(genes, clock):
 SPEC = {
     "experiment": "quality-diversity",
     "world": {"width": 24, "height": 24},
-    "body": {"builder": "own.stick"},
-    "control": {"encoding": "own.pulse", "period": 20, "angle_scale": 0.5},
-    "task": {"fitness": "own.straight", "steps": 20, "own": {"settings": {"strictness": 2}}},
+    "body": {"builder": "extra.stick"},
+    "control": {"encoding": "extra.pulse", "period": 20, "angle_scale": 0.5},
+    "task": {
+        "fitness": "extra.straight",
+        "plugin": {"settings": {"strictness": 2}},
+        "steps": 20,
+    },
     "archive": {
-        "descriptors": [{"name": "own.ahead", "bins": 8}, {"name": "displacement", "bins": 4}]
+        "descriptors": [{"name": "extra.ahead", "bins": 8}, {"name": "displacement", "bins": 4}]
     },
     "search": {
         "generations": 2,
@@ -87,7 +91,7 @@ SPEC = {
 
 @pytest.fixture(scope="module")
 def module(tmp_path_factory):
-    file = tmp_path_factory.mktemp("own") / "own.py"
+    file = tmp_path_factory.mktemp("plugins") / "extra.py"
     file.write_text(MODULE)
     return file
 
@@ -118,15 +122,15 @@ def course(module):
 
 def test_a_spec_says_the_version_and_all_settings_of_what_it_names(loaded):
     document = parse(SPEC).model_dump(mode="json")
-    named = {one.path: one.name for one in used(document)}
+    named = {one.path: one.name for one in plugins_in(document)}
     assert named == {
-        "task.fitness": "own.straight",
-        "body.builder": "own.stick",
-        "control.encoding": "own.pulse",
-        "archive.descriptors.0.name": "own.ahead",
+        "task.fitness": "extra.straight",
+        "body.builder": "extra.stick",
+        "control.encoding": "extra.pulse",
+        "archive.descriptors.0.name": "extra.ahead",
     }
-    assert {one.own.source for one in used(document)} == {loaded[0].source}
-    assert document["task"]["own"]["settings"] == {"strictness": 2.0}
+    assert {one.version.source for one in plugins_in(document)} == {loaded[0].source}
+    assert document["task"]["plugin"]["settings"] == {"strictness": 2.0}
     axis = document["archive"]["descriptors"][0]
     assert (axis["low"], axis["high"], axis["scale"]) == (-2, 2, "linear")
 
@@ -138,7 +142,7 @@ def test_a_spec_can_be_read_without_its_module(away):
     again = parse(chosen.model_dump(mode="json"))
     assert again == chosen
     assert estimate(again).memory_bytes > 0
-    with pytest.raises(plugins.Missing, match=r"own\.stick .* is not loaded here: give its"):
+    with pytest.raises(plugins.Missing, match=r"extra\.stick .* is not loaded here: give its"):
         build(again)
 
 
@@ -146,18 +150,18 @@ def test_a_spec_can_be_read_without_its_module(away):
 @pytest.mark.parametrize(
     ("part", "value", "words"),
     [
-        ("task", {"fitness": "own.nothing"}, "`fitness` must be known, got 'own.nothing'"),
-        ("task", {"fitness": "own.ahead"}, "loaded are own.straight"),
+        ("task", {"fitness": "extra.nothing"}, "`fitness` must be known, got 'extra.nothing'"),
+        ("task", {"fitness": "extra.ahead"}, "loaded are extra.straight"),
         ("task", {"fitness": "os.system"}, "give its module with --module"),
         (
             "task",
-            {"fitness": "own.straight", "own": {"settings": {"strictness": -1}}},
-            "`own.settings.strictness` needs Input should be greater",
+            {"fitness": "extra.straight", "plugin": {"settings": {"strictness": -1}}},
+            "`plugin.settings.strictness` needs Input should be greater",
         ),
-        ("task", {"own": {"settings": {}}}, "`own` must be left out where `fitness` is None"),
-        ("body", {"builder": "own.large"}, "at most the 3 `nodes` that it declares, got 8"),
-        ("body", {"builder": "own.uneven"}, "equally stiff in bend everywhere"),
-        ("control", {"encoding": "own.stick"}, "`encoding` must be known"),
+        ("task", {"plugin": {"settings": {}}}, "must be left out where `fitness` is None"),
+        ("body", {"builder": "extra.large"}, "at most the 3 `nodes` that it declares, got 8"),
+        ("body", {"builder": "extra.uneven"}, "equally stiff in bend everywhere"),
+        ("control", {"encoding": "extra.stick"}, "`encoding` must be known"),
     ],
 )
 def test_a_spec_that_does_not_fit_its_module_is_refused(part, value, words):
@@ -169,15 +173,15 @@ def test_a_spec_that_does_not_fit_its_module_is_refused(part, value, words):
 def test_a_run_measures_selects_and_moves_as_the_module_says(course):
     experiment, state, reports = course
     names = list(experiment.plan.measures)
-    assert names[-2:] == ["own.ahead", "own.straight"]
+    assert names[-2:] == ["extra.ahead", "extra.straight"]
     rows = np.asarray(state.elites.measures)[np.asarray(state.elites.occupied)]
     fitness = np.asarray(state.elites.fitness)[np.asarray(state.elites.occupied)]
     np.testing.assert_allclose(fitness, 2 * rows[:, names.index("displacement")], rtol=1e-6)
-    np.testing.assert_array_equal(fitness, rows[:, names.index("own.straight")])
+    np.testing.assert_array_equal(fitness, rows[:, names.index("extra.straight")])
     assert np.all(np.abs(rows[:, -2]) <= rows[:, names.index("displacement")] + 1e-6)
     assert len(np.unique(fitness)) > 1
     assert all(
-        elite.descriptors[0] == elite.measures["own.ahead"] for elite in reports[0].elites
+        elite.descriptors[0] == elite.measures["extra.ahead"] for elite in reports[0].elites
     )
 
 
@@ -193,7 +197,7 @@ def test_a_run_goes_on_from_its_file_with_the_same_bytes(course, module, away):
     changed = build(parse(SPEC))
     module.write_text(MODULE)
     with pytest.raises(
-        ValueError, match=r"own\.source` must be \w{12}, .* go on with the module as it was"
+        ValueError, match=r"plugin\.source` must be \w{12}, .* go on with the module as it was"
     ):
         changed.restore(data)
 
@@ -205,7 +209,7 @@ def test_a_creature_says_what_it_needs_and_repeats_bit_for_bit(course, away):
     assert creature_h5.load(creature_h5.dump(file)) == file
     away()
     assert creature.parse(json.dumps(file)) == file, "a file is read without the module"
-    with pytest.raises(plugins.Missing, match=r"own\."):
+    with pytest.raises(plugins.Missing, match=r"extra\."):
         check(file)
 
 
@@ -225,21 +229,21 @@ def test_a_creature_is_replayed_without_its_measures(course, module, monkeypatch
 
 
 def test_a_measure_that_is_no_number_is_refused_by_name():
-    axes = {"descriptors": [{"name": "own.broken", "bins": 2}]}
+    axes = {"descriptors": [{"name": "extra.broken", "bins": 2}]}
     experiment = build(parse({**SPEC, "archive": axes}))
-    with pytest.raises(plugins.Broken, match=r"own\.broken must give one number, got shape"):
+    with pytest.raises(plugins.Broken, match=r"extra\.broken must give one number, got shape"):
         experiment.advance(experiment.init())
 
 
-def test_a_gait_of_ones_own_swims_in_a_sweep_beside_known_ones(away):
+def test_a_plugin_gait_swims_in_a_sweep_beside_known_ones(away):
     spec = {
-        "experiment": "gaits", "swimmers": ["own.wiggler"], "forms": ["ours"],
+        "experiment": "gaits", "swimmers": ["extra.wiggler"], "forms": ["ours"],
         "viscosities": [0.5], "period": 20, "cycles": 1,
     }  # fmt: skip
     experiment = build(parse(spec))
     _, report = experiment.advance(experiment.init())
     (row,) = report.rows
-    assert row.values["swimmer"] == "own.wiggler"
+    assert row.values["swimmer"] == "extra.wiggler"
     assert row.values["displacement"] > 0
     file = creature.document(json.loads(row.identity), row.measured, row.provenance)
     assert creature.parse(file)["sha256"] == row.creature
@@ -250,5 +254,5 @@ def test_a_gait_of_ones_own_swims_in_a_sweep_beside_known_ones(away):
 
 def test_the_example_is_a_module(away):
     away()
-    found = plugins.load(Path(__file__).parents[3] / "examples" / "own_task.py")
+    found = plugins.load(Path(__file__).parents[3] / "examples" / "plugin_task.py")
     assert {one.kind for one in found} == {"fitness", "descriptor", "body"}

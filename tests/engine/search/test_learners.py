@@ -11,7 +11,7 @@ from microcosmos import neat, search
 from microcosmos.genomes import Vector, minimal
 from microcosmos.search import adam, emitters
 from microcosmos.search.gradients import CONSTANT, genes_of
-from microcosmos.spec.emitters import WITHOUT_SLOPES
+from microcosmos.spec.emitters import WITHOUT_GRADIENT
 
 GENES, SLOTS, CELLS = 12, 8, 100
 COUNTERS = neat.first_counters(3, 2)
@@ -33,7 +33,7 @@ def archive(genotype, occupied):
 
 def emitted(emitter, state, elites):
     emit = jax.jit(lambda *given: emitter.emit(*given, keys=KEYS)[:2])
-    return emit(state, elites, COUNTERS, jnp.asarray(1))
+    return emit(state, elites, COUNTERS)
 
 
 def slopes(rows, sound=True):
@@ -72,9 +72,7 @@ def test_cma_mega_climbs_a_sphere(outcome_of):
     best = -np.inf
     for generation in range(40):
         keys = jax.random.split(jax.random.key(generation), SLOTS)
-        children, state, _ = emitter.emit(
-            state, elites, COUNTERS, jnp.asarray(generation), keys=keys
-        )
+        children, state, _ = emitter.emit(state, elites, COUNTERS, keys=keys)
         way = 2 * (top - np.asarray(state.theta))
         rows = np.stack([way, *np.eye(GENES)[:2]])
         children, state = emitter.learn(state, children, slopes(rows))
@@ -138,7 +136,7 @@ def test_both_are_learners_and_plain_neat_is_not(lamarckian):
 
 
 def test_the_spec_knows_which_measures_have_no_slope():
-    assert set(WITHOUT_SLOPES) == set(CONSTANT)
+    assert set(WITHOUT_GRADIENT) == set(CONSTANT)
 
 
 def test_the_first_step_is_as_long_as_the_rate_whatever_the_slope(float64):

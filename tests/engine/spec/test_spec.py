@@ -55,10 +55,10 @@ def free(low, high):
         ),
         ({"coupling": {"theta_feedback": 0}}, "`projection` must be 'none' or 'force'"),
         ({"world": {"magic": "fixed", "viscosity": 0.001}}, "`magic` must be"),
-        ({"archive": {"descriptors": [AXES[1]] * 2}}, "`descriptors` must differ"),
+        ({"archive": {"descriptors": [AXES[1]] * 2}}, "`descriptors` must not repeat"),
         ({"archive": {"descriptors": AXES}}, "`low` must be above 0"),
-        ({"control": {"sense_energy": True}}, "`world.energy` must be there where `control"),
-        ({"task": {"fitness": "energy"}}, "`world.energy` must be there where `task.fitness`"),
+        ({"control": {"sense_energy": True}}, "`world.energy` must be set where `control"),
+        ({"task": {"fitness": "energy"}}, "`world.energy` must be set where `task.fitness`"),
         ({"control": {"encoding": "l-system"}}, "control: .*must be one of .*direct"),
         (direct(bend=free(0.5, 0.4)), "control.bend: .*above `low`"),
         (direct(bend=free(0.5, 2)), "control: .*0 to 1"),
@@ -71,7 +71,7 @@ def free(low, high):
             {"control": {"encoding": "cppn-body", "min_nodes": 20}, "body": {"nodes": 12}},
             "at most the body's 12 nodes",
         ),
-        (direct(terms=256) | LARGE, "at most 65536 numbers"),
+        (direct(terms=256) | LARGE, "at most 65536 genes"),
         (
             {"control": {"encoding": "cppn-body"}, "genome": {"max_nodes": 10}},
             "`genome.max_nodes` must be at least 11",
@@ -160,8 +160,8 @@ def test_a_controller_that_names_no_encoding_is_a_cppn():
 
 def test_genes_are_counted_part_by_part():
     body = spec.shape(spec.Chain(nodes=10))
-    free = spec.Free(low=0.5, high=1.0)
+    free = spec.Bounds(low=0.5, high=1.0)
     direct = spec.Direct(bend=free, rest_length=free, waveform="table", terms=3)
     assert direct.parts(body) == {"rest_length": 9, "bend": 8, "angles": 24, "lengths": 27}
-    assert spec.genes(direct, body) == 68
-    assert spec.genes(spec.Control(), body) == 0
+    assert spec.gene_count(direct, body) == 68
+    assert spec.gene_count(spec.Control(), body) == 0

@@ -4,20 +4,17 @@ from functools import partial
 
 import pytest
 
-from microcosmos import bodies, coupling, world
+from microcosmos import coupling, world
+from microcosmos.bodies import ring
 from microcosmos.spec import Gaits
 from validation import (
-    array,
-    conservation,
+    bodies,
     cylinder,
     flows,
     gradients,
-    passive,
-    repulsion,
     scenes,
     shapes,
     sheet,
-    stability,
     sweep,
     swimmers,
 )
@@ -26,11 +23,13 @@ GHOST = world.Form(projection=coupling.unprojected, theta_feedback=0.0)
 """Edge angles that ignore the geometry exert a torque of their own."""
 
 IN_BOTH_PRECISIONS = {
-    "two bodies push each other away and not the fluid": repulsion.check,
+    "two bodies push each other away and not the fluid": bodies.check_repulsion,
     "Kolmogorov flow is exact to a thousandth at any viscosity": flows.check_kolmogorov,
     "Taylor-Green vortices decay at the viscous rate and converge": flows.check_taylor_green,
-    "mass and momentum are kept for 10,000 steps": partial(conservation.check, size=(24, 16)),
-    "rings and rods turn with a shear flow": passive.check,
+    "mass and momentum are kept for 10,000 steps": partial(
+        flows.check_conservation, size=(24, 16)
+    ),
+    "rings and rods turn with a shear flow": bodies.check_passive,
     "reciprocal motion leads nowhere": swimmers.check_scallop,
 }
 
@@ -45,9 +44,9 @@ CHECKS = {
         gradients.check, settings=(gradients.FIELDS,)
     ),
     "random controllers stay finite": partial(
-        stability.check, (0.001, 0.01, 2.0), seeds=2, steps=1500
+        bodies.check_stability, (0.001, 0.01, 2.0), seeds=2, steps=1500
     ),
-    "the drag of an array of cylinders is that of the series": array.check,
+    "the drag of an array of cylinders is that of the series": cylinder.check_array,
     "the drag of a cylinder at Re 20 is near the published one": partial(
         cylinder.check, (CASES[20],), share=0.12
     ),
@@ -95,7 +94,7 @@ def test_a_shape_that_was_never_asked_for_is_noticed(float64):
 
 @pytest.mark.long
 def test_a_ring_in_the_literal_form_does_not_turn(float64):
-    angle, shear = passive.turned(bodies.ring(28, 1.0), float64, form=GHOST)
+    angle, shear = bodies.turned(ring(28, 1.0), float64, form=GHOST)
     assert abs(angle) <= 1e-4 * shear
 
 

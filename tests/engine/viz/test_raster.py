@@ -9,12 +9,19 @@ import pytest
 from PIL import Image
 
 from microcosmos.optional import require
-from microcosmos.viz.antialias import coverage, distance
-from microcosmos.viz.preview import HEIGHT, MOMENT, WIDTH, preview
-from microcosmos.viz.raster import THEMES, frame
+from microcosmos.viz.raster import THEMES, coverage, distance, frame, view
 from microcosmos.viz.replay_file import read_replay
-from microcosmos.viz.strip import GAP, LETTERS, moments, png, strip
-from microcosmos.viz.viewport import view
+from microcosmos.viz.strip import (
+    GAP,
+    HEIGHT,
+    LETTERS,
+    MOMENT,
+    WIDTH,
+    moments,
+    png,
+    preview,
+    strip,
+)
 
 pytestmark = pytest.mark.fast
 

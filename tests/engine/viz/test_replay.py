@@ -11,8 +11,7 @@ from microcosmos import build as builds
 from microcosmos import fields, genomes, search, spec
 from microcosmos.archive import creature
 from microcosmos.audit.physics import audit
-from microcosmos.audit.remeasure import measurement
-from microcosmos.audit.reproducibility import check
+from microcosmos.audit.reproducibility import check, measurement
 from microcosmos.build import build, build_block, build_encoding, build_task
 from microcosmos.device import device_kind
 from microcosmos.experiments.lineage import identity
@@ -236,13 +235,13 @@ def test_positions_that_are_not_finite_are_refused(replay_bytes):
 
 NODES, STEPS, ROOM = 8, 24, (16, 32)
 BASE = {"period": 12, "angle_scale": 0.3}
-BENT = spec.Free(low=-0.1, high=0.1)
+BENT = spec.Bounds(low=-0.1, high=0.1)
 
 
 def controls():
     return {
         "recurrent": spec.Control(recurrent=True, **BASE),
-        "direct": spec.Direct(rest_angle=BENT, bend=spec.Free(low=0.3, high=1.0), **BASE),
+        "direct": spec.Direct(rest_angle=BENT, bend=spec.Bounds(low=0.3, high=1.0), **BASE),
         "weights": spec.Weights(**BASE),
         "cppn-body": spec.Grown(**BASE),
     }

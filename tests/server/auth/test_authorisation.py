@@ -105,7 +105,7 @@ def need_of(route: str) -> str:
 
 
 @pytest.mark.parametrize("route", ROUTES)
-def test_every_route_says_what_it_needs(route):
+def test_every_route_declares_its_scope(route):
     """A scope, an owner, or that it is public: one of them, since none is the default."""
     assert len(ROUTES[route]) == 1
     assert need_of(route) in EXPECTED
@@ -113,7 +113,7 @@ def test_every_route_says_what_it_needs(route):
 
 
 @pytest.mark.parametrize("route", API)
-def test_only_harmless_routes_go_without_leave_to_write(route):
+def test_only_harmless_routes_need_no_write_scope(route):
     method, path = route.replace(ROOT, "").split()
     need = need_of(route)
     shared = path == "/shares/{slug}/preview.png"
@@ -190,7 +190,7 @@ def parameters(services, secrets, spec, identity):
     return make
 
 
-def test_everybody_gets_where_they_may_and_nowhere_else(serve, secrets, parameters):
+def test_each_principal_reaches_exactly_the_permitted_routes(serve, secrets, parameters):
     wrong = []
     with serve(auth="required") as address, httpx.Client(base_url=address, timeout=20) as http:
         for route in API:
@@ -215,7 +215,7 @@ def status(http: httpx.Client, method: str, url: str, headers: dict[str, str]) -
         return answer.status_code
 
 
-def test_a_route_that_is_not_named_is_reached_by_nobody(serve, secrets):
+def test_an_unknown_route_is_never_reached(serve, secrets):
     with serve(auth="required") as address:
         for who in ("none", "admin"):
             sent = {"Authorization": f"Bearer {secrets[who]}"} if secrets[who] else {}

@@ -7,7 +7,7 @@ from server.workers import registry
 
 @pytest.fixture
 def have(services):
-    """A worker that reports what it has of users' own."""
+    """A worker that reports its plug-ins."""
 
     def have(name="worker", plugins=(), **said):
         found = [dict(one) for one in plugins]
@@ -19,12 +19,12 @@ def have(services):
 
 @pytest.fixture
 def mine(spec):
-    """A spec with a fitness, a descriptor and a body of one's own."""
+    """A spec with a fitness, a descriptor and a body from plug-ins."""
     axes = [{"name": "mine.sway", "bins": 4}, {"name": "displacement", "bins": 4}]
     return {
         **spec,
         "world": {"width": 64, "height": 64},
-        "body": {"builder": "mine.cross", "own": {"settings": {"strictness": 2}}},
+        "body": {"builder": "mine.cross", "plugin": {"settings": {"strictness": 2}}},
         "task": {"fitness": "mine.straight", "steps": 40},
         "archive": {"descriptors": axes},
     }

@@ -415,9 +415,29 @@ export interface paths {
         };
         /**
          * List Experiments
-         * @description With what live workers have of users' own among the choices.
+         * @description Return the experiments, with the plug-ins of live workers among the choices.
          */
         get: operations["list_experiments_api_v1_experiments_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/health": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Health
+         * @description Return the state of the database, the disk, Redis, the queues and the workers.
+         */
+        get: operations["read_health_api_v1_health_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1481,6 +1501,46 @@ export interface components {
             };
         };
         /**
+         * DatabaseHealth
+         * @description The database, and the migration that its tables have.
+         */
+        DatabaseHealth: {
+            /** Dialect */
+            dialect: string;
+            /** Error */
+            error: string | null;
+            /** Location */
+            location: string;
+            /** Newest Revision */
+            newest_revision: string;
+            /** Reachable */
+            reachable: boolean;
+            /** Revision */
+            revision: string | null;
+            /** Version */
+            version: string | null;
+        };
+        /**
+         * DiskHealth
+         * @description The store of checkpoints and renderings.
+         */
+        DiskHealth: {
+            /** Error */
+            error: string | null;
+            /** File System */
+            file_system: string | null;
+            /** Free Bytes */
+            free_bytes: number | null;
+            /** Location */
+            location: string;
+            /** Total Bytes */
+            total_bytes: number | null;
+            /** Writable */
+            writable: boolean;
+            /** Write Seconds */
+            write_seconds: number | null;
+        };
+        /**
          * DrawingRead
          * @description Bodies, each in a world of its own, and the pictures that they are to become.
          */
@@ -1597,6 +1657,22 @@ export interface components {
              * @constant
              */
             status: "ok";
+        };
+        /** HealthReport */
+        HealthReport: {
+            database: components["schemas"]["DatabaseHealth"];
+            disk: components["schemas"]["DiskHealth"];
+            /** Queues */
+            queues: {
+                [key: string]: number;
+            };
+            redis: components["schemas"]["RedisHealth"];
+            /** Version */
+            version: string;
+            /** Workers */
+            workers: {
+                [key: string]: number;
+            };
         };
         /**
          * HistoryRead
@@ -1860,6 +1936,19 @@ export interface components {
              * @enum {string}
              */
             redis: "ok" | "unreachable";
+        };
+        /** RedisHealth */
+        RedisHealth: {
+            /** Error */
+            error: string | null;
+            /** Location */
+            location: string;
+            /** Policy */
+            policy: string | null;
+            /** Reachable */
+            reachable: boolean;
+            /** Version */
+            version: string | null;
         };
         /**
          * Relative
@@ -3292,6 +3381,35 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ExperimentRead"][];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_health_api_v1_health_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HealthReport"];
                 };
             };
             /** @description A problem (RFC 9457) */

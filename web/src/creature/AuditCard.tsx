@@ -1,13 +1,13 @@
 /** The physics audit of a creature: start it, wait for it, show its result. */
 
-import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import type { Audit, AuditRow } from "../api/types";
-import { poll } from "../store/polling";
+import { usePolled } from "../store/polling";
 import { setQuery } from "../store/router";
 import { number } from "../ui/format";
+import { type Column, Table } from "../ui/Table";
+import { CheckCard } from "./CheckCard";
 import { text } from "./text";
-import "./audit.css";
 
 interface Props {
   sha: string;
@@ -15,55 +15,28 @@ interface Props {
 }
 
 export function AuditCard({ sha, query }: Props) {
-  const asked = query.has("audit");
-  const { audit, note, error } = useAudit(sha, asked);
+  const requested = query.has("audit");
+  const {
+    value: audit,
+    note,
+    error,
+  } = usePolled(requested ? () => api.readAudit(sha) : null, [sha, requested]);
   return (
-    <section class="card audit" aria-labelledby="audit-title">
-      <div class="card-head">
-        <h2 id="audit-title">{text.audit}</h2>
-        {audit && <Verdict audit={audit} />}
-        <span class="spring" />
-        {!asked && <button onClick={() => setQuery({ audit: "" })}>{text.runAudit}</button>}
-      </div>
-      {!asked && <p class="quiet small">{text.auditAbout}</p>}
-      {asked && !audit && !error && (
-        <p class="quiet" role="status">
-          {note ? text.retrying(note) : text.auditing}
-        </p>
+    <CheckCard
+      {...{ note, error }}
+      name="audit"
+      title={text.audit}
+      verdict={audit && (audit.verdict.survives ? ["finished", text.survives] : ["failed", text.fails])}
+      button={requested ? null : text.runAudit}
+      onStart={() => setQuery({ audit: "" })}
+      running={requested && !audit ? text.auditing : null}
+    >
+      {!requested && <p class="quiet small">{text.auditAbout}</p>}
+      {audit && <p class="reasons">{textOf(audit)}</p>}
+      {audit && (
+        <Table label={text.auditFigures} columns={COLUMNS} rows={audit.rows} keyOf={({ name }) => name} />
       )}
-      {error && <p class="banner wrong">{error}</p>}
-      {audit && <Figures audit={audit} />}
-    </section>
-  );
-}
-
-interface Shown {
-  audit: Audit | null;
-  note: string | null;
-  error: string | null;
-}
-
-/** The audit; requests are repeated until it is ready. */
-function useAudit(sha: string, asked: boolean): Shown {
-  const [state, setState] = useState<Shown>({ audit: null, note: null, error: null });
-  useEffect(() => {
-    if (!asked) return;
-    const change = (part: Partial<Shown>) => setState((old) => ({ ...old, ...part }));
-    return poll(() => api.readAudit(sha), {
-      value: (audit) => change({ audit }),
-      note: (note) => change({ note }),
-      error: (error) => change({ error }),
-    });
-  }, [sha, asked]);
-  return state;
-}
-
-function Verdict({ audit }: { audit: Audit }) {
-  const { survives } = audit.verdict;
-  return (
-    <span class={`badge ${survives ? "finished" : text.failed}`}>
-      {survives ? text.survives : text.fails}
-    </span>
+    </CheckCard>
   );
 }
 
@@ -73,55 +46,38 @@ function textOf({ verdict: { survives, reasons } }: Audit): string {
   return text.auditReasons(start, survives, reasons.join("; "));
 }
 
-function Figures({ audit }: { audit: Audit }) {
-  return (
-    <>
-      <p class="reasons">{textOf(audit)}</p>
-      <div class="scroll">
-        <table class="results">
-          <thead>
-            <tr>
-              <th scope="col">{text.figure}</th>
-              <th scope="col" class="numeric">
-                {text.value}
-              </th>
-              <th scope="col">{text.limit}</th>
-              <th scope="col">
-                <span class="unseen">{text.result}</span>
-              </th>
-            </tr>
-          </thead>
-          <tbody>
-            {audit.rows.map((row) => (
-              <Row key={row.name} {...row} />
-            ))}
-          </tbody>
-        </table>
-      </div>
-    </>
-  );
-}
-
 const SIGNS = { true: ["✓", text.passed], false: ["✕", text.failed], null: ["", ""] } as const;
 
-function Row({ quantity, value, unit, bar, passed, note }: AuditRow) {
-  const [sign, word] = SIGNS[`${passed}`];
-  return (
-    <tr>
-      <td class="figure">
+const COLUMNS: Column<AuditRow>[] = [
+  {
+    title: text.figure,
+    cell: ({ quantity, passed, note }) => (
+      <>
         {quantity}
         {passed === false && <span class="small wrong-text">{note}</span>}
-      </td>
-      <td class="numeric">
+      </>
+    ),
+  },
+  {
+    title: text.value,
+    cell: ({ value, unit }) => (
+      <>
         {number(value)} <span class="quiet">{unit}</span>
-      </td>
-      <td>{typeof bar === "number" ? number(bar) : bar}</td>
-      <td>
+      </>
+    ),
+  },
+  { title: text.limit, cell: ({ bar }) => (typeof bar === "number" ? number(bar) : bar) },
+  {
+    title: text.result,
+    unseen: true,
+    cell: ({ passed }) => {
+      const [sign, word] = SIGNS[`${passed}`];
+      return (
         <span class={`mark-word ${passed === false ? "wrong" : "right"}`} title={word}>
           <span aria-hidden="true">{sign}</span>
           <span class="unseen">{word}</span>
         </span>
-      </td>
-    </tr>
-  );
-}
+      );
+    },
+  },
+];

@@ -8,6 +8,7 @@ import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { FamilyTree } from "./FamilyTree";
 import { familyLayoutOf } from "./relatives";
+import { Card } from "../ui/Page";
 import { count } from "../ui/format";
 import { text } from "./text";
 
@@ -30,25 +31,24 @@ export function FamilyCard({ creature, query }: Props) {
     sharedSlug && !run ? null : pageUrl(`/creatures/${name}${run ? `?run=${run}` : ""}`);
   const credited = value ? creditOf(value[0].items, creature) : [];
   const lost = value?.[0].items.some(({ kept }) => !kept);
+  const head = value?.[0].more && back < FARTHEST && (
+    <>
+      <span class="spring" />
+      <button onClick={() => setQuery({ back: String(back + FURTHER) })}>{text.moreAncestors}</button>
+    </>
+  );
   return (
-    <section class="card" aria-labelledby="family-title">
-      <div class="card-head">
-        <h2 id="family-title">{sharedSlug ? text.ancestors : text.family}</h2>
-        <span class="spring" />
-        {value?.[0].more && back < FARTHEST && (
-          <button onClick={() => setQuery({ back: String(back + FURTHER) })}>{text.moreAncestors}</button>
-        )}
-      </div>
+    <Card id="family" title={sharedSlug ? text.ancestors : text.family} head={head}>
       {error && (
         <p class="banner wrong">
           {error} {text.reload}
         </p>
       )}
       {!value && !error && <p class="quiet loading">{text.loadingFamily}</p>}
-      {tree && tree.kin.length === 1 && (
+      {tree && tree.relatives.length === 1 && (
         <p class="quiet">{creature.provenance ? text.noParents(!sharedSlug) : text.noOrigin}</p>
       )}
-      {tree && tree.kin.length > 1 && <FamilyTree {...{ tree, hrefOf }} self={sha} />}
+      {tree && tree.relatives.length > 1 && <FamilyTree {...{ tree, hrefOf }} self={sha} />}
       {credited.length > 0 && <p class="quiet small">{text.creditAncestors(credited.join(", "))}</p>}
       {tree && (lost || tree.hidden > 0) && (
         <p class="quiet small">
@@ -56,7 +56,7 @@ export function FamilyCard({ creature, query }: Props) {
           {tree.hidden > 0 && text.hiddenChildren(count(tree.hidden))}
         </p>
       )}
-    </section>
+    </Card>
   );
 }
 

@@ -3,13 +3,14 @@
 import { useMemo, useState } from "preact/hooks";
 import { type NetworkFormat, networkUrl } from "../api/urls";
 import type { Creature, Spec, Vector } from "../api/types";
-import { decodeFloats } from "../decode/base64";
+import { decodeFloats } from "../decode/floats";
 import { layeredOf } from "../decode/layers";
 import { type Network as Graph, networkOf } from "../decode/network";
 import { GeneStrip } from "./GeneStrip";
 import { NetworkGraph } from "./NetworkGraph";
 import { NetworkOutputs } from "./NetworkOutputs";
 import type { Moment } from "../replay/moment";
+import { Card } from "../ui/Page";
 import { FileLink } from "../ui/FileLink";
 import { text } from "./text";
 
@@ -23,7 +24,7 @@ const FORMS: [NetworkFormat, string][] = [
 interface Props {
   creature: Creature;
   moment: Moment;
-  /** Steps between the frames that a moment counts; null while there is no replay. */
+  /** Steps between frames of a moment; null without a replay. */
   every: number | null;
 }
 
@@ -41,7 +42,7 @@ export function GenomeCard({ creature, ...shown }: Props) {
 
 interface NetworkProps extends Omit<Props, "creature"> {
   network: Graph;
-  /** The creature whose network can be had as files. */
+  /** The creature whose network can be downloaded. */
   files: string | null;
   control: Spec;
   steps: number;
@@ -50,8 +51,7 @@ interface NetworkProps extends Omit<Props, "creature"> {
 function Network({ network, files, ...rest }: NetworkProps) {
   const [chosen, choose] = useState<number | null>(null);
   return (
-    <section class="card" aria-labelledby="network-title">
-      <h2 id="network-title">{text.network}</h2>
+    <Card id="network" title={text.network}>
       <NetworkGraph network={network} chosen={chosen} onChoose={choose} />
       <NetworkOutputs {...rest} {...{ network, chosen }} />
       {files && (
@@ -62,16 +62,15 @@ function Network({ network, files, ...rest }: NetworkProps) {
           ))}
         </p>
       )}
-    </section>
+    </Card>
   );
 }
 
 function Numbers({ genes }: { genes: Vector }) {
   const values = useMemo(() => decodeFloats(genes.values), [genes]);
   return (
-    <section class="card" aria-labelledby="genes-title">
-      <h2 id="genes-title">{text.genes}</h2>
+    <Card id="genes" title={text.genes}>
       <GeneStrip values={values} />
-    </section>
+    </Card>
   );
 }

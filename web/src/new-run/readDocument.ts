@@ -74,14 +74,14 @@ export function specOf(creature: Creature): Spec {
     control,
     ...(room && { genome: room }),
     task,
-    ...((NUMBERS.includes(genome.encoding) || isOwn(genome.encoding)) && {
+    ...((NUMBERS.includes(genome.encoding) || isPlugin(genome.encoding)) && {
       search: { emitters: [{ operator: "iso+line" }] },
     }),
   };
 }
 
 /** Names of plug-ins contain a dot. */
-const isOwn = (name: string) => name.includes(".");
+const isPlugin = (name: string) => name.includes(".");
 
 /** The network sizes for which the creature was evaluated. */
 function roomOf({ measured }: Creature): Spec | null {
@@ -93,7 +93,7 @@ function gaitSpec(stroke: Gait, world: Spec): Spec {
   return {
     experiment: "gaits",
     swimmers: [stroke.swimmer],
-    ...(stroke.own && { own: { [stroke.swimmer]: stroke.own } }),
+    ...(stroke.plugin && { plugins: { [stroke.swimmer]: stroke.plugin } }),
     viscosities: [world.viscosity ?? null],
     width: world.width ?? null,
     height: world.height ?? null,

@@ -45,8 +45,8 @@ class Axis:
 
 
 def label(archive: Archive, name: str) -> str:
-    """The title and unit of a measure; one of one's own has those that it was declared with."""
-    known = archive.own.get(name) or MEASURES.get(name)
+    """Return the title and unit of a measure; a plug-in declares its own."""
+    known = archive.plugins.get(name) or MEASURES.get(name)
     if known is None:
         return name.replace("_", " ").capitalize()
     return known.title + (f" [{known.unit}]" if known.unit else "")

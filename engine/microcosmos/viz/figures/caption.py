@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...spec import Chain
-from ...spec.body import Known, OwnBody, shape
+from ...spec.body import PluginBody, SwimmerBody, shape
 from ...spec.emitters import PopulationEmitter
 from .axes import Axis, chosen
 from .groups import Group
 from .reading import Archive, Search
-from .regions import Layout
+from .sheet import Layout
 
 FITNESS = {
     "displacement": "Fitness is the displacement of the mean node",
@@ -100,8 +100,8 @@ def run(found: Archive, seeds: Sequence[int] | None = None) -> str:
 
 def _fitness(spec: Search) -> str:
     task = spec.task
-    if task.own:
-        return f"Fitness is “{task.own.title}” ({task.fitness})"
+    if task.plugin:
+        return f"Fitness is “{task.plugin.title}” ({task.fitness})"
     both = f"Fitness is displacement + {task.energy_weight:g} × energy collected"
     return FITNESS.get(
         task.fitness, both if "+" in task.fitness else f"Fitness is {task.fitness}"
@@ -119,13 +119,13 @@ def _emitters(spec: Search) -> str:
 
 def _body(spec: Search) -> str:
     body = spec.body
-    if isinstance(body, OwnBody):  # Whose nodes are known to those alone who have its module.
-        return f"the body “{body.own.title}” ({body.builder})"
+    if isinstance(body, PluginBody):
+        return f"the body “{body.plugin.title}” ({body.builder})"
     nodes = len(shape(body).positions)
     if isinstance(body, Chain):
         return f"a filament of {nodes} nodes"
-    whose = f"the body of a {body.builder}" if isinstance(body, Known) else f"a {body.builder}"
-    return f"{whose} of {nodes} nodes"
+    whole = "the body of a" if isinstance(body, SwimmerBody) else "a"
+    return f"{whole} {body.builder} of {nodes} nodes"
 
 
 def _control(spec: Search) -> str:

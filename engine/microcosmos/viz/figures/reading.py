@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...archive import file
-from ...spec import Descriptor, Neuroevolution, Own, QualityDiversity, parse
+from ...spec import Descriptor, Neuroevolution, PluginVersion, QualityDiversity, parse
 
 Search = QualityDiversity | Neuroevolution
 """The specs whose runs fill an archive."""
@@ -42,10 +42,10 @@ class Archive:
         return self.spec.archive.descriptors
 
     @property
-    def own(self) -> dict[str, Own]:
-        """What is said of measures of one's own, by name."""
+    def plugins(self) -> dict[str, PluginVersion]:
+        """Versions of the plug-ins among the measures, by name."""
         task = self.spec.task
-        return self.spec.archive.own | ({task.fitness: task.own} if task.own else {})
+        return self.spec.archive.plugins | ({task.fitness: task.plugin} if task.plugin else {})
 
     @property
     def best(self) -> int:

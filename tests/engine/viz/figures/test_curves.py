@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 from microcosmos.viz.figures import caption, curves, style
-from microcosmos.viz.figures.family import family, heights
 from microcosmos.viz.figures.groups import grouped
-from microcosmos.viz.figures.lineage import lineage
-from microcosmos.viz.figures.regions import Motion, layout, numerals, reading_order
-from microcosmos.viz.figures.sheet import sheet
+from microcosmos.viz.figures.lineage import family, heights, lineage
+from microcosmos.viz.figures.sheet import Motion, layout, numerals, reading_order, sheet
 
 pytestmark = pytest.mark.long
 

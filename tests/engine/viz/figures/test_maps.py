@@ -9,8 +9,8 @@ from scipy.spatial import KDTree
 
 from microcosmos.viz.figures import caption, maps, saving, style
 from microcosmos.viz.figures.axes import chosen, fitness_label
-from microcosmos.viz.figures.tessellation import borders, cells
-from microcosmos.viz.figures.tex import latex
+from microcosmos.viz.figures.maps import borders, cells
+from microcosmos.viz.figures.saving import latex
 
 pytestmark = pytest.mark.long
 
@@ -103,16 +103,16 @@ def test_one_axis_alone_is_drawn_as_bars_as_high_as_the_fittest(made):
     assert [bar.get_height() for bar in panel.patches] == [3.0]
 
 
-def test_measures_of_ones_own_have_the_words_they_were_declared_with(made):
+def test_plugin_measures_have_their_declared_titles(made):
     """Although nobody has their module here."""
-    own = {"source": "0" * 64, "title": "Sway", "unit": "cells"}
-    sway = {"name": "mine.sway", "low": 1e-3, "high": 1.0, "scale": "log10", "own": own}
-    far = own | {"title": "Straight way"}
+    plugin = {"source": "0" * 64, "title": "Sway", "unit": "cells"}
+    sway = {"name": "mine.sway", "low": 1e-3, "high": 1.0, "scale": "log10", "plugin": plugin}
+    far = plugin | {"title": "Straight way"}
     found = made(
         [{"cell": 0, "fitness": 1.0, "mine.sway": 0.1}, {"cell": 9, "fitness": 2.0}],
         axes=[sway, {"name": "straightness", "bins": 4}],
-        task={"fitness": "mine.straight", "own": far},
-        body={"builder": "mine.cross", "own": own | {"title": "Cross"}},
+        task={"fitness": "mine.straight", "plugin": far},
+        body={"builder": "mine.cross", "plugin": plugin | {"title": "Cross"}},
     )
     figure = maps.archive(found, colour="mine.sway")
     assert figure.axes[0].get_xlabel() == figure.axes[1].get_ylabel() == "Sway [cells]"

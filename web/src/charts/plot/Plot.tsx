@@ -162,7 +162,7 @@ interface LegendProps {
 
 function Legend({ lines, of, onLight }: LegendProps) {
   return (
-    <figcaption class="xy-legend">
+    <figcaption class="row xy-legend">
       {lines.map((line) => (
         <span key={line.name} onPointerEnter={() => onLight(line.name)} onPointerLeave={() => onLight(null)}>
           <svg viewBox="0 0 26 10" aria-hidden="true">

@@ -15,15 +15,15 @@ export function changedPaths(a: Json, b: Json, path = ""): string[] {
   return JSON.stringify(a) === JSON.stringify(b) ? [] : [path];
 }
 
-/** What belongs to a word of users' own is there with that word alone. */
-const COMES_AND_GOES = "own";
+/** Fields that a document has only where it names a plug-in. */
+const OF_PLUGINS = ["plugin", "plugins"];
 
 function keysOf(...parts: Spec[]): string[] {
   return [...new Set(parts.flatMap(Object.keys))];
 }
 
 function sameKeys(a: Spec, b: Spec): boolean {
-  return keysOf(a, b).every((key) => key === COMES_AND_GOES || (key in a && key in b));
+  return keysOf(a, b).every((key) => OF_PLUGINS.includes(key) || (key in a && key in b));
 }
 
 /** How many of the paths lie in a part of the spec. */

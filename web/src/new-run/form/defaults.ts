@@ -9,7 +9,7 @@ export function completed(schema: Schema, spec: Spec): Spec {
   return filled(schema, schema, latest(spec)) as Spec;
 }
 
-/** Without the versions of what is of users' own: a new run takes those that there are now. */
+/** Without the versions of plug-ins: a new run takes the current ones. */
 function latest(value: Json): Json {
   if (Array.isArray(value)) return value.map(latest);
   if (!isObject(value)) return value;

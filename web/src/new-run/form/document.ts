@@ -121,15 +121,15 @@ export function withChoice(document: Json, section: Section, field: Field, value
   const following = section.following.map((name) => join(section.path, name));
   if (field.kind !== "choice" || following.includes(field.path)) return next;
   const left = following.reduce((changed, path) => withValue(changed, path, null), next);
-  return withOwn(left, section, field, value);
+  return withPlugin(left, section, field, value);
 }
 
-/** The settings of something of users' own come and go with the word for it. */
-function withOwn(document: Json, { path, settings }: Section, field: Field, value: Json): Json {
-  const own = join(path, "own");
+/** Add or remove the settings of a plug-in with its name. */
+function withPlugin(document: Json, { path, settings }: Section, field: Field, value: Json): Json {
+  const plugin = join(path, "plugin");
   const fresh = settings?.path === field.path ? settings.fresh[String(value)] : undefined;
-  if (fresh === undefined && valueAt(document, own) === null) return document;
-  return withValue(document, own, fresh ?? null);
+  if (fresh === undefined && valueAt(document, plugin) === null) return document;
+  return withValue(document, plugin, fresh ?? null);
 }
 
 /** Whether a field belongs to what a document has chosen. */

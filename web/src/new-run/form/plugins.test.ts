@@ -1,4 +1,4 @@
-/** What workers have of users' own, in forms: choices, and settings that come and go with them. */
+/** Plug-ins in forms: choices, and settings that come and go with them. */
 
 import { describe, expect, it } from "vitest";
 import type { Schema, Spec } from "../../api/types";
@@ -12,7 +12,7 @@ const settings: Schema = {
   inline: true,
   properties: { strictness: { type: "number", default: 1, minimum: 0, maximum: 10 } },
 };
-const own: Schema = {
+const plugin: Schema = {
   type: "object",
   inline: true,
   default: { settings: { strictness: 1 } },
@@ -26,7 +26,7 @@ const SCHEMA: Schema = {
       default: { builder: "chain" },
       oneOf: [
         { type: "object", properties: { builder: { const: "chain", default: "chain" } } },
-        { type: "object", properties: { builder: { const: "mine.cross" }, own } },
+        { type: "object", properties: { builder: { const: "mine.cross" }, plugin } },
       ],
     },
     task: {
@@ -35,9 +35,9 @@ const SCHEMA: Schema = {
         fitness: {
           default: "displacement",
           enum: ["displacement", "mine.straight"],
-          own: { "mine.straight": about },
+          plugins: { "mine.straight": about },
         },
-        own: { settings_of: "fitness", parts: { "mine.straight": own } },
+        plugin: { settings_of: "fitness", parts: { "mine.straight": plugin } },
       },
     },
   },
@@ -47,36 +47,36 @@ const form = formOf(SCHEMA);
 const task = form.fields.find(({ path }) => path === "task") as Section;
 const fitness = task.fields.find(({ path }) => path === "task.fitness") as Choice;
 
-describe("a choice of users' own", () => {
+describe("a choice with plug-ins", () => {
   it("tells its title and who has it", () => {
     expect(fitness.options).toContain("mine.straight");
-    expect(fitness.own?.["mine.straight"]).toEqual(about);
+    expect(fitness.plugins?.["mine.straight"]).toEqual(about);
   });
 
   it("brings its settings with it, and takes them away again", () => {
     const chosen = withChoice(SPEC, task, fitness, "mine.straight");
-    expect(valueAt(chosen, "task.own.settings.strictness")).toBe(1);
+    expect(valueAt(chosen, "task.plugin.settings.strictness")).toBe(1);
     const left = withChoice(chosen, task, fitness, "displacement");
-    expect(valueAt(left, "task.own")).toBeNull();
-    expect(changedPaths(chosen, SPEC)).toEqual(["task.fitness", "task.own"]);
+    expect(valueAt(left, "task.plugin")).toBeNull();
+    expect(changedPaths(chosen, SPEC)).toEqual(["task.fitness", "task.plugin"]);
     expect(changedPaths(left, SPEC)).toEqual([]);
   });
 
   it("has its settings checked where it is chosen, and only there", () => {
-    const wrong = { fitness: "mine.straight", own: { settings: { strictness: 11 } } };
+    const wrong = { fitness: "mine.straight", plugin: { settings: { strictness: 11 } } };
     expect(complaints(form, { ...SPEC, task: wrong })).toEqual([
-      { field: "task.own.settings.strictness", message: "Needs at most 10." },
+      { field: "task.plugin.settings.strictness", message: "Needs at most 10." },
     ]);
     expect(complaints(form, { ...SPEC, task: { ...wrong, fitness: "displacement" } })).toEqual([]);
   });
 });
 
-describe("a body of users' own", () => {
+describe("a body from a plug-in", () => {
   it("has its settings as fields, and begins with their defaults", () => {
     const body = form.fields.find(({ path }) => path === "body");
     const cross = body?.kind === "union" ? body.parts.get("mine.cross") : undefined;
-    expect(cross?.fields.map(({ path }) => path)).toEqual(["body.own.settings.strictness"]);
-    expect(cross?.fresh).toEqual({ builder: "mine.cross", own: { settings: { strictness: 1 } } });
+    expect(cross?.fields.map(({ path }) => path)).toEqual(["body.plugin.settings.strictness"]);
+    expect(cross?.fresh).toEqual({ builder: "mine.cross", plugin: { settings: { strictness: 1 } } });
   });
 });
 
@@ -84,15 +84,15 @@ describe("a spec of another run", () => {
   const version = { source: "a".repeat(64), title: "T", sizes: {}, settings: { strictness: 3 } };
 
   it("takes the version that there is now, with its settings", () => {
-    const spec = { ...SPEC, task: { fitness: "mine.straight", own: version } };
+    const spec = { ...SPEC, task: { fitness: "mine.straight", plugin: version } };
     expect(completed(SCHEMA, spec).task).toEqual({
       fitness: "mine.straight",
-      own: { settings: { strictness: 3 } },
+      plugin: { settings: { strictness: 3 } },
     });
   });
 
   it("leaves a creature what it is", () => {
-    const creature = { identity: { task: { own: version } } };
+    const creature = { identity: { task: { plugin: version } } };
     expect(completed(SCHEMA, { ...SPEC, creature }).creature).toEqual(creature);
   });
 });

@@ -45,7 +45,7 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
   return (
     <div class="fold-player">
       <Still fold={fold} time={moment} name={text.filamentFor(target.name)} />
-      <div class="controls">
+      <div class="row">
         <button onClick={() => setPlaying(!playing)}>{playing ? text.pause : text.play}</button>
         <StepRange time={moment} {...{ last, every, steps }} onScrub={scrub} />
         <label class="compact">

@@ -20,7 +20,7 @@ export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
   const href = `data:application/json;charset=utf-8,${encodeURIComponent(json)}`;
   return (
     <section class="card spec-card" id="spec" aria-labelledby="spec-title" tabIndex={-1}>
-      <div class="card-head wraps">
+      <div class="card-head">
         <h2 id="spec-title">{text.spec}</h2>
         <span class="spring" />
         <RunPicker

@@ -1,0 +1,56 @@
+"""Routes of liveness, readiness, metrics and the health report."""
+
+from typing import Literal
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import PlainTextResponse
+from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
+
+from ..auth.authorize import MAY_ADMINISTER, MAY_READ, PUBLIC
+from ..core import page
+from ..core.schemas import Wire
+from ..services.deps import ServicesDep, SessionDep
+from . import health
+
+router = APIRouter(tags=["health"])
+"""Routes of the API."""
+outside = APIRouter(tags=["health"])
+"""Routes whose path does not start with `/api`."""
+
+
+class Health(Wire):
+    status: Literal["ok"] = "ok"
+    help: bool
+    """The documentation is served at `/help/`."""
+
+
+class Readiness(Wire):
+    database: health.Answer
+    redis: health.Answer
+
+
+@router.get("/health", dependencies=[MAY_ADMINISTER])
+def read_health(services: ServicesDep) -> health.HealthReport:
+    """Return the state of the database, the disk, Redis, the queues and the workers."""
+    return health.report(services)
+
+
+@outside.get("/healthz", dependencies=[PUBLIC])
+def alive() -> Health:
+    return Health(help=page.HELP.is_dir())
+
+
+@outside.get("/readyz", responses={503: {"model": Readiness}}, dependencies=[PUBLIC])
+def ready(services: ServicesDep, session: SessionDep, response: Response) -> Readiness:
+    found = Readiness(
+        database=health.database_answers(session), redis=health.redis_answers(services)
+    )
+    if "unreachable" in (found.database, found.redis):
+        response.status_code = 503
+    return found
+
+
+@outside.get("/metrics", include_in_schema=False, dependencies=[MAY_READ])
+def metrics(request: Request) -> PlainTextResponse:
+    text = request.app.state.metrics.text()
+    return PlainTextResponse(text, media_type=CONTENT_TYPE_PLAIN_0_0_4)

@@ -1,0 +1,40 @@
+/** A card that runs a check of a creature: its verdict, a button, its progress and its result. */
+
+import type { ComponentChildren } from "preact";
+import { Card } from "../ui/Page";
+import { text } from "./text";
+
+interface Props {
+  name: string;
+  title: string;
+  /** Class and text of a badge. */
+  verdict: readonly [kind: string, word: string] | null;
+  button: string | null;
+  onStart: () => void;
+  /** Text while the check runs; null if it does not run. */
+  running: string | null;
+  note: string | null;
+  error: string | null;
+  children: ComponentChildren;
+}
+
+export function CheckCard({ name, title, verdict, button, onStart, running, note, error, children }: Props) {
+  const head = (
+    <>
+      {verdict && <span class={`badge ${verdict[0]}`}>{verdict[1]}</span>}
+      <span class="spring" />
+      {button && <button onClick={onStart}>{button}</button>}
+    </>
+  );
+  return (
+    <Card id={name} title={title} kind={name} head={head}>
+      {running && !error && (
+        <p class="quiet" role="status">
+          {note ? text.retrying(note) : running}
+        </p>
+      )}
+      {error && <p class="banner wrong">{error}</p>}
+      {children}
+    </Card>
+  );
+}
