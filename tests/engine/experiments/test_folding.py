@@ -114,7 +114,7 @@ def test_in_a_fluid_and_in_segments_it_learns_the_same_at_first(document):
     ("change", "needed"),
     [
         ({"targets": []}, "at least 1 item"),
-        ({"targets": [{"digit": 3}, {"digit": 3}]}, "names that differ"),
+        ({"targets": [{"digit": 3}, {"digit": 3}]}, "must have different names"),
         ({"targets": [{"digit": 10}]}, "less than or equal to 9"),
         ({"targets": [{"kind": "film"}]}, "one of digit, picture"),
         ({"targets": [3]}, "one of digit, picture"),

@@ -11,9 +11,9 @@ from microcosmos import spec
 from microcosmos.build import build_task
 from microcosmos.search import gradients
 
-STEPS = 80
+STEPS = 200
 OF = ("fitness", "path_length", "bending_effort", "stretching_effort", "power", "symmetry")
-SIZES = (1e-4, 1e-5, 1e-6)
+SIZES = (1e-3, 1e-4, 1e-5, 1e-6)
 """Steps of finite differences; the best counts: a path's length bends sharply near rest."""
 
 CONTROLS = {
@@ -22,7 +22,7 @@ CONTROLS = {
 }
 
 
-@pytest.fixture(params=CONTROLS)
+@pytest.fixture(params=["cppn", pytest.param("direct", marks=pytest.mark.long)])
 def creature(request, float64):
     """A small swimmer of each encoding in double precision, no limit acting."""
     scene = spec.Scene.model_validate(

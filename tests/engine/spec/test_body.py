@@ -113,15 +113,9 @@ PRESETS = [
     for preset in experiment.presets
 ]
 BODIES = [
-    {"builder": "chain"},
-    {"builder": "ring"},
-    {"builder": "arc"},
+    *({"builder": builder, **measures} for builder, (measures, *_) in BUILT.items()),
+    *({"builder": swimmer} for swimmer in get_args(Swimmer)),
     {"builder": "walk", "nodes": 60},
-    {"builder": "star"},
-    {"builder": "tree"},
-    {"builder": "polyline", "points": [[0, 0], [10, 0], [10, 8]]},
-    {"builder": "graph", "nodes": [[0, 0], [2, 0], [4, 1]], "edges": [[0, 1], [1, 2]]},
-    *({"builder": name} for name in ("worm", "tadpole", "ray", "cilia", "jellyfish")),
 ]
 
 
