@@ -1,6 +1,5 @@
 """Direct encodings: waveforms, weights of layers and measures of the body are genes."""
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -29,8 +28,8 @@ def grow(float64):
         task = build_task(scene, float64)
         parts = task.encoding.parts
         values = np.concatenate([np.zeros(n) + genes.get(name, 0) for name, n in parts.items()])
-        drive = eqx.filter_jit(task.encoding.drive)
-        return task, drive(task.world, task.start, Vector(jnp.asarray(values)), None)
+        driven = task.encoding.drive(task.world, task.start, Vector(jnp.asarray(values)), None)
+        return task, driven
 
     return make
 

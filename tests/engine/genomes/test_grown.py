@@ -1,6 +1,5 @@
 """A CPPN grows a chain: how many nodes, how long, how bent, how stiff."""
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -49,7 +48,7 @@ def lines(network_of, float64):
 )
 def test_the_chain_ends_where_growth_stops(task, lines, slope, bias, nodes):
     genes = lines([0, 0, 0, 0, 0, 0, slope], [0, 0, 0, 0, 0, 0, bias])
-    driven = eqx.filter_jit(task.encoding.drive)(task.world, task.start, genes, None)
+    driven = task.encoding.drive(task.world, task.start, genes, None)
     np.testing.assert_array_equal(driven.world.present, np.arange(NODES) < nodes)
     there = driven.start.positions[:nodes]
     np.testing.assert_allclose(jnp.mean(there, 0), [16, 16], atol=1e-12)
@@ -62,7 +61,7 @@ def test_measures_are_read_at_nodes_and_between_them(task, lines):
     slopes = [0, 0, 0.5, 0.3, -0.4, 0.2, 0]
     biases = np.array([0, 0, 0.1, 0.2, 0.3, -0.1, 1])
     genes = lines(slopes, biases)
-    driven = eqx.filter_jit(task.encoding.drive)(task.world, task.start, genes, None)
+    driven = task.encoding.drive(task.world, task.start, genes, None)
     p = 2 * np.arange(NODES) / (NODES - 1) - 1
     lines = np.array(slopes)[:, None] * p[None] + biases[:, None]
     at_edges = np.tanh(0.5 * (lines[:, :-1] + lines[:, 1:]))
