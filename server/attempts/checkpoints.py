@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from ..creatures.insertion import mark_garbage, named
+from ..creatures.storage import mark_garbage, named
 from ..storage.artifacts import Stored, superfluous
 from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 

@@ -95,7 +95,7 @@ def test_films_and_pictures_are_drawn_of_the_replay_that_is_kept(
 ):
     assert pictures.make(services, known, kind).startswith(start)
     assert asked == [("record", known)]
-    assert renderings.kept(services, known, REPLAY) == replay()
+    assert renderings.existing(services, known, REPLAY) == replay()
     pictures.make(services, known, kind)
     assert asked == [("record", known)], "the second one needs no simulation"
 

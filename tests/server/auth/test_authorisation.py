@@ -21,7 +21,7 @@ from server.services.services import connect
 from server.settings import Settings
 from server.shares import publishing
 from server.shares.routes import own_share
-from server.shares.schemas import ShareAsked
+from server.shares.schemas import ShareCreate
 from server.sweeps.deps import own_sweep
 from server.sweeps.planning import plan
 from server.sweeps.schemas import SweepSent
@@ -169,7 +169,7 @@ def parameters(services, secrets, spec, identity):
         return str(submit_sweep(services, planned, owner=owner.token)[0])
 
     def share() -> str:
-        asked = ShareAsked(creature=file["sha256"], title=uuid4().hex)
+        asked = ShareCreate(creature=file["sha256"], title=uuid4().hex)
         with services.sessions.write.begin() as session:
             return publishing.publish(session, asked, owner)[0].slug
 

@@ -178,7 +178,7 @@ def test_who_has_missed_more_than_is_kept_fetches_anew(address, services, last):
         services.events.publish("run", uuid4(), {"number": 1})
         later = [event for event in take(found, 1) if event[1] == "run"]
     assert later
-    assert fanout.place(later[0][0]) > fanout.place(identifier)
+    assert fanout.position(later[0][0]) > fanout.position(identifier)
 
 
 def test_after_the_stream_was_emptied_a_client_fetches_anew(address, services, flush):
@@ -193,10 +193,10 @@ def test_after_the_stream_was_emptied_a_client_fetches_anew(address, services, f
 
 def test_a_slow_listener_is_told_to_fetch_anew():
     listener = fanout.Listener("0-0")
-    for number in range(fanout.ROOM + 1):
+    for number in range(fanout.QUEUE_SIZE + 1):
         listener.put(fanout.Entry(f"{number + 1}-0", "run"))
     waiting = [listener.waiting.get_nowait() for _ in range(listener.waiting.qsize())]
-    assert [(entry.id, entry.kind) for entry in waiting] == [(f"{fanout.ROOM + 1}-0", "reset")]
+    assert [(entry.id, entry.kind) for entry in waiting] == [(f"{fanout.QUEUE_SIZE + 1}-0", "reset")]
 
 
 def test_the_stream_is_trimmed(services, monkeypatch):

@@ -49,4 +49,4 @@ def test_a_measurement_that_failed_says_why(api, services, known):
     services.jobs.give_up(job, "Traceback\nValueError: out of memory\n")
     answer = api.get(f"creatures/{known}/measurement")
     assert answer.status_code == 500
-    assert "The measurement could not be made: ValueError: out of memory" in answer.text
+    assert "The measurement failed: ValueError: out of memory" in answer.text

@@ -121,7 +121,7 @@ def test_what_is_taken_back_is_gone_for_everybody(api, through, shared, known):
         through(slug, f"creatures/{known}/replay"),
     ):
         assert answer.status_code == 410
-        assert answer.json()["detail"] == "Whoever shared this has taken it back."
+        assert answer.json()["detail"] == "Its owner has revoked this share."
     assert api.delete(f"shares/{'A' * 32}").status_code == 404
 
 
@@ -134,7 +134,7 @@ def test_what_has_expired_is_gone(api, through, services, known):
         session.get_one(Share, slug).expires_at = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
     answer = through(slug, f"creatures/{known}")
     assert answer.status_code == 410
-    assert answer.json()["detail"] == "This was shared until 02 January 2026, 03:04 UTC."
+    assert answer.json()["detail"] == "This share expired on 02 January 2026, 03:04 UTC."
     assert api.get("commons").json()["items"] == []
     assert api.get("shares").json()["items"][0]["state"] == "expired"
 
@@ -225,6 +225,6 @@ def test_strangers_are_not_told_the_renderers_words(api, services, shared, known
     stranger = api.get(f"shares/{shared['slug']}/preview.png")
     assert stranger.status_code == 500
     assert stranger.json()["detail"] == (
-        "The picture could not be made. It can be tried again in a minute."
+        "The picture failed. Try again in a minute."
     )
     assert stranger.headers["retry-after"] == "60"
