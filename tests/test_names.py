@@ -34,7 +34,6 @@ LEFT = {
     "engine/microcosmos/search/plugin_measures.py:pace",
     "engine/microcosmos/search/qdax/emitters.py:Told",
     "engine/microcosmos/world/model.py:pace",
-    "server/attempts/recording.py:standing",
     "server/auth/bootstrap.py:told",
     "server/creatures/initial.py:DECISIVE",
     "server/deletion/garbage.py:AT_ONCE",
@@ -50,8 +49,6 @@ LEFT = {
     "server/sweeps/steering.py:AT_ONCE",
     "server/sweeps/summary.py:Told",
     "server/sweeps/summary.py:told",
-    "worker/plugins.py:Shelf",
-    "worker/plugins.py:Told",
 }
 """Old names that are still there; this list may only shrink."""
 

@@ -1,4 +1,4 @@
-"""How a run is computed: the engine's experiment, driven from its last checkpoint."""
+"""Compute a run: drive the engine's experiment from the last checkpoint."""
 
 import time
 from collections.abc import Mapping
@@ -12,15 +12,15 @@ from microcosmos.device import device_kind, prepare
 from microcosmos.experiments import OtherDevice, Stopped
 from microcosmos.plugins import Broken, Missing
 from microcosmos.spec import field_path, parse
+from server.attempts.attempt import Attempt
 
-from .attempt import Attempt
 from .plugins import load
 
 
 def carry_out(attempt: Attempt) -> None:
-    """Compute, generation by generation, until it is done or somebody wants it to stop."""
+    """Compute until the run is done or has to stop."""
     prepare()
-    load(attempt.settings)
+    load(attempt.services.settings)
     attempt.use(device_kind())
     try:
         compute(attempt)
@@ -28,21 +28,20 @@ def carry_out(attempt: Attempt) -> None:
         attempt.set_aside(str(error))
     except Broken as error:
         attempt.refuse(str(error))
-    except ValidationError as error:  # What a server could not see: it has no modules.
-        attempt.refuse("; ".join(map(_said, error.errors())))
+    except ValidationError as error:  # Only a worker can validate what plug-ins declare.
+        attempt.refuse("; ".join(map(_message, error.errors())))
 
 
-def _said(error: Mapping[str, Any]) -> str:
-    """The field and what is wrong with it."""
+def _message(error: Mapping[str, Any]) -> str:
+    """Return the field and what is wrong with it."""
     words = str(error["msg"]).removeprefix("Value error, ")
     return ": ".join(filter(None, (field_path(error["loc"]), words)))
 
 
 def compute(attempt: Attempt) -> None:
-    """Go on from the last checkpoint to the end, or to where it is to stop."""
+    """Continue from the last checkpoint, one generation after another."""
     data = attempt.restore()
-    # A file has what its run began from.
-    initial = [] if data else attempt.initial()
+    initial = [] if data else attempt.initial()  # A checkpoint contains its initial creatures.
     spec = parse(attempt.spec)
     experiment = build(spec, initial) if initial else build(spec)
     try:
@@ -58,7 +57,8 @@ def compute(attempt: Attempt) -> None:
         while not (experiment.done(state) or attempt.interrupted()):
             started = time.monotonic()
             state, report = experiment.advance(state, stop=attempt.interrupted)
-            seconds = time.monotonic() - started
-            attempt.record(report, seconds, lambda: experiment.save(state))  # noqa: B023
+            attempt.record(report, time.monotonic() - started)
+            if attempt.checkpoint_due():
+                attempt.checkpoint(report.generation, experiment.save(state))
     done, generation = experiment.done(state), experiment.generation(state)
     attempt.end(done, generation, lambda: experiment.save(state))

@@ -1,12 +1,6 @@
-"""The jobs that the queue names.
+"""Jobs that the queues name. The engine is imported when the first one needs it."""
 
-The engine is imported inside: what goes wrong with it, or with its device, is an attempt's
-failure and kept on the run.
-"""
-
-import os
 from functools import cache
-from uuid import UUID
 
 from server.renderings import storage as renderings
 from server.services.services import Services, connect
@@ -14,10 +8,6 @@ from server.settings import Settings
 from server.tables import REPLAY
 
 from . import plugins
-from .attempt import claimed
-
-WORKER = "MICROCOSMOS_WORKER"
-"""The variable in which a job's process finds the name of its worker."""
 
 
 @cache
@@ -25,18 +15,9 @@ def services() -> Services:
     return connect(Settings())
 
 
-def evolve(run_id: str) -> None:
-    """Safe to start again: it claims the run and goes on from its last checkpoint."""
-    with claimed(services(), UUID(run_id), os.environ[WORKER]) as attempt:
-        if attempt:
-            from .evolution import carry_out
-
-            carry_out(attempt)
-
-
 @cache
 def prepared() -> None:
-    """Settings of the device: once, before a process first computes."""
+    """Prepare the device and load plug-ins, once in a process."""
     from microcosmos.device import prepare
 
     prepare()

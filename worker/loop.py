@@ -1,7 +1,7 @@
-"""Takes one job after the other from a queue; no error of Redis ends it.
+"""Take one job after another from queues, in place of RQ's `work`.
 
-RQ's own loop ends at some errors, and drops a job where a signal arrives just after it was
-taken.
+`work` ends at some errors of Redis, and drops a job if a signal arrives just after it was taken
+(tests/worker/test_loop.py, tests/faults/test_exact_resume.py).
 """
 
 import logging
@@ -12,23 +12,22 @@ from contextlib import contextmanager, suppress
 from redis.exceptions import RedisError
 from rq.exceptions import DequeueTimeout
 from rq.queue import Queue
-from rq.worker import WorkerStatus
-from rq.worker.base import BaseWorker
+from rq.worker import BaseWorker
 from sqlalchemy.exc import SQLAlchemyError
 
-from . import stop
+from .process import stop_requested
 
 DEQUEUE_SECONDS = 1
-"""How long a wish to stop can go unnoticed while the queue is empty."""
+"""Longest time before an idle worker notices a request to stop."""
 PAUSE_SECONDS = 1.0
-"""Between two tries where Redis refuses."""
+"""Pause after an error of Redis or the database."""
 
 log = logging.getLogger(__name__)
 
 
 def serve(worker: BaseWorker, queues: Callable[[], list[Queue]] | None = None) -> None:
-    """Carry out jobs until this process is told to stop; `queues` says of which now."""
-    while not stop.requested():
+    """Carry out jobs until the process has to stop; `queues` returns the queues to read now."""
+    while not stop_requested():
         with surviving():
             if queues:
                 worker.queues = queues()
@@ -39,9 +38,8 @@ def serve(worker: BaseWorker, queues: Callable[[], list[Queue]] | None = None) -
 
 def take_one(worker: BaseWorker) -> None:
     """Wait a moment for a job and carry it out."""
-    if not worker.connection.exists(worker.key):  # At first, or Redis was emptied.
+    if not worker.connection.exists(worker.key):  # At the start, or when Redis was emptied.
         worker.register_birth()
-    worker.set_state(WorkerStatus.IDLE)
     worker.heartbeat()
     with suppress(DequeueTimeout):
         taken = Queue.dequeue_any(
@@ -53,9 +51,9 @@ def take_one(worker: BaseWorker) -> None:
 
 @contextmanager
 def surviving() -> Iterator[None]:
-    """An outage ends by itself: SQL knows about the runs, and what is left is done later."""
+    """Log errors of Redis and the database: SQL knows the runs, and later work catches up."""
     try:
         yield
     except (RedisError, SQLAlchemyError) as error:
-        log.warning("Going on after %s: %s", type(error).__name__, error)
+        log.warning("Continuing after %s: %s", type(error).__name__, error)
         time.sleep(PAUSE_SECONDS)

@@ -1,17 +1,16 @@
-"""The NVIDIA GPUs that a process may use, as `nvidia-smi` and CUDA name them."""
+"""NVIDIA GPUs: list those that a process may use, and measure one."""
 
 import os
-import re
-import shutil
-import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
+from typing import Any, TypeVar
 
-MIB, GIB = 1 << 20, 1 << 30
-QUERY = ("--query-gpu=uuid,name,memory.total", "--format=csv,noheader,nounits")
-SECONDS = 20
-CARD = re.compile(r"GPU \d+: .*\(UUID: (?P<uuid>GPU-[^)]+)\)")
-SLICE = re.compile(r"\s+MIG (?P<profile>\S+)\s+Device\s+\d+: \(UUID: (?P<uuid>MIG-[^)]+)\)")
+import pynvml
+from pynvml import NVMLError
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -22,17 +21,35 @@ class Gpu:
     name: str
     memory_bytes: int
     card: str
-    """The UUID of the card that it is, or is a part of."""
+    """UUID of the card that it is, or is a part of."""
 
 
 def visible() -> list[Gpu]:
-    """Those that answer and that CUDA_VISIBLE_DEVICES allows, in its order."""
-    if os.environ.get("JAX_PLATFORMS") == "cpu" or not shutil.which("nvidia-smi"):
+    """Return the GPUs that answer and that CUDA_VISIBLE_DEVICES allows, in its order."""
+    if os.environ.get("JAX_PLATFORMS") == "cpu":
         return []
-    cards = list(_cards())
-    found = list(_parts(cards))
+    try:
+        with _library():
+            found = list(map(_card_and_parts, range(pynvml.nvmlDeviceGetCount())))
+    except NVMLError:  # No driver, or one that fails.
+        return []
+    cards = [one[0] for one in found if one]
+    gpus = [gpu for one in found for gpu in one[1:] or one]
     allowed = os.environ.get("CUDA_VISIBLE_DEVICES")
-    return found if allowed is None else _allowed(allowed, cards, found)
+    return gpus if allowed is None else _allowed(allowed, cards, gpus)
+
+
+def measured(uuid: str) -> tuple[int | None, float | None]:
+    """Return the memory in use, in bytes, and the load of a GPU; None if unknown."""
+    try:
+        with _library():
+            handle = pynvml.nvmlDeviceGetHandleByUUID(uuid)
+            return (
+                _known(lambda: int(pynvml.nvmlDeviceGetMemoryInfo(handle).used)),
+                _known(lambda: pynvml.nvmlDeviceGetUtilizationRates(handle).gpu / 100),
+            )
+    except NVMLError:
+        return None, None
 
 
 def _allowed(names: str, cards: list[Gpu], found: list[Gpu]) -> list[Gpu]:
@@ -50,40 +67,39 @@ def _allowed(names: str, cards: list[Gpu], found: list[Gpu]) -> list[Gpu]:
     return chosen
 
 
-def _cards() -> Iterator[Gpu]:
-    for line in _said(*QUERY):
-        fields = [part.strip() for part in line.split(",")]
-        if len(fields) == 3 and fields[2].isdigit():
-            uuid, name, size = fields
-            yield Gpu(uuid, name, int(size) * MIB, uuid)
-
-
-def _parts(cards: list[Gpu]) -> Iterator[Gpu]:
-    """The cards; in place of one that MIG has divided, its parts."""
-    divided: dict[str, list[Gpu]] = {}
-    named, card = {card.uuid: card for card in cards}, None
-    for line in _said("-L") if cards else []:
-        if match := CARD.match(line):
-            card = named.get(match["uuid"])
-        elif card and (match := SLICE.match(line)):
-            share = re.search(r"(\d+)gb", match["profile"])  # As in 3g.20gb.
-            size = int(share[1]) * GIB if share else card.memory_bytes
-            name = f"{card.name} MIG {match['profile']}"
-            divided.setdefault(card.uuid, []).append(Gpu(match["uuid"], name, size, card.uuid))
-    for card in cards:
-        yield from divided.get(card.uuid, [card])
-
-
-def _said(*arguments: str) -> list[str]:
-    """The lines that `nvidia-smi` answers; none where it fails or hangs."""
+def _card_and_parts(index: int) -> list[Gpu]:
+    """Return a card and its parts, if MIG has divided it; nothing if the card fails."""
     try:
-        answer = subprocess.run(
-            ["nvidia-smi", *arguments],
-            check=False,
-            capture_output=True,
-            text=True,
-            timeout=SECONDS,
-        )
-    except (OSError, subprocess.TimeoutExpired):
+        handle = pynvml.nvmlDeviceGetHandleByIndex(index)
+        card = _gpu(handle)
+    except NVMLError:
         return []
-    return [] if answer.returncode else answer.stdout.splitlines()
+    if not _known(lambda: pynvml.nvmlDeviceGetMigMode(handle)[0]):
+        return [card]
+    part_at = partial(pynvml.nvmlDeviceGetMigDeviceHandleByIndex, handle)
+    places = range(pynvml.nvmlDeviceGetMaxMigDeviceCount(handle))
+    parts = [_known(partial(part_at, place)) for place in places]
+    return [card, *(_gpu(part, card.uuid) for part in parts if part)]
+
+
+def _gpu(handle: Any, card: str | None = None) -> Gpu:
+    uuid = pynvml.nvmlDeviceGetUUID(handle)
+    size = int(pynvml.nvmlDeviceGetMemoryInfo(handle).total)
+    return Gpu(uuid, pynvml.nvmlDeviceGetName(handle), size, card or uuid)
+
+
+def _known(ask: Callable[[], T]) -> T | None:
+    """Return an answer; None if the GPU does not support the question."""
+    try:
+        return ask()
+    except NVMLError:
+        return None
+
+
+@contextmanager
+def _library() -> Iterator[None]:
+    pynvml.nvmlInit()
+    try:
+        yield
+    finally:
+        pynvml.nvmlShutdown()

@@ -1,7 +1,7 @@
-"""What this worker has of users' own: asked in a process of its own, then loaded where needed.
+"""Plug-ins of a worker: listed in a process of their own, then loaded where they are needed.
 
 A module may do anything when it is imported: load JAX, which a supervisor does without, or end
-the process. `python -m worker.plugins` tells what there is, as JSON.
+the process. `python -m worker.plugins` prints the list as JSON.
 """
 
 import json
@@ -22,19 +22,19 @@ from microcosmos import plugins
 from microcosmos.plugins.loading import GROUP
 from server.settings import Settings
 
-SECONDS = 120.0
-"""How long modules may take to be imported."""
+IMPORT_SECONDS = 120.0
+"""Time limit for the import of all modules."""
 
 log = logging.getLogger(__name__)
 
 
 def files(settings: Settings) -> list[Path]:
-    """The modules that the environment names."""
+    """Return the modules that the environment names."""
     return [Path(part) for part in settings.modules.split(os.pathsep) if part]
 
 
 def load(settings: Settings) -> Sequence[plugins.Unloaded]:
-    """Load all there is; what cannot be loaded is told and left out."""
+    """Load all plug-ins; log and return those that fail."""
     failed = plugins.load_all(files(settings))
     for one in failed:
         log.warning("%s is not loaded: %s", one.module, one.reason)
@@ -42,8 +42,8 @@ def load(settings: Settings) -> Sequence[plugins.Unloaded]:
 
 
 @dataclass(frozen=True)
-class Told:
-    """What a worker reports."""
+class PluginReport:
+    """Declarations of the loaded plug-ins, and modules that failed with their reasons."""
 
     plugins: tuple[dict[str, Any], ...] = ()
     unloaded: tuple[dict[str, Any], ...] = ()
@@ -53,48 +53,48 @@ class Told:
         return {one["source"] for one in self.plugins}
 
 
-def ask(settings: Settings) -> Told:
-    """What there is, found out at a safe distance and without touching a GPU."""
+def list_plugins(settings: Settings) -> PluginReport:
+    """Load all plug-ins in another process, which does not touch a GPU."""
     named = [str(file) for file in files(settings)]
     if not named and not entry_points(group=GROUP):
-        return Told()
+        return PluginReport()
     try:
         answer = subprocess.run(
             [sys.executable, "-m", "worker.plugins"],
             env=os.environ | {"JAX_PLATFORMS": "cpu"},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
-            timeout=SECONDS,
+            timeout=IMPORT_SECONDS,
             check=True,
         )
-        return Told(**json.loads(answer.stdout.splitlines()[-1]))
+        return PluginReport(**json.loads(answer.stdout.splitlines()[-1]))
     except subprocess.TimeoutExpired:
-        reason = f"it was not imported within {SECONDS:g} s"
+        reason = f"it was not imported within {IMPORT_SECONDS:g} s"
     except (subprocess.CalledProcessError, ValueError, IndexError) as error:
         reason = f"the process that imported it ended badly ({error})"
-    log.warning("No modules of users' own: %s", reason)
-    return Told(unloaded=tuple({"module": one, "reason": reason} for one in named))
+    log.warning("No plug-ins: %s", reason)
+    return PluginReport(unloaded=tuple({"module": one, "reason": reason} for one in named))
 
 
-class Shelf(threading.Thread):
-    """What there is, asked again when a file changes, in a thread of its own."""
+class PluginWatcher(threading.Thread):
+    """Keeps a `report` of the plug-ins, renewed when a file changes."""
 
     def __init__(self, settings: Settings, interval: float):
-        super().__init__(name="shelf", daemon=True)
+        super().__init__(name="plug-ins", daemon=True)
         self._settings, self._interval = settings, interval
         self._ended = threading.Event()
-        self._seen = self._look()
-        self.last = ask(settings)
+        self._digests = self._read_digests()
+        self.report = list_plugins(settings)
 
     def run(self) -> None:
         while files(self._settings) and not self._ended.wait(self._interval):
-            if (now := self._look()) != self._seen:
-                self._seen, self.last = now, ask(self._settings)
+            if (now := self._read_digests()) != self._digests:
+                self._digests, self.report = now, list_plugins(self._settings)
 
     def end(self) -> None:
         self._ended.set()
 
-    def _look(self) -> tuple[str | None, ...]:
+    def _read_digests(self) -> tuple[str | None, ...]:
         return tuple(map(_digest, files(self._settings)))
 
 
@@ -105,14 +105,14 @@ def _digest(file: Path) -> str | None:
 
 
 def main() -> None:
-    """Say it in the last line, whatever modules print."""
+    """Print the list in the last line, whatever modules print."""
     with redirect_stdout(sys.stderr):
         failed = load(Settings())
-    told = {
+    found = {
         "plugins": [one.declaration.model_dump(mode="json") for one in plugins.loaded()],
         "unloaded": [vars(one) for one in failed],
     }
-    print(f"\n{json.dumps(told)}")
+    print(f"\n{json.dumps(found)}")
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
-"""The heartbeat of a worker and of the run that it carries out, in a thread of its own."""
+"""Heartbeats of a worker and of the run that it carries out, in a thread of their own."""
 
 import logging
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Protocol
 from uuid import UUID
 
 from sqlalchemy.exc import SQLAlchemyError
@@ -15,20 +16,24 @@ from server.core.database import Sessions
 from server.workers import registry
 
 from .device import Device
-from .plugins import Told
+from .plugins import PluginReport
 from .usage import Gauge, usage
 
 BEATS = 4
 """Heartbeats in a lease."""
 PATIENCE = 2
-"""Beats that a job has to end by itself after its run is over, before it is killed."""
+"""Heartbeats that a job may go on after the end of its run, before it is killed."""
 
 log = logging.getLogger(__name__)
 
 
+class Reporting(Protocol):
+    report: PluginReport
+
+
 @dataclass
 class Watch:
-    """A run in the hands of a job process."""
+    """The run of a job process, and the state of its lease."""
 
     run: UUID
     kill: Callable[[], None]
@@ -37,7 +42,7 @@ class Watch:
 
 
 class Pulse(threading.Thread):
-    """Writes heartbeats by SQL alone, so that a lost Redis cannot make a live run look dead."""
+    """Writes heartbeats to SQL alone, so that a lost Redis cannot make a live run look dead."""
 
     def __init__(
         self,
@@ -45,11 +50,11 @@ class Pulse(threading.Thread):
         worker: str,
         device: Device,
         lease: float,
-        own: Callable[[], Told] = Told,
+        plugins: Reporting | None = None,
     ):
         super().__init__(name="pulse", daemon=True)
         self._sessions, self._worker, self._device = sessions, worker, device
-        self._own = own
+        self._plugins = plugins
         self._interval = lease / BEATS
         self.gauge = Gauge(partial(usage, device), self._interval)
         self._ended = threading.Event()
@@ -67,16 +72,16 @@ class Pulse(threading.Thread):
             self._due.clear()
 
     def watch(self, run: UUID, kill: Callable[[], None]) -> None:
-        """From now on this run's heartbeat too; `kill` ends its job should the run be lost."""
+        """Renew the lease on a run, too; `kill` ends its job if the run is lost."""
         self._watch = Watch(run, kill)
-        self._due.set()  # People see at once who is busy.
+        self._due.set()  # The worker's status changes at once.
 
-    def let_go(self) -> None:
+    def release(self) -> None:
         self._watch = None
         self._due.set()
 
     def end(self) -> None:
-        """Stop, and take the worker off the list."""
+        """Stop, and remove the worker from the registry."""
         self._ended.set()
         self._due.set()
         self.gauge.end()
@@ -84,11 +89,12 @@ class Pulse(threading.Thread):
         registry.retire(self._sessions, self._worker)
 
     def beat(self) -> None:
-        watch, own = self._watch, self._own()
+        watch = self._watch
+        plugins = self._plugins.report if self._plugins else PluginReport()
         lease: Lease | None = None
         if watch:
             lease = leases.heartbeat(self._sessions, watch.run, self._worker)
-            self._judge(watch, lease)
+            self._end_lost_job(watch, lease)
         registry.report(
             self._sessions,
             self._worker,
@@ -99,14 +105,14 @@ class Pulse(threading.Thread):
             kind="cpu" if self._device.gpu is None else "gpu",
             memory_used_bytes=self.gauge.last.memory_bytes,
             load=self.gauge.last.load,
-            plugins=own.plugins,
-            unloaded=own.unloaded,
+            plugins=plugins.plugins,
+            unloaded=plugins.unloaded,
         )
 
-    def _judge(self, watch: Watch, lease: Lease) -> None:
-        """Kill the job whose run is another's by now, or ended some time ago."""
+    def _end_lost_job(self, watch: Watch, lease: Lease) -> None:
+        """Kill the job if another worker has its run, or if the run ended some time ago."""
         watch.held |= lease == "held"
         watch.over = watch.over + 1 if lease == "over" and watch.held else 0
         if (lease == "lost" or watch.over > PATIENCE) and watch is self._watch:
-            log.warning("Run %s is not ours any more: killing its job", watch.run)
+            log.warning("Run %s is lost: killing its job", watch.run)
             watch.kill()

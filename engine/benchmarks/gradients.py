@@ -8,6 +8,7 @@ automatically, as `fluid/adjoint.py` would otherwise be.
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
 from math import isqrt
 from typing import Any
 
@@ -15,7 +16,7 @@ import jax
 from rich.console import Console
 from rich.table import Table
 
-from microcosmos import build, device, fluid, spec
+from microcosmos import build, device, fluid, search, spec
 from microcosmos.fluid import surroundings
 from microcosmos.search import folding, gradients
 
@@ -99,7 +100,9 @@ def fold() -> None:
         descent = build.build_descent(chosen)
         first = folding.start(descent, build.build_pictures(chosen)[:1])
         program = compiled(
-            lambda block, d=descent: folding.update_block(d, block), first, collision
+            lambda block, d=descent: search.mapped(partial(folding.update, d), block),
+            first,
+            collision,
         )
         seconds = []
         for _ in range(3):

@@ -1,15 +1,27 @@
-"""Which files are a run's checkpoints, which of them can go, and how a run returns to one."""
+"""Checkpoints of a run: list, add and prune them, and return the run to one."""
 
 from collections.abc import Sequence
-from typing import Any
+from hashlib import sha256
 from uuid import UUID
 
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from ..creatures.storage import mark_garbage, named
+from ..creatures.storage import creatures_of, mark_garbage
+from ..services.services import Services
 from ..storage.artifacts import Stored, superfluous
 from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
+
+
+class CheckpointUnavailable(Exception):
+    """The store lacks a sound file of a checkpoint that the run has."""
+
+    def __init__(self, services: Services, row: Artifact, what: str):
+        super().__init__(
+            f"The checkpoint of generation {row.generation} {what}: no sound file `{row.path}` "
+            f"in {services.artifacts.root}. Check MICROCOSMOS_ARTIFACTS_URL and the folder's "
+            "mount, or restore the file"
+        )
 
 
 def last_checkpoint(session: Session, run_id: UUID) -> Artifact | None:
@@ -24,31 +36,47 @@ def checkpoints(session: Session, run_id: UUID, limit: int | None = None) -> lis
     return list(session.scalars(newest))
 
 
+def newest_sound(
+    services: Services, run_id: UUID
+) -> tuple[bytes | None, Artifact | None, list[str]]:
+    """Return content and row of the newest sound checkpoint, and damaged paths after it."""
+    with services.sessions.read() as session:
+        rows = checkpoints(session, run_id)
+    damaged: list[str] = []
+    for row in rows:
+        try:
+            data = services.artifacts.read(row.path)
+        except FileNotFoundError:
+            raise CheckpointUnavailable(services, row, "is missing") from None
+        if sha256(data).hexdigest() == row.sha256:
+            return data, row, damaged
+        damaged.append(row.path)
+    if rows:
+        raise CheckpointUnavailable(services, rows[0], "and all before it are damaged")
+    return None, None, []
+
+
 def point_at(session: Session, run_id: UUID, generation: int, stored: Stored) -> list[str]:
-    """Make a written file the newest checkpoint: paths of the files that nothing needs now."""
+    """Make a written file the newest checkpoint; return the paths of superfluous files."""
     last = last_checkpoint(session, run_id)
     if last and last.path == stored.path:
         return []
-    number = last.number + 1 if last and last.number is not None else 1
     row = Artifact(
         path=stored.path,
         kind=CHECKPOINT,
         run_id=run_id,
-        number=number,
+        number=last.number + 1 if last and last.number is not None else 1,
         generation=generation,
         size=stored.size,
         sha256=stored.sha256,
     )
     session.add(row)
     session.flush()
-    return _prune(session, run_id)
-
-
-def _prune(session: Session, run_id: UUID) -> list[str]:
-    mine = (Artifact.run_id == run_id) & (Artifact.kind == CHECKPOINT)
-    numbers = [n for n in session.scalars(select(Artifact.number).where(mine)) if n is not None]
-    gone = delete(Artifact).where(mine, Artifact.number.in_(superfluous(numbers)))
-    return list(session.scalars(gone.returning(Artifact.path)))
+    kept = checkpoints(session, run_id)
+    numbers = superfluous([one.number for one in kept if one.number is not None])
+    gone = [one.path for one in kept if one.number in numbers]
+    session.execute(delete(Artifact).where(Artifact.path.in_(gone)))
+    return gone
 
 
 def fall_back(session: Session, run: Run, sound: Artifact, damaged: Sequence[str]) -> None:
@@ -59,11 +87,13 @@ def fall_back(session: Session, run: Run, sound: Artifact, damaged: Sequence[str
 
 
 def rewind(session: Session, run: Run) -> bool:
-    """Forget what was recorded beyond the checkpoint: whether there was anything."""
+    """Delete what was recorded after the checkpoint; return False if there was nothing."""
     last = run.checkpoint_generation
     if run.generation <= last:
         return False
-    mark_garbage(session, run.id, *(named(run.id, table, last) for table in (Elite, Result)))
+    for table in (Elite, Result):
+        later = (table.run_id == run.id, table.generation > last)
+        mark_garbage(session, run.id, creatures_of(table).where(*later))
     for table in (Elite, Result, Generation):
         session.execute(delete(table).where(table.run_id == run.id, table.generation > last))
     kept = session.get(Generation, (run.id, last))
@@ -71,12 +101,7 @@ def rewind(session: Session, run: Run) -> bool:
         setattr(run, column, getattr(kept, column, None))
     for column in ("generation", "evaluations", "diverged", "seconds"):
         setattr(run, column, getattr(kept, column, 0))
-    run.summary = _summary(session, run.id)
+    summaries = (Generation.run_id == run.id) & Generation.summary.is_not(None)
+    newest = select(Generation.summary).where(summaries).order_by(Generation.generation.desc())
+    run.summary = session.scalars(newest.limit(1)).one_or_none()
     return True
-
-
-def _summary(session: Session, run_id: UUID) -> dict[str, Any] | None:
-    """The newest that is recorded."""
-    told = (Generation.run_id == run_id) & Generation.summary.is_not(None)
-    newest = select(Generation.summary).where(told).order_by(Generation.generation.desc())
-    return session.scalars(newest.limit(1)).one_or_none()

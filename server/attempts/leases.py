@@ -14,10 +14,10 @@ Lease = Literal["held", "waiting", "over", "lost"]
 
 
 def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> Lease:
-    """Renew a worker's lease on a run, by its supervisor: how the run stands for it.
+    """Renew a worker's lease on a run, and return the lease's state.
 
     `waiting`: not claimed yet. `over`: nobody computes it any more, the job is about to end.
-    `lost`: another worker has it, so the job is to be killed.
+    `lost`: another worker has it, so the job has to be killed.
     """
     with sessions.write.begin() as session:
         mine = (Run.status == RUNNING, Run.worker == worker)
@@ -33,17 +33,17 @@ def job_died(services: Services, run_id: UUID, worker: str, error: str) -> None:
     """Take a run back from a job process that died: it is queued for another attempt."""
     with services.sessions.write.begin() as session:
         run = release(session, run_id, Run.worker == worker, error=error)
-    _taken_back(services, run_id, run)
+    _requeue(services, run_id, run)
 
 
 def job_stopped(services: Services, run_id: UUID, worker: str) -> None:
     """Take a run back from a job that was killed because its worker stops."""
     with services.sessions.write.begin() as session:
         run = hand_back(session, run_id, Run.worker == worker)
-    _taken_back(services, run_id, run)
+    _requeue(services, run_id, run)
 
 
-def _taken_back(services: Services, run_id: UUID, run: Run | None) -> None:
+def _requeue(services: Services, run_id: UUID, run: Run | None) -> None:
     if run:
         announce(services, run_id)
     requeue(services.sessions, services.jobs, run_id)

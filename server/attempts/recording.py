@@ -1,4 +1,4 @@
-"""What an experiment reports, as rows and as events."""
+"""Record the report of a generation: rows of the database, and events."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -9,7 +9,6 @@ from uuid import UUID
 from sqlalchemy import func, insert, select
 from sqlalchemy.orm import Session
 
-from microcosmos.archive import report
 from microcosmos.archive.creature import LICENCE
 from microcosmos.archive.report import Report
 
@@ -20,72 +19,60 @@ from ..tables import Elite, Generation, Result
 
 @dataclass(frozen=True)
 class Rows:
-    """A report, as the rows that are written of it."""
+    """The rows of a report, without the id of the run."""
 
+    run: dict[str, Any]
+    """Columns of the run itself."""
     curve: dict[str, Any]
     elites: list[dict[str, Any]]
     results: list[dict[str, Any]]
-    """Without their place, which only the table knows."""
+    """Without their number, which depends on the rows that the table holds."""
     creatures: list[dict[str, Any]]
-    summary: dict[str, Any] | None
 
 
 def rows_of(report: Report, seconds: float) -> Rows:
-    """What is written of a generation at which the run has taken so many seconds."""
-    named = [row for row in report.rows if row.creature is not None]
-    return Rows(
-        curve=generation_row(report, seconds),
-        elites=[elite_row(elite) for elite in report.elites],
-        results=[result_row(report.generation, row) for row in report.rows],
-        creatures=[creature_row(one) for one in (*report.elites, *named)],
-        summary=plain(report.summary),
-    )
-
-
-def standing(report: Report) -> dict[str, Any]:
-    """What the row of a run says about its last generation."""
+    """Convert a report; `seconds` is the run's wall time so far."""
     summary = plain(report.summary)
-    return {
-        **({} if summary is None else {"summary": summary}),
-        **figures(report),
-    }
-
-
-def figures(report: Report) -> dict[str, Any]:
-    return {
+    run = {
         "generation": int(report.generation),
         "qd_score": finite(report.qd_score),
         "coverage": finite(report.coverage),
         "best": finite(report.best),
         "evaluations": int(report.evaluations),
         "diverged": int(report.diverged),
+        "seconds": seconds,
     }
-
-
-def generation_row(report: Report, seconds: float) -> dict[str, Any]:
-    return {**figures(report), "mean": finite(report.mean), "seconds": seconds}
-
-
-def elite_row(elite: report.Elite) -> dict[str, Any]:
-    return {
-        "cell": int(elite.cell),
-        "generation": int(elite.generation),
-        "fitness": float(elite.fitness),
-        "descriptors": [float(value) for value in elite.descriptors],
-        "creature": elite.creature,
-    }
-
-
-def result_row(generation: int, row: report.Row) -> dict[str, Any]:
-    return {
-        "generation": int(generation),
-        "values": plain(row.values),
-        "creature": row.creature,
-    }
+    found = [*report.elites, *(row for row in report.rows if row.creature is not None)]
+    return Rows(
+        run=run if summary is None else {**run, "summary": summary},
+        curve={**run, "mean": finite(report.mean), "summary": summary},
+        elites=[
+            {
+                "cell": int(elite.cell),
+                "generation": int(elite.generation),
+                "fitness": float(elite.fitness),
+                "descriptors": [float(value) for value in elite.descriptors],
+                "creature": elite.creature,
+            }
+            for elite in report.elites
+        ],
+        results=[
+            {
+                "generation": run["generation"],
+                "values": plain(row.values),
+                "creature": row.creature,
+            }
+            for row in report.rows
+        ],
+        creatures=[
+            creature_columns(one.creature, one.identity, one.measured, one.provenance, LICENCE)
+            for one in found
+        ],
+    )
 
 
 def plain(values: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    """Flat values as JSON has them: what is not finite is None."""
+    """Return flat values for JSON: None for numbers that are not finite."""
     if values is None:
         return None
     return {
@@ -94,17 +81,8 @@ def plain(values: Mapping[str, Any] | None) -> dict[str, Any] | None:
     }
 
 
-def creature_row(found: Any) -> dict[str, Any]:
-    """The creature of an elite, or of a row that has one."""
-    return creature_columns(
-        found.creature, found.identity, found.measured, found.provenance, LICENCE
-    )
-
-
 def write(session: Session, run_id: UUID, rows: Rows) -> None:
-    session.execute(
-        insert(Generation), [{"run_id": run_id, **rows.curve, "summary": rows.summary}]
-    )
+    session.execute(insert(Generation), [{"run_id": run_id, **rows.curve}])
     # In one order, so that two runs with the same creatures cannot wait for each other.
     found = sorted(rows.creatures, key=itemgetter("sha256"))
     insert_and_lock(session, found)
@@ -113,8 +91,10 @@ def write(session: Session, run_id: UUID, rows: Rows) -> None:
         session.execute(insert(Elite), [{"run_id": run_id, **row} for row in rows.elites])
     if rows.results:
         first = count_results(session, run_id)
-        placed = [{"number": first + i, **row} for i, row in enumerate(rows.results)]
-        session.execute(insert(Result), [{"run_id": run_id, **row} for row in placed])
+        placed = [
+            {"run_id": run_id, "number": first + i, **row} for i, row in enumerate(rows.results)
+        ]
+        session.execute(insert(Result), placed)
 
 
 def count_results(session: Session, run_id: UUID) -> int:
@@ -123,25 +103,21 @@ def count_results(session: Session, run_id: UUID) -> int:
 
 
 def events(run_id: UUID, rows: Rows) -> Iterator[tuple[str, dict[str, Any]]]:
-    """What everybody is told of a generation."""
-    run, generation = str(run_id), rows.curve["generation"]
-    yield "generation", {"run": run, **rows.curve, "summary": rows.summary}
+    """Yield kind and data of the events of a generation."""
+    head = {"run": str(run_id), "generation": rows.curve["generation"]}
+    yield "generation", head | rows.curve
     if rows.elites:
-        yield "elites", elites_event(run_id, generation, rows.elites)
+        columns = {
+            "cell": "cell",
+            "fitness": "fitness",
+            "descriptors": "descriptors",
+            "elite_generation": "generation",
+            "creature": "creature",
+        }
+        yield (
+            "elites",
+            head | {to: [row[name] for row in rows.elites] for to, name in columns.items()},
+        )
     if rows.results:
         table = [{**row["values"], "creature": row["creature"]} for row in rows.results]
-        told = {"generation": generation, "summary": rows.summary, "rows": table}
-        yield "results", {"run": run, **told}
-
-
-def elites_event(run_id: UUID, generation: int, rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """Changed cells, as columns."""
-    return {
-        "run": str(run_id),
-        "generation": generation,
-        "cell": [row["cell"] for row in rows],
-        "fitness": [row["fitness"] for row in rows],
-        "descriptors": [row["descriptors"] for row in rows],
-        "elite_generation": [row["generation"] for row in rows],
-        "creature": [row["creature"] for row in rows],
-    }
+        yield "results", head | {"summary": rows.curve["summary"], "rows": table}

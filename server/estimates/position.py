@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from uuid import UUID
 
-from microcosmos.sizes import size
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
+
+from microcosmos.sizes import size
 
 from ..queue.order import in_order
 from ..services.services import Services

@@ -22,7 +22,7 @@ from ..tables import AUDIT, MEASUREMENT, REPLAY
 
 log = logging.getLogger(__name__)
 
-EVOLVE = "worker.jobs.evolve"
+EVOLVE = "worker.job_process.main"
 RENDER = "worker.jobs.render"
 PLUGINS = "-plugins-"
 """Between the name of a queue and the hash of the plug-ins that its workers must have."""

@@ -22,7 +22,7 @@ from ..tables import (
     RUNNING,
     Run,
 )
-from .log import note, note_standing
+from .log import note, note_status
 
 log = logging.getLogger(__name__)
 
@@ -134,7 +134,7 @@ def release(session: Session, run_id: UUID, *where: Any, error: str) -> Run | No
         assert run is not None
         note(session, run, f"Failed: {lost}.", "error")
     else:
-        note_standing(session, run)
+        note_status(session, run)
     return run
 
 
@@ -154,7 +154,7 @@ def hand_back(session: Session, run_id: UUID, *where: Any) -> Run | None:
     run = yield_up(session, run_id, *where, attempts_without_checkpoint=kept)
     if run:
         note(session, run, f"Worker stopped after generation {run.generation}.")
-        note_standing(session, run)
+        note_status(session, run)
     return run
 
 

@@ -6,7 +6,8 @@ from uuid import UUID
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from ..core.sizes import size
+from microcosmos.sizes import size
+
 from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, QUEUED, RUNNING, LogEntry, Run
 
 Level = Literal["info", "warning", "error"]
@@ -14,7 +15,7 @@ Level = Literal["info", "warning", "error"]
 SAVED, UNSAVED = "saved", "unsaved"
 """Kinds of entries that come again and again: of these only the first and the last stay."""
 
-STANDINGS = {
+STATUS_TEXTS = {
     QUEUED: "Queued for another attempt.",
     RUNNING: "Running.",
     PAUSED: "Paused.",
@@ -41,12 +42,12 @@ def note(
     session.execute(delete(LogEntry).where(*alike, LogEntry.id.not_in((first, entry.id))))
 
 
-def note_standing(session: Session, run: Run) -> None:
+def note_status(session: Session, run: Run) -> None:
     """Say where a run stands after an attempt has ended."""
-    note(session, run, STANDINGS[run.status])
+    note(session, run, STATUS_TEXTS[run.status])
 
 
-def note_beginning(session: Session, run: Run, before: int) -> None:
+def note_start(session: Session, run: Run, before: int) -> None:
     """Say where an attempt begins, and what was recorded `before` it beyond that."""
     last = run.checkpoint_generation
     place = f"from the checkpoint of generation {last}" if last else "from the beginning"

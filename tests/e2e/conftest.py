@@ -6,19 +6,14 @@ at `idle.product` nobody computes. A test that needs a list of runs of its own, 
 server, has an `address` of its own, and is in alone/: two processes share the folders.
 """
 
-import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from playwright.sync_api import Browser, Page
-
-sys.path.insert(0, str(Path(__file__).parent))
-sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
-
 from browser import executable, launched, overhear
-from drive import COMPILED, ROOT, Installation
+from drive import QUICK, ROOT, Installation
+from playwright.sync_api import Browser, Page
 from small import submit_small_runs
 
 from server.local.redis_embedded import prepare
@@ -26,12 +21,6 @@ from server.services.services import Services, connect
 from server.settings import Settings
 
 HERE = Path(__file__).parent
-SETTINGS = {
-    "MICROCOSMOS_DEMONSTRATION": "false",
-    # Programs are compiled in a fifth of the time; such small ones run about as fast.
-    "XLA_FLAGS": "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false "
-    "--xla_cpu_parallel_codegen_split_count=1",
-}
 WINDOW = {"width": 1280, "height": 900}
 PATIENCE_S = 120
 
@@ -89,7 +78,7 @@ def common() -> dict[str, str]:
     """What every product of the session finds in its environment: programs compiled once."""
     if not (ROOT / "web" / "dist" / "index.html").exists():
         pytest.fail("web/dist is missing: build the page first")
-    return SETTINGS | {"JAX_COMPILATION_CACHE_DIR": str(COMPILED)}
+    return QUICK | {"MICROCOSMOS_DEMONSTRATION": "false"}
 
 
 @pytest.fixture

@@ -107,7 +107,7 @@ def test_the_history_plays_to_its_end(shared_page: Page, searched: str):
     expect(elites).to_have_text(f"{now} elites", timeout=FAST)
 
 
-def test_colours_and_axes_are_whatever_was_recorded(shared_page: Page, searched: str):
+def test_colours_and_axes_offer_every_recorded_measure(shared_page: Page, searched: str):
     page = shared_page
     page.goto(searched)
     page.get_by_label("Colour").select_option("age")

@@ -22,7 +22,7 @@ GUIDE = Path(__file__).parents[2] / "docs" / "client.md"
 
 
 @pytest.mark.e2e
-def test_a_run_by_commands_and_its_best_by_the_client(shared, common, tmp_path, browser):
+def test_a_run_is_driven_by_commands_and_read_by_the_client(shared, common, tmp_path, browser):
     address = shared.product.url
     (tmp_path / "tiny.json").write_text(json.dumps(TINY | {"seed": 77}))
     environment = os.environ | common | {"MICROCOSMOS_URL": address}
@@ -38,7 +38,7 @@ def test_a_run_by_commands_and_its_best_by_the_client(shared, common, tmp_path, 
 
 
 @pytest.mark.e2e
-def test_the_clients_example_in_its_guide_works_as_it_stands(shared, common, tmp_path):
+def test_the_example_in_the_client_guide_works(shared, common, tmp_path):
     examples = re.findall(r"```python\n(.*?)```", GUIDE.read_text(), re.DOTALL)
     (example,) = (text for text in examples if "mc.Client" in text)
     spec = '{"experiment": "quality-diversity", "search": {"generations": 10}}'

@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 import pytest
-from accessibility import violations
+from looks import violations
 from places import GUIDED
 from playwright.sync_api import Locator, Page, expect
 from small import TINY
@@ -17,7 +17,7 @@ LAST = TINY["search"]["generations"]
 
 
 @pytest.mark.e2e
-def test_elites_are_forked_and_the_new_run_is_extended_binned_and_restored(
+def test_a_run_is_forked_extended_deleted_and_restored(
     shared_page: Page, shared: Any, complaints: list[str]
 ):
     page, address = shared_page, shared.product.url

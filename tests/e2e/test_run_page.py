@@ -13,9 +13,7 @@ CHANGED = "before => before !== document.querySelector('#curves canvas').toDataU
 
 
 @pytest.mark.e2e
-def test_a_run_is_told_from_the_queue_to_its_end_and_compared_with_another(
-    idle_page: Page, idle
-):
+def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(idle_page: Page, idle):
     page, services, address = idle_page, idle.services, idle.product.url
     other = Written(services, 7)
     other.begin("worker 1")

@@ -22,9 +22,7 @@ def stranger(browser: Browser) -> Iterator[Page]:
 
 
 @pytest.mark.e2e
-def test_a_creature_is_published_looked_at_and_taken_back(
-    shared, shared_page: Page, stranger: Page
-):
+def test_a_creature_is_published_viewed_and_revoked(shared, shared_page: Page, stranger: Page):
     page, address = shared_page, shared.product.url
     sha = best_of(page, address, shared.finished("voronoi"))
     page.goto(f"{address}/creatures/{sha}")

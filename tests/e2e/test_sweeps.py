@@ -31,9 +31,7 @@ def compute(services: Any, run: str, qd_scores: list[float]) -> None:
 
 
 @pytest.mark.e2e
-def test_seeds_and_a_grid_make_a_sweep_that_is_summed_up_while_it_is_computed(
-    idle_page: Page, idle: Any, complaints: list[str]
-):
+def test_a_sweep_is_submitted_and_summarised(idle_page: Page, idle: Any, complaints: list[str]):
     page, address = idle_page, idle.product.url
     page.goto(f"{address}/new?view=json")
     page.get_by_label("Spec as JSON").fill(json.dumps(TINY))
@@ -78,7 +76,7 @@ def test_seeds_and_a_grid_make_a_sweep_that_is_summed_up_while_it_is_computed(
 
 
 @pytest.mark.e2e
-def test_a_sweep_is_renamed_put_into_the_bin_and_taken_back(idle_page: Page, idle: Any):
+def test_a_sweep_is_renamed_deleted_and_restored(idle_page: Page, idle: Any):
     page, http = idle_page, idle.product.http
     sweep = http.post("/api/v1/sweeps", json={"spec": TINY, "seeds": 2}).json()
     page.goto(f"{idle.product.url}/sweeps/{sweep['id']}")

@@ -10,7 +10,7 @@ FAST, SLOW = 10_000, 120_000
 
 
 @pytest.mark.e2e
-def test_a_run_is_submitted_watched_opened_and_its_creature_swims_and_travels(
+def test_a_run_is_submitted_watched_and_its_creature_swims(
     page: Page, address: str, tmp_path: Path
 ):
     run = submit_a_short_run(page, address)

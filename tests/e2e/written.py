@@ -8,8 +8,8 @@ from uuid import UUID
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
-from server.attempts.begin import claim
-from server.attempts.claim import Claim
+from server.attempts.attempt import Attempt
+from server.attempts.claim import claim
 from server.runs.submission import submit
 from server.services.services import Services
 
@@ -83,7 +83,7 @@ class Written:
         document["search"]["generations"] = GENERATIONS
         self.spec, self.seed, self.services = parse(document), seed, services
         self.id: UUID = submit(services, self.spec)[0].id
-        self.attempt: Claim
+        self.attempt: Attempt
 
     def begin(self, worker: str) -> None:
         held = claim(self.services, self.id, worker)

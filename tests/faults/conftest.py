@@ -1,22 +1,15 @@
 """Real servers, workers, databases and queues, and what goes wrong with them."""
 
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from drive import QUICK, Installation
 
-sys.path.insert(0, str(Path(__file__).parent))  # For `drive`, which acceptance uses too.
-
-from drive import COMPILED, Installation
-
-SHORT = {
+SHORT = QUICK | {
     "MICROCOSMOS_DEMONSTRATION": "0",
     "MICROCOSMOS_CHECKPOINT_INTERVAL": "0.2",
     "MICROCOSMOS_LEASE": "3",
     "MICROCOSMOS_RECONCILE_INTERVAL": "0.5",
-    "JAX_PLATFORMS": "cpu",
-    "JAX_COMPILATION_CACHE_DIR": str(COMPILED),
 }
 """Settings under which what takes a minute takes a second."""
 

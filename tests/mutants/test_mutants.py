@@ -1,12 +1,6 @@
 """Every mutant can still be made: its text is there once, and so are its tests."""
 
-import sys
-from pathlib import Path
-
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
-
 from run import ROOT, Mutant, mutants
 
 

@@ -13,7 +13,10 @@ import pytest
 import reports
 from installation import Installation, empty_redis, own_postgresql, own_redis, running
 
+from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
+from server.attempts.attempt import Attempt
+from server.attempts.claim import claim
 from server.runs.submission import submit
 from server.services.services import Services
 from server.settings import Settings
@@ -130,6 +133,23 @@ def run_id(services, spec) -> UUID:
 
 
 @pytest.fixture
+def attempt(services, run_id) -> Attempt:
+    """A worker's claim on the queued run."""
+    return claim(services, run_id, "worker")
+
+
+@pytest.fixture
+def record(services, run_id, request) -> Callable[..., None]:
+    """Records a generation of the queued run, as `attempt`; takes what `report` does."""
+
+    def record(*said: Any, seconds: float = 1.0, **more: Any) -> None:
+        held = request.getfixturevalue("attempt")
+        held.record(reports.report(*said, **more), seconds)
+
+    return record
+
+
+@pytest.fixture
 def row(services, run_id) -> Callable[[], Run]:
     """The run as the database has it now."""
 
@@ -143,6 +163,18 @@ def row(services, run_id) -> Callable[[], Run]:
 @pytest.fixture
 def identity() -> Callable[[int], dict[str, Any]]:
     return reports.identity
+
+
+@pytest.fixture
+def file() -> dict[str, Any]:
+    """A creature file."""
+    return creature.document(reports.identity(3), None, None)
+
+
+@pytest.fixture
+def known(api, file) -> str:
+    """The hash of a creature that was uploaded."""
+    return api.post("creatures", json=file).json()["creature"]
 
 
 @pytest.fixture

@@ -18,7 +18,7 @@ def test_a_server_that_can_work_says_so(address):
     assert (ready.status_code, ready.json()) == (200, {"database": "ok", "redis": "ok"})
 
 
-def test_without_redis_a_server_lives_and_is_not_ready(serve):
+def test_a_server_without_redis_is_alive_but_not_ready(serve):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         assert httpx.get(f"{address}/healthz").status_code == 200
         ready = httpx.get(f"{address}/readyz", timeout=20)
@@ -64,7 +64,7 @@ def test_assets_are_cached_for_ever(built, address):
     assert httpx.get(f"{address}/assets/gone.js").status_code == 404
 
 
-def test_assets_are_compressed_for_who_understands_it(built, address):
+def test_assets_are_compressed_on_request(built, address):
     for accepted, encoding in (("gzip", "gzip"), ("identity", None)):
         headers = {"Accept-Encoding": accepted}
         answer = httpx.get(f"{address}/assets/a1b2.js", headers=headers)
@@ -90,7 +90,7 @@ def test_the_documentation_is_served_and_announced_where_it_was_built(
         assert httpx.get(f"{address}/help/{path}").status_code == 404
 
 
-def test_a_page_that_is_not_built_says_how(address, tmp_path, monkeypatch):
+def test_a_missing_page_says_how_to_build_it(address, tmp_path, monkeypatch):
     monkeypatch.setattr(page, "BUILT", tmp_path / "nowhere")
     answer = httpx.get(f"{address}/")
     assert answer.status_code == 503
@@ -98,7 +98,8 @@ def test_a_page_that_is_not_built_says_how(address, tmp_path, monkeypatch):
 
 
 def test_the_server_loads_no_jax():
-    code = "import server.app, sys; print(any(m.split('.')[0] == 'jax' for m in sys.modules))"
+    modules = "server.app, server.maintenance.healthcheck"
+    code = f"import {modules}, sys; print(any(m.split('.')[0] == 'jax' for m in sys.modules))"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert found.stdout.strip() == "False", found.stderr
 
@@ -140,5 +141,5 @@ def answers(url: str) -> bool:
 
 
 @pytest.mark.parametrize("path", ["/%00", "/" + "a" * 300, "/assets/%00"])
-def test_a_path_that_no_file_can_have_leads_nowhere(address, path):
+def test_an_impossible_path_is_not_found(address, path):
     assert httpx.get(f"{address}{path}").status_code == 404

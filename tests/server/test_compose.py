@@ -123,7 +123,7 @@ def test_every_secret_has_a_place_in_the_example_and_no_default(compose):
     assert set(example["COMPOSE_PROFILES"].split(",")) <= profiles
 
 
-def test_everything_has_a_health_check_that_asks_for_its_own_part(services, ours):
+def test_every_service_has_its_own_health_check(services, ours):
     assert {name for name, one in services.items() if "healthcheck" not in one} == {"migrate"}
     for name in ours.keys() - {"migrate"}:
         *_, module, part, restart = ours[name]["healthcheck"]["test"]
@@ -132,7 +132,7 @@ def test_everything_has_a_health_check_that_asks_for_its_own_part(services, ours
         assert name.startswith(part)
 
 
-def test_a_sick_container_is_ended_after_it_had_time_to_start_and_then_started_again(ours):
+def test_an_unhealthy_container_is_restarted_after_its_start_period(ours):
     """Docker marks containers as unhealthy and does no more."""
     for name in ours.keys() - {"migrate"}:
         assert ours[name]["restart"] == "unless-stopped", name
@@ -173,7 +173,7 @@ def test_logs_are_bounded(services):
         assert one["logging"]["options"].keys() == {"max-size", "max-file"}, name
 
 
-def test_ours_may_do_little_and_wait_for_what_they_stand_on(ours):
+def test_our_containers_have_few_rights_and_wait_for_others(ours):
     for name, one in ours.items():
         assert one["read_only"] is True, name
         assert one["cap_drop"] == ["ALL"], name
@@ -184,19 +184,19 @@ def test_ours_may_do_little_and_wait_for_what_they_stand_on(ours):
         assert {other: how["condition"] for other, how in waits.items()} == conditions, name
 
 
-def test_containers_have_longer_to_stop_than_what_is_in_them(ours):
+def test_containers_have_longer_to_stop_than_their_programs(ours):
     for name, one in ours.items():
         if "worker.supervisor" in one["command"]:
             assert seconds(one["stop_grace_period"]) >= PATIENCE + 15, name
     assert seconds(ours["server"]["stop_grace_period"]) > GRACE
 
 
-def test_only_this_machine_reaches_the_server_and_nobody_the_rest(services):
+def test_only_the_server_has_a_port_on_loopback(services):
     assert {name for name, one in services.items() if "ports" in one} == {"server"}
     assert all(port.startswith("127.0.0.1:") for port in services["server"]["ports"])
 
 
-def test_a_proxy_on_this_machine_says_who_comes(services):
+def test_a_local_proxy_names_the_client(services):
     """Else wrong tokens of one count for all, and cookies go where nothing is encrypted."""
     seen: dict[str, Any] = {}
 
@@ -220,7 +220,7 @@ def test_every_gpu_worker_has_a_device_of_its_own(services):
     assert [one["profiles"] for one in gpus] == [[f"gpu-{number}"] for number in numbers]
 
 
-def test_what_is_copied_into_images_is_there_and_not_kept_out(services):
+def test_files_copied_into_images_exist_and_are_not_ignored(services):
     kept = (ROOT / ".dockerignore").read_text().split("\n")
     for path in dockerfiles():
         for word, rest in instructions(path):
@@ -236,7 +236,7 @@ def test_what_is_copied_into_images_is_there_and_not_kept_out(services):
             assert (ROOT / built.get("args", {}).get("LOCK", "requirements.lock")).is_file()
 
 
-def test_valkey_takes_its_password_from_a_pipe_and_hears_that_it_is_to_end(services, tmp_path):
+def test_valkey_takes_its_password_from_a_pipe_and_ends_on_sigterm(services, tmp_path):
     """Docker tells the first process: a shell before it would not hand that on."""
     (tmp_path / "valkey-server").symlink_to(find_binary())
     port, password = free_port(), "abc123"
@@ -259,7 +259,7 @@ def test_valkey_takes_its_password_from_a_pipe_and_hears_that_it_is_to_end(servi
             os.killpg(started.pid, signal.SIGKILL)
 
 
-def test_images_run_as_nobody_special_with_what_the_locks_say():
+def test_images_run_as_an_unprivileged_user_with_locked_packages():
     python = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["requires-python"]
     for path in dockerfiles():
         words = instructions(path)

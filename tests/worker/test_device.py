@@ -1,47 +1,37 @@
-"""Which device a worker computes on."""
+"""The device of a worker, and how much of it is in use."""
 
 import os
 import subprocess
 import sys
+from threading import Event
 
 import pytest
 
-from worker import device, processor
+from server.workers import registry
+from worker import device, processor, usage
+from worker.device import Device, memory
+from worker.pulse import Pulse
+from worker.usage import Usage
 
-TWO = """#!/bin/sh
-case "$*" in
--L) echo "GPU 0: NVIDIA H200 (UUID: GPU-aaaa1111)"
-    echo "GPU 1: NVIDIA A100-SXM4-40GB (UUID: GPU-bbbb2222)" ;;
-*)  echo "GPU-aaaa1111, NVIDIA H200, 143771"
-    echo "GPU-bbbb2222, NVIDIA A100-SXM4-40GB, 40960" ;;
-esac
-"""
-DIVIDED = TWO.replace(
-    " ;;",
-    """
-    echo "  MIG 3g.20gb     Device  0: (UUID: MIG-cccc3333)"
-    echo "  MIG 1g.5gb      Device  1: (UUID: MIG-dddd4444)" ;;""",
-    1,
-).replace('echo "GPU 1: NVIDIA A100-SXM4-40GB (UUID: GPU-bbbb2222)"', ":")
+TWO = {
+    "GPU-aaaa1111": ("NVIDIA H200", 143771 << 20),
+    "GPU-bbbb2222": ("NVIDIA A100-SXM4-40GB", 40 << 30),
+}
+DIVIDED = {
+    "MIG-cccc3333": ("NVIDIA H200 MIG 3g.71gb", 71 << 30),
+    "MIG-dddd4444": ("NVIDIA H200 MIG 1g.18gb", 18 << 30),
+}
 
 
 @pytest.fixture
-def nvidia_smi(tmp_path, monkeypatch):
-    """A program of that name which says what it is told to."""
-
-    def says(script):
-        program = tmp_path / "nvidia-smi"
-        program.write_text(script)
-        program.chmod(0o755)
-        monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
-
+def driver(nvml, monkeypatch):
     for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.FRACTION):
         monkeypatch.delenv(name, raising=False)
-    return says
+    return nvml
 
 
-def test_every_worker_has_a_gpu_of_its_own(nvidia_smi):
-    nvidia_smi(TWO)
+def test_every_worker_has_a_gpu_of_its_own(driver):
+    driver(TWO)
     first, second = device.find(0, 2), device.find(1, 2)
     assert (first.name, first.memory_bytes) == ("NVIDIA H200", 143771 << 20)
     assert first.environment == {"CUDA_VISIBLE_DEVICES": "GPU-aaaa1111"}
@@ -50,8 +40,8 @@ def test_every_worker_has_a_gpu_of_its_own(nvidia_smi):
     assert first.threads == second.threads == ()
 
 
-def test_more_workers_than_gpus_share_them_and_their_memory(nvidia_smi):
-    nvidia_smi(TWO)
+def test_more_workers_than_gpus_share_them_and_their_memory(driver):
+    driver(TWO)
     first, second, third = (device.find(i, 3) for i in range(3))
     assert first == third
     assert first.name == "NVIDIA H200 (shared by 2 workers)"
@@ -63,8 +53,8 @@ def test_more_workers_than_gpus_share_them_and_their_memory(nvidia_smi):
     assert device.FRACTION not in second.environment
 
 
-def test_a_fraction_of_memory_that_a_person_gave_stays(nvidia_smi, monkeypatch):
-    nvidia_smi(TWO)
+def test_a_given_memory_fraction_stays(driver, monkeypatch):
+    driver(TWO)
     monkeypatch.setenv(device.FRACTION, "0.2")
     assert device.find(0, 4).environment[device.FRACTION] == "0.2"
 
@@ -80,28 +70,26 @@ def test_a_fraction_of_memory_that_a_person_gave_stays(nvidia_smi, monkeypatch):
         ("-1", [None, None]),
     ],
 )
-def test_only_gpus_that_the_environment_allows_are_used(
-    nvidia_smi, monkeypatch, allowed, found
-):
-    nvidia_smi(TWO)
+def test_only_gpus_that_the_environment_allows_are_used(driver, monkeypatch, allowed, found):
+    driver(TWO)
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", allowed)
     assert [device.find(i, 2).gpu for i in range(2)] == found
 
 
-def test_parts_of_a_divided_card_are_devices(nvidia_smi, monkeypatch):
-    nvidia_smi(DIVIDED)
+def test_parts_of_a_divided_card_are_devices(driver, monkeypatch):
+    driver(TWO, {"GPU-aaaa1111": DIVIDED})
     first, second, third = (device.find(i, 3) for i in range(3))
-    assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.20gb")
-    assert first.memory_bytes == 20 << 30
-    assert (second.gpu, second.memory_bytes) == ("MIG-dddd4444", 5 << 30)
+    assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.71gb")
+    assert first.memory_bytes == 71 << 30
+    assert (second.gpu, second.memory_bytes) == ("MIG-dddd4444", 18 << 30)
     assert third.gpu == "GPU-bbbb2222"
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "MIG-dddd4444,0")
     assert [device.find(i, 2).gpu for i in range(2)] == ["MIG-dddd4444", "MIG-cccc3333"]
 
 
-@pytest.mark.parametrize("script", ["#!/bin/sh\nexit 9\n", "#!/bin/sh\necho 'No devices'\n"])
-def test_without_a_gpu_that_answers_it_is_the_processor(nvidia_smi, script):
-    nvidia_smi(script)
+@pytest.mark.parametrize("cards", [None, {}, {"GPU-aaaa1111": None}])
+def test_the_processor_is_used_without_a_gpu(driver, cards):
+    driver(cards)
     found = device.find(0)
     assert found.memory_bytes > 1 << 20
     assert found.environment == {}
@@ -133,7 +121,7 @@ def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
     assert processor.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
 
 
-def test_a_machine_that_tells_nothing_of_its_processor_has_one(tmp_path, monkeypatch):
+def test_a_machine_without_processor_information_works(tmp_path, monkeypatch):
     monkeypatch.setattr(processor, "INFORMATION", tmp_path / "none")
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.delattr(os, "sched_setaffinity", raising=False)
@@ -143,7 +131,7 @@ def test_a_machine_that_tells_nothing_of_its_processor_has_one(tmp_path, monkeyp
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system has no affinity")
-def test_what_a_worker_starts_keeps_to_its_threads():
+def test_child_processes_keep_to_the_workers_threads():
     one = processor.threads()[-1]
     program = (
         "import subprocess, sys; from worker import processor\n"
@@ -154,3 +142,89 @@ def test_what_a_worker_starts_keeps_to_its_threads():
     asked = [sys.executable, "-c", program, str(one)]
     answer = subprocess.run(asked, check=True, capture_output=True, text=True)
     assert answer.stdout.split() == [str(one)]
+
+
+def test_a_processor_reports_load_and_memory():
+    found = usage.usage(Device("cpu", memory(), {}))
+    assert found.load is not None
+    assert found.load == pytest.approx(os.getloadavg()[0] / os.cpu_count(), abs=0.5)
+    assert found.memory_bytes is not None
+    assert 0 < found.memory_bytes < memory()
+
+
+@pytest.mark.parametrize(
+    ("current", "expected"), [("1000", 990), ("5", 0), ("no number", None)]
+)
+def test_in_a_container_its_own_memory_is_told(tmp_path, monkeypatch, current, expected):
+    (tmp_path / "memory.max").write_text("2000")
+    (tmp_path / "memory.current").write_text(current)
+    (tmp_path / "memory.stat").write_text("inactive_file 10\n")
+    monkeypatch.setattr(usage, "GROUP", tmp_path)
+    found = usage.usage(Device("cpu", 1, {}))
+    assert (found.memory_bytes, found.load is None) == (expected, False)
+
+
+@pytest.mark.parametrize(
+    ("used", "load", "expected"),
+    [(1234, 56, Usage(1234, 0.56)), (1234, None, Usage(1234, None)), (None, None, Usage())],
+)
+def test_a_gpu_tells_its_own_and_none_for_what_it_does_not_tell(nvml, used, load, expected):
+    nvml({"GPU-3": ("a GPU", 80 << 30)}, used=used, load=load)
+    assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
+
+
+def test_without_a_driver_a_gpus_usage_is_unknown(nvml):
+    nvml(None)
+    assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == Usage()
+
+
+def test_a_heartbeat_reports_the_latest_usage(services):
+    pulse = Pulse(services.sessions, "worker", Device("gpu", 8 << 30, {}, "0"), lease=20)
+    pulse.gauge.last = Usage(5, 0.25)
+    pulse.beat()
+    with services.sessions.read() as session:
+        (found,) = registry.live(session, 20)
+    assert (found.kind, found.memory_used_bytes, found.load) == ("gpu", 5, 0.25)
+
+
+def test_a_gauge_reads_until_it_ends():
+    seen, enough = [], Event()
+
+    def look():
+        seen.append(Usage(load=float(len(seen))))
+        if len(seen) == 3:
+            enough.set()
+        return seen[-1]
+
+    gauge = usage.Gauge(look, 0.001)
+    gauge.start()
+    assert enough.wait(20)
+    gauge.end()
+    gauge.join()
+    assert gauge.last == seen[-1]
+
+
+@pytest.mark.parametrize("error", [OSError("gone"), ValueError("no number")])
+def test_a_failed_reading_of_usage_drops_the_old_one(error):
+    failed, go_on, enough = Event(), Event(), Event()
+    looks = iter([Usage(load=1.0), error])
+
+    def look():
+        found = next(looks, None)
+        if isinstance(found, Exception):
+            raise found
+        if found is None:
+            failed.set()
+            assert go_on.wait(20)
+            enough.set()
+        return found or Usage(load=2.0)
+
+    gauge = usage.Gauge(look, 0.001)
+    gauge.start()
+    assert failed.wait(20)
+    assert gauge.last == Usage(), "what was seen before the failure is old"
+    go_on.set()
+    assert enough.wait(20)
+    gauge.end()
+    gauge.join()
+    assert gauge.last == Usage(load=2.0)

@@ -1,18 +1,33 @@
-"""The loop that takes jobs from a queue."""
+"""The loop that takes jobs, the supervisor, its heartbeat and the renderer."""
+
+import signal
+import subprocess
+import sys
+import time
 
 import pytest
 import redis
 from rq.job import Job
 from rq.serializers import JSONSerializer
+from rq.worker import SimpleWorker
+from sqlalchemy import select, update
 
-from worker import loop, renderer, stop
-from worker.renderer import Renderer
+from server.attempts.claim import claim
+from server.local import process_tree
+from server.renderings.storage import RenderingFailed, order
+from server.tables import CANCELLED, Run, Worker
+from server.workers import registry
+from worker import loop, process, renderer, supervisor
+from worker.device import Device
+from worker.pulse import PATIENCE, Pulse
+from worker.renderer import retry_interrupted
+from worker.supervisor import Supervisor
 
 
 @pytest.fixture
 def worker(services):
     """A worker whose jobs run in this process."""
-    return Renderer([services.jobs.renderings], "renderer", serializer=JSONSerializer)
+    return SimpleWorker([services.jobs.renderings], "renderer", serializer=JSONSerializer)
 
 
 @pytest.fixture
@@ -33,7 +48,7 @@ def test_a_job_is_taken_and_carried_out(worker, ask):
     assert job.is_finished
 
 
-def test_it_registers_anew_when_redis_was_emptied(services, worker, ask):
+def test_a_worker_registers_again_after_redis_was_emptied(services, worker, ask):
     loop.take_one(worker)
     services.redis.flushdb()
     job = ask("abc")
@@ -48,7 +63,7 @@ def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
 
     def turn(worker):
         turns.append(worker)
-        monkeypatch.setattr(stop, "_requested", len(turns) > 2)
+        monkeypatch.setattr(process, "_stop_requested", len(turns) > 2)
         raise redis.ResponseError("MISCONF Errors writing to the AOF file")
 
     monkeypatch.setattr(loop, "take_one", turn)
@@ -65,6 +80,159 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
     execution = worker.prepare_execution(job)
     services.redis.delete(execution.key)  # It expires, before what leads there.
     assert services.jobs.renderings.started_job_registry.get_job_ids() == [job_id]
-    renderer.take_up(services.jobs, services.jobs.renderings)
+    renderer.retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.job_ids == [job_id]
     assert not services.jobs.renderings.started_job_registry.get_job_ids()
+
+
+CREATURE = "ab" * 32
+
+
+@pytest.fixture
+def begin(services):
+    """Takes the order as far as a renderer that dies while it works on it."""
+
+    def take():
+        queue = services.jobs.renderings
+        renderer = SimpleWorker([queue], serializer=JSONSerializer)
+        renderer.register_birth()
+        job, _ = queue.dequeue_any([queue], None, services.redis, serializer=JSONSerializer)
+        renderer.prepare_execution(job)
+        renderer.prepare_job_execution(job)
+        renderer.register_death()
+        return job
+
+    return take
+
+
+def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services, begin):
+    order(services, CREATURE)
+    begin()
+    retry_interrupted(services.jobs, services.jobs.renderings)
+    assert services.jobs.renderings.count == 1
+    begin()
+    retry_interrupted(services.jobs, services.jobs.renderings)
+    assert services.jobs.renderings.count == 0
+    with pytest.raises(RenderingFailed, match="ended the renderer twice"):
+        order(services, CREATURE)
+
+
+def test_a_long_rendering_counts_as_alive_for_all_its_time(services, begin):
+    order(services, CREATURE)
+    job = begin()
+    (execution,) = job.execution_registry.get_execution_ids()
+    ends = services.redis.zscore(job.started_job_registry.key, f"{job.id}:{execution}")
+    assert ends - time.time() > job.timeout
+
+
+ENGINE_FREE = ("supervisor", "pulse", "loop", "job_process")
+
+
+def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
+    modules = ", ".join(f"worker.{name}" for name in ENGINE_FREE)
+    check = f"import sys, {modules}; sys.exit('jax' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", check], cwd=tmp_path).returncode == 0
+
+
+@pytest.fixture
+def busy(services):
+    """A supervisor whose job can be replaced by another process."""
+    worker = Supervisor([services.jobs.runs], "worker", serializer=JSONSerializer)
+    worker.services, worker.lease, worker.environment = services, 20, {}
+    worker.pulse = Pulse(services.sessions, "worker", Device("a device", 1, {}), 20.0)
+    worker.register_birth()
+    return worker
+
+
+def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
+    services, run_id, row, busy, monkeypatch
+):
+    started = []
+
+    def start(_):
+        before = signal.signal(signal.SIGTERM, signal.SIG_IGN)  # The job inherits it.
+        started.append(subprocess.Popen(["sleep", "60"]))
+        signal.signal(signal.SIGTERM, before)
+        busy.job = started[0]
+        claim(services, run_id, busy.name)
+        busy.stop_job()
+
+    monkeypatch.setattr(supervisor, "PATIENCE", 0.0)
+    monkeypatch.setattr(supervisor, "STOP_CHECK_SECONDS", 0.05)
+    monkeypatch.setattr(busy, "start", start)
+    busy.execute_job(services.jobs.find(str(run_id)), services.jobs.runs)
+    assert started[0].returncode == -signal.SIGKILL
+    assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
+
+
+def test_a_job_is_stopped_before_its_supervisor_is_killed():
+    assert supervisor.PATIENCE + 2 * supervisor.STOP_CHECK_SECONDS < process_tree.GRACE
+
+
+@pytest.fixture
+def pulse(services):
+    return Pulse(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
+
+
+@pytest.fixture
+def killed():
+    return []
+
+
+def change(services, **values):
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(**values))
+
+
+def test_a_heartbeat_reports_device_memory_and_run(services, pulse, run_id, killed):
+    claim(services, run_id, "worker")
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    pulse.beat()
+    with services.sessions.read() as session:
+        found = registry.live(session, 20)[0]
+    assert (found.name, found.device, found.memory_bytes) == ("worker", "some device", 8 << 30)
+    assert (found.status, found.run_id) == ("busy", run_id)
+    assert not killed
+
+
+def test_a_beat_renews_the_lease(services, pulse, run_id, row, killed):
+    claim(services, run_id, "worker")
+    change(services, heartbeat_at=None)
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    pulse.beat()
+    assert row().heartbeat_at is not None
+
+
+def test_the_job_of_a_lost_run_is_killed(services, pulse, run_id, killed):
+    claim(services, run_id, "worker")
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    pulse.beat()
+    change(services, worker="another")
+    pulse.beat()
+    assert killed == [run_id]
+
+
+def test_a_job_that_outlives_its_run_is_killed(services, pulse, run_id, killed):
+    claim(services, run_id, "worker")
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    pulse.beat()
+    change(services, status=CANCELLED, worker=None)
+    for _ in range(PATIENCE):
+        pulse.beat()
+    assert not killed
+    pulse.beat()
+    assert killed == [run_id]
+
+
+def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(pulse, run_id, killed):
+    pulse.watch(run_id, lambda: killed.append(run_id))
+    for _ in range(PATIENCE + 2):
+        pulse.beat()
+    assert not killed
+
+
+def test_an_ended_worker_is_not_listed(services, pulse):
+    pulse.start()
+    pulse.end()
+    with services.sessions.read() as session:
+        assert not session.scalars(select(Worker)).all()

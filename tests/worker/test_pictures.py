@@ -90,7 +90,7 @@ def asked(monkeypatch):
     ("kind", "start"),
     [(STRIP, b"\x89PNG"), (PREVIEW, b"\x89PNG"), (GIF, b"GIF89a"), (MP4, b"\x00\x00\x00 ftyp")],
 )
-def test_films_and_pictures_are_drawn_of_the_replay_that_is_kept(
+def test_films_and_pictures_are_drawn_from_the_stored_replay(
     services, known, asked, kind, start
 ):
     assert pictures.make(services, known, kind).startswith(start)
@@ -108,7 +108,7 @@ def test_a_damaged_replay_is_made_again_for_a_film(services, known, asked):
     assert asked == [("record", known)]
 
 
-def test_a_rendering_that_nobody_knows_is_refused(services, known, asked):
+def test_an_unknown_kind_of_rendering_is_refused(services, known, asked):
     with pytest.raises(ValueError, match="`kind` of a rendering must be one of replay, audit"):
         pictures.make(services, known, "film.avi")
     assert asked == []

@@ -36,48 +36,50 @@ def settings(tmp_path, monkeypatch):
     return make
 
 
-def test_a_worker_tells_what_it_has_and_what_it_could_not_load(settings):
-    told = plugins.ask(settings(mine=GOOD, broken="nothing", gone="raise SystemExit"))
-    assert [one["name"] for one in told.plugins] == ["mine.stick"]
-    assert len(told.plugin_versions) == 1
-    reasons = {Path(one["module"]).stem: one["reason"] for one in told.unloaded}
+def test_a_worker_reports_its_plug_ins_and_failed_modules(settings):
+    found = plugins.list_plugins(settings(mine=GOOD, broken="nothing", gone="raise SystemExit"))
+    assert [one["name"] for one in found.plugins] == ["mine.stick"]
+    assert len(found.plugin_versions) == 1
+    reasons = {Path(one["module"]).stem: one["reason"] for one in found.unloaded}
     assert "NameError" in reasons["broken"]
     assert "SystemExit" in reasons["gone"]
 
 
 def test_a_module_that_ends_its_process_does_not_end_the_worker(settings):
-    told = plugins.ask(settings(mine=GOOD, bad="import os; os._exit(3)"))
-    assert told.plugins == ()
-    assert all("ended badly" in one["reason"] for one in told.unloaded)
+    found = plugins.list_plugins(settings(mine=GOOD, bad="import os; os._exit(3)"))
+    assert found.plugins == ()
+    assert all("ended badly" in one["reason"] for one in found.unloaded)
 
 
 def test_a_module_that_never_ends_is_given_up(settings, monkeypatch):
-    monkeypatch.setattr(plugins, "SECONDS", 0.1)
-    (failed,) = plugins.ask(settings(slow="while True: pass")).unloaded
+    monkeypatch.setattr(plugins, "IMPORT_SECONDS", 0.1)
+    (failed,) = plugins.list_plugins(settings(slow="while True: pass")).unloaded
     assert "not imported within 0.1 s" in failed["reason"]
 
 
 def test_without_modules_no_process_is_started(monkeypatch):
     monkeypatch.setattr(plugins, "entry_points", lambda group: ())
     monkeypatch.setattr(subprocess, "run", None)
-    assert plugins.ask(Settings(modules="")) == plugins.Told()
+    assert plugins.list_plugins(Settings(modules="")) == plugins.PluginReport()
 
 
 def test_a_changed_file_is_looked_at_again(settings, monkeypatch):
     chosen, asked = settings(mine=GOOD), []
     monkeypatch.setattr(
-        plugins, "ask", lambda settings: asked.append(settings) or plugins.Told()
+        plugins,
+        "list_plugins",
+        lambda settings: asked.append(settings) or plugins.PluginReport(),
     )
-    shelf = plugins.Shelf(chosen, 0.01)
+    watcher = plugins.PluginWatcher(chosen, 0.01)
     assert len(asked) == 1
     plugins.files(chosen)[0].write_text(f"{GOOD}# Changed.")
-    shelf.start()
+    watcher.start()
     for _ in range(1000):
         if len(asked) > 1:
             break
-        shelf.join(0.01)
-    shelf.end()
-    shelf.join()
+        watcher.join(0.01)
+    watcher.end()
+    watcher.join()
     assert len(asked) == 2
 
 
@@ -88,32 +90,32 @@ from server.settings import Settings
 from worker.evolution import carry_out
 
 said = {}
-attempt = SimpleNamespace(
-    spec=json.loads(sys.argv[1]),
-    settings=Settings(),
-    use=lambda device: None,
-    restore=lambda: None,
-    initial=lambda: [],
-    set_aside=lambda text: said.update(aside=text),
-    refuse=lambda text: said.update(refused=text),
-)
-carry_out(attempt)
+for spec in json.loads(sys.argv[1]):
+    attempt = SimpleNamespace(
+        spec=spec,
+        services=SimpleNamespace(settings=Settings()),
+        use=lambda device: None,
+        restore=lambda: None,
+        initial=lambda: [],
+        set_aside=lambda text: said.update(aside=text),
+        refuse=lambda text: said.update(refused=text),
+    )
+    carry_out(attempt)
 print(json.dumps(said))
 """
 
 
-def test_a_run_that_came_to_the_wrong_worker_is_set_aside_or_refused_not_tried_again(settings):
+def test_a_run_on_the_wrong_worker_is_set_aside_or_refused(settings):
     wrong = GOOD.replace("...", "return 3")
     chosen = settings(mine=wrong)
-    (stick,) = plugins.ask(chosen).plugins
+    (stick,) = plugins.list_plugins(chosen).plugins
     spec = {"experiment": "quality-diversity", "task": {"steps": 20}}
-
-    def said(source):
+    specs = []
+    for source in ("a" * 64, stick["source"]):
         version = {"source": source, "title": "A stick"}
-        document = {**spec, "body": {"builder": "mine.stick", "plugin": version}}
-        command = [sys.executable, "-c", CARRY_OUT, json.dumps(document)]
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
-        return json.loads(done.stdout.splitlines()[-1])
-
-    assert "must be of version aaaaaaaaaaaa, got version" in said("a" * 64)["aside"]
-    assert "mine.stick must give a body, got int" in said(stick["source"])["refused"]
+        specs.append({**spec, "body": {"builder": "mine.stick", "plugin": version}})
+    command = [sys.executable, "-c", CARRY_OUT, json.dumps(specs)]
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
+    said = json.loads(done.stdout.splitlines()[-1])
+    assert "must be of version aaaaaaaaaaaa, got version" in said["aside"]
+    assert "mine.stick must give a body, got int" in said["refused"]

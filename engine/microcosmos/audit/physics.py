@@ -124,7 +124,7 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Found, Rest]:
         begun = replace(driven, start=start, inputs=inputs)
         end, watched = search.simulate(begun, partial(search.watch, driven.world))
         values = search.motion_of(task, begun, end, watched.observed)
-        path = jnp.sum(watched.observed.pace)
+        path = jnp.sum(watched.observed.node_speed)
         way = watched.observed.centre[-1] - world.centre(driven.world, start)
         return (
             way,

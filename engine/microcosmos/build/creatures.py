@@ -1,10 +1,11 @@
 """From a scene to what its creatures are called, and the programs that evaluate them."""
 
+from functools import partial
 from typing import Any
 
 import jax.numpy as jnp
 
-from .. import device, naming, search, spec
+from .. import naming, search, spec
 from ..spec.control import Sight
 from .scene import build_limits, build_stroke, build_task
 
@@ -39,13 +40,15 @@ def _genome(control: spec.Controller | spec.Gait | spec.Fold) -> dict[str, Any]:
 def build_block(scene: spec.Scene, room: tuple[int, int] | None = None):
     """The compiled program that evaluates a block of genotypes in a scene."""
     task = build_task(scene, room=room)
-    return search.block_program(task, search.evaluate, device.compiler_options())
+    return search.block_program(partial(search.evaluate, task))
 
 
 def build_disturbed_block(scene: spec.Scene, room: tuple[int, int] | None = None):
     """The compiled program that evaluates genotypes under disturbed conditions."""
     task = build_task(scene, room=room)
-    return search.reevaluation.disturbed_program(task, device.compiler_options())
+    return search.block_program(
+        lambda given: search.reevaluation.evaluate_disturbed(task, *given)
+    )
 
 
 def build_stroke_block(scene: spec.Scene):
@@ -53,8 +56,8 @@ def build_stroke_block(scene: spec.Scene):
     gait = scene.control
     assert isinstance(gait, spec.Gait)
     rest = build_stroke(gait, scene.task.steps)
-    options = device.compiler_options()
-    return search.stroke_program(build_task(scene), rest, gait.period, options)
+    task = build_task(scene)
+    return search.block_program(partial(search.swim, task, rest, period=gait.period))
 
 
 def build_point(scene: spec.Scene) -> search.Conditions:

@@ -75,11 +75,13 @@ def build_lessons(
     def lessons(words: spec.Emitter, emitter: search.Emitter) -> Lessons | None:
         if not isinstance(emitter, search.emitters.Learner):
             return None
-        segment, options = getattr(words, "segment", None), device.compiler_options()
+        segment = getattr(words, "segment", None)
         return Lessons(
             number=emitter.lessons,
             asks=jax.jit(emitter.asks),
-            slopes=search.slopes_program(task, descriptors, segment, options),
+            slopes=search.block_program(
+                lambda one: search.slopes(task, one, descriptors, segment)
+            ),
             learn=jax.jit(emitter.learn),
         )
 

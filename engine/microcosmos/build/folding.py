@@ -1,6 +1,7 @@
 """From the spec of a folding to the experiment that carries it out."""
 
 import json
+from functools import partial
 
 import numpy as np
 
@@ -21,7 +22,7 @@ def build_folding(chosen: spec.Folding) -> folding.Folding:
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         names=tuple(target.name for target in chosen.targets),
         start=search.folding.start(descent, build_pictures(chosen)),
-        program=search.folding.update_program(descent, device.compiler_options()),
+        program=search.block_program(partial(search.folding.update, descent)),
         updates=chosen.updates,
         block=chosen.block,
         frame=frame(chosen.scene),

@@ -22,12 +22,13 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
     scene, room = _scene(chosen, found), creature.room(found)
     task, names = build_task(scene, room=room), _names(chosen)
     assert task.encoding is not None
-    options = device.compiler_options()
     genotype = task.encoding.read(found["identity"]["genome"])
     return refinement.Refinement(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         genotype=jax.tree.map(lambda x: np.asarray(x)[None], genotype),
-        slopes=search.slopes_program(task, names, chosen.segment, options),
+        slopes=search.block_program(
+            lambda one: search.slopes(task, one, names, chosen.segment)
+        ),
         evaluate_block=build_block(scene, room),
         cells=build_cells(chosen.archive, measures_of(scene)),
         names=names,

@@ -1,5 +1,7 @@
 """The command `doctor`."""
 
+from dataclasses import asdict
+
 import typer
 
 from ..doctor import Finding, examine
@@ -11,38 +13,30 @@ COLOURS = {"ok": "green", "warning": "yellow", "problem": "red"}
 
 @app.command()
 def doctor(json: Json = False, url: Url = None, token: Token = None) -> None:
-    """Check devices, memory, disk, Redis, database and server, and say what to do."""
+    """Check the library, devices and memory, then ask the server, and say what to do."""
     found: list[Finding] = []
     for finding in examine(url, token, CACHE):
         found.append(finding)
         if not json:
-            _tell(finding)
+            _print(finding)
+    counts = {level: sum(one.level == level for one in found) for level in COLOURS}
     if json:
-        show([finding.document() for finding in found])
+        show([asdict(finding) for finding in found])
     else:
-        _sum_up(found)
-    if any(finding.level == "problem" for finding in found):
+        words = (_counted(counts[level], level) for level in ("problem", "warning"))
+        print(" and ".join(filter(None, words)) or "No problems", end=".\n")
+    if counts["problem"]:
         raise typer.Exit(1)
 
 
-def _tell(finding: "Finding") -> None:
+def _print(finding: Finding) -> None:
     console = stdout()
-    mark = f"[{COLOURS[finding.level]}]{finding.level:>7}[/]"
-    console.print(f"{mark}  [bold]{finding.subject}[/]: ", end="")
-    console.print(finding.found, markup=False, highlight=False, soft_wrap=True)
-    if finding.advice:
-        advice = f"         → {finding.advice}"
-        console.print(advice, markup=False, highlight=False, soft_wrap=True)
-
-
-def _sum_up(found: "list[Finding]") -> None:
-    problems = sum(one.level == "problem" for one in found)
-    warnings = sum(one.level == "warning" for one in found)
-    if not problems and not warnings:
-        print("All is well.")
-    else:
-        words = (_counted(problems, "problem"), _counted(warnings, "warning"))
-        print(" and ".join(filter(None, words)) + ".")
+    console.print(
+        f"[{COLOURS[finding.level]}]{finding.level:>7}[/]  [bold]{finding.subject}[/]: ", end=""
+    )
+    advice = f"\n         → {finding.advice}" if finding.advice else ""
+    text = f"{finding.found}{advice}"
+    console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def _counted(number: int, word: str) -> str:

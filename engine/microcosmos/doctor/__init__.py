@@ -1,4 +1,4 @@
-"""Is everything here that Microcosmos needs, and what to do where it is not."""
+"""Diagnosis: check what Microcosmos needs, and say what to do."""
 
 from .examination import examine
 from .finding import Finding

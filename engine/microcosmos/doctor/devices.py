@@ -1,4 +1,4 @@
-"""The devices that compute, and the compile cache, as a process of its own finds them."""
+"""Check JAX, its devices and the compile cache, in a process of their own."""
 
 import json
 import os
@@ -9,34 +9,40 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from .finding import Finding, gib, ok, problem, warning
+from ..sizes import size
+from .finding import Finding, ok, problem, warning
 
 PATIENCE = 120.0
-"""Seconds; a driver that is well needs a few."""
+"""Seconds; a healthy driver needs a few."""
 CPU = "JAX_PLATFORMS=cpu leaves the GPU out"
 
 
 def devices(cache: Path, patience: float = PATIENCE) -> Iterator[Finding]:
-    """JAX, each device, and whether compiled programs are kept and found."""
+    """Check JAX, each device, and that compiled programs are kept and found again."""
     yield from _folder(cache)
     try:
         found = probed(cache, patience)
     except subprocess.TimeoutExpired:
-        yield problem(
-            "devices",
-            f"JAX did not answer within {patience:.0f} s: a driver hangs",
-            f"look at nvidia-smi, restart the machine; until then {CPU}",
-        )
+        text = f"JAX did not answer within {patience:.0f} s: a driver hangs"
+        advice = f"look at nvidia-smi, restart the machine; until then {CPU}"
+        yield problem("devices", text, advice)
         return
     except RuntimeError as error:
         yield problem("devices", f"JAX fails: {error}", f"make install; {CPU}")
         return
     yield from _devices(found)
-    yield from _works(found["cache"], cache)
+    if found["cache"]["kept"] and found["cache"]["found"]:
+        yield ok("compile cache", "a program that was kept is found again")
+        return
+    text = f"a compiled program is not {'found again' if found['cache']['kept'] else 'kept'}"
+    other = "choose another folder with JAX_COMPILATION_CACHE_DIR"
+    yield warning(
+        "compile cache", text, f"each start compiles anew; remove {cache}, or {other}"
+    )
 
 
 def probed(cache: Path, patience: float) -> dict[str, Any]:
-    """What the probe tells; `RuntimeError` with its last words where it fails."""
+    """Run the probe; raise `RuntimeError` with its last line if it fails."""
     command = [sys.executable, "-m", "microcosmos.doctor.probe", str(cache)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=patience)
     if done.returncode:
@@ -47,18 +53,18 @@ def probed(cache: Path, patience: float) -> dict[str, Any]:
 
 def _devices(found: dict[str, Any]) -> Iterator[Finding]:
     for one in found["devices"]:
-        name = f"{one['platform']} {one['id']}"
+        name = f"{one['platform']} {one['id']} ({one['model']})"
         if "error" in one:
-            yield problem("devices", f"{name} ({one['model']}): {one['error']}", CPU)
+            yield problem("devices", f"{name}: {one['error']}", CPU)
         elif not one["right"]:
-            broken = f"{name} ({one['model']}) computes wrong numbers"
-            yield problem("devices", broken, f"do not use it: {CPU}")
+            yield problem("devices", f"{name} computes wrong numbers", f"do not use it: {CPU}")
         elif one["memory_bytes"]:
             free = one["memory_bytes"] - one["memory_used_bytes"]
-            told = f"{gib(free)} of {gib(one['memory_bytes'])} free to JAX"
-            yield ok("GPU memory", f"{name} ({one['model']}): {told}")
+            text = f"{name}: {size(free)} of {size(one['memory_bytes'])} free to JAX"
+            yield ok("GPU memory", text)
     platforms = [one["platform"] for one in found["devices"]]
-    if set(platforms) == {"cpu"} and _nvidia():
+    nvidia = Path("/proc/driver/nvidia").exists() or shutil.which("nvidia-smi")
+    if set(platforms) == {"cpu"} and nvidia:
         yield warning(
             "devices",
             "there is an NVIDIA GPU, and JAX sees only the CPU",
@@ -68,35 +74,15 @@ def _devices(found: dict[str, Any]) -> Iterator[Finding]:
     yield ok("devices", f"{counted}: {found['kind']}")
 
 
-def _nvidia() -> bool:
-    return Path("/proc/driver/nvidia").exists() or shutil.which("nvidia-smi") is not None
-
-
 def _folder(cache: Path) -> Iterator[Finding]:
-    """The folder of compiled programs, made where it is missing."""
+    """Check the folder of compiled programs; make it if it is missing."""
+    advice = f"let it be written to (chown, chmod {cache}), or set JAX_COMPILATION_CACHE_DIR"
     try:
         cache.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        yield problem("compile cache", f"{cache}: {error.strerror}", _advice(cache))
+        yield problem("compile cache", f"{cache}: {error.strerror}", advice)
         return
     files = [path.stat().st_size for path in cache.rglob("*") if path.is_file()]
-    yield ok("compile cache", f"{len(files)} files, {gib(sum(files))} in {cache}")
+    yield ok("compile cache", f"{len(files)} files, {size(sum(files))} in {cache}")
     if not os.access(cache, os.W_OK):
-        yield problem("compile cache", f"{cache} cannot be written to", _advice(cache))
-
-
-def _works(found: dict[str, bool], cache: Path) -> Iterator[Finding]:
-    if found["kept"] and found["found"]:
-        yield ok("compile cache", "a program that was kept is found again")
-        return
-    what = "is not found again" if found["kept"] else "is not kept"
-    yield warning(
-        "compile cache",
-        f"a compiled program {what}",
-        f"every start will compile anew; remove {cache}, or choose another folder with "
-        "JAX_COMPILATION_CACHE_DIR",
-    )
-
-
-def _advice(cache: Path) -> str:
-    return f"let it be written to (chown, chmod {cache}), or set JAX_COMPILATION_CACHE_DIR"
+        yield problem("compile cache", f"{cache} cannot be written to", advice)

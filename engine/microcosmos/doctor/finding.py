@@ -1,15 +1,14 @@
-"""What was looked at, what was found, and what to do about it."""
+"""The result of a check, and what to do about it."""
 
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 Level = Literal["ok", "warning", "problem"]
-GIB = 1 << 30
 
 
 @dataclass(frozen=True)
 class Finding:
-    """`advice` says what to do; it is there unless all is well."""
+    """`advice` says what to do; only an `ok` has none."""
 
     subject: str
     level: Level
@@ -18,9 +17,6 @@ class Finding:
 
     def __post_init__(self) -> None:
         assert (self.advice is None) == (self.level == "ok")
-
-    def document(self) -> dict[str, Any]:
-        return asdict(self)
 
 
 def ok(subject: str, found: str) -> Finding:
@@ -33,8 +29,3 @@ def warning(subject: str, found: str, advice: str) -> Finding:
 
 def problem(subject: str, found: str, advice: str) -> Finding:
     return Finding(subject, "problem", found, advice)
-
-
-def gib(count: float) -> str:
-    """Bytes, as people speak of memory and disks."""
-    return f"{count / GIB:.1f} GiB" if count >= GIB else f"{count / (1 << 20):.0f} MiB"

@@ -1,55 +1,44 @@
-"""The memory of the machine, against what presets need."""
+"""Check the memory of the machine against the needs of presets."""
 
 import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from ..sizes import size
 from ..spec import EXPERIMENTS, estimate
-from .finding import GIB, Finding, gib, ok, warning
+from .finding import Finding, ok, warning
 
 MEMINFO = Path("/proc/meminfo")
 LIMIT = Path("/sys/fs/cgroup/memory.max")
-LEAST = 2 * GIB
-"""JAX with its compiler and a small run."""
+LEAST = 2 << 30
+"""Bytes that JAX with its compiler and a small run need."""
 
 
 def memory(meminfo: Path = MEMINFO, limit: Path = LIMIT) -> Iterator[Finding]:
-    """What there is, what is free, and which presets would not find room."""
-    whole, free = there(meminfo, limit)
-    found = f"{gib(free)} of {gib(whole)} available"
+    """Check the available memory, and list the presets that need more than there is."""
+    whole, free = memory_bytes(meminfo, limit)
+    found = f"{size(free)} of {size(whole)} available"
     if free < LEAST:
-        yield warning(
-            "memory", found, "end something else, or run fewer workers: make run WORKERS=1"
-        )
+        advice = "end other programs, or run fewer workers: make run WORKERS=1"
+        yield warning("memory", found, advice)
     else:
         yield ok("memory", found)
-    for name, needed in largest():
-        if needed > whole:
-            yield warning(
-                "memory",
-                f"the preset {name} needs {gib(needed)}",
-                "give it a smaller block, or use a larger machine",
-            )
+    for experiment in EXPERIMENTS.values():
+        for preset in experiment.presets:
+            needed = estimate(preset.spec).memory_bytes
+            if needed > whole:
+                found = f"the preset {experiment.name}/{preset.name} needs {size(needed)}"
+                yield warning("memory", found, "use a smaller block, or a larger machine")
 
 
-def there(meminfo: Path, limit: Path) -> tuple[int, int]:
-    """Bytes in all and available, of the machine or of the container that this is in."""
+def memory_bytes(meminfo: Path = MEMINFO, limit: Path = LIMIT) -> tuple[int, int]:
+    """Return total and available bytes of the machine, or of the container around us."""
     if meminfo.exists():
         lines = (line.partition(":") for line in meminfo.read_text().splitlines())
         kibibytes = {name: int(rest.split()[0]) for name, _, rest in lines if rest.split()}
         whole, free = 1024 * kibibytes["MemTotal"], 1024 * kibibytes["MemAvailable"]
     else:
-        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-        free = whole
-    if limit.exists() and (told := limit.read_text().strip()).isdigit():
-        whole, free = min(whole, int(told)), min(free, int(told))
+        whole = free = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if limit.exists() and (text := limit.read_text().strip()).isdigit():
+        whole, free = min(whole, int(text)), min(free, int(text))
     return whole, free
-
-
-def largest() -> list[tuple[str, int]]:
-    """Presets with the bytes that they need."""
-    return [
-        (f"{experiment.name}/{preset.name}", estimate(preset.spec).memory_bytes)
-        for experiment in EXPERIMENTS.values()
-        for preset in experiment.presets
-    ]

@@ -1,4 +1,4 @@
-"""What JAX can do here, as JSON; in a process of its own, since a broken driver may hang it."""
+"""Print JAX's abilities as JSON; a process of its own, since a broken driver may hang it."""
 
 import json
 import sys
@@ -22,29 +22,23 @@ def main(cache: Path) -> None:
 
 
 def _device(device: Any) -> dict[str, Any]:
-    """Whether a tiny computation comes out right, and the memory there is."""
+    """Return the result of a small computation, and the memory of a device."""
     told = {"platform": device.platform, "model": device.device_kind, "id": device.id}
     numbers = np.arange(64, dtype=np.float32)
     try:
-        came = float(_sum(jax.device_put(numbers, device)))
-    except Exception as error:  # Whatever a driver throws is what has to be told.
+        computed = float(jax.jit(lambda x: jnp.sum(x * x))(jax.device_put(numbers, device)))
+    except Exception as error:  # Whatever a driver throws has to be reported.
         return told | {"error": f"{type(error).__name__}: {error}"[:300]}
-    needed = float(numbers @ numbers)
     memory = device.memory_stats() or {}
     return told | {
-        "right": came == needed,
+        "right": computed == float(numbers @ numbers),
         "memory_bytes": memory.get("bytes_limit"),
         "memory_used_bytes": memory.get("bytes_in_use"),
     }
 
 
-@jax.jit
-def _sum(x: jax.Array) -> jax.Array:
-    return jnp.sum(x * x)
-
-
 def _cache(folder: Path) -> dict[str, Any]:
-    """Whether a program that is kept there is found again."""
+    """Compile a program twice, and tell whether it was kept and found again."""
     hits: list[str] = []
     jax.monitoring.register_event_listener(lambda event, **_: hits.append(event))
     with tempfile.TemporaryDirectory(prefix="doctor-", dir=folder) as place:

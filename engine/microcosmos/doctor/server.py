@@ -1,6 +1,6 @@
-"""The server at an address: which version, can it work, who works for it."""
+"""Ask the server for its version, its health report and its workers."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from typing import Any
@@ -8,78 +8,148 @@ from typing import Any
 import httpx
 
 from ..client import Client, NoAnswer, NotAllowed, ServerError
+from ..sizes import size
 from ..version import VERSION
 from .finding import Finding, ok, problem, warning
 
 SILENT = 20.0
 """Seconds without a heartbeat after which a worker counts as dead."""
+LEAST, FEW = 1 << 30, 10 << 30
+"""Bytes of free disk space: less than the first is a problem, than the second a warning."""
+SLOW = 1.0
+"""Longest time, in seconds, that 4 kB should take to reach the disk."""
+REMOTE = ("nfs", "nfs4", "cifs", "smb3", "fuse.sshfs", "9p")
+"""File systems on which SQLite's log does not work."""
 
 
 def server(url: str | None, token: str | None) -> Iterator[Finding]:
-    """Where an address was chosen somebody has to answer, else perhaps nobody was started."""
+    """Check the server; a missing one is a problem only if its address was given."""
     with Client(url, token, patience=5.0) as client:
         try:
-            yield from _asked(client)
+            yield from _version(client)
+            yield from _principal(client)
+            yield from _health(client)
+            answer = client.connection.ask("GET", "workers")
+            yield from workers(answer.json(), _server_time(answer))
         except NoAnswer as error:
             found, _, advice = str(error).partition(": ")
-            judged = problem if url else warning
-            yield judged("server", found, advice or "start it with `make run`")
+            level = problem if url else warning
+            checks = "database, disk and Redis are not checked"
+            yield level("server", f"{found}; {checks}", advice or "start it with `make run`")
         except NotAllowed as error:
             yield problem("server", str(error), "export MICROCOSMOS_TOKEN=..., or --token")
         except ServerError as error:
             yield problem("server", str(error), "correct --url or MICROCOSMOS_URL")
 
 
-def _asked(client: Client) -> Iterator[Finding]:
-    connection = client.connection
-    told = connection.read("openapi.json")["info"]["version"]
-    if told == VERSION:
-        yield ok("server", f"version {told} answers at {client.url}")
+def _version(client: Client) -> Iterator[Finding]:
+    version = client.connection.read("openapi.json")["info"]["version"]
+    found = f"version {version} answers at {client.url}"
+    if version == VERSION:
+        yield ok("server", found)
     else:
+        advice = "install the same version on both, or creatures may not check bit for bit"
+        yield warning("server", f"{found}; this is {VERSION}", advice)
+
+
+def _principal(client: Client) -> Iterator[Finding]:
+    found = client.connection.read("tokens/current")
+    until = f", until {found['expires_at']}" if found["expires_at"] else ""
+    yield ok(
+        "server", f"you are “{found['name']}” there, with the scope {found['scope']}{until}"
+    )
+
+
+def _health(client: Client) -> Iterator[Finding]:
+    try:
+        report = client.connection.read("health")
+    except NotAllowed:
         yield warning(
             "server",
-            f"version {told} answers at {client.url}; this is {VERSION}",
-            "install the same version on both, or creatures may not check bit for bit",
+            "only an admin may see its database, disk and Redis",
+            "use a token with the scope admin",
         )
-    yield from _ready(connection.http.get("/readyz"))
-    yield from _caller(client)
-    answer = connection.ask("GET", "workers")
-    yield from workers(answer.json(), _now(answer))
+        return
+    yield from database(report["database"])
+    yield from disk(report["disk"], report["database"]["dialect"])
+    yield from redis(report["redis"])
 
 
-def _ready(answer: httpx.Response) -> Iterator[Finding]:
-    try:
-        standing = answer.json()
-    except ValueError:
-        standing = {}
-    for name in ("database", "redis"):
-        if standing.get(name) != "ok":
-            told = f"it does not reach its {name.replace('redis', 'Redis')}"
-            yield problem("server", told, f"start the {name}; the server's log says more")
+def database(report: Mapping[str, Any]) -> Iterator[Finding]:
+    """Check that the database answers, with the tables of the server's version."""
+    where = f"{report['dialect']} {report['version'] or ''} at {report['location']}"
+    found, newest = report["revision"], report["newest_revision"]
+    tables = f"{where}, tables of migration {found}"
+    if not report["reachable"]:
+        advice = "start it, restore it, or correct MICROCOSMOS_DATABASE_URL"
+        yield problem("database", f"{where}: {report['error']}", advice)
+    elif found == newest:
+        yield ok("database", tables)
+    elif found is None or found < newest:
+        advice = "restart the server: it updates the tables"
+        yield warning("database", f"{tables}; {newest} is the newest", advice)
+    else:
+        advice = "use the newer Microcosmos that made them, or another data folder"
+        yield problem("database", f"{tables}; the server knows up to {newest}", advice)
 
 
-def _caller(client: Client) -> Iterator[Finding]:
-    """Who one is there, and what one may."""
-    told = client.connection.read("tokens/current")
-    until = f", until {told['expires_at']}" if told["expires_at"] else ""
-    yield ok("server", f"you are “{told['name']}” there, with the scope {told['scope']}{until}")
+def disk(report: Mapping[str, Any], dialect: str) -> Iterator[Finding]:
+    """Check that the store has room, can be written to, and is fast."""
+    where, free, seconds = report["location"], report["free_bytes"], report["write_seconds"]
+    if free is not None:
+        found = f"{size(free)} free at {where}"
+        if free < LEAST:
+            advice = "free some space, or choose another folder with MICROCOSMOS_DATA"
+            yield problem("disk", found, advice)
+        elif free < FEW:
+            yield warning("disk", found, "free some space soon: each run keeps an archive file")
+        else:
+            yield ok("disk", found)
+    if not report["writable"]:
+        advice = f"let the server write to it (chown, chmod {where}), or set MICROCOSMOS_DATA"
+        yield problem("disk", f"{where} cannot be written to: {report['error']}", advice)
+    elif seconds > SLOW:
+        found = f"writing to {where} (fsync) takes {1000 * seconds:.0f} ms"
+        yield warning("disk", found, "checkpoints wait for it; a local disk is faster")
+    else:
+        yield ok("disk", f"writing to {where} (fsync) takes {1000 * seconds:.0f} ms")
+    if report["file_system"] in REMOTE and dialect == "sqlite":
+        yield warning(
+            "disk",
+            f"{where} is on a {report['file_system']} file system, where SQLite may lose data",
+            "choose a local folder with MICROCOSMOS_DATA, or PostgreSQL with "
+            "MICROCOSMOS_DATABASE_URL",
+        )
+
+
+def redis(report: Mapping[str, Any]) -> Iterator[Finding]:
+    """Check that Redis answers, and that it keeps messages when it is full."""
+    where = report["location"]
+    if not report["reachable"]:
+        advice = "start it, or correct MICROCOSMOS_REDIS_URL; without it `make run` has its own"
+        yield problem("Redis", f"{where} does not answer: {report['error']}", advice)
+        return
+    yield ok("Redis", f"{report['version']} answers at {where}")
+    if report["policy"] not in (None, "noeviction"):
+        found = f"a full Redis drops messages (maxmemory-policy {report['policy']})"
+        yield warning("Redis", found, "set its maxmemory-policy to noeviction")
 
 
 def workers(found: list[dict[str, Any]], now: datetime) -> Iterator[Finding]:
-    """Each worker, and how long ago it was heard of."""
+    """Check that there are workers, and that each has reported lately."""
     if not found:
-        advice = "runs wait: `make run` starts one; WORKERS=n so many"
+        advice = "runs wait: start workers with `make run`, several with WORKERS=n"
         yield warning("workers", "none is alive", advice)
     for one in found:
         age = max(0.0, (now - datetime.fromisoformat(one["heartbeat_at"])).total_seconds())
-        told = f"{one['name']} on {one['device']}, {one['status']}, heard of {age:.0f} s ago"
+        text = f"{one['name']} on {one['device']}, {one['status']}, reported {age:.0f} s ago"
         if age > SILENT:
-            yield warning("workers", told, "it may hang: look at its log, start it again")
+            yield warning("workers", text, "it may hang: read its log, restart it")
         else:
-            yield ok("workers", told)
+            yield ok("workers", text)
 
 
-def _now(answer: httpx.Response) -> datetime:
-    """The server's own time: clocks differ."""
+def _server_time(answer: httpx.Response) -> datetime:
+    """Return the server's own time: clocks differ."""
     date = answer.headers.get("date")
     return parsedate_to_datetime(date) if date else datetime.now(UTC)

@@ -85,7 +85,7 @@ class Folding:
             "folds": {"genes": folds.best, "loss": folds.least, "picture": folds.picture},
             "next": {
                 "genes": folds.genes,
-                "pace": folds.pace,
+                "rate_share": folds.rate_share,
                 "optimiser": leaves(folds.optimiser),
             },
         }
@@ -102,7 +102,7 @@ class Folding:
                 optimiser=filled(self.start.optimiser, after["optimiser"]),
                 best=jnp.asarray(kept["genes"]),
                 least=jnp.asarray(kept["loss"]),
-                pace=jnp.asarray(after["pace"]),
+                rate_share=jnp.asarray(after["rate_share"]),
                 picture=jnp.asarray(kept["picture"]),
             )
             return State(jax.device_get(folds), tree["curves"]["loss"], table)

@@ -3,7 +3,7 @@
 from . import cvt, emitters, folding, gradients, reevaluation
 from .blocks import Stopped, evaluate_blocks, never
 from .cells import Axis, Cells, Grid, Voronoi, voronoi
-from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome, Slopes
+from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
     STATUSES,
     Actuator,
@@ -19,12 +19,20 @@ from .evaluation import (
     motion_of,
     simulate,
 )
+from .gradients import Slopes, slopes
 from .health import Health, gradient_health
-from .insertion import Elites, Inserted, clipped, digest, insert, insert_program, no_elites
-from .measures import MEASURES, Observations, motion, observe
-from .plugin_measures import Measure, Motion
-from .slopes import slopes, slopes_program
-from .strokes import STROKE_MEASURES, Conditions, Watched, impulse, stroke_program, swim, watch
+from .insertion import (
+    Elites,
+    Inserted,
+    candidates,
+    clipped,
+    digest,
+    insert,
+    insert_program,
+    no_elites,
+)
+from .measures import MEASURES, Measure, Motion, motion, observe
+from .strokes import STROKE_MEASURES, Conditions, Watched, impulse, swim, watch
 
 __all__ = [
     "MEASURES",
@@ -46,7 +54,6 @@ __all__ = [
     "Inserted",
     "Measure",
     "Motion",
-    "Observations",
     "Outcome",
     "Slopes",
     "Stopped",
@@ -54,6 +61,7 @@ __all__ = [
     "Voronoi",
     "Watched",
     "block_program",
+    "candidates",
     "clipped",
     "cvt",
     "digest",
@@ -78,8 +86,6 @@ __all__ = [
     "reevaluation",
     "simulate",
     "slopes",
-    "slopes_program",
-    "stroke_program",
     "swim",
     "voronoi",
     "watch",

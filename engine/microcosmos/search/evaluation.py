@@ -1,8 +1,8 @@
 """Evaluation: from genomes to fitness, descriptors and measures.
 
-The unit is one compiled program for a fixed number of creatures. Rollouts are chaotic, so
-rounding counts, and a program of another shape rounds differently: whatever the batch,
-slot, neighbours or device, a creature goes through this same program.
+One compiled program evaluates a block of a fixed number of creatures. Rollouts are chaotic, and
+a program of another shape rounds differently; so every creature goes through this same
+program, whatever its batch, slot, neighbours or device.
 """
 
 from collections.abc import Callable, Mapping
@@ -16,23 +16,23 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int, PyTree
 
 from .. import units
+from ..device import compiler_options
 from ..filaments import Rest
 from ..genomes import Drive, Encoding, Genotype
 from ..world import Measures, State, World, flow, rollout
-from .measures import MEASURES, Observations, motion, observe
-from .plugin_measures import Measure, motion_for_plugins
+from .measures import MEASURES, Measure, motion, motion_for_plugins, observe
 
 STATUSES = ("ok", "non-finite", "supersonic")
-"""Why an evaluation counts or does not, by status code."""
+"""Outcome of an evaluation by status code: feasible, or the reason why not."""
 
 Scalar = Float[Array, ""]
 
 Actuator = Genotype | Rest
-"""What moves a body: what is inherited, or rest shapes over time."""
+"""A genotype, or rest shapes over time."""
 
 
 class Evaluation(eqx.Module):
-    """What was measured of one creature (or of a block of them)."""
+    """The result for one creature, or for a block of them."""
 
     fitness: Float[Array, "*block"]
     measures: Float[Array, "*block measure"]
@@ -40,7 +40,7 @@ class Evaluation(eqx.Module):
 
 
 class Goal(eqx.Module):
-    """What fitness is made of: its weight on displacement and on collected energy."""
+    """Weights of displacement and collected energy in fitness."""
 
     displacement: float = eqx.field(static=True, default=1.0)
     energy: float = eqx.field(static=True, default=0.0)
@@ -49,25 +49,25 @@ class Goal(eqx.Module):
 
 
 class Task(eqx.Module):
-    """A world with a body at its start, what genotypes mean there, and the goal."""
+    """A world with a body at its start, the encoding of genotypes, and the goal."""
 
     world: World
     start: State
     encoding: Encoding | None = eqx.field(static=True, default=None)
     goal: Goal = Goal()
     length: float = eqx.field(static=True, default=1.0)
-    """How far the body reaches, in cells: the length in the Reynolds number."""
+    """Length of the body in cells, for the Reynolds number."""
     phase: Float[Array, ""] | None = None
-    """How far a periodic timer is ahead, in rad."""
+    """Lead of a periodic timer, in rad."""
     placements: Int[Array, "placement 2"] | None = None
-    """Cells by which the energy is moved in each of the worlds in which a creature is measured;
-    None: there is one, as it is."""
+    """Shift of the energy, in cells, in each world that a creature is measured in; None: one
+    world, unshifted."""
     plugin_measures: tuple[Measure, ...] = eqx.field(static=True, default=())
-    """What is measured beside the usual measures."""
+    """Measures of plug-ins, beside the usual ones."""
 
     @property
     def measures(self) -> tuple[str, ...]:
-        """What is recorded of every creature, in this order."""
+        """Names of the measures of every creature, in this order."""
         return MEASURES + tuple(measure.name for measure in self.plugin_measures)
 
 
@@ -77,7 +77,7 @@ def evaluate(task: Task, genotype: Genotype) -> Evaluation:
 
 
 def measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
-    """Simulate what a genotype has become, and measure it: means over all placements."""
+    """Simulate and measure a developed genotype: means over all placements."""
     if task.placements is None:
         return _measured(task, genotype, driven)
     found = jax.lax.map(
@@ -88,7 +88,7 @@ def measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
 
 
 def elsewhere(driven: Drive, shift: Int[Array, "2"]) -> Drive:
-    """The same with the energy moved by so many cells."""
+    """The simulation with the energy moved by `shift` cells."""
     assert driven.start.energy is not None
     energy = jnp.roll(driven.start.energy, shift, (0, 1))
     return replace(driven, start=replace(driven.start, energy=energy))
@@ -107,7 +107,7 @@ def _measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
 
 
 def drive(task: Task, actuator: Actuator) -> Drive:
-    """What is simulated of a genotype, or of a body that follows rest shapes."""
+    """The simulation of a genotype, or of a body that follows rest shapes."""
     if isinstance(actuator, Rest) or task.encoding is None:
         return Drive(task.world, task.start, actuator)
     return task.encoding.drive(task.world, task.start, actuator, task.phase)
@@ -118,13 +118,13 @@ def simulate(
     see: Callable[[State, Measures], Any] = observe,
     segment: int | None = None,
 ) -> tuple[State, Any]:
-    """The state at the end, and what was observed after each step."""
+    """The state at the end, and the observations after each step."""
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, see)
 
 
-def motion_of(task: Task, driven: Drive, end: State, observed: Observations) -> dict[str, Any]:
-    """What can be measured of any actuator's motion."""
+def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict[str, Any]:
+    """Measures of any actuator's motion."""
     length = task.length if driven.length is None else driven.length
     values = motion(driven.world, driven.start, end, observed, length)
     if not task.plugin_measures:
@@ -135,7 +135,7 @@ def motion_of(task: Task, driven: Drive, end: State, observed: Observations) -> 
 
 def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
     """Displacement in cells, collected energy, or both, as the goal weighs them; or a measure
-    of one's own."""
+    of a plug-in."""
     goal = task.goal
     if goal.plugin is not None:
         return values[goal.plugin]
@@ -148,7 +148,7 @@ def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
 
 
 def status(world: World, end: State, measures: Float[Array, "measure"]) -> Int[Array, ""]:
-    """0 where the numbers can be believed, else why they cannot."""
+    """0 if the evaluation is feasible, else the code of the reason."""
     u = flow(world, end)
     last = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
     fastest = jnp.maximum(measures[MEASURES.index("mach")], units.mach(last))
@@ -157,14 +157,9 @@ def status(world: World, end: State, measures: Float[Array, "measure"]) -> Int[A
     return jnp.where(finite, jnp.where(fastest < 1, 0, 2), 1)
 
 
-def block_program(
-    task: Task, evaluate: Callable, options: dict
-) -> Callable[[Genotype], Evaluation]:
-    """One compiled program that evaluates a block of genotypes."""
-    return jax.jit(
-        lambda genotypes: mapped(lambda genotype: evaluate(task, genotype), genotypes),
-        compiler_options=options,
-    )
+def block_program(function: Callable) -> Callable:
+    """One compiled program for a function of every item of a block, such as genotypes."""
+    return jax.jit(lambda block: mapped(function, block), compiler_options=compiler_options())
 
 
 def mapped(function: Callable, block: PyTree[Array]) -> Any:

@@ -1,7 +1,7 @@
-"""Folding: how far a filament is from a picture at the end of its life, and which way to go.
+"""Folding: gradient descent of a filament's rest shape towards a picture.
 
-As in the Microcosmos paper: the loss is the mean squared difference between the density of
-nodes, splatted as Gaussians, and the picture.
+As in the Microcosmos paper: the loss is the mean squared difference at the end between the
+density of nodes, splatted as Gaussians, and the picture.
 """
 
 from collections.abc import Callable
@@ -16,33 +16,33 @@ from jaxtyping import Array, Float
 from .. import fields
 from ..genomes import Vector
 from .adam import Adam, begin, descend
-from .evaluation import Task, drive, mapped, simulate
+from .evaluation import Task, drive, simulate
 
 Plane = Float[Array, "x y"]
 
 
 class Fold(eqx.Module):
-    """One filament on its way to a picture, or a block of them; all that an update needs."""
+    """The state of one filament, or of a block of them."""
 
     genes: Float[Array, "*block gene"]
     optimiser: Adam
     best: Float[Array, "*block gene"]
     """The genes with the least loss so far."""
     least: Float[Array, "*block"]
-    pace: Float[Array, "*block"]
-    """Share of the learning rate; halved where an update failed, so that it does not again."""
+    rate_share: Float[Array, "*block"]
+    """Share of the learning rate; halved after each update that failed."""
     picture: Float[Array, "*block x y"]
 
 
 class Descent(eqx.Module):
-    """What an update needs to know besides."""
+    """The settings of an update."""
 
     task: Task
     width: float = eqx.field(static=True, default=1.5)
-    """Of a node's Gaussian, in cells."""
+    """Standard deviation of a node's Gaussian, in cells."""
     density: Callable[[Plane], Plane] = eqx.field(static=True, default=fields.saturated)
     rate: float = eqx.field(static=True, default=0.04)
-    """Adam's."""
+    """Learning rate of Adam."""
     segment: int | None = eqx.field(static=True, default=None)
     """Steps that reverse mode keeps at a time; None: all."""
 
@@ -56,7 +56,7 @@ def loss(descent: Descent, genes: Float[Array, "gene"], picture: Plane) -> Float
 
 
 def unfolded(descent: Descent, picture: Plane) -> Fold:
-    """Before the first update: the body as it is."""
+    """A filament before the first update."""
     assert descent.task.encoding is not None
     genes = descent.task.encoding.newcomer(key=jax.random.key(0)).values
     least = jnp.full((), jnp.inf, genes.dtype)
@@ -66,36 +66,26 @@ def unfolded(descent: Descent, picture: Plane) -> Fold:
 def update(descent: Descent, fold: Fold) -> tuple[Fold, Float[Array, ""]]:
     """One step of Adam (Kingma and Ba, ICLR 2015), and the loss before it.
 
-    Where loss or slope are not finite the loss is told as NaN, and the next step begins anew
-    from the best genes, at half the pace.
+    If loss or slope are not finite, the loss is NaN, and the next step begins anew from the
+    best genes at half the rate.
     """
     found, slope = jax.value_and_grad(partial(loss, descent))(fold.genes, fold.picture)
     sound = jnp.isfinite(found) & jnp.all(jnp.isfinite(slope))
     better = sound & (found < fold.least)
     best = jnp.where(better, fold.genes, fold.best)
-    rate = descent.rate * fold.pace
+    rate = descent.rate * fold.rate_share
     change, moved = descend(fold.optimiser, jnp.where(sound, slope, 0.0), rate)
     genes = jnp.where(sound, fold.genes + change, best)
     optimiser = jax.tree.map(
         lambda new, fresh: jnp.where(sound, new, fresh), moved, begin(best)
     )
     least = jnp.where(better, found, fold.least)
-    pace = jnp.where(sound, 1.0, 0.5) * fold.pace
-    told = jnp.where(sound, found, jnp.nan)
-    return Fold(genes, optimiser, best, least, pace, fold.picture), told
+    rate_share = jnp.where(sound, 1.0, 0.5) * fold.rate_share
+    loss_before = jnp.where(sound, found, jnp.nan)
+    return Fold(genes, optimiser, best, least, rate_share, fold.picture), loss_before
 
 
 def start(descent: Descent, pictures: Float[np.ndarray, "fold x y"]) -> Fold:
     """All folds before the first update, as NumPy arrays."""
     block = jax.vmap(lambda picture: unfolded(descent, picture))(jnp.asarray(pictures))
     return jax.device_get(block)
-
-
-def update_program(descent: Descent, options: dict) -> Callable[[Fold], tuple[Fold, Array]]:
-    """One compiled program that updates a block of folds."""
-    return jax.jit(partial(update_block, descent), compiler_options=options)
-
-
-def update_block(descent: Descent, block: Fold) -> tuple[Fold, Float[Array, "fold"]]:
-    """One step of each of a block's folds, and the losses before it."""
-    return mapped(partial(update, descent), block)

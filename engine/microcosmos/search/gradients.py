@@ -1,20 +1,20 @@
-"""Derivatives of what is measured of a creature, by reverse mode through its whole life.
+"""Derivatives of a creature's measures, by reverse mode through the whole simulation.
 
-They can be taken with respect to its genes, its rest shape, its stiffnesses and the fluid's
-viscosity. What cuts them: where a limit acts on a displacement its length no longer counts;
-the cells that a point acts on are taken as they are; a mean over the time that limits act, and
-counts of nodes and connections, have no derivative. `docs/gradients.md` says more.
+They are by its genes, rest shape and stiffnesses, and by the fluid's viscosity. Some parts are
+constant for them: the length of a displacement at its limit, the cells that a point acts on,
+the share of time at a limit, counts of nodes and connections. See `docs/gradients.md`.
 """
 
 from dataclasses import replace
 from typing import Any
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ..filaments import Rest
-from ..genomes import CPPN, Drive, Vector
+from ..genomes import CPPN, Drive, Genotype, Vector
 from ..world import State, World
 from .evaluation import (
     Actuator,
@@ -28,10 +28,10 @@ from .evaluation import (
 )
 
 PARTS = ("genes", "rest_angle", "rest_length", "stretch", "shear", "bend", "viscosity")
-"""What a derivative can be taken by."""
+"""Parts of a creature that derivatives are taken by."""
 
 CONSTANT = ("hidden_nodes", "connections", "nodes", "limited")
-"""Measures that no small change changes, or that count."""
+"""Measures without a derivative."""
 
 Values = dict[str, Float[Array, "..."]]
 
@@ -62,7 +62,7 @@ def parts(task: Task, actuator: Actuator, names: tuple[str, ...] = PARTS) -> Val
 
 
 def changed(task: Task, actuator: Actuator, values: Values) -> Drive:
-    """What is simulated of a creature some parts of which have other values.
+    """The simulation of a creature whose parts have other values.
 
     Stiffnesses are those of the body before a genotype grows it.
     """
@@ -96,7 +96,7 @@ def measures(
 ) -> Float[Array, "output"]:
     """Fitness and measures of the creature with parts changed, after `horizon` steps.
 
-    Raises `ValueError` for names that are none, or that have no derivative.
+    Raises `ValueError` for names that are unknown or have no derivative.
     """
     driven = changed(task, actuator, values)
     if horizon is not None:
@@ -130,7 +130,7 @@ def value_and_jacobian(
     horizon: int | None = None,
     segment: int | None = None,
 ) -> tuple[Float[Array, "output"], Values]:
-    """What `measures` gives, and its derivatives by each of `values`, outputs first.
+    """The result of `measures`, and its derivatives by each of `values`, outputs first.
 
     `segment` is that of `world.rollout`: without it the memory grows with the horizon.
     """
@@ -143,16 +143,41 @@ def value_and_jacobian(
 
 
 def genes_of(actuator: Any) -> Float[Array, "gene"]:
-    """The numbers that a derivative by genes is taken by."""
+    """Genes as one vector: a network's weights and biases, or a vector's values."""
     if isinstance(actuator, Vector):
         return jnp.asarray(actuator.values)
     return jnp.concatenate([jnp.asarray(actuator.weight), jnp.asarray(actuator.bias)])
 
 
 def with_genes(actuator: Any, genes: Float[Array, "gene"]) -> Any:
-    """The same with other numbers."""
+    """The actuator with other genes; see `genes_of`."""
     if isinstance(actuator, Vector):
         return Vector(genes)
     assert isinstance(actuator, CPPN)
     weights = actuator.weight.shape[0]
     return replace(actuator, weight=genes[:weights], bias=genes[weights:])
+
+
+class Slopes(eqx.Module):
+    """Derivatives by genes: of fitness first, then of every descriptor."""
+
+    rows: Float[Array, "*block output gene"]
+    sound: Bool[Array, "*block"]
+    """Whether the simulation and all derivatives stayed finite."""
+
+
+def slopes(
+    task: Task, genotype: Genotype, descriptors: tuple[str, ...], segment: int | None = None
+) -> Slopes:
+    """Derivatives of fitness and of descriptors, by name, of one creature."""
+    values = parts(task, genotype, ("genes",))
+    of = ("fitness", *descriptors)
+    found, rows = value_and_jacobian(task, genotype, values, of, segment=segment)
+    sound = jnp.all(jnp.isfinite(found)) & jnp.all(jnp.isfinite(rows["genes"]))
+    return Slopes(jnp.nan_to_num(rows["genes"]), sound)
+
+
+def unit(rows: Float[Array, "*block gene"]) -> Float[Array, "*block gene"]:
+    """Rows of length 1; those of length 0 stay."""
+    length = jnp.sqrt(jnp.sum(rows * rows, -1, keepdims=True) + 1e-30)
+    return rows / length

@@ -16,10 +16,9 @@ from jaxtyping import Array, Float
 
 from ..device import compiler_options
 from ..genomes import Drive
-from ..world import State
+from ..world import Measures, State
 from . import gradients
 from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
-from .measures import Observations
 from .reevaluation import Disturbance, Spread, disturbance, moved
 
 STEPS = {"float64": (1e-3, 1e-4, 1e-5, 1e-6), "float32": (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)}
@@ -109,7 +108,7 @@ def gradient_health(
     )
 
 
-def _simulated(driven: Drive) -> tuple[State, Observations]:
+def _simulated(driven: Drive) -> tuple[State, Measures]:
     return jax.jit(lambda: simulate(driven), compiler_options=compiler_options())()
 
 

@@ -13,11 +13,11 @@ from .cells import Cells, sound
 
 LAST = np.int32(np.iinfo(np.int32).max)
 TOP = np.uint32(1 << 31)
-"""Moves unsigned numbers, in their order, to where signed ones are."""
+"""Maps unsigned numbers, in their order, to signed ones."""
 
 
 class Elites(eqx.Module):
-    """One row for each cell (or candidate); rows that are not `occupied` hold nothing."""
+    """One row for each cell (or candidate); rows that are not `occupied` are empty."""
 
     occupied: Bool[Array, "row"]
     fitness: Float[Array, "row"]
@@ -39,20 +39,34 @@ def no_elites(cells: int, measures: int, genotype: Genotype) -> Elites:
     )
 
 
+def candidates(
+    generation: int | Int[Array, ""],
+    genotypes: Genotype,
+    fitness: Float[Array, "row"],
+    measures: Float[Array, "row measure"],
+    sound: Bool[Array, "row"],
+) -> Elites:
+    """The creatures of a generation as candidates; those that are not `sound` never enter."""
+    rows = len(fitness)
+    slots = jnp.arange(rows, dtype=jnp.int32)
+    generations = jnp.full(rows, generation, jnp.int32)
+    return Elites(sound, fitness, measures, generations, slots, genotypes)
+
+
 class Inserted(eqx.Module):
-    """What became of candidates."""
+    """The result of insertion for each candidate."""
 
     cell: Int[Array, "row"]
-    """Their cells; the number of cells for rows that cannot enter any."""
+    """Cells; the number of cells for rows that cannot enter any."""
     entered: Bool[Array, "row"]
     fresh: Bool[Array, "row"]
     """Whether the cell was empty before."""
     improvement: Float[Array, "row"]
-    """Fitness above the cell's earlier elite; above 0 where there was none."""
+    """Fitness above the cell's earlier elite; above 0 if the cell was empty."""
 
 
 def clipped(candidates: Elites, cells: Cells) -> int:
-    """How many sound candidates lie beyond an end of an axis, and count in its last bin."""
+    """The number of sound candidates beyond an end of an axis, which its last bin takes."""
     beyond = np.zeros(len(candidates.occupied), bool)
     for axis in cells.axes:
         value = np.asarray(candidates.measures)[:, axis.measure]
@@ -61,7 +75,7 @@ def clipped(candidates: Elites, cells: Cells) -> int:
 
 
 def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, Inserted]:
-    """The archive with each cell's best, and what became of each candidate.
+    """The archive with the best of each cell, and the result for each candidate.
 
     The order is total: fitness, then the smaller digest of the genome, then the earlier
     generation and slot. So equal creatures and equal fitness give the same archive on every
@@ -94,8 +108,8 @@ def insert_program(*, donate: bool = False) -> Callable[..., tuple[Elites, Inser
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:
     """64 bits that depend on every used gene, −0 counting as 0."""
-    said = words(genotypes)
-    return jnp.stack([_mix(said, salt) for salt in (0x9E3779B9, 0x85EBCA6B)], 1)
+    found = words(genotypes)
+    return jnp.stack([_mix(found, salt) for salt in (0x9E3779B9, 0x85EBCA6B)], 1)
 
 
 def _mix(words: UInt32[Array, "row word"], salt: int) -> UInt32[Array, "row"]:

@@ -1,5 +1,7 @@
-"""What is measured of a creature's motion; names, units and axes are in `spec.measures`."""
+"""Measures of a creature's motion; names, units and axes are in `spec.measures`."""
 
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import equinox as eqx
@@ -35,44 +37,22 @@ MEASURES = (
     "efficiency",
     "nodes",
 )
-"""What is recorded of every elite, in this order; units in `docs/formats.md`."""
+"""Measures of every elite, in this order; units in `docs/formats.md`."""
 
 Curvature = Float[Array, "time joint"]
 Scalar = Float[Array, ""]
 
 
-class Observations(eqx.Module):
-    """What is observed in every step."""
-
-    centre: Float[Array, "*time 2"]
-    rest: Rest
-    speed: Float[Array, "*time"]
-    pace: Float[Array, "*time"]
-    held: Float[Array, "*time"]
-    heading: Float[Array, "*time"]
-    curvature: Float[Array, "*time joint"]
-    power: Float[Array, "*time"]
-
-
-def observe(state: State, measures: Measures) -> Observations:
-    """What measures are made of."""
-    return Observations(
-        centre=measures.centre,
-        rest=measures.rest,
-        speed=measures.speed,
-        pace=measures.pace,
-        held=measures.held,
-        heading=measures.heading,
-        curvature=measures.curvature,
-        power=measures.power,
-    )
+def observe(state: State, measures: Measures) -> Measures:
+    """The observations of a step: its measures without the force, a row for each body."""
+    return replace(measures, force=None)
 
 
 def motion(
-    world: World, start: State, end: State, observed: Observations, length: Scalar | float
+    world: World, start: State, end: State, observed: Measures, length: Scalar | float
 ) -> dict[str, Any]:
-    """What can be measured of any actuator's motion; `length` is the body's, in cells."""
-    first, steps = centre(world, start), len(observed.pace)
+    """The measures of a motion; `observed` has time first, `length` is the body's, in cells."""
+    first, steps = centre(world, start), len(observed.node_speed)
     moved = jnp.diff(jnp.concatenate([first[None], observed.centre]), axis=0)
     displacement, path = _norm(observed.centre[-1] - first), jnp.sum(_norm(moved))
     edges, joints = edges_there(world), joints_there(world)
@@ -90,7 +70,7 @@ def motion(
         "energy": jnp.zeros(()) if end.collected is None else jnp.sum(end.collected),
         "mach": units.mach(jnp.max(observed.speed)),
         "limited": jnp.mean(observed.held),
-        "reynolds": units.reynolds(jnp.mean(observed.pace), length, world.viscosity),
+        "reynolds": units.reynolds(jnp.mean(observed.node_speed), length, world.viscosity),
         "mean_speed": path / steps,
         "turning": jnp.sum(jnp.abs(jnp.diff(heading))),
         "curvature_mean": curved,
@@ -148,3 +128,53 @@ def efficiency(speed: Scalar, power: Scalar, viscosity: Scalar) -> Scalar:
 
 def _norm(v: Float[Array, "*batch 2"]) -> Float[Array, "*batch"]:
     return jnp.sqrt(jnp.sum(v * v, -1) + 1e-24)
+
+
+class Motion(eqx.Module):
+    """The motion of one creature; moments are its start and the end of every step."""
+
+    path: Float[Array, "moment 2"]
+    """Mean position of its nodes, in cells, not wrapped around the world."""
+    heading: Float[Array, "moment"]
+    """Mean direction of its edges, in rad."""
+    rest: Rest
+    """Rest shapes of each step: `angle` (time, joint) in rad, `length` (time, edge)."""
+    curvature: Float[Array, "time joint"]
+    """In 1/cells."""
+    node_speed: Float[Array, "time"]
+    """Mean speed of nodes, in cells a step."""
+    power: Float[Array, "time"]
+    """Power spent on the fluid."""
+    start: Float[Array, "node 2"]
+    """Positions of nodes at the start, in cells."""
+    end: Float[Array, "node 2"]
+    viscosity: Scalar
+    measures: dict[str, Scalar]
+    """The usual measures, by the names of `spec.measures`."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A measure of a plug-in, beside the usual ones."""
+
+    name: str
+    of: Callable[[Motion], Scalar]
+
+
+def motion_for_plugins(
+    world: World, start: State, end: State, observed: Measures, measures: dict[str, Any]
+) -> Motion:
+    """A simulation in the form that measures of plug-ins take."""
+    first = mean(start.angles, edges_there(world))
+    return Motion(
+        path=jnp.concatenate([centre(world, start)[None], observed.centre]),
+        heading=jnp.concatenate([first[None], observed.heading]),
+        rest=observed.rest,
+        curvature=observed.curvature,
+        node_speed=observed.node_speed,
+        power=observed.power,
+        start=start.positions,
+        end=end.positions,
+        viscosity=world.viscosity,
+        measures=measures,
+    )

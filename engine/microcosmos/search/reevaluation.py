@@ -1,4 +1,4 @@
-"""Evaluation again under disturbed conditions: how much of a result was luck.
+"""Reevaluation of elites under disturbed conditions: how robust is a result?
 
 Elites are the best of many noisy or fragile evaluations; Flageat and Cully, Artificial Life
 32 (2020) and arXiv:2308.00463 correct an archive by evaluating its elites again.
@@ -14,29 +14,29 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 from ..genomes import Genotype
 from ..world import State
 from .cells import Cells
-from .evaluation import Evaluation, Task, drive, mapped, measured
+from .evaluation import Evaluation, Task, drive, measured
 from .insertion import Elites
 
 Scalar = Float[Array, "*block"]
 
 
 class Disturbance(eqx.Module):
-    """What differs from the conditions under which elites are chosen."""
+    """Differences from the conditions of the first evaluation."""
 
     phase: Scalar
-    """How far a periodic timer is ahead, in rad."""
+    """Lead of a periodic timer, in rad."""
     turn: Scalar
-    """How far the body is turned about its middle, in rad."""
+    """Turn of the body about its middle, in rad."""
     shift: Float[Array, "*block 2"]
-    """How far the body is moved, in cells."""
+    """Shift of the body, in cells."""
     viscosity: Scalar
     """A factor."""
     energy: Int[Array, "*block 2"]
-    """How far the energy's packets are moved, in cells."""
+    """Shift of the energy's packets, in cells."""
 
 
 class Spread(eqx.Module):
-    """How far conditions are disturbed, each switched off by 0 or False."""
+    """Extent of each disturbance; 0 or False switches it off."""
 
     phase: bool = eqx.field(static=True, default=True)
     pose: bool = eqx.field(static=True, default=True)
@@ -45,24 +45,23 @@ class Spread(eqx.Module):
 
 
 class Repeats(eqx.Module):
-    """What evaluating elites again has shown, a row for each cell."""
+    """Results of reevaluation, a row for each cell."""
 
     count: Int[Array, "cell"]
-    """Evaluations under disturbed conditions of the present elite."""
+    """Reevaluations of the present elite."""
     failed: Int[Array, "cell"]
-    """Those that diverged; they are in no mean."""
+    """Those that diverged; no mean includes them."""
     hits: Int[Array, "cell"]
-    """Those whose descriptors fell into the elite's own cell."""
+    """Those whose descriptors fell into the elite's cell."""
     fitness: Float[Array, "cell"]
-    """Mean."""
+    """Mean fitness."""
     squares: Float[Array, "cell"]
     """Sum of squared deviations of fitness from its mean."""
     measures: Float[Array, "cell measure"]
-    """Means."""
+    """Means of measures."""
 
 
 def no_repeats(cells: int, measures: int) -> Repeats:
-    """Nobody was evaluated again yet."""
     none = jnp.zeros(cells, jnp.int32)
     zeros = jnp.zeros(cells, jnp.float32)
     return Repeats(none, none, none, zeros, zeros, jnp.zeros((cells, measures), jnp.float32))
@@ -86,7 +85,7 @@ def disturbance(spread: Spread, size: tuple[int, int], *, key: PRNGKeyArray) -> 
 
 
 def evaluate_disturbed(task: Task, genotype: Genotype, changed: Disturbance) -> Evaluation:
-    """Simulate one creature under other conditions and measure it."""
+    """Simulate one creature under disturbed conditions and measure it."""
     world = replace(task.world, viscosity=task.world.viscosity * changed.viscosity)
     task = replace(task, world=world, phase=changed.phase)
     driven = drive(task, genotype)
@@ -94,7 +93,7 @@ def evaluate_disturbed(task: Task, genotype: Genotype, changed: Disturbance) -> 
 
 
 def moved(start: State, changed: Disturbance) -> State:
-    """The body turned about its middle and moved, the energy elsewhere."""
+    """The start with the body turned and moved, and the energy moved."""
     c, s = jnp.cos(changed.turn), jnp.sin(changed.turn)
     middle = jnp.mean(start.positions, 0)
     x, y = (start.positions - middle[None]).T
@@ -110,16 +109,8 @@ def moved(start: State, changed: Disturbance) -> State:
     )
 
 
-def disturbed_program(task: Task, options: dict):
-    """One compiled program for a block of genotypes and disturbances."""
-    return jax.jit(
-        lambda block: mapped(lambda one: evaluate_disturbed(task, *one), block),
-        compiler_options=options,
-    )
-
-
 def forget(repeats: Repeats, cells: Int[Array, "row"], entered: Bool[Array, "row"]) -> Repeats:
-    """Cells with new elites begin anew."""
+    """Clear the rows of cells with new elites."""
     place = jnp.where(entered, cells, repeats.count.shape[0])
     return jax.tree.map(lambda x: x.at[place].set(jnp.zeros((), x.dtype), mode="drop"), repeats)
 
@@ -127,9 +118,9 @@ def forget(repeats: Repeats, cells: Int[Array, "row"], entered: Bool[Array, "row
 def add(
     repeats: Repeats, done: Bool[Array, "cell"], found: Evaluation, cells: Cells
 ) -> Repeats:
-    """Take one more evaluation of some cells' elites into account (Welford 1962).
+    """Add one reevaluation of the elites of some cells (Welford 1962).
 
-    `found` has a row for each cell; where it was not `done` the row means nothing.
+    `found` has a row for each cell; rows that are not `done` are ignored.
     """
     old, sound = repeats, done & (found.status == 0)
     n = old.count - old.failed + sound
@@ -149,10 +140,10 @@ def add(
 
 
 def corrected(elites: Elites, repeats: Repeats, cells: Cells) -> Float[Array, "cell"]:
-    """Fitness of the corrected archive, NaN where it has nobody.
+    """Fitness of the corrected archive, NaN in empty cells.
 
-    It holds every elite that was evaluated again by its mean fitness, in the cell of its mean
-    descriptors, the best one of each cell.
+    It places every reevaluated elite by its mean descriptors and keeps the best mean fitness of
+    each cell.
     """
     count = repeats.count.shape[0]
     known = elites.occupied & (repeats.count > repeats.failed)

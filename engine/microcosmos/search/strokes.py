@@ -4,15 +4,14 @@ from dataclasses import replace
 from functools import partial
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .. import units
 from ..filaments import Rest
 from ..world import Limits, Measures, State, World, centre, flow, rollout
-from .evaluation import Evaluation, Task, mapped
-from .measures import MOTION, Observations, motion, observe
+from .evaluation import Evaluation, Task
+from .measures import MOTION, motion, observe
 
 STROKE_MEASURES = (
     *MOTION,
@@ -24,34 +23,35 @@ STROKE_MEASURES = (
     "direction",
     "impulse",
 )
-"""What is recorded of every stroke, in this order; units in `docs/formats.md`."""
+"""Measures of every stroke, in this order; units in `docs/formats.md`."""
 
 
 class Conditions(eqx.Module):
-    """What differs between the points of a sweep."""
+    """The conditions of one point of a sweep."""
 
     viscosity: Float[Array, "*block"]
     limits: Limits
 
 
 class Watched(eqx.Module):
-    """What is observed in every step where nothing may stay unseen."""
+    """Observations of a step for checks of the physics."""
 
-    observed: Observations
+    observed: Measures
     mach: Float[Array, "*time"]
-    """Of the fastest fluid anywhere."""
+    """Mach number of the fastest fluid anywhere."""
     force: Float[Array, "*time group 2"]
 
 
 def watch(world: World, state: State, measures: Measures) -> Watched:
-    """What `observe` sees, the whole flow's Mach number, and what bodies exert."""
+    """The observations, the Mach number of the whole flow, and the forces of bodies."""
+    assert measures.force is not None
     u = flow(world, state)
     fastest = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
     return Watched(observe(state, measures), units.mach(fastest), measures.force)
 
 
 def impulse(watched: Watched) -> Float[Array, ""]:
-    """The largest momentum that a body has given away on balance, at any time."""
+    """The largest net momentum that a body has given away, over all times."""
     return jnp.max(jnp.sqrt(jnp.sum(jnp.cumsum(watched.force, 0) ** 2, -1)))
 
 
@@ -59,13 +59,11 @@ def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluat
     """Carry out a stroke under its conditions and measure its last cycle."""
     world = replace(task.world, viscosity=conditions.viscosity, limits=conditions.limits)
     end, watched = rollout(world, task.start, rest, partial(watch, world))
-    observed, values = (
-        watched.observed,
-        motion(world, task.start, end, watched.observed, task.length),
-    )
+    observed = watched.observed
+    values = motion(world, task.start, end, observed, task.length)
     before = (
         observed.centre[-1 - period]
-        if len(observed.pace) > period
+        if len(observed.node_speed) > period
         else centre(world, task.start)
     )
     cycle = observed.centre[-1] - before
@@ -77,11 +75,3 @@ def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluat
     finite = jnp.all(jnp.isfinite(measures))
     status = jnp.where(finite, jnp.where(values["mach"] < 1, 0, 2), 1)
     return Evaluation(values["displacement"], measures, status)
-
-
-def stroke_program(task: Task, rest: Rest, period: int, options: dict):
-    """One compiled program that carries out a stroke in a block of conditions."""
-    return jax.jit(
-        lambda block: mapped(lambda point: swim(task, rest, point, period), block),
-        compiler_options=options,
-    )

@@ -32,7 +32,7 @@ def measure(world: World, end: State, rest: filaments.Rest, pushed: Pushed) -> M
     speed = jnp.sqrt(jnp.sum(pushed.moved * pushed.moved, 1) + 1e-24)
     return Measures(
         speed=jnp.sqrt(jnp.max(jnp.sum(pushed.velocity * pushed.velocity, 1))),
-        pace=mean(speed, world.present),
+        node_speed=mean(speed, world.present),
         held=mean(pushed.held, world.present),
         force=groups.total(pushed.forcing),
         rest=rest,

@@ -77,26 +77,26 @@ class State(eqx.Module):
 
 
 class Measures(eqx.Module):
-    """What a step shows of itself; what nobody asks for is not computed."""
+    """The measures of a step; XLA drops those that are not used."""
 
+    centre: Float[Array, "2"]
+    """The mean unwrapped node position at the end of the step, in cells."""
+    rest: filaments.Rest
+    """The rest shape of the step."""
     speed: Float[Array, ""]
-    """Of the fastest fluid at a node, cells a step."""
-    pace: Float[Array, ""]
+    """Speed of the fastest fluid at a node, cells a step."""
+    node_speed: Float[Array, ""]
     """Mean speed of the nodes, cells a step."""
     held: Float[Array, ""]
     """Share of nodes whose displacement, or whose body's force, was at its limit."""
-    force: Float[Array, "group 2"]
-    """What each body exerts on the fluid."""
-    rest: filaments.Rest
-    """The rest shape that was asked for."""
-    centre: Float[Array, "2"]
-    """The mean unwrapped node position at the end of the step, in cells."""
     heading: Float[Array, ""]
     """The mean unwrapped angle of the edges, in rad."""
     curvature: Float[Array, "joint"]
     """The angle at each joint over the mean length of its edges, 1/cells; 0 where absent."""
     power: Float[Array, ""]
     """Force on the fluid times velocity, summed over nodes; a cell's mass is 1."""
+    force: Float[Array, "group 2"] | None
+    """Force of each body on the fluid."""
 
 
 def at_rest(world: World, positions: Vectors) -> State:

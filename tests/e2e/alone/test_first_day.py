@@ -78,7 +78,7 @@ def elsewhere(common: dict[str, str], tmp_path: Path) -> Iterator[Client]:
 
 @pytest.mark.e2e
 def test_a_first_day(
-    laptop: Laptop, product: Installation, elsewhere: Client, browser: Browser, tmp_path: Path
+    laptop: Laptop, product: Installation, elsewhere: Client, browser: Browser
 ):
     client = Client(product.url)
     first, *others = sweep(client, laptop)

@@ -12,7 +12,7 @@ FAST, SLOW = 10_000, 300_000
 
 
 @pytest.mark.e2e
-def test_runs_are_named_found_sorted_compared_and_their_worker_seen(page: Page, address: str):
+def test_runs_are_named_found_sorted_and_compared(page: Page, address: str):
     page.goto(address)
     expect(page.get_by_role("link", name="Start the first run")).to_be_visible(timeout=FAST)
     short, long = (submit(address, seed, generations) for seed, generations in ((1, 3), (2, 9)))

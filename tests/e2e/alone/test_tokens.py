@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from accessibility import violations
 from drive import Installation
-from looks import faults
+from looks import faults, violations
 from playwright.sync_api import Browser, Page, expect
 from small import TINY
 
@@ -35,7 +34,7 @@ def alice(browser: Browser) -> Iterator[Page]:
 
 
 @pytest.mark.e2e
-def test_an_admin_signs_in_with_the_first_token_and_makes_and_revokes_others(
+def test_an_admin_signs_in_and_manages_tokens(
     guarded: Installation, browser: Browser, alice: Page
 ):
     first = told_at_the_start(guarded)

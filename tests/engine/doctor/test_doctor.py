@@ -2,18 +2,15 @@
 
 import json
 import os
-import sqlite3
 import subprocess
 import sys
-from contextlib import closing
-from pathlib import Path
 
 import pytest
 
-from microcosmos.doctor import database, devices, disk, examination, memory, redis, versions
-from microcosmos.doctor.finding import GIB, Finding, problem
+from microcosmos.doctor import devices, examination, memory, server, versions
+from microcosmos.doctor.finding import Finding, problem
 
-MIGRATIONS = Path(__file__).parents[3] / "server" / "tables" / "migrations" / "versions"
+GIB = 1 << 30
 
 
 def levels(findings):
@@ -67,7 +64,7 @@ def test_memory_of_a_gpu_is_told(tmp_path, monkeypatch):
     told |= {"memory_bytes": 8 * GIB, "memory_used_bytes": 2 * GIB}
     answer = {"kind": "gpu, H", "devices": [told], "cache": {"kept": True, "found": True}}
     monkeypatch.setattr(devices, "probed", lambda *_: answer)
-    assert any("6.0 GiB of 8.0 GiB free" in f.found for f in devices.devices(tmp_path))
+    assert any("6.44 GB of 8.59 GB free" in f.found for f in devices.devices(tmp_path))
 
 
 def test_a_cache_that_cannot_be_is_a_problem(tmp_path):
@@ -114,81 +111,84 @@ def test_a_container_has_the_memory_that_it_is_given(tmp_path):
     meminfo, limit = tmp_path / "meminfo", tmp_path / "max"
     meminfo.write_text("MemTotal:  8388608 kB\nMemAvailable:  4194304 kB\nHugePages: 0\n")
     limit.write_text("max\n")
-    assert memory.there(meminfo, limit) == (8 * GIB, 4 * GIB)
+    assert memory.memory_bytes(meminfo, limit) == (8 * GIB, 4 * GIB)
     limit.write_text(f"{1 << 20}\n")
     small, *presets = memory.memory(meminfo, limit)
-    assert (small.level, small.found) == ("warning", "1 MiB of 1 MiB available")
+    assert (small.level, small.found) == ("warning", "1.05 MB of 1.05 MB available")
     assert any("quality-diversity/demo needs" in one.found for one in presets)
 
 
-def test_a_full_a_remote_and_a_closed_folder_are_told(tmp_path, monkeypatch):
-    mounts = tmp_path / "mounts"
-    mounts.write_text(f"/dev/sda / ext4 rw 0 0\nhost:/x {tmp_path} nfs4 rw 0 0\n")
-    assert disk.file_system(tmp_path / "deeper", mounts) == "nfs4"
-    assert disk.file_system(Path("/other"), mounts) == "ext4"
-    assert "SQLite may lose data" in list(disk.disk(tmp_path / "data", mounts))[-1].found
-    assert list(tmp_path.iterdir()) == [mounts]  # Nothing is made.
-    full = type("Usage", (), {"free": 5 << 20})
-    monkeypatch.setattr(disk.shutil, "disk_usage", lambda _: full)
-    assert next(disk.disk(tmp_path)).level == "problem"
-
-    def refuse(*_: object, **__: object) -> None:
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(disk.tempfile, "NamedTemporaryFile", refuse)
-    assert any("Permission denied" in one.found for one in disk.disk(tmp_path))
-
-
-def test_redis_that_is_named_has_to_answer():
-    (found,) = redis.redis("redis://:secret@127.0.0.1:1/0")
-    assert found.level == "problem"
-    assert "127.0.0.1:1 does not answer" in found.found
-    assert "secret" not in str(found)
-
-
-def test_without_redis_it_is_said_who_needs_one(monkeypatch):
-    monkeypatch.setattr(redis.shutil, "which", lambda _: None)
-    monkeypatch.setattr(redis, "_carried", lambda: None)
-    (found,) = redis.redis(None)
-    assert found.level == "warning"
-    assert "install" in found.advice
+DATABASE = {
+    "dialect": "sqlite",
+    "version": "3.45",
+    "location": "/data/microcosmos.sqlite",
+    "reachable": True,
+    "error": None,
+    "revision": "0001",
+    "newest_revision": "0001",
+}
+DISK = {
+    "location": "/data/artifacts",
+    "free_bytes": 100 * GIB,
+    "file_system": "ext4",
+    "writable": True,
+    "write_seconds": 0.002,
+    "error": None,
+}
+REDIS = {
+    "location": "127.0.0.1:6379",
+    "reachable": True,
+    "error": None,
+    "version": "7.2",
+    "policy": "noeviction",
+}
 
 
 @pytest.mark.parametrize(
-    ("made", "level", "said"),
+    ("changed", "level", "said"),
     [
-        (None, "ok", "first start makes it"),
-        ("newest", "ok", "tables of migration"),
-        ("0000", "warning", "is the newest"),
-        ("9999", "problem", "knows them up to"),
-        (b"no database", "problem", "not a database"),
+        ({}, "ok", "sqlite 3.45 at /data/microcosmos.sqlite, tables of migration 0001"),
+        ({"revision": "0000"}, "warning", "0001 is the newest"),
+        ({"revision": None}, "warning", "0001 is the newest"),
+        ({"revision": "9999"}, "problem", "knows up to 0001"),
+        ({"reachable": False, "error": "file is not a database"}, "problem", "not a database"),
     ],
 )
-def test_a_database_is_judged_by_its_migration(tmp_path, made, level, said):
-    path = tmp_path / "microcosmos.sqlite"
-    if isinstance(made, bytes):
-        path.write_bytes(made * 100)
-    elif made:
-        version = database.head(MIGRATIONS) if made == "newest" else made
-        with closing(sqlite3.connect(path)) as connection, connection:
-            connection.execute("CREATE TABLE alembic_version (version_num TEXT)")
-            connection.execute("INSERT INTO alembic_version VALUES (?)", (version,))
-    (found,) = database.database(None, tmp_path, MIGRATIONS)
+def test_a_database_is_judged_by_its_migration(changed, level, said):
+    (found,) = server.database(DATABASE | changed)
     assert (found.level, said in found.found) == (level, True)
 
 
-def test_a_database_that_is_away_or_unknown_is_told(tmp_path):
-    (away,) = database.database("postgresql+psycopg://me:secret@127.0.0.1:1/x", tmp_path)
-    assert away.level == "problem"
-    assert "secret" not in str(away)
-    (unknown,) = database.database("oracle://x", tmp_path)
-    assert unknown.level == "problem"
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"free_bytes": 5 << 20}, {("problem", "5.24 MB free at /data/artifacts")}),
+        ({"free_bytes": 2 * GIB}, {("warning", "2.15 GB free at /data/artifacts")}),
+        ({"writable": False, "error": "EACCES"}, {("problem", "be written to: EACCES")}),
+        ({"write_seconds": 1.5}, {("warning", "takes 1500 ms")}),
+        ({"file_system": "nfs4"}, {("warning", "where SQLite may lose data")}),
+        ({"free_bytes": None}, set()),
+        ({}, set()),
+    ],
+)
+def test_a_full_a_slow_a_remote_and_a_closed_store_are_told(changed, said):
+    found = [one for one in server.disk(DISK | changed, "sqlite") if one.level != "ok"]
+    assert len(found) == len(said)
+    for level, text in said:
+        assert any(one.level == level and one.found.endswith(text) for one in found)
+    assert not any("SQLite" in one.found for one in server.disk(DISK | changed, "postgresql"))
 
 
-def test_the_newest_migration_is_the_one_that_none_follows():
-    newest = database.head(MIGRATIONS)
-    assert newest == max(path.name[:4] for path in MIGRATIONS.glob("0*.py"))
-    assert database.head(Path("/nowhere")) is None
+@pytest.mark.parametrize(
+    ("changed", "levels"),
+    [
+        ({}, ["ok"]),
+        ({"policy": "allkeys-lru"}, ["ok", "warning"]),
+        ({"reachable": False, "error": "refused"}, ["problem"]),
+    ],
+)
+def test_redis_has_to_answer_and_to_keep_its_messages(changed, levels):
+    assert [one.level for one in server.redis(REDIS | changed)] == levels
 
 
 def test_one_thing_that_cannot_be_looked_at_leaves_the_rest(monkeypatch, tmp_path):
@@ -211,7 +211,6 @@ def test_the_command_says_what_to_do_and_ends_with_1(tmp_path):
         "except SystemExit as end: print(end.code, 'jax' in sys.modules, file=sys.stderr)"
     )
     environment = os.environ | {
-        "MICROCOSMOS_DATA": str(tmp_path),
         "JAX_COMPILATION_CACHE_DIR": str(tmp_path),
         "JAX_PLATFORMS": "cpu",
     }
@@ -221,3 +220,4 @@ def test_the_command_says_what_to_do_and_ends_with_1(tmp_path):
     found = [Finding(**one) for one in json.loads(done.stdout)]
     assert [one.subject for one in found if one.level == "problem"] == ["server"]
     assert "make run" in found[-1].advice
+    assert "database, disk and Redis are not checked" in found[-1].found

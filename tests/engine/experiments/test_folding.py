@@ -79,7 +79,7 @@ def test_a_step_that_is_not_finite_begins_anew_from_the_best(folding):
     after, loss = folding.program(broken)
     assert not np.isfinite(loss[0])
     np.testing.assert_array_equal(after.genes, best)
-    assert after.pace[0] == 0.5
+    assert after.rate_share[0] == 0.5
     assert all(not np.any(leaf) for leaf in jax.tree.leaves(after.optimiser))
 
 

@@ -145,7 +145,7 @@ def test_a_spent_distribution_begins_anew_at_an_elite(emitter):
         }
     )
     keys, counters = jax.random.split(jax.random.key(0), 6), neat.first_counters(1, 1)
-    children, again, _ = chosen.emit(after, archive, counters, jnp.asarray(1), keys=keys)
+    children, again, _ = chosen.emit(after, archive, counters, keys=keys)
     np.testing.assert_allclose(again.distribution.mean, [0.7, -0.1], rtol=1e-6)
     assert not again.restart
     assert np.abs(children.genotypes.values).max() <= 1

@@ -111,7 +111,7 @@ def test_each_emitter_is_told_of_its_own_children_alone(archive):
         def init(self, *, key):
             return None
 
-        def emit(self, state, archive, counters, generation, *, keys):
+        def emit(self, state, archive, counters, *, keys):
             raise AssertionError("nobody asked for children")
 
         def tell(self, state, outcome):

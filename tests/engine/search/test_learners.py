@@ -47,7 +47,7 @@ def outcome(children, fitness, entered):
 
 def emitted(emitter, state, elites):
     emit = jax.jit(lambda *given: emitter.emit(*given, keys=KEYS)[:2])
-    return emit(state, elites, COUNTERS, jnp.asarray(1))
+    return emit(state, elites, COUNTERS)
 
 
 def slopes(rows, sound=True):
@@ -86,9 +86,7 @@ def test_cma_mega_climbs_a_sphere():
     best = -np.inf
     for generation in range(40):
         keys = jax.random.split(jax.random.key(generation), SLOTS)
-        children, state, _ = emitter.emit(
-            state, elites, COUNTERS, jnp.asarray(generation), keys=keys
-        )
+        children, state, _ = emitter.emit(state, elites, COUNTERS, keys=keys)
         way = 2 * (top - np.asarray(state.theta))
         rows = np.stack([way, *np.eye(GENES)[:2]])
         children, state = emitter.learn(state, children, slopes(rows))

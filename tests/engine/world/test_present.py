@@ -67,7 +67,7 @@ def test_some_nodes_of_a_chain_swim_as_a_shorter_chain(pair, options):
     if whole.collected is not None:
         np.testing.assert_allclose(part.collected[:GROWN], whole.collected, atol=1e-12)
         np.testing.assert_array_equal(part.collected[GROWN:], 0)
-    for name in ("speed", "pace", "held", "force", "centre", "heading", "power"):
+    for name in ("speed", "node_speed", "held", "force", "centre", "heading", "power"):
         ours, theirs = getattr(other, name), getattr(seen, name)
         np.testing.assert_allclose(ours, theirs, atol=1e-10, err_msg=name)
     np.testing.assert_allclose(other.curvature[:, : GROWN - 2], seen.curvature, atol=1e-10)

@@ -6,11 +6,12 @@ from uuid import UUID
 
 import numpy as np
 import pytest
+from answers import detail, errors, fields
 
 from microcosmos.archive import file
 from microcosmos.spec import parse
 from server.archives import routes as archives
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs.submission import submit
 
 
@@ -34,19 +35,17 @@ def h5(spec) -> bytes:
 
 
 @pytest.fixture
-def saved(services, run_id, report, h5) -> bytes:
+def saved(h5, attempt, record) -> bytes:
     """A run has this checkpoint."""
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+    record(1)
     attempt.save(1, h5)
     return h5
 
 
-def test_the_archive_is_the_last_elite_of_each_cell(api, services, run_id, report, spec):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
-    attempt.record(report(2, {5: 1.5}), 1.0)
-    attempt.record(report(3, {255: 0.5, 5: 4.0}), 1.0)
+def test_the_archive_is_the_last_elite_of_each_cell(api, run_id, spec, record):
+    record(1, {5: 1.0, 3: 2.0})
+    record(2, {5: 1.5})
+    record(3, {255: 0.5, 5: 4.0})
     now = api.get(f"runs/{run_id}/archive").json()
     assert now["generation"] == 3
     assert now["axes"] == spec["archive"]["descriptors"]
@@ -61,22 +60,18 @@ def test_the_archive_is_the_last_elite_of_each_cell(api, services, run_id, repor
     ("generation", "cells", "fitness"),
     [(0, [], []), (1, [3, 5], [2.0, 1.0]), (2, [3, 5], [2.0, 1.5]), (99, [3, 5], [2.0, 1.5])],
 )
-def test_the_archive_in_the_past_is_as_it_was(
-    api, services, run_id, report, generation, cells, fitness
-):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
-    attempt.record(report(2, {5: 1.5}), 1.0)
+def test_the_archive_in_the_past_is_as_it_was(api, run_id, generation, cells, fitness, record):
+    record(1, {5: 1.0, 3: 2.0})
+    record(2, {5: 1.5})
     then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
     assert (then["cell"], then["fitness"]) == (cells, fitness)
     assert then["generation"] == min(generation, 2)
 
 
 @pytest.mark.parametrize("ending", ["h5", "csv"])
-def test_without_a_checkpoint_there_is_no_file_yet(api, run_id, ending):
+def test_a_run_without_checkpoint_has_no_file(api, run_id, ending):
     answer = api.get(f"runs/{run_id}/archive.{ending}")
-    assert answer.status_code == 404
-    assert answer.json()["detail"] == f"Run {run_id} has no checkpoint yet; it is queued."
+    assert detail(answer, 404) == f"Run {run_id} has no checkpoint yet; it is queued."
 
 
 def test_the_file_is_the_checkpoint_with_its_hash_as_etag(api, run_id, saved):
@@ -87,7 +82,7 @@ def test_the_file_is_the_checkpoint_with_its_hash_as_etag(api, run_id, saved):
     assert "attachment" in answer.headers["content-disposition"]
 
 
-def test_who_has_the_file_gets_it_once(api, run_id, saved):
+def test_a_known_file_is_not_sent_again(api, run_id, saved):
     etag = api.get(f"runs/{run_id}/archive.h5").headers["etag"]
     again = api.get(f"runs/{run_id}/archive.h5", headers={"If-None-Match": f'"other", {etag}'})
     assert (again.status_code, again.content) == (304, b"")
@@ -104,7 +99,7 @@ def test_who_has_the_file_gets_it_once(api, run_id, saved):
         ("bytes=5-5", 5, 6),
     ],
 )
-def test_a_part_of_the_file_can_be_asked_for(api, run_id, saved, wanted, start, stop):
+def test_ranges_of_the_file_are_served(api, run_id, saved, wanted, start, stop):
     answer = api.get(f"runs/{run_id}/archive.h5", headers={"Range": wanted})
     assert answer.status_code == 206
     assert answer.content == saved[start:stop]
@@ -113,7 +108,7 @@ def test_a_part_of_the_file_can_be_asked_for(api, run_id, saved, wanted, start, 
     assert answer.headers["content-range"] == f"bytes {first}-{last}/{len(saved)}"
 
 
-def test_parts_that_cannot_be_are_refused_or_ignored(api, run_id, saved):
+def test_impossible_ranges_are_refused_or_ignored(api, run_id, saved):
     def ask(**headers):
         return api.get(f"runs/{run_id}/archive.h5", headers=headers)
 
@@ -141,12 +136,9 @@ def test_the_table_has_the_columns_of_pyribs(api, run_id, saved):
 SLIM = {"energy": 0.1 + 0.2, "turning": -1e-9}
 
 
-def test_an_archive_has_the_measures_of_its_elites_that_are_asked_for(
-    api, services, run_id, report
-):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0}, measures=SLIM), 1.0)
-    attempt.record(report(2, {3: 2.0}, measures=dict.fromkeys(SLIM, 7.0)), 1.0)
+def test_an_archive_has_the_requested_measures(api, run_id, record):
+    record(1, {5: 1.0}, measures=SLIM)
+    record(2, {3: 2.0}, measures=dict.fromkeys(SLIM, 7.0))
     found = api.get(f"runs/{run_id}/archive", params={"measures": "turning,energy"}).json()
     assert found["cell"] == [3, 5]
     assert found["measures"] == {"turning": [7.0, -1e-9], "energy": [7.0, 0.1 + 0.2]}
@@ -159,11 +151,10 @@ def test_an_archive_has_the_measures_of_its_elites_that_are_asked_for(
 
 
 @pytest.mark.postgresql
-def test_an_archive_tells_only_what_entered_after_a_generation(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 0.5}, measures=SLIM), 1.0)
-    attempt.record(report(2, {5: 2.0, 7: 0.1}, measures=SLIM), 1.0)
-    attempt.record(report(3, {5: 3.0}, measures=SLIM), 1.0)
+def test_after_limits_the_archive_to_later_elites(api, run_id, record):
+    record(1, {5: 1.0, 3: 0.5}, measures=SLIM)
+    record(2, {5: 2.0, 7: 0.1}, measures=SLIM)
+    record(3, {5: 3.0}, measures=SLIM)
 
     def read(**asked):
         found = api.get(f"runs/{run_id}/archive", params=asked | {"measures": "energy"}).json()
@@ -178,20 +169,17 @@ def test_an_archive_tells_only_what_entered_after_a_generation(api, services, ru
     assert api.get(f"runs/{run_id}/archive", params={"after": -1}).status_code == 422
 
 
-def test_measures_that_were_not_recorded_are_refused_with_those_that_were(
-    api, services, run_id, report
-):
-    claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
+def test_an_unknown_measure_is_refused_with_the_known_ones(api, run_id, record):
+    record(1, {5: 1.0})
     answer = api.get(f"runs/{run_id}/archive", params={"measures": "energy,displacement"})
-    assert answer.status_code == 422
-    (error,) = answer.json()["errors"]
+    (error,) = errors(answer)
     assert (error["field"], error["got"]) == ("measures", ["energy"])
     assert "displacement" in error["needed"]
 
 
 @pytest.mark.parametrize("descriptors", [(0.5,), (1.0, 2.0, 3.0)])
-def test_elites_have_any_number_of_descriptors(api, services, run_id, report, descriptors):
-    claim(services, run_id, "worker").record(report(1, {5: 1.0}, descriptors), 1.0)
+def test_elites_have_any_number_of_descriptors(api, services, run_id, descriptors, record):
+    record(1, {5: 1.0}, descriptors)
     assert api.get(f"runs/{run_id}/archive").json()["descriptors"] == [list(descriptors)]
     entries = services.redis.xrange(services.events.stream)
     (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"elites"]
@@ -210,7 +198,7 @@ def test_elites_have_any_number_of_descriptors(api, services, run_id, report, de
         ({"centroids": 500}, "cvt", 500),
     ],
 )
-def test_an_archive_says_what_its_cells_and_axes_are(
+def test_an_archive_describes_its_cells_and_axes(
     api, services, spec, report, archive, kind, cells
 ):
     document = {**spec, "archive": {**archive}}
@@ -223,8 +211,8 @@ def test_an_archive_says_what_its_cells_and_axes_are(
     assert all(axis["low"] < axis["high"] for axis in found["axes"])
 
 
-def test_a_measure_comes_with_title_unit_and_ends(api, services, run_id, report):
-    claim(services, run_id, "worker").record(report(1, {5: 1.0}, measures={"old": 1.0}), 1.0)
+def test_a_measure_comes_with_title_unit_and_ends(api, run_id, record):
+    record(1, {5: 1.0}, measures={"old": 1.0})
     recorded = api.get(f"runs/{run_id}/archive").json()["recorded"]
     known = {measure.pop("name"): measure for measure in recorded}
     assert known["bending_effort"]["title"] == "Bending effort"
@@ -239,11 +227,10 @@ def test_a_measure_comes_with_title_unit_and_ends(api, services, run_id, report)
     }
 
 
-def test_the_history_tells_the_archive_of_every_generation(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.5}), 1.0)
-    attempt.record(report(2, {5: 1.5}, measures={"turning": 0.25}), 1.0)
-    attempt.record(report(3, {255: 0.5, 5: 4.0}, measures={"turning": 1.0}), 1.0)
+def test_the_history_contains_the_archive_of_every_generation(api, run_id, record):
+    record(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.5})
+    record(2, {5: 1.5}, measures={"turning": 0.25})
+    record(3, {255: 0.5, 5: 4.0}, measures={"turning": 1.0})
     asked = {"measures": "turning"}
     history = api.get(f"runs/{run_id}/archive/history", params=asked).json()
     assert history["generation"] == 3
@@ -263,11 +250,10 @@ def test_the_history_tells_the_archive_of_every_generation(api, services, run_id
         }
 
 
-def test_a_history_with_what_was_not_recorded_is_refused(api, services, run_id, report):
-    claim(services, run_id, "worker").record(report(1, {5: 1.0}), 1.0)
+def test_a_history_with_an_unknown_measure_is_refused(api, run_id, record):
+    record(1, {5: 1.0})
     answer = api.get(f"runs/{run_id}/archive/history", params={"measures": "beauty"})
-    assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == "measures"
+    assert fields(answer)[0] == "measures"
 
 
 def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, spec, report):
@@ -289,10 +275,8 @@ def test_a_grid_has_no_centroids(api, run_id):
     assert (answer.status_code, answer.json()["title"]) == (404, "No centroids")
 
 
-def test_a_history_too_long_to_be_sent_is_refused(api, services, run_id, report, monkeypatch):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
+def test_a_history_too_long_to_be_sent_is_refused(api, run_id, monkeypatch, record):
+    record(1, {5: 1.0, 3: 2.0})
     monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
     answer = api.get(f"runs/{run_id}/archive/history")
-    assert answer.status_code == 422
-    assert "has 2 entries, of which at most 1" in answer.json()["detail"]
+    assert "has 2 entries, of which at most 1" in detail(answer, 422)

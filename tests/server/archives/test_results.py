@@ -6,11 +6,12 @@ import json
 from uuid import UUID
 
 import pytest
+from answers import detail
 from sqlalchemy import func, select
 from sqlalchemy.exc import OperationalError
 
 from microcosmos.archive import creature
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.core.database import Sessions
 from server.tables import Result, Run
 from server.workers import registry
@@ -24,9 +25,7 @@ def count(services):
         return session.scalar(select(func.count()).select_from(Result))
 
 
-def test_rows_are_read_in_the_order_of_the_run_with_their_creatures(
-    api, services, sweep_id, table
-):
+def test_rows_are_read_in_order_with_their_creatures(api, services, sweep_id, table):
     attempt = claim(services, sweep_id, "worker")
     attempt.record(table(1, WORM), 1.0)
     attempt.record(table(2, RAY, {"note": "no creature"}, summary={"best": 3.5}), 1.0)
@@ -38,9 +37,7 @@ def test_rows_are_read_in_the_order_of_the_run_with_their_creatures(
     assert all(api.get(f"creatures/{sha}").status_code == 200 for sha in creatures[:2])
 
 
-def test_a_table_without_archive_has_a_run_and_curves_like_any_other(
-    api, services, sweep, sweep_id, table
-):
+def test_a_table_has_a_run_and_curves(api, services, sweep, sweep_id, table):
     claim(services, sweep_id, "worker").record(table(1, WORM, summary={"best": 2.0}), 4.0)
     run = api.get(f"runs/{sweep_id}").json()
     total = len(sweep["swimmers"]) * len(sweep["forms"])
@@ -53,23 +50,19 @@ def test_a_table_without_archive_has_a_run_and_curves_like_any_other(
     assert [item["id"] for item in api.get("runs").json()["items"]] == [run["id"]]
 
 
-def test_what_is_no_archive_says_where_its_result_is(api, sweep_id):
+def test_a_table_has_no_archive_and_says_so(api, sweep_id):
     for path in ("archive", "archive.csv"):
         answer = api.get(f"runs/{sweep_id}/{path}")
-        assert answer.status_code == 404
-        assert f"/api/v1/runs/{sweep_id}/results" in answer.json()["detail"]
+        assert f"/api/v1/runs/{sweep_id}/results" in detail(answer, 404)
 
 
-def test_what_is_no_table_says_where_its_archive_is(api, run_id):
+def test_an_archive_has_no_table_and_says_so(api, run_id):
     assert api.get(f"runs/{run_id}/results").json()["rows"] == []
     answer = api.get(f"runs/{run_id}/results.csv")
-    assert answer.status_code == 404
-    assert f"/api/v1/runs/{run_id}/archive" in answer.json()["detail"]
+    assert f"/api/v1/runs/{run_id}/archive" in detail(answer, 404)
 
 
-def test_a_refinement_has_cells_to_keep_to_and_a_table_all_the_same(
-    api, services, identity, table
-):
+def test_a_refinement_has_both_cells_and_a_table(api, services, identity, table):
     file = creature.document(identity(1), None, None)
     run = api.post("runs", json={"experiment": "refinement", "creature": file}).json()["id"]
     claim(services, UUID(run), "worker").record(table(1, {"step": 0, "fitness": 2.5}), 1.0)
@@ -83,7 +76,7 @@ def test_a_refinement_has_cells_to_keep_to_and_a_table_all_the_same(
     assert large.json()["errors"][0]["field"] == "segment"
 
 
-def test_numbers_that_json_lacks_are_told_as_none(api, services, sweep_id, table):
+def test_numbers_that_json_lacks_become_null(api, services, sweep_id, table):
     rows = ({"displacement": float("nan")}, {"displacement": float("inf")})
     claim(services, sweep_id, "worker").record(table(1, *rows), 1.0)
     found = api.get(f"runs/{sweep_id}/results").json()["rows"]
@@ -104,9 +97,7 @@ def test_the_table_as_csv_has_every_column(api, services, sweep_id, table):
     assert (second["swimmer"], second["late"]) == ("ray, flat", "1.5")
 
 
-def test_a_rewind_forgets_rows_and_summary_beyond_the_checkpoint(
-    api, services, sweep_id, table
-):
+def test_a_rewind_drops_rows_and_summary_after_the_checkpoint(api, services, sweep_id, table):
     first = claim(services, sweep_id, "worker")
     first.record(table(1, WORM, summary={"best": 1.0}), 1.0)
     first.save(1, b"after 1")
@@ -130,9 +121,7 @@ def test_a_generation_written_twice_after_an_outage_has_its_rows_once(
     assert count(services) == 2
 
 
-def test_rows_and_standing_are_written_together_or_not_at_all(
-    services, sweep_id, table, monkeypatch
-):
+def test_rows_and_run_are_written_in_one_transaction(services, sweep_id, table, monkeypatch):
     attempt = claim(services, sweep_id, "worker")
 
     def broken(*_):
@@ -146,7 +135,7 @@ def test_rows_and_standing_are_written_together_or_not_at_all(
     assert count(services) == 0
 
 
-def test_new_rows_are_told_to_everybody(services, sweep_id, table):
+def test_new_rows_are_published(services, sweep_id, table):
     claim(services, sweep_id, "worker").record(table(1, WORM, summary={"best": 1.0}), 1.0)
     entries = services.redis.xrange(services.events.stream)
     (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"results"]
@@ -160,7 +149,7 @@ def test_new_rows_are_told_to_everybody(services, sweep_id, table):
     }
 
 
-def test_a_deleted_run_takes_its_rows_with_it(services, sweep_id, table):
+def test_deleting_a_run_deletes_its_result_rows(services, sweep_id, table):
     sessions: Sessions = services.sessions
     claim(services, sweep_id, "worker").record(table(1, WORM), 1.0)
     with sessions.write.begin() as session:

@@ -5,8 +5,8 @@ import errno
 import pytest
 from sqlalchemy import func, select
 
-from server.attempts.begin import claim
-from server.attempts.claim import CheckpointUnavailable
+from server.attempts.checkpoints import CheckpointUnavailable
+from server.attempts.claim import claim
 from server.storage.artifacts import Artifacts
 from server.tables import Artifact, Creature, Elite, Generation
 
@@ -31,12 +31,13 @@ def damage_all(folder):
         file.write_bytes(b"rot")
 
 
-def test_what_was_recorded_beyond_the_checkpoint_is_done_again(services, run_id, report, row):
-    first = claim(services, run_id, "worker")
+def test_generations_after_the_checkpoint_are_repeated(
+    services, run_id, report, row, attempt, record
+):
     for generation in range(1, 6):
-        first.record(report(generation, {generation: 1.0}), 1.0)
+        record(generation, {generation: 1.0})
         if generation == 3:
-            first.save(3, b"state after 3")
+            attempt.save(3, b"state after 3")
     again = claim(services, run_id, "worker")
     assert (again.generation, again.seconds) == (3, 3.0)
     assert again.restore() == b"state after 3"
@@ -46,24 +47,24 @@ def test_what_was_recorded_beyond_the_checkpoint_is_done_again(services, run_id,
     again.record(report(4, {4: 1.0}), 1.0)
 
 
-def test_without_a_checkpoint_a_run_begins_anew(services, run_id, report, row):
+def test_a_run_without_checkpoint_restarts(services, run_id, report, row):
     claim(services, run_id, "worker").record(report(1, {1: 1.0}), 1.0)
     again = claim(services, run_id, "worker")
     assert (again.generation, again.restore()) == (0, None)
     assert (row().generation, row().qd_score, row().seconds) == (0, None, 0)
 
 
-def test_a_checkpoint_must_be_of_a_recorded_generation(services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+def test_a_checkpoint_must_be_of_a_recorded_generation(attempt, record):
+    record(1)
     with pytest.raises(ValueError, match="at most 1; got 2"):
         attempt.save(2, b"data")
 
 
-def test_superfluous_checkpoints_are_deleted_with_their_files(services, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_superfluous_checkpoints_are_deleted_with_their_files(
+    services, run_id, attempt, record
+):
     for generation in range(1, 13):
-        attempt.record(report(generation), 1.0)
+        record(generation)
         attempt.save(generation, f"state {generation}".encode())
     folder = services.settings.data / "artifacts" / "runs" / str(run_id)
     kept = sorted(int(file.name[:8]) for file in folder.iterdir())
@@ -72,12 +73,11 @@ def test_superfluous_checkpoints_are_deleted_with_their_files(services, run_id, 
 
 
 def test_a_full_disk_leaves_the_previous_checkpoint_and_a_warning(
-    services, run_id, report, row, monkeypatch
+    row, monkeypatch, attempt, record
 ):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+    record(1)
     attempt.save(1, b"state 1")
-    attempt.record(report(2), 1.0)
+    record(2)
 
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -105,7 +105,7 @@ def test_three_attempts_without_a_checkpoint_end_a_run(services, run_id, row):
     assert claim(services, run_id, "worker") is None
 
 
-def test_a_new_checkpoint_or_an_orderly_end_gives_new_chances(services, run_id, report, row):
+def test_a_new_checkpoint_or_a_requeue_resets_the_attempts(services, run_id, report, row):
     for generation in range(1, 5):
         attempt = claim(services, run_id, "worker")
         attempt.record(report(generation), 1.0)
@@ -116,7 +116,7 @@ def test_a_new_checkpoint_or_an_orderly_end_gives_new_chances(services, run_id, 
     assert row().status == "queued"
 
 
-def test_a_checkpoint_without_progress_gives_none(services, run_id, report, row):
+def test_a_checkpoint_without_progress_resets_no_attempts(services, run_id, report, row):
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1), 1.0)
     attempt.save(1, b"state")
@@ -142,11 +142,12 @@ def test_an_old_file_that_cannot_be_deleted_does_not_undo_a_checkpoint(
     assert row().checkpoint_generation == attempt.generation == 5
 
 
-def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(services, run_id, report, row):
-    first = claim(services, run_id, "worker")
+def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(
+    services, run_id, report, row, attempt, record
+):
     for generation in range(1, 4):
-        first.record(report(generation, {generation: 1.0}), 1.0)
-        first.save(generation, f"state {generation}".encode())
+        record(generation, {generation: 1.0})
+        attempt.save(generation, f"state {generation}".encode())
     folder = services.settings.data / "artifacts" / "runs" / str(run_id)
     next(folder.glob("00000003-*")).write_bytes(b"rot")
     second = claim(services, run_id, "worker")
@@ -163,11 +164,12 @@ def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(services, run_id
 
 
 @pytest.mark.parametrize("harm", [unmount, lose_the_newest, damage_all])
-def test_a_checkpoint_that_cannot_be_read_deletes_nothing(services, run_id, report, row, harm):
-    first = claim(services, run_id, "worker")
+def test_a_checkpoint_that_cannot_be_read_deletes_nothing(
+    services, run_id, row, harm, attempt, record
+):
     for generation in range(1, 3):
-        first.record(report(generation, {generation: 1.0}), 1.0)
-        first.save(generation, f"state {generation}".encode())
+        record(generation, {generation: 1.0})
+        attempt.save(generation, f"state {generation}".encode())
     harm(services.settings.data / "artifacts" / "runs" / str(run_id))
     second = claim(services, run_id, "worker")
     with pytest.raises(CheckpointUnavailable, match="checkpoint of generation 2"):
@@ -178,10 +180,9 @@ def test_a_checkpoint_that_cannot_be_read_deletes_nothing(services, run_id, repo
     )
 
 
-def test_a_run_resumes_when_its_files_are_there_again(services, run_id, report):
-    first = claim(services, run_id, "worker")
-    first.record(report(1, {1: 1.0}), 1.0)
-    first.save(1, b"state 1")
+def test_a_run_resumes_when_its_files_are_there_again(services, run_id, attempt, record):
+    record(1, {1: 1.0})
+    attempt.save(1, b"state 1")
     folder = services.settings.data / "artifacts"
     folder.rename(folder.with_name("elsewhere"))
     with pytest.raises(CheckpointUnavailable):

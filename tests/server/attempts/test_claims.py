@@ -7,8 +7,8 @@ from sqlalchemy import func, select, update
 from sqlalchemy.exc import OperationalError
 
 from server.attempts import leases
-from server.attempts.begin import claim
-from server.attempts.claim import Claim, ClaimLost
+from server.attempts.attempt import Attempt, ClaimLost
+from server.attempts.claim import claim
 from server.core.database import ago
 from server.runs import announce, lifecycle
 from server.tables import Elite, Generation, Run
@@ -29,28 +29,28 @@ def silence(services, run_id):
 
 
 def test_only_one_worker_gets_a_run(services, run_id):
-    assert claim(services, run_id, "first").attempt == 1
+    assert claim(services, run_id, "first").number == 1
     assert claim(services, run_id, "second") is None
 
 
-def test_of_many_that_claim_at_once_one_gets_it(services, run_id):
+def test_one_of_many_concurrent_claims_succeeds(services, run_id):
     with ThreadPoolExecutor(8) as pool:
         names = [f"worker {number}" for number in range(8)]
         claims = list(pool.map(lambda name: claim(services, run_id, name), names))
     assert len([found for found in claims if found]) == 1
 
 
-def test_a_silent_workers_run_is_taken_and_the_woken_one_is_fenced(services, run_id, report):
+def test_a_silent_workers_run_is_claimed_and_its_writes_refused(services, run_id, report):
     first = claim(services, run_id, "first")
     first.record(report(1, {0: 1.0}), 1.0)
     silence(services, run_id)
     second = claim(services, run_id, "second")
-    assert second.attempt == 2
+    assert second.number == 2
     writes = (
         lambda: first.record(report(2), 1.0),
         lambda: first.save(1, b"data"),
         lambda: first.warn("text"),
-        first.requested,
+        first.check,
         first.finish,
         first.pause,
         first.requeue,
@@ -59,12 +59,12 @@ def test_a_silent_workers_run_is_taken_and_the_woken_one_is_fenced(services, run
     for write in writes:
         with pytest.raises(ClaimLost):
             write()
-    assert second.record(report(1, {0: 1.0}), 1.0) is None
+    second.record(report(1, {0: 1.0}), 1.0)
+    assert second.requested_state is None
     assert count(services, Generation) == 1
 
 
-def test_a_generation_is_recorded_once_or_not_at_all(services, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_a_generation_is_recorded_once_or_not_at_all(services, report, attempt, record):
     broken = report(1, {1: 1.0})
     broken.elites[0].creature = "00" * 32  # Of which there is no creature.
     broken.elites[0].identity = None
@@ -72,7 +72,7 @@ def test_a_generation_is_recorded_once_or_not_at_all(services, run_id, report):
         attempt.record(broken, 1.0)
     assert count(services, Generation) == count(services, Elite) == 0
     assert attempt.seconds == 0
-    attempt.record(report(1, {1: 1.0}), 1.0)
+    record(1, {1: 1.0})
 
 
 def test_numbers_that_are_not_finite_are_recorded_as_none(services, run_id, report, row):
@@ -89,7 +89,7 @@ def test_a_finished_run_forgets_earlier_errors(services, run_id, row):
     assert (row().status, row().error) == ("finished", None)
 
 
-def test_a_lease_is_renewed_by_whoever_holds_it(services, run_id, row):
+def test_a_lease_is_renewed_by_its_holder(services, run_id, row):
     def beat(worker):
         return leases.heartbeat(services.sessions, run_id, worker)
 
@@ -116,29 +116,27 @@ def test_redis_can_be_away_while_a_run_is_recorded(services, run_id, report, row
     assert row().status == "finished"
 
 
-def test_whoever_resumes_a_run_that_needs_leave_for_another_device_gives_it(services, run_id):
+def test_resuming_a_waiting_run_allows_another_device(services, run_id):
     first = claim(services, run_id, "first")
     assert not first.other_device
     first.wait_for_override("it began elsewhere")
     with services.sessions.write.begin() as session:
         run = session.get_one(Run, run_id)
-        assert (run.status, run.warning) == ("paused", "it began elsewhere")
+        assert run.status == "paused"
+        assert run.warning.startswith("it began elsewhere To go on here, resume the run")
         lifecycle.resume(session, run)
     assert claim(services, run_id, "second").other_device
 
 
-def test_resuming_a_run_that_needs_no_leave_gives_none(services, run_id):
+def test_resuming_an_ordinary_run_allows_no_other_device(services, run_id):
     claim(services, run_id, "first").pause()
     with services.sessions.write.begin() as session:
         lifecycle.resume(session, session.get_one(Run, run_id))
     assert not claim(services, run_id, "second").other_device
 
 
-@pytest.mark.parametrize("end", [Claim.pause, lambda held: held.wait_for_override("why")])
-def test_a_cancellation_that_comes_while_a_pause_is_carried_out_holds(
-    services, run_id, row, end
-):
-    attempt = claim(services, run_id, "worker")
+@pytest.mark.parametrize("end", [Attempt.pause, lambda held: held.wait_for_override("why")])
+def test_a_cancellation_overrides_a_pause_under_way(services, run_id, row, end, attempt):
     with services.sessions.write.begin() as session:
         lifecycle.cancel(session, session.get_one(Run, run_id))
     end(attempt)
@@ -146,20 +144,15 @@ def test_a_cancellation_that_comes_while_a_pause_is_carried_out_holds(
     assert row().finished_at is not None
 
 
-def test_a_generation_that_was_committed_unnoticed_is_not_written_again(
-    services, run_id, report, row
-):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {1: 1.0}), 2.0)
+def test_a_committed_generation_is_not_written_twice(services, row, attempt, record):
+    record(1, {1: 1.0}, seconds=2.0)
     attempt.seconds = 0.0  # As after a commit whose answer was lost.
-    attempt.record(report(1, {1: 1.0}), 2.0)
+    record(1, {1: 1.0}, seconds=2.0)
     assert count(services, Generation) == count(services, Elite) == 1
     assert (row().seconds, attempt.seconds) == (2.0, 2.0)
 
 
-def test_what_was_committed_stands_where_nobody_can_be_told(
-    services, run_id, report, row, monkeypatch
-):
+def test_a_commit_holds_when_publishing_fails(services, run_id, report, row, monkeypatch):
     def away(*_):
         raise OperationalError("", {}, Exception("away"))
 

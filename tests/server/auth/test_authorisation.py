@@ -16,16 +16,16 @@ from server.auth.authorize import authorize, public
 from server.auth.principal import ADMIN, READ, SHARE, WRITE
 from server.creatures import storage as creatures
 from server.runs.deps import own_run
-from server.runs.submission import submit
+from server.runs.submission import Request, submit
 from server.services.services import connect
 from server.settings import Settings
 from server.shares import publishing
 from server.shares.routes import own_share
 from server.shares.schemas import ShareCreate
 from server.sweeps.deps import own_sweep
-from server.sweeps.planning import plan
-from server.sweeps.schemas import SweepSent
-from server.sweeps.submission import submit_sweep
+from server.sweeps.plan import plan
+from server.sweeps.schemas import SweepCreate
+from server.sweeps.submission import request_of, submit_sweep
 from server.tables import Token
 
 ROOT = "/api/v1"
@@ -105,7 +105,7 @@ def need_of(route: str) -> str:
 
 
 @pytest.mark.parametrize("route", ROUTES)
-def test_every_route_says_what_it_needs(route):
+def test_every_route_declares_its_scope(route):
     """A scope, an owner, or that it is public: one of them, since none is the default."""
     assert len(ROUTES[route]) == 1
     assert need_of(route) in EXPECTED
@@ -113,7 +113,7 @@ def test_every_route_says_what_it_needs(route):
 
 
 @pytest.mark.parametrize("route", API)
-def test_only_harmless_routes_go_without_leave_to_write(route):
+def test_only_harmless_routes_need_no_write_scope(route):
     method, path = route.replace(ROOT, "").split()
     need = need_of(route)
     shared = path == "/shares/{slug}/preview.png"
@@ -162,11 +162,11 @@ def parameters(services, secrets, spec, identity):
     owner = tokens.principal_of(services, secrets["owner"])
 
     def run() -> str:
-        return str(submit(services, parse(spec), owner=owner.token)[0].id)
+        return str(submit(services, parse(spec), Request(spec, owner=owner.token))[0].id)
 
     def sweep() -> str:
-        planned = plan(SweepSent(spec=spec), parse)
-        return str(submit_sweep(services, planned, owner=owner.token)[0])
+        planned = plan(SweepCreate(spec=spec), parse)
+        return str(submit_sweep(services, planned, request_of(planned, owner=owner.token))[0])
 
     def share() -> str:
         asked = ShareCreate(creature=file["sha256"], title=uuid4().hex)
@@ -190,7 +190,7 @@ def parameters(services, secrets, spec, identity):
     return make
 
 
-def test_everybody_gets_where_they_may_and_nowhere_else(serve, secrets, parameters):
+def test_each_principal_reaches_exactly_the_permitted_routes(serve, secrets, parameters):
     wrong = []
     with serve(auth="required") as address, httpx.Client(base_url=address, timeout=20) as http:
         for route in API:
@@ -215,7 +215,7 @@ def status(http: httpx.Client, method: str, url: str, headers: dict[str, str]) -
         return answer.status_code
 
 
-def test_a_route_that_is_not_named_is_reached_by_nobody(serve, secrets):
+def test_an_unknown_route_is_never_reached(serve, secrets):
     with serve(auth="required") as address:
         for who in ("none", "admin"):
             sent = {"Authorization": f"Bearer {secrets[who]}"} if secrets[who] else {}

@@ -1,4 +1,4 @@
-"""Who may speak to the server, and where it may listen."""
+"""Middleware: tokens, cookies, host names, other sites and the rate limit."""
 
 import logging
 from contextlib import contextmanager
@@ -9,8 +9,9 @@ import pytest
 from pydantic import SecretStr
 from sqlalchemy.exc import OperationalError
 
-from server.auth import authenticate
+from server.auth import authenticate, tokens
 from server.auth.cookies import COOKIE
+from server.auth.ratelimit import ADDRESSES, BURST, INTERVAL, RateLimit, network_of
 from server.settings import SHORTEST, Settings
 
 
@@ -19,7 +20,7 @@ def test_a_server_for_others_needs_a_token(host):
     assert Settings(host=host, token=None).needs_token
 
 
-def test_on_loopback_a_token_is_needed_where_it_is_asked_for():
+def test_loopback_needs_a_token_only_when_configured():
     assert not Settings(host="127.0.0.1", token=None).needs_token
     assert Settings(host="127.0.0.1", token=None, auth="required").needs_token
     assert Settings(host="127.0.0.1", token=SecretStr("s" * SHORTEST)).needs_token
@@ -53,7 +54,7 @@ def test_pages_of_other_sites_are_refused(api, address, spec):
     assert api.post("runs", json=spec, headers={"Origin": address}).status_code == 202
 
 
-def test_with_a_token_the_api_needs_it_from_any_host(serve):
+def test_a_configured_token_is_needed_from_any_host(serve):
     with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
         url = f"{address}/api/v1/runs"
         assert client.get(url).status_code == 401
@@ -81,13 +82,13 @@ def test_a_malformed_origin_is_refused(api):
     assert api.get("runs", headers={"Origin": "http://["}).status_code == 403
 
 
-def test_a_port_that_nobody_can_be_told_is_refused(monkeypatch):
+def test_a_port_zero_is_refused(monkeypatch):
     monkeypatch.setenv("PORT", "0")
     with pytest.raises(ValueError, match="greater than or equal to 1"):
         Settings()
 
 
-def test_a_cookie_is_of_no_use_to_the_pages_of_other_sites(serve, spec):
+def test_a_cookie_does_not_work_from_other_sites(serve, spec):
     """A browser may send it by itself; a header it does not."""
     with serve(token=SecretStr("secret")) as address:
         url = f"{address}/api/v1/runs"
@@ -131,7 +132,7 @@ def test_the_log_of_requests_does_not_name_shares(serve, caplog):
     assert len(lines) == 6
 
 
-def test_while_the_database_is_away_a_token_is_not_wrong(serve, monkeypatch):
+def test_a_token_is_not_wrong_without_the_database(serve, monkeypatch):
     def away(*_):
         raise OperationalError("SELECT", {}, ConnectionError("gone"))
 
@@ -170,7 +171,7 @@ def test_the_cookie_is_named_after_the_port_that_the_browser_knows(serve):
             assert answer.headers["set-cookie"].startswith(f"{name}=")
 
 
-def test_no_page_of_others_holds_ours_or_reads_what_it_shows(api, address):
+def test_other_sites_cannot_frame_or_read_our_pages(api, address):
     """Where no token is needed, a frame would be as good as a token."""
     for path in ("/", "/runs", "/settings", "/api/v1/runs", "/api/v1/nothing", "/metrics"):
         headers = httpx.get(address + path).headers
@@ -182,3 +183,88 @@ def test_no_page_of_others_holds_ours_or_reads_what_it_shows(api, address):
     assert refused.headers["cross-origin-resource-policy"] == "same-origin"
     shared = api.get("shares/whatever/preview.png")
     assert shared.headers["cross-origin-resource-policy"] == "cross-origin"
+
+
+class Clock:
+    now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def limit(clock) -> RateLimit:
+    return RateLimit(clock)
+
+
+def test_a_burst_of_wrong_tokens_is_allowed_and_recovers(limit, clock):
+    assert [limit.add("192.0.2.1") for _ in range(BURST)] == [0] * BURST
+    assert limit.add("192.0.2.1") == INTERVAL
+    clock.now += 2.0
+    assert limit.add("192.0.2.1") == INTERVAL - 2.0
+    clock.now += INTERVAL - 2.0
+    assert limit.add("192.0.2.1") == 0
+    clock.now += BURST * INTERVAL
+    assert [limit.add("192.0.2.1") for _ in range(BURST)] == [0] * BURST
+
+
+def test_the_rate_limit_counts_each_address_alone(limit):
+    for _ in range(BURST + 1):
+        limit.add("192.0.2.1")
+    assert limit.add("192.0.2.2") == 0
+
+
+def test_the_rate_limit_remembers_limited_addresses(limit):
+    for number in range(2 * ADDRESSES):
+        limit.add(f"198.18.{number // 256}.{number % 256}")
+    assert len(limit._paid) == ADDRESSES
+
+
+@pytest.mark.parametrize(
+    ("address", "counted"),
+    [
+        ("192.0.2.1", "192.0.2.1"),
+        ("::ffff:192.0.2.1", "192.0.2.1"),
+        ("2001:db8:1:2:3:4:5:6", "2001:db8:1:2::/64"),
+        ("fe80::1%eth0", "fe80::/64"),
+        ("", "unknown"),
+        ("x" * 60_000, "unknown"),
+    ],
+)
+def test_an_ipv6_network_counts_as_one_address(address, counted):
+    assert network_of(address) == counted
+
+
+def test_wrong_tokens_are_limited_and_valid_ones_pass(serve, services):
+    tokens.create(services, "root", "admin")
+    good = tokens.create(services, "alice", "read").secret
+    ended = tokens.create(services, "bob", "read")
+    tokens.revoke(services, ended.token.id)
+    with serve(auth="required") as address, httpx.Client(base_url=address) as http:
+
+        def ask(secret):
+            sent = {"Authorization": f"Bearer {secret}"}
+            return http.get("/api/v1/runs", headers=sent)
+
+        for _ in range(2 * BURST):  # Neither is a guess.
+            assert http.get("/api/v1/runs").status_code == 401
+            assert ask(ended.secret).status_code == 401
+        for number in range(BURST):
+            assert ask(f"mc_{number}").status_code == 401
+        ways = (
+            lambda: ask("mc_other"),
+            lambda: http.post("/api/v1/session", json={"token": "mc_other"}),
+            lambda: http.get("/api/v1/nothing", headers={"Authorization": "Bearer mc_other"}),
+        )
+        for refused in (way() for way in ways):
+            assert refused.status_code == 429
+            assert 1 <= int(refused.headers["retry-after"]) <= INTERVAL
+            assert refused.json()["title"] == "Too many wrong tokens"
+        assert ask(good).status_code == 200
+        assert http.post("/api/v1/session", json={"token": good}).status_code == 200
+        assert http.get("/?token=mc_other").status_code in (200, 503)  # The page asks for one.

@@ -1,4 +1,4 @@
-"""The commands, over a real server."""
+"""The commands and the doctor, over a real server."""
 
 import json
 import os
@@ -7,17 +7,20 @@ import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from datetime import UTC, datetime, timedelta
 from typing import Any
 from uuid import UUID
 
 import pytest
 from click.testing import Result
+from pydantic import SecretStr
 from typer.testing import CliRunner
 
 from microcosmos.archive import creature, creature_h5
 from microcosmos.cli import app
 from microcosmos.client import views
-from server.attempts.begin import claim
+from microcosmos.doctor.server import server, workers
+from server.attempts.claim import claim
 
 
 @pytest.fixture
@@ -51,7 +54,7 @@ def test_a_run_is_submitted_listed_and_kept(command, client):
     assert command("watch", "--last", code=1).stdout.count("cancelled") == 1
 
 
-def test_a_sweep_is_named_deleted_and_taken_back(command, client):
+def test_a_sweep_is_named_deleted_and_restored(command, client):
     sweep = client.submit("demo", seeds=2)
     assert sweep.change(name="twins").name == "twins"
     first = next(sweep.runs())
@@ -69,9 +72,7 @@ def test_a_sweep_is_named_deleted_and_taken_back(command, client):
     assert waiting.refresh().total == 2
 
 
-def test_the_table_of_a_sweep_is_of_all_runs_however_far_one_of_them_went(
-    command, client, services, report
-):
+def test_the_table_of_a_sweep_compares_a_common_generation(command, client, services, report):
     sweep = client.submit("demo", seeds=3)
     for run, last in zip(sweep.runs(), (2, 2, 5), strict=True):
         attempt = claim(services, UUID(run.id), "worker")
@@ -83,7 +84,7 @@ def test_the_table_of_a_sweep_is_of_all_runs_however_far_one_of_them_went(
     assert "2 (2 to 3.5)" in command("sweep", sweep.id).stdout
 
 
-def test_what_is_wrong_is_a_sentence_and_1(command):
+def test_errors_are_sentences_and_exit_with_1(command):
     wrong = command("submit", "demo", "--set", "world.viscosity=-1", code=1)
     assert "world.viscosity" in wrong.stderr
     assert wrong.stdout == ""
@@ -107,13 +108,12 @@ def test_what_is_wrong_is_a_sentence_and_1(command):
         ("fork", "abc", "--set", "archive.descriptors.0.bins=3"),
     ],
 )
-def test_what_cannot_be_meant_is_2(command, arguments):
+def test_invalid_usage_exits_with_2(command, arguments):
     assert "Usage" in command(*arguments, code=2).stderr
 
 
-def test_a_file_is_pulled_under_the_runs_name(command, services, run_id, report, tmp_path):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+def test_a_file_is_pulled_under_the_runs_name(command, run_id, tmp_path, attempt, record):
+    record(1)
     attempt.save(1, b"the archive")
     pulled = command("pull", str(run_id), "--out", str(tmp_path)).stdout.strip()
     assert pulled == str(tmp_path / f"quality-diversity-{str(run_id)[:8]}.h5")
@@ -121,7 +121,7 @@ def test_a_file_is_pulled_under_the_runs_name(command, services, run_id, report,
     assert "existing folder" in command("pull", str(run_id), "--out", "no/x", code=1).stderr
 
 
-def test_creatures_are_brought_with_their_hashes(command, client, identity, tmp_path):
+def test_creatures_are_imported_with_their_hashes(command, client, identity, tmp_path):
     file = creature.document(identity(3), None, None)
     (tmp_path / "one.json").write_text(json.dumps(file))
     assert command("import", str(tmp_path / "one.json")).stdout.strip() == file["sha256"]
@@ -134,9 +134,8 @@ def test_creatures_are_brought_with_their_hashes(command, client, identity, tmp_
     assert client.creature(file["sha256"]).identity == file["identity"]
 
 
-def test_watching_ends_as_the_run_does(command, services, run_id, report, monkeypatch):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+def test_watching_ends_as_the_run_does(command, run_id, monkeypatch, attempt, record):
+    record(1)
     left = [attempt.finish]
     show = views.Lines.show
 
@@ -151,7 +150,7 @@ def test_watching_ends_as_the_run_does(command, services, run_id, report, monkey
     assert "finished" in last
 
 
-@pytest.mark.parametrize("terminal", [False, True])
+@pytest.mark.parametrize("terminal", [pytest.param(False, marks=pytest.mark.long), True])
 def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
     """In a process of its own, as a person would."""
     # A shell's background jobs ignore SIGINT, and so would every process that they start.
@@ -178,3 +177,48 @@ def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
     assert "Traceback" not in text
     assert ("━" in text) == terminal
     assert client.run(run.id).status == "queued"
+
+
+def levels(findings):
+    return [finding.level for finding in findings]
+
+
+def test_the_doctor_warns_of_missing_workers(address):
+    found = list(server(address, None))
+    subjects = {one.subject for one in found if one.level == "ok"}
+    assert subjects == {"server", "database", "disk", "Redis"}
+    assert levels(found)[-1] == "warning"
+    assert found[0].found.endswith(f"answers at {address}")
+    assert "WORKERS=n" in found[-1].advice
+
+
+def test_the_doctor_names_a_lost_redis(serve, services):
+    with serve(redis_url="redis://127.0.0.1:1/0") as address:
+        found = list(server(address, None))
+    assert "problem" in levels(found)
+    assert any(one.subject == "Redis" and one.level == "problem" for one in found)
+
+
+def test_the_doctor_asks_for_a_token(serve, monkeypatch):
+    monkeypatch.delenv("MICROCOSMOS_TOKEN", raising=False)
+    with serve(token=SecretStr("sesame")) as address:
+        assert levels(server(address, None)) == ["problem"]
+        assert "problem" not in levels(server(address, "sesame"))
+
+
+def test_another_version_is_a_warning(address, monkeypatch):
+    monkeypatch.setattr("microcosmos.doctor.server.VERSION", "9.9.9")
+    first = next(server(address, None))
+    assert first.level == "warning"
+    assert "this is 9.9.9" in first.found
+
+
+def test_the_doctor_warns_of_a_silent_worker():
+    now = datetime(2026, 1, 1, tzinfo=UTC)
+    one = {"name": "here-1", "device": "cpu", "status": "busy"}
+    beats = [now - timedelta(seconds=age) for age in (3, 60)]
+    found = workers([one | {"heartbeat_at": beat.isoformat()} for beat in beats], now)
+    assert [(each.level, each.found.split(", ")[-1]) for each in found] == [
+        ("ok", "reported 3 s ago"),
+        ("warning", "reported 60 s ago"),
+    ]

@@ -1,5 +1,8 @@
-"""What the client does where the network, or what is at the other end, fails."""
+"""The client when the network, the server or the disk fails."""
 
+import errno
+import hashlib
+import os
 import socket
 
 import httpx
@@ -13,14 +16,13 @@ from microcosmos.client import (
     NotMicrocosmos,
     ServerError,
     connection,
+    files,
     streaming,
 )
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 
 
-def test_a_request_whose_answer_is_lost_is_made_again_and_counts_once(
-    relay, services, spec, hasty
-):
+def test_a_request_whose_answer_is_lost_is_repeated_safely(relay, services, spec, hasty):
     client = Client(relay.url)
     list(client.runs())
     relay.cut()
@@ -31,7 +33,7 @@ def test_a_request_whose_answer_is_lost_is_made_again_and_counts_once(
     assert len(sent) == 2
 
 
-def test_what_would_be_done_twice_is_not_sent_again(relay, run, hasty):
+def test_unsafe_requests_are_not_repeated(relay, run, hasty):
     client = Client(relay.url)
     mine = client.run(run.id)
     relay.cut()
@@ -41,14 +43,13 @@ def test_what_would_be_done_twice_is_not_sent_again(relay, run, hasty):
     assert sum(b"/extend" in ask for ask in relay.asked) == 1
 
 
-def test_events_go_on_behind_the_last_one(relay, services, run_id, report):
+def test_events_continue_after_the_last_id(relay, run_id, record, attempt):
     client = Client(relay.url)
-    attempt = claim(services, run_id, "worker")
     found = streaming.events(client.connection, str(run_id))
     assert next(found).kind == "beat"  # From here on.
     heard: list[int] = []
     for generation in range(1, 7):
-        attempt.record(report(generation), float(generation))
+        record(generation, seconds=float(generation))
         if generation == 3:
             relay.cut()
         while generation not in heard:
@@ -59,7 +60,7 @@ def test_events_go_on_behind_the_last_one(relay, services, run_id, report):
     assert any(b"last-event-id" in ask.lower() for ask in relay.asked)
 
 
-def test_where_nobody_listens_it_is_said_what_to_do(hasty):
+def test_an_absent_server_is_answered_with_advice(hasty):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
     expected = f"No server answers at http://127.0.0.1:{port}: start one with `make run`"
@@ -81,7 +82,7 @@ HTML = {"Content-Type": "text/html"}
         ((200, {"Content-Type": "application/json"}, b"{"), "as no Microcosmos server does"),
     ],
 )
-def test_what_is_no_microcosmos_is_named_so(answer, said, hasty):
+def test_a_foreign_server_is_recognised(answer, said, hasty):
     with other(answer) as (url, _), pytest.raises(NotMicrocosmos, match=said):
         list(Client(url).runs())
 
@@ -89,7 +90,7 @@ def test_what_is_no_microcosmos_is_named_so(answer, said, hasty):
 PROBLEM = {"Content-Type": "application/problem+json"}
 
 
-def test_who_is_busy_is_asked_again_when_it_says(hasty):
+def test_a_busy_server_is_asked_again_after_its_delay(hasty):
     empty = (200, {"Content-Type": "application/json"}, b'{"items": [], "next": null}')
     busy = (503, PROBLEM | {"Retry-After": "2"}, b'{"detail": "The database does not answer."}')
     with other(busy, busy, empty) as (url, asked):
@@ -97,7 +98,7 @@ def test_who_is_busy_is_asked_again_when_it_says(hasty):
     assert (hasty, asked) == ([2.0, 2.0], ["GET"] * 3)
 
 
-def test_patience_counts_how_long_a_silence_was(hasty, monkeypatch):
+def test_patience_includes_the_length_of_silences(hasty, monkeypatch):
     clock, asked = [0.0], []
 
     def silent(request: httpx.Request) -> httpx.Response:
@@ -151,16 +152,110 @@ def test_problems_are_sentences(status, body, kind, said):
         ("http://127.0.0.1:8000/api/v1/", "http://127.0.0.1:8000"),
     ],
 )
-def test_addresses_are_taken_as_people_write_them(given, meant):
+def test_addresses_are_normalised(given, meant):
     assert Client(given).url == meant
 
 
 @pytest.mark.parametrize("given", ["ftp://x", "http://", "http://x:99999"])
-def test_what_is_no_address_is_refused(given):
+def test_malformed_addresses_are_refused(given):
     with pytest.raises(ValueError, match="`url` must be an address"):
         Client(given)
 
 
-def test_a_proxy_of_the_environment_is_not_asked_for_this_machine(address, monkeypatch):
+def test_loopback_requests_bypass_the_proxy(address, monkeypatch):
     monkeypatch.setenv("HTTP_PROXY", "http://127.0.0.1:9")
     assert list(Client(address).runs()) == []
+
+
+@pytest.fixture
+def archive(services, run_id, report) -> bytes:
+    """What the run's checkpoint holds, larger than a relay hands on at once."""
+    content = os.urandom(3_000_000)
+    attempt = claim(services, run_id, "worker")
+    attempt.record(report(1), 1.0)
+    attempt.save(1, content)
+    return content
+
+
+def test_a_download_goes_on_where_it_broke_off(relay, run_id, archive, tmp_path, hasty):
+    told: list[tuple[int, int]] = []
+    relay.allowance = [1 << 40, 1_000_000, 1_000_000]
+    run = Client(relay.url).run(str(run_id))
+    relay.cut()
+    relay.asked.clear()
+    to = tmp_path / "run.h5"
+    found = files.fetch(
+        run._connection, f"runs/{run_id}/archive.h5", to, lambda *now: told.append(now)
+    )
+    assert found.read_bytes() == archive
+    ranges = [ask for ask in relay.asked if b"range: bytes=" in ask.lower()]
+    assert len(ranges) == 2
+    assert all(b"if-range" in ask.lower() for ask in ranges)
+    assert {whole for _, whole in told} == {len(archive)}
+    assert [path.name for path in tmp_path.iterdir() if "part" in path.name] == []
+    relay.asked.clear()
+    assert run.pull(to).read_bytes() == archive
+    assert b"If-None-Match" in relay.asked[-1]  # Nothing is fetched twice.
+
+
+def test_an_abandoned_download_is_continued_later(relay, run_id, archive, tmp_path, hasty):
+    run = Client(relay.url).run(str(run_id))
+    relay.cut()
+    relay.allowance = [1_000_000] + [50] * 20
+    to = tmp_path / "run.h5"
+    with pytest.raises(NoAnswer, match="broke off"):
+        run.pull(to)
+    (part,) = tmp_path.glob(".run.h5.*.part")
+    had = part.stat().st_size
+    assert 0 < had < len(archive)
+    relay.allowance = []
+    relay.asked.clear()
+    assert run.pull(to).read_bytes() == archive
+    assert f"bytes={had}-".encode() in b"".join(relay.asked)
+
+
+def test_a_changed_file_is_downloaded_from_the_start(client, run_id, archive, tmp_path):
+    old = hashlib.sha256(b"an older checkpoint").hexdigest()
+    (tmp_path / f".run.h5.{old}.part").write_bytes(b"an older")
+    run = client.run(str(run_id))
+    assert run.pull(tmp_path / "run.h5").read_bytes() == archive
+    assert list(tmp_path.glob("*.part")) + list(tmp_path.glob(".*.part")) == []
+
+
+def test_a_complete_partial_file_is_moved_into_place(client, run_id, archive, tmp_path):
+    name = hashlib.sha256(archive).hexdigest()
+    (tmp_path / f".run.h5.{name}.part").write_bytes(archive)
+    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
+
+
+def test_a_damaged_part_is_not_kept(client, run_id, archive, tmp_path):
+    name = hashlib.sha256(archive).hexdigest()
+    (tmp_path / f".run.h5.{name}.part").write_bytes(b"x" * 100)
+    with pytest.raises(ServerError, match="damaged on its way"):
+        client.run(str(run_id)).pull(tmp_path / "run.h5")
+    assert not (tmp_path / "run.h5").exists()
+    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
+
+
+def test_a_download_without_a_length_succeeds(hasty, tmp_path):
+    name = hashlib.sha256(b"whole").hexdigest()
+
+    def chunked(request: httpx.Request) -> httpx.Response:
+        return httpx.Response(200, headers={"etag": f'"{name}"'}, content=iter([b"wh", b"ole"]))
+
+    client, told = Client("http://box", transport=httpx.MockTransport(chunked)), []
+    files.fetch(client.connection, "x", tmp_path / "x", lambda *so_far: told.append(so_far))
+    assert (tmp_path / "x").read_bytes() == b"whole"
+    assert told == [(0, 0), (5, 5)]
+
+
+def test_a_full_disk_is_reported_with_the_file(hasty, tmp_path, monkeypatch):
+    def full(descriptor: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(files.os, "fsync", full)
+    name = hashlib.sha256(b"whole").hexdigest()
+    answer = httpx.Response(200, headers={"etag": f'"{name}"'}, content=iter([b"whole"]))
+    client = Client("http://box", transport=httpx.MockTransport(lambda _: answer))
+    with pytest.raises(OSError, match=rf"No space left on device: '.*\.x\.{name}\.part'"):
+        files.fetch(client.connection, "x", tmp_path / "x")

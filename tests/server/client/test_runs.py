@@ -1,12 +1,12 @@
-"""Runs by the client: submitted once, found, changed, read as columns."""
+"""Runs by the client: submitted once, found, changed, watched, read as columns."""
 
 import json
 
 import numpy as np
 import pytest
 
-from microcosmos.client import Client, Conflict, NotFound, Refused
-from server.attempts.begin import claim
+from microcosmos.client import Client, Conflict, NoAnswer, NotFound, Refused, polling
+from server.attempts.claim import claim
 
 
 def test_a_spec_a_file_and_a_preset_are_submitted(client, spec, tmp_path):
@@ -39,7 +39,7 @@ def test_an_unknown_preset_is_refused_with_those_there_are(client):
         client.submit("nonsense")
 
 
-def test_the_fields_at_fault_arrive_as_a_sentence(client, spec):
+def test_invalid_fields_become_a_sentence(client, spec):
     wrong = spec | {"seed": -1, "world": {"viscosity": -2}}
     with pytest.raises(Refused) as caught:
         client.submit(wrong)
@@ -97,10 +97,9 @@ def test_an_estimate_queues_nothing(client, spec):
     assert list(client.runs()) == []
 
 
-def test_curves_are_columns(run, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, summary={"hit_rate": 0.5}), 1.0)
-    attempt.record(report(2), 2.0)
+def test_curves_are_columns(run, record):
+    record(1, summary={"hit_rate": 0.5})
+    record(2, seconds=2.0)
     curves = run.curves()
     assert curves["generation"].tolist() == [1, 2]
     assert curves["qd_score"].tolist() == [10.0, 20.0]
@@ -109,10 +108,9 @@ def test_curves_are_columns(run, services, run_id, report):
     assert any("Submitted" in entry["text"] for entry in run.log())
 
 
-def test_an_archive_is_columns_and_creatures(run, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.25}), 1.0)
-    attempt.record(report(2, {5: 3.0}, measures={"turning": 0.5}), 1.0)
+def test_an_archive_is_columns_and_creatures(run, record):
+    record(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.25})
+    record(2, {5: 3.0}, measures={"turning": 0.5})
     archive = run.archive()
     assert archive.cell.tolist() == [3, 5]
     assert archive.fitness.tolist() == [2.0, 3.0]
@@ -145,12 +143,12 @@ def test_a_table_comes_as_rows(client, services, sweep_id, table):
         client.run(str(sweep_id)).archive()
 
 
-def test_workers_and_kinds_of_run_are_told(client, services, run_id):
+def test_the_client_lists_workers_and_experiments(client, run_id):
     assert client.workers() == []
     assert {one["experiment"] for one in client.experiments()} >= {"gaits", "folding"}
 
 
-def test_a_token_is_needed_and_given(serve, monkeypatch):
+def test_the_client_sends_its_token(serve, monkeypatch):
     from pydantic import SecretStr
 
     with serve(token=SecretStr("sesame")) as address:
@@ -161,3 +159,105 @@ def test_a_token_is_needed_and_given(serve, monkeypatch):
         monkeypatch.setenv("MICROCOSMOS_TOKEN", "sesame")
         monkeypatch.setenv("MICROCOSMOS_URL", address)
         assert list(Client().runs()) == []
+
+
+class Kept:
+    """A view that keeps what it was shown."""
+
+    def __init__(self, react=lambda standing: None):
+        self.shown: list[tuple[str, int, list[int]]] = []
+        self.react = react
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_: object) -> None: ...
+
+    def show(self, standing: polling.Standing) -> None:
+        record = standing.record
+        curve = list(standing.curves["generation"])
+        self.shown.append((record["status"], record["generation"], curve))
+        self.react(standing)
+
+
+@pytest.fixture
+def worked(attempt, record):
+    """The run goes on by a generation whenever it is shown, until its third."""
+    left = [1, 2, 3, None]
+
+    def go_on(standing: polling.Standing) -> None:
+        reached = (standing.curves["generation"] or [0])[-1]
+        if left and reached == 4 - len(left):
+            generation = left.pop(0)
+            if generation:
+                record(generation, seconds=float(generation))
+            else:
+                attempt.finish()
+
+    return go_on
+
+
+def test_a_run_is_followed_by_events(client, run, worked):
+    from microcosmos.client.watching import watch
+
+    view = Kept(worked)
+    assert watch(client.connection, run.id, view) == "finished"
+    status, generation, curve = view.shown[-1]
+    assert (status, generation, curve) == ("finished", 3, [1, 2, 3])
+    curves = [curve for _, _, curve in view.shown]
+    assert curves == sorted(curves)  # Nothing twice, nothing out of order.
+
+
+def test_watching_polls_without_a_stream(client, run, worked, monkeypatch):
+    def none(*_: object):
+        raise Refused("no streams here")
+        yield
+
+    monkeypatch.setattr(polling, "events", none)
+    monkeypatch.setattr(polling, "POLL", 0.01)
+    view = Kept(worked)
+    for standing in polling.follow(client.connection, run.id):
+        view.show(standing)
+    assert view.shown[-1] == ("finished", 3, [1, 2, 3])
+
+
+def test_watching_survives_an_absence_of_the_server(serve, services, run, worked, monkeypatch):
+    monkeypatch.setattr(polling, "POLL", 0.01)
+    with serve() as address:
+        client = Client(address, patience=0.0)
+        ask, broken = client.connection.read, []
+
+        def read(path: str, **asked: object):
+            if len(broken) < 3:
+                broken.append(path)
+                raise NoAnswer("No server answers.")
+            return ask(path, **asked)
+
+        found = polling.follow(client.connection, run.id)
+        view = Kept()
+        view.show(next(found))
+        monkeypatch.setattr(client.connection, "read", read)
+        troubles = []
+        for standing in found:
+            troubles.append(standing.trouble)
+            if standing.trouble is None:
+                worked(standing)
+        assert troubles.count("No server answers.") >= 1
+        assert (troubles[-1], standing.record["status"]) == (None, "finished")
+
+
+def test_an_absent_server_is_an_error_at_once():
+    with pytest.raises(NoAnswer, match="make run"):
+        next(polling.follow(Client("127.0.0.1:9").connection, "x"))
+
+
+def test_a_rewound_run_drops_later_generations(client, services, run, run_id, attempt, record):
+    for generation in (1, 2, 3):
+        record(generation)
+        if generation == 1:
+            attempt.save(1, b"state")
+    found = polling.follow(client.connection, run.id)
+    assert next(found).curves["generation"] == [1, 2, 3]
+    while (standing := next(found)).curves["generation"] == [1, 2, 3]:
+        claim(services, run_id, "worker")
+    assert standing.curves["generation"] == [1]

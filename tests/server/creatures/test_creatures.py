@@ -4,24 +4,15 @@ import json
 
 import httpx
 import pytest
+from answers import detail, errors, fields
 from rq import SimpleWorker
 from rq.serializers import JSONSerializer
 
 from microcosmos.archive import creature
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.queue import jobs
 from server.renderings import storage as renderings
 from server.tables import REPLAY
-
-
-@pytest.fixture
-def file(identity):
-    return creature.document(identity(3), None, None)
-
-
-@pytest.fixture
-def known(api, file) -> str:
-    return api.post("creatures", json=file).json()["creature"]
 
 
 def test_an_elite_is_read_as_a_creature_file(api, services, run_id, report):
@@ -40,27 +31,27 @@ def test_an_elite_is_read_as_a_creature_file(api, services, run_id, report):
     assert "immutable" in answer.headers["cache-control"]
 
 
-def test_a_creature_is_downloaded_under_its_name_and_can_be_brought_back(api, known):
+def test_a_downloaded_creature_can_be_uploaded_again(api, known):
     answer = api.get(f"creatures/{known}", params={"download": 1})
     assert f'filename="creature-{known[:12]}.json"' in answer.headers["content-disposition"]
     again = api.post("creatures", content=answer.content)
     assert (again.status_code, again.json()) == (200, {"creature": known})
 
 
-def test_a_creature_is_brought_back_as_hdf5_too(api, known):
+def test_a_creature_is_uploaded_as_hdf5(api, known):
     file = api.get(f"creatures/{known}/creature.h5").content
     sent = {"Content-Type": "application/x-hdf5"}
     again = api.post("creatures", content=file, headers=sent)
     assert (again.status_code, again.json()) == (200, {"creature": known})
 
 
-def test_who_has_a_creature_gets_it_once(api, known):
+def test_a_known_creature_is_not_sent_again(api, known):
     etag = api.get(f"creatures/{known}").headers["etag"]
     answer = api.get(f"creatures/{known}", headers={"If-None-Match": etag})
     assert (answer.status_code, answer.content) == (304, b"")
 
 
-def test_a_new_creature_is_kept_whole(api, file):
+def test_an_uploaded_creature_is_kept_whole(api, file):
     file["measured"] = {
         "fitness": 1.5,
         "descriptors": {"bending_effort": 0.25},
@@ -84,9 +75,7 @@ def test_a_new_creature_is_kept_whole(api, file):
 
 def test_a_wrong_hash_is_refused_with_the_right_one(api, file):
     right, wrong = file["sha256"], "00" * 32
-    answer = api.post("creatures", json={**file, "sha256": wrong})
-    assert answer.status_code == 422
-    (error,) = answer.json()["errors"]
+    (error,) = errors(api.post("creatures", json={**file, "sha256": wrong}))
     assert (error["field"], error["got"]) == ("sha256", wrong)
     assert right in error["needed"]
 
@@ -157,16 +146,14 @@ def test_a_rendering_that_failed_says_why(api, services, known, monkeypatch):
     )
     worker.work(burst=True)
     answer = api.get(f"creatures/{known}/replay")
-    assert answer.status_code == 500
-    assert "takes exactly one argument" in answer.json()["detail"]
+    assert "takes exactly one argument" in detail(answer, 500)
     assert answer.headers["retry-after"]
 
 
-def test_while_redis_is_away_a_replay_cannot_be_ordered(serve, known):
+def test_a_replay_cannot_be_ordered_without_redis(serve, known):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         answer = httpx.get(f"{address}/api/v1/creatures/{known}/replay", timeout=20)
-    assert answer.status_code == 503
-    assert answer.json()["detail"] == "Redis does not answer; try again."
+    assert detail(answer, 503) == "Redis does not answer; try again."
     assert answer.headers["retry-after"]
 
 
@@ -191,7 +178,7 @@ def family(identity) -> list[dict]:
     return [one(3, parent), parent, oldest]
 
 
-def test_a_creature_brings_its_ancestors_with_hashes_credit_and_licence(api, family):
+def test_an_upload_keeps_ancestors_with_credit_and_licence(api, family):
     young, parent, oldest = family
     oldest |= {"credit": ["Ada"], "licence": "CC0-1.0"}
     whole = {**young, "ancestors": [parent, oldest]}
@@ -208,7 +195,7 @@ def test_a_creature_brings_its_ancestors_with_hashes_credit_and_licence(api, fam
     assert (kin[1]["credit"], kin[1]["licence"]) == (["Ada"], "CC0-1.0")
 
 
-def test_ancestors_that_are_none_are_refused_and_nothing_is_kept(api, family, identity):
+def test_false_ancestors_are_refused_and_nothing_is_kept(api, family, identity):
     young, parent, oldest = family
     stranger = creature.document(identity(9), None, None)
     cases = [
@@ -220,7 +207,5 @@ def test_ancestors_that_are_none_are_refused_and_nothing_is_kept(api, family, id
         ("none", "ancestors"),
     ]
     for ancestors, field in cases:
-        answer = api.post("creatures", json={**young, "ancestors": ancestors})
-        assert answer.status_code == 422
-        assert answer.json()["errors"][0]["field"] == field
+        assert fields(api.post("creatures", json={**young, "ancestors": ancestors}))[0] == field
     assert api.get(f"creatures/{young['sha256']}").status_code == 404

@@ -7,7 +7,6 @@ import h5py
 import pytest
 
 from microcosmos.archive import creature, creature_h5
-from server.attempts.begin import claim
 
 
 @pytest.fixture
@@ -35,7 +34,7 @@ def names(found):
     return [item["creature"] for item in found["items"]]
 
 
-def test_ancestors_are_nearest_first_and_each_is_named_once(api, bring):
+def test_ancestors_are_listed_once_nearest_first(api, bring):
     # 1 is a parent of 4 and of its other parent 3.
     old, one = bring(10), bring(1, 10)
     three, four = bring(3, 1, 1), bring(4, 1, 3)
@@ -46,7 +45,7 @@ def test_ancestors_are_nearest_first_and_each_is_named_once(api, bring):
     assert (found["parents"], found["more"]) == ([one, three], False)
 
 
-def test_a_limit_of_depth_says_whether_there_are_older_ones(api, bring):
+def test_limited_ancestors_say_whether_more_exist(api, bring):
     one, two, three = bring(1), bring(2, 1), bring(3, 2)
     near = api.get(f"creatures/{three}/ancestors", params={"depth": 1}).json()
     assert (names(near), near["more"]) == ([two], True)
@@ -60,7 +59,7 @@ def digests(begin, count):
 
 
 @pytest.mark.parametrize("depth", [1, 2, 32])
-def test_where_the_most_are_named_there_are_more(api, bring, depth):
+def test_at_most_200_ancestors_are_listed(api, bring, depth):
     parents = digests(0, 201)
     child = bring(1, *parents)
     found = api.get(f"creatures/{child}/ancestors", params={"depth": depth}).json()
@@ -70,7 +69,7 @@ def test_where_the_most_are_named_there_are_more(api, bring, depth):
     assert (names(found), found["more"]) == (parents[:200], False)
 
 
-def test_which_ancestors_are_named_is_decided_by_the_order_of_parents(api, bring):
+def test_the_order_of_parents_decides_which_ancestors_are_listed(api, bring):
     older = {1: digests(0, 150), 2: digests(1000, 150)}
     one, two = bring(1, *older[1]), bring(2, *older[2])
     for child, first, second, parents in ((3, 1, 2, [one, two]), (4, 2, 1, [two, one])):
@@ -80,7 +79,7 @@ def test_which_ancestors_are_named_is_decided_by_the_order_of_parents(api, bring
         assert found["more"]
 
 
-def test_a_parent_that_was_never_kept_is_known_by_name_alone(api, bring, identity):
+def test_a_missing_parent_is_listed_by_hash(api, bring, identity):
     child = bring(2, 1)
     (only,) = api.get(f"creatures/{child}/ancestors").json()["items"]
     assert only["creature"] == creature.name(identity(1))
@@ -98,9 +97,8 @@ def test_children_are_counted_and_named_once_each(api, bring):
 
 
 @pytest.fixture
-def enter(api, services, run_id, report):
+def enter(api, report, attempt):
     """Has a creature enter the archive with a fitness and a parent; answers its name."""
-    attempt = claim(services, run_id, "worker")
     assert attempt is not None
 
     def enter(generation: int, fitness: float, parent: str) -> str:
@@ -132,7 +130,7 @@ def test_elites_of_a_run_are_linked_to_their_parents(api, enter):
     assert (only["creature"], only["kept"]) == (parent, False)
 
 
-def test_a_creature_as_hdf5_is_always_the_same_bytes_and_all_of_it(api, bring):
+def test_a_creature_as_hdf5_is_complete_and_always_the_same_bytes(api, bring):
     name = bring(3, 1)
     answer = api.get(f"creatures/{name}/creature.h5")
     assert answer.status_code == 200
@@ -146,7 +144,7 @@ def test_a_creature_as_hdf5_is_always_the_same_bytes_and_all_of_it(api, bring):
         assert weights[:] == [3.0]
 
 
-def test_measures_of_any_name_come_back_from_everywhere(api, identity, bring):
+def test_measures_of_any_name_survive_every_format(api, identity, bring):
     measures = {"displacement": 0.5, "": 1.0, ".": 2.0, "a": 3.0, "a/b": 4.0, "fitness": 5.0}
     measured = {
         "fitness": 0.5,
@@ -176,7 +174,7 @@ def test_measures_of_any_name_come_back_from_everywhere(api, identity, bring):
 @pytest.mark.parametrize(
     "measures", [{"a\0b": 1.0}, {"a": 10**400}, {"a": "1/"}, {str(i): 0 for i in range(1001)}]
 )
-def test_measures_that_cannot_be_kept_are_refused(api, identity, measures):
+def test_impossible_measures_are_refused(api, identity, measures):
     measured = {"fitness": 0.5, "descriptors": {}, "block": 16, "room": [24, 64], "device": ""}
     measured["measures"] = {"displacement": 0.5, **measures}
     file = creature.document(identity(1), measured, None)

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from answers import detail
 
 from microcosmos import naming
 from microcosmos.archive import creature
@@ -115,13 +116,11 @@ def test_a_network_is_written_without_a_connection(api, services, known, form, m
 
 
 @pytest.mark.parametrize("form", TYPES)
-def test_where_there_is_no_network_it_says_so(api, services, form):
+def test_a_creature_without_network_says_so(api, services, form):
     found = {"genome": {"encoding": "gait", "swimmer": "worm"}}
     name = naming.name(found)
     with services.sessions.write.begin() as session:
         identity = naming.canonical(found)
         row = Creature(sha256=name, identity=identity, parents=[], licence="CC0-1.0")
         session.add(row)
-    answer = api.get(f"creatures/{name}/network.{form}")
-    assert answer.status_code == 404
-    assert "'gait'" in answer.json()["detail"]
+    assert "'gait'" in detail(api.get(f"creatures/{name}/network.{form}"), 404)

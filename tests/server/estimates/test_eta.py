@@ -4,7 +4,7 @@ import pytest
 
 from microcosmos.archive import creature
 from microcosmos.spec import estimate, parse
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs.submission import submit
 from server.tables import Run
 from server.workers import registry
@@ -33,13 +33,13 @@ def ask(api, document):
     return answer.json()
 
 
-def test_nothing_is_said_of_time_before_a_run_was_measured(api, spec, measured):
+def test_no_time_is_estimated_without_measured_runs(api, spec, measured):
     assert (ask(api, spec)["seconds"], ask(api, spec)["speed"]) == (None, None)
     measured(spec, 1.0, generations=1)  # Which may have compiled all the time.
     assert ask(api, spec)["seconds"] is None
 
 
-def test_a_run_like_one_before_takes_as_long(api, spec, measured):
+def test_a_run_like_an_earlier_one_takes_as_long(api, spec, measured):
     measured(spec, 0.5, first=10.0)
     found = ask(api, spec)
     generations = spec["search"]["generations"]
@@ -56,7 +56,7 @@ def test_twice_the_work_takes_twice_as_long_compiling_aside(api, spec, measured)
     assert ask(api, spec)["seconds"] - 9.5 == pytest.approx(2 * (once - 9.5))
 
 
-def test_several_runs_give_a_middle_and_a_range(api, spec, measured):
+def test_several_runs_give_a_median_and_a_range(api, spec, measured):
     for seconds in (0.5, 1.0, 4.0):
         measured(spec, seconds, first=seconds)
     found = ask(api, spec)
@@ -66,7 +66,7 @@ def test_several_runs_give_a_middle_and_a_range(api, spec, measured):
     assert told == pytest.approx([0.5 * generations, generations, 4.0 * generations])
 
 
-def test_runs_most_alike_are_the_judges(api, spec, measured):
+def test_the_most_similar_runs_count(api, spec, measured):
     large = {**spec, "world": {**spec["world"], "width": 128, "height": 128}}
     for _ in range(5):
         measured(large, 1.0)
@@ -75,9 +75,7 @@ def test_runs_most_alike_are_the_judges(api, spec, measured):
     assert ask(api, large)["speed"]["cell_steps_per_second"] == pytest.approx(16 * cells)
 
 
-def test_only_runs_of_the_same_experiment_and_of_a_device_that_is_there_count(
-    api, services, spec, sweep, measured
-):
+def test_only_runs_of_this_experiment_and_device_count(api, services, spec, sweep, measured):
     measured(spec, 0.5)
     assert ask(api, sweep)["seconds"] is None
     registry.report(services.sessions, "fast", "NVIDIA H100", 1 << 40, "idle")
@@ -86,7 +84,7 @@ def test_only_runs_of_the_same_experiment_and_of_a_device_that_is_there_count(
     assert ask(api, spec)["speed"]["device"] == "AMD EPYC"
 
 
-def test_filaments_in_a_fluid_are_not_judged_by_those_without(api, measured):
+def test_estimates_do_not_mix_runs_with_and_without_fluid(api, measured):
     def fold(fluid):
         return {"experiment": "folding", "world": {"width": 96, "height": 96, "fluid": fluid}}
 
@@ -95,14 +93,14 @@ def test_filaments_in_a_fluid_are_not_judged_by_those_without(api, measured):
     assert ask(api, fold(True))["seconds"] is None
 
 
-def test_a_spec_of_another_version_judges_nothing(api, services, spec, measured):
+def test_a_spec_of_another_version_is_not_compared(api, services, spec, measured):
     name = measured(spec, 0.5)
     with services.sessions.write.begin() as session:
         session.get_one(Run, name).spec = {"experiment": "quality-diversity", "old": True}
     assert ask(api, spec)["seconds"] is None
 
 
-def test_the_queue_is_told(api, services, spec, run_id):
+def test_an_estimate_contains_the_queue(api, services, spec, run_id):
     assert ask(api, spec)["queue"] == {"runs_ahead": 1, "workers": 0, "idle_workers": 0}
     registry.report(services.sessions, "one", "cpu", 1 << 40, "idle")
     assert ask(api, spec)["queue"] == {"runs_ahead": 1, "workers": 1, "idle_workers": 1}
@@ -127,7 +125,7 @@ def test_a_creature_that_is_refined_is_drawn(api, identity):
     assert [(body["name"], body["nodes"]) for body in found["bodies"]] == [("chain", 16)]
 
 
-def test_a_long_body_is_thinned(api, spec):
+def test_a_long_body_is_thinned(api):
     world = {"width": 2048, "height": 2048}
     walk = {"builder": "walk", "nodes": 4000, "deviation": 0.05}
     folds = {"experiment": "folding", "world": world, "body": walk, "memory": 100}

@@ -9,7 +9,7 @@ from uuid import uuid4
 import httpx
 import pytest
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.events import fanout
 from server.runs.announce import announce
 from server.services import event_stream as events
@@ -40,7 +40,7 @@ def take(found, number):
     return [next(found) for _ in range(number)]
 
 
-def test_who_listens_is_told_what_happens_to_a_run(address, services, run_id, report):
+def test_the_stream_carries_every_change_of_a_run(address, services, run_id, report):
     with stream(address) as found:
         identifier, kind, data = next(found)
         assert (kind, data) == (None, None)  # The place from which it goes on.
@@ -70,10 +70,9 @@ def test_who_listens_is_told_what_happens_to_a_run(address, services, run_id, re
     assert [("spec" in data[i]) for i in (0, 3, 4)] == [True, False, True]
 
 
-def test_taking_a_run_up_again_rewinds(address, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_claiming_a_run_again_rewinds_it(address, services, run_id, attempt, record):
     for generation in (1, 2, 3):
-        attempt.record(report(generation), 1.0)
+        record(generation)
         if generation == 2:
             attempt.save(2, b"state")
     with stream(address) as found:
@@ -84,7 +83,7 @@ def test_taking_a_run_up_again_rewinds(address, services, run_id, report):
     assert (then, run["generation"]) == ("run", 2)
 
 
-def test_what_people_ask_for_is_told_too(address, api, run_id):
+def test_requested_actions_are_published(address, api, run_id):
     with stream(address) as found:
         next(found)
         api.post(f"runs/{run_id}/pause")
@@ -92,7 +91,7 @@ def test_what_people_ask_for_is_told_too(address, api, run_id):
         assert [data["status"] for _, _, data in take(found, 2)] == ["paused", "queued"]
 
 
-def test_the_last_word_on_a_run_is_how_it_stands(services, run_id, monkeypatch):
+def test_the_last_event_of_a_run_is_its_current_state(services, run_id, monkeypatch):
     """Whoever read it first is slow to tell, and is overtaken by whoever changed it next."""
     told, publish = [], services.events.publish
 
@@ -110,17 +109,16 @@ def test_the_last_word_on_a_run_is_how_it_stands(services, run_id, monkeypatch):
     assert told == ["running", "queued", "running"]
 
 
-def test_what_has_not_changed_is_told_once(services, run_id, report, monkeypatch):
+def test_an_unchanged_run_is_published_once(services, run_id, monkeypatch, record, attempt):
     told = []
-    attempt = claim(services, run_id, "worker")
     monkeypatch.setattr(services.events, "publish", lambda *event: told.append(event))
-    attempt.record(report(1), 1.0)
+    record(1)
     told.clear()
     announce(services, run_id, without=["spec"])
     assert len(told) == 1
 
 
-def test_a_stream_of_one_run_tells_nothing_of_others(address, services):
+def test_a_stream_of_one_run_excludes_others(address, services):
     mine, other = uuid4(), uuid4()
     with stream(address, run=mine) as found:
         next(found)
@@ -158,7 +156,7 @@ def test_nothing_is_lost_or_doubled_over_restarts_of_the_server(services, serve)
     assert heard == list(range(total))
 
 
-def test_a_stop_of_the_server_ends_its_streams_at_once(serve):
+def test_stopping_the_server_ends_its_streams(serve):
     with ExitStack() as server:
         address = server.enter_context(serve())
         with stream(address) as found:
@@ -170,7 +168,7 @@ def test_a_stop_of_the_server_ends_its_streams_at_once(serve):
 
 
 @pytest.mark.parametrize("last", ["1-0", "99999999999999-0", "nonsense"])
-def test_who_has_missed_more_than_is_kept_fetches_anew(address, services, last):
+def test_a_client_that_missed_too_much_is_reset(address, services, last):
     services.events.publish("run", uuid4(), {})
     with stream(address, last) as found:
         identifier, kind, _ = next(found)
@@ -181,7 +179,7 @@ def test_who_has_missed_more_than_is_kept_fetches_anew(address, services, last):
     assert fanout.position(later[0][0]) > fanout.position(identifier)
 
 
-def test_after_the_stream_was_emptied_a_client_fetches_anew(address, services, flush):
+def test_an_emptied_stream_resets_its_clients(address, services, flush):
     with stream(address) as found:
         next(found)
         services.events.publish("run", uuid4(), {})
@@ -191,12 +189,14 @@ def test_after_the_stream_was_emptied_a_client_fetches_anew(address, services, f
         assert next(found)[1] == "reset"
 
 
-def test_a_slow_listener_is_told_to_fetch_anew():
+def test_a_slow_listener_is_reset():
     listener = fanout.Listener("0-0")
     for number in range(fanout.QUEUE_SIZE + 1):
         listener.put(fanout.Entry(f"{number + 1}-0", "run"))
     waiting = [listener.waiting.get_nowait() for _ in range(listener.waiting.qsize())]
-    assert [(entry.id, entry.kind) for entry in waiting] == [(f"{fanout.QUEUE_SIZE + 1}-0", "reset")]
+    assert [(entry.id, entry.kind) for entry in waiting] == [
+        (f"{fanout.QUEUE_SIZE + 1}-0", "reset")
+    ]
 
 
 def test_the_stream_is_trimmed(services, monkeypatch):

@@ -5,7 +5,6 @@ import re
 import httpx
 import pytest
 
-from server.attempts.begin import claim
 from server.workers import registry
 
 SAMPLE = re.compile(r'^(\w+)(?:\{((?:\w+="(?:[^"\\]|\\.)*",?)*)\})? (\S+)$')
@@ -37,13 +36,13 @@ def scrape(address):
     return read
 
 
-def test_runs_queues_and_workers_are_counted(services, run_id, report, scrape):
+def test_runs_queues_and_workers_are_counted(services, run_id, scrape, record):
     before = scrape()
     assert before["runs", 'status="queued"'] == 1
     assert before["queue_length", 'queue="runs"'] == 1
     assert before["evaluations_total", ""] == 0
     assert ("generation_seconds", "") not in before
-    claim(services, run_id, "worker").record(report(4, {5: 1.0}), 10.0)
+    record(4, {5: 1.0}, seconds=10.0)
     registry.report(services.sessions, "worker", "a device", 1, "busy", run_id, kind="gpu")
     after = scrape()
     assert (after["runs", 'status="queued"'], after["runs", 'status="running"']) == (0, 1)
@@ -74,14 +73,14 @@ def test_requests_are_counted_by_route_and_not_by_address(scrape, api, run_id):
     assert found["request_seconds_sum", ""] > 0
 
 
-def test_methods_that_somebody_invents_are_counted_as_one(scrape, address):
+def test_unknown_methods_are_counted_as_one(scrape, address):
     for number in range(5):
         assert httpx.request(f"INVENTED{number}", address, verify=False).status_code == 405
     methods = re.findall(r'method="(\w+)"', " ".join(labels for _, labels in scrape()))
     assert set(methods) == {"other"}
 
 
-def test_a_redis_that_is_gone_is_told_and_the_rest_too(services, run_id, serve):
+def test_metrics_without_redis_show_the_rest(run_id, serve):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         told = httpx.get(f"{address}/metrics", verify=False, timeout=30).text.splitlines()
     assert "microcosmos_redis_up 0.0" in told

@@ -5,8 +5,8 @@ from redis import ConnectionError
 from rq.registry import StartedJobRegistry
 from sqlalchemy import update
 
-from server.attempts.begin import claim
-from server.attempts.claim import ClaimLost
+from server.attempts.attempt import ClaimLost
+from server.attempts.claim import claim
 from server.attempts.leases import job_died, job_stopped
 from server.core.database import ago
 from server.maintenance.reconcile import reconcile
@@ -46,13 +46,13 @@ def test_a_server_reconciles_when_it_starts(services, run_id, flush, serve, even
     assert enqueued(services) == [str(run_id)]
 
 
-def test_a_run_that_waits_in_the_queue_is_left_alone(services, run_id):
+def test_the_reconciler_leaves_a_queued_run(services, run_id):
     before = services.jobs.find(str(run_id)).enqueued_at
     reconcile(services)
     assert services.jobs.find(str(run_id)).enqueued_at == before
 
 
-def test_a_run_that_a_worker_has_just_taken_is_left_alone(services, run_id):
+def test_the_reconciler_leaves_a_started_run(services, run_id):
     services.redis.lrem(services.jobs.runs.key, 0, str(run_id))
     registry = StartedJobRegistry(queue=services.jobs.runs)
     services.redis.zadd(registry.key, {f"{run_id}:execution": 4e9})
@@ -67,8 +67,7 @@ def test_runs_are_enqueued_in_the_order_in_which_they_came(services, api, spec, 
     assert enqueued(services) == ids
 
 
-def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, report):
-    attempt = claim(services, run_id, "worker")
+def test_a_silent_workers_run_is_queued_again(services, run_id, attempt, flush, row, record):
     flush()
     reconcile(services)
     assert (row().status, enqueued(services)) == ("running", [])
@@ -76,7 +75,7 @@ def test_a_silent_workers_run_is_queued_again(services, run_id, flush, row, repo
     reconcile(services)
     assert (row().status, enqueued(services)) == ("queued", [str(run_id)])
     with pytest.raises(ClaimLost):
-        attempt.record(report(1), 1.0)
+        record(1)
 
 
 def test_three_silent_workers_end_a_run(services, run_id, row):
@@ -89,7 +88,9 @@ def test_three_silent_workers_end_a_run(services, run_id, row):
 
 
 @pytest.mark.parametrize(("action", "status"), [("pause", "paused"), ("cancel", "cancelled")])
-def test_a_wish_to_a_dead_worker_is_granted(services, api, run_id, row, action, status):
+def test_a_requested_state_is_applied_for_a_dead_worker(
+    services, api, run_id, row, action, status
+):
     claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/{action}")
     silence(services)
@@ -98,8 +99,9 @@ def test_a_wish_to_a_dead_worker_is_granted(services, api, run_id, row, action, 
     assert (row().finished_at is None) == (status == "paused")
 
 
-def test_who_does_not_obey_a_cancellation_loses_the_run(services, api, run_id, row):
-    attempt = claim(services, run_id, "worker")
+def test_a_worker_that_ignores_a_cancellation_loses_the_run(
+    services, api, run_id, row, attempt
+):
     api.post(f"runs/{run_id}/cancel")
     reconcile(services)
     assert row().status == "running"
@@ -107,7 +109,7 @@ def test_who_does_not_obey_a_cancellation_loses_the_run(services, api, run_id, r
     reconcile(services)
     assert row().status == "cancelled"
     with pytest.raises(ClaimLost):
-        attempt.requested()
+        attempt.check()
 
 
 def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
@@ -120,7 +122,7 @@ def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
     assert enqueued(services) == [str(run_id)]
 
 
-def test_a_job_killed_because_its_worker_stops_is_no_lost_chance(services, run_id, row, flush):
+def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, row, flush):
     for _ in range(4):
         attempt = claim(services, run_id, "worker")
         job_stopped(services, run_id, "another")
@@ -128,7 +130,7 @@ def test_a_job_killed_because_its_worker_stops_is_no_lost_chance(services, run_i
         job_stopped(services, run_id, "worker")
         assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
         with pytest.raises(ClaimLost):
-            attempt.requested()
+            attempt.check()
     assert enqueued(services) == [str(run_id)]
 
 
@@ -162,7 +164,7 @@ def test_an_outage_of_redis_does_not_end_the_reconciler(serve, monkeypatch, even
         eventually(lambda: len(calls) >= 5)
 
 
-def test_workers_that_were_silent_for_long_are_forgotten(services, api):
+def test_workers_silent_for_long_are_removed(services, api):
     from server.workers import registry
 
     registry.report(services.sessions, "worker", "cpu", 1, "idle")

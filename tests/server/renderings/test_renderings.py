@@ -1,22 +1,21 @@
-"""Orders of renderings, and what comes of them."""
+"""Replays, films, pictures, motions and measurements on request."""
+
+import json
+import struct
 
 import httpx
+import numpy as np
 import pytest
+from answers import detail
 from sqlalchemy import select
 
 from microcosmos.archive import creature
 from microcosmos.viz.replay_file import REPLAY_VERSION
 from server.renderings import storage as renderings
-from server.tables import REPLAY, Artifact
+from server.tables import MEASUREMENT, REPLAY, Artifact
 
 
-@pytest.fixture
-def known(api, identity) -> str:
-    file = creature.document(identity(3), None, None)
-    return api.post("creatures", json=file).json()["creature"]
-
-
-def test_a_replay_that_the_engine_refuses_is_refused_in_its_words(api, services, known):
+def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
     error = creature.CreatureError("task.steps", "at most 1 cell step for a replay", 2)
     services.jobs.render(known)
     job = services.jobs.find(services.jobs.rendering_id(known))
@@ -28,7 +27,7 @@ def test_a_replay_that_the_engine_refuses_is_refused_in_its_words(api, services,
     assert services.jobs.renderings.count == 0
 
 
-def test_an_order_that_vanishes_while_it_is_looked_at_is_no_error(services, known, monkeypatch):
+def test_a_rendering_job_that_vanishes_is_no_error(services, known, monkeypatch):
     services.jobs.render(known)
     job = services.jobs.find(services.jobs.rendering_id(known))
     services.jobs.forget(job.id)
@@ -79,17 +78,16 @@ def test_a_film_is_saved_under_the_creatures_name(api, services, known):
     assert answer.headers["content-disposition"] == expected
 
 
-def test_one_kind_that_failed_leaves_the_others_alone(api, services, known):
+def test_a_failed_kind_leaves_the_others(api, services, known):
     services.jobs.render(known, "audit")
     job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
     services.jobs.give_up(job, "Traceback\nValueError: too large to refine\n")
     answer = api.get(f"creatures/{known}/audit")
-    assert answer.status_code == 500
-    assert "The audit failed: ValueError: too large" in answer.json()["detail"]
+    assert "The audit failed: ValueError: too large" in detail(answer, 500)
     assert api.get(f"creatures/{known}/film.gif").status_code == 202
 
 
-def test_who_waits_to_watch_is_served_first(services, known):
+def test_replays_are_rendered_first(services, known):
     for kind in ("audit", "film.mp4", "replay"):
         services.jobs.render(known, kind)
     waiting = services.jobs.renderings.get_job_ids()
@@ -97,7 +95,7 @@ def test_who_waits_to_watch_is_served_first(services, known):
     assert kinds == ["replay", "film.mp4"], "and no audit before or among them"
 
 
-def test_what_failed_is_told_by_the_first_line_of_what_was_raised(api, services, known):
+def test_a_failure_is_reported_by_the_first_line_of_its_error(api, services, known):
     services.jobs.render(known, "audit")
     job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
     raised = "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)"
@@ -118,3 +116,92 @@ def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
     assert api.get(f"creatures/{known}/film.gif").content == b"GIF"
     renderings.save(services, known, REPLAY, b"of now again")
     assert api.get(f"creatures/{known}/replay").content == b"of now again"
+
+
+def recorded(positions: np.ndarray) -> bytes:
+    """A replay with these positions, (frame, node, 2), and some fluid behind them."""
+    frames, nodes, _ = positions.shape
+    header = {
+        "format": "microcosmos-replay/2",
+        "frames": frames,
+        "every": 5,
+        "steps": 5 * (frames - 1),
+        "nodes": nodes,
+        "edges": [[0, 1], [1, 2]],
+        "size": [8, 4],
+        "vorticity": {"scale": 1.0},
+    }
+    told = json.dumps(header).encode()
+    fluid = np.ones((frames, 8, 4), np.int8).tobytes()
+    return struct.pack("<I", len(told)) + told + positions.astype("<f4").tobytes() + fluid
+
+
+def read(data: bytes) -> tuple[dict, np.ndarray]:
+    (length,) = struct.unpack_from("<I", data)
+    header = json.loads(data[4 : 4 + length])
+    positions = np.frombuffer(data[4 + length :], "<f4")
+    return header, positions.reshape(header["frames"], header["nodes"], 2)
+
+
+@pytest.mark.parametrize(("frames", "stride"), [(7, 1), (96, 1), (97, 2), (1001, 11)])
+def test_a_motion_is_every_kth_frame_of_the_replay(api, services, known, frames, stride):
+    positions = np.random.default_rng(0).normal(size=(frames, 3, 2)).astype(np.float32)
+    renderings.save(services, known, REPLAY, recorded(positions))
+    answer = api.get(f"creatures/{known}/motion")
+    header, motion = read(answer.content)
+    np.testing.assert_array_equal(motion, positions[::stride])
+    assert header["every"] == 5 * stride
+    assert (header["nodes"], header["edges"], header["size"]) == (3, [[0, 1], [1, 2]], [8, 4])
+    again = api.get(
+        f"creatures/{known}/motion", headers={"If-None-Match": answer.headers["etag"]}
+    )
+    assert (again.status_code, again.content) == (304, b"")
+
+
+def test_a_motion_without_replay_orders_the_replay(api, services, known):
+    answer = api.get(f"creatures/{known}/motion")
+    assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
+    assert services.jobs.renderings.count == 1
+
+
+@pytest.fixture
+def measured(api, report) -> str:
+    (elite,) = report(1, {3: 1.5}).elites
+    file = creature.document(json.loads(elite.identity), elite.measured, elite.provenance)
+    return api.post("creatures", json=file).json()["creature"]
+
+
+def test_a_creature_is_measured_again_on_request(api, services, measured):
+    path = f"creatures/{measured}/measurement"
+    assert api.get(path).status_code == 204
+    assert services.jobs.audits.count == 0, "looking orders nothing"
+    for _ in range(2):
+        assert api.post(f"creatures/{measured}/measure").status_code == 202
+        assert api.get(path).status_code == 202
+    (job,) = services.jobs.audits.get_jobs()
+    assert job.args == [measured, MEASUREMENT]
+    services.jobs.forget(job.id)
+    renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
+    assert api.get(path).json() == {"exact": True}
+
+
+def test_a_creature_can_be_measured_repeatedly(api, services, measured):
+    renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
+    api.post(f"creatures/{measured}/measure")
+    assert api.get(f"creatures/{measured}/measurement").status_code == 202
+
+
+def test_an_unmeasured_creature_is_not_measured_again(api, identity):
+    file = creature.document(identity(3), None, None)
+    measured = api.post("creatures", json=file).json()["creature"]
+    answer = api.post(f"creatures/{measured}/measure")
+    assert (answer.status_code, answer.json()["title"]) == (422, "Never measured")
+
+
+def test_a_measurement_that_failed_says_why(api, services, measured):
+    api.post(f"creatures/{measured}/measure")
+    (job,) = services.jobs.audits.get_jobs()
+    services.jobs.give_up(job, "Traceback\nValueError: out of memory\n")
+    answer = api.get(f"creatures/{measured}/measurement")
+    assert answer.status_code == 500
+    assert "The measurement failed: ValueError: out of memory" in answer.text

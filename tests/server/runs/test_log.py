@@ -3,9 +3,10 @@
 from uuid import uuid4
 
 import pytest
+from answers import fields
 
 from server.attempts import leases
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.runs import lifecycle
 from server.tables import Run
 
@@ -32,7 +33,7 @@ def ask(services, run_id, wish):
         wish(session, session.get_one(Run, run_id))
 
 
-def test_a_run_that_goes_well_is_told_from_end_to_end(services, run_id, report, log):
+def test_the_log_of_a_finished_run_is_complete(services, run_id, report, log):
     attempt = claim(services, run_id, "worker 1")
     attempt.use("cpu: a processor")
     attempt.record(report(1), 1.0)
@@ -49,10 +50,9 @@ def test_a_run_that_goes_well_is_told_from_end_to_end(services, run_id, report, 
     assert submitted.startswith("Submitted: quality-diversity")
 
 
-def test_of_many_checkpoints_the_first_and_the_last_stay(services, run_id, report, texts):
-    attempt = claim(services, run_id, "worker")
+def test_the_log_keeps_the_first_and_last_checkpoint(texts, attempt, record):
     for generation in range(1, 8):
-        attempt.record(report(generation), 1.0)
+        record(generation)
         attempt.save(generation, b"archive %d" % generation)
         attempt.warn("it is crowded")
     saved = [text for text in texts() if text.startswith("Checkpoint")]
@@ -60,15 +60,14 @@ def test_of_many_checkpoints_the_first_and_the_last_stay(services, run_id, repor
     assert texts().count("it is crowded") == 2
 
 
-def test_a_failed_attempt_keeps_its_traceback_and_the_next_says_where_it_goes_on(
-    services, run_id, report, log
+def test_a_failed_attempt_logs_its_traceback_and_the_next_its_start(
+    services, run_id, log, attempt, record
 ):
-    first = claim(services, run_id, "worker")
     for generation in (1, 2, 3):
-        first.record(report(generation), 1.0)
+        record(generation)
         if generation == 1:
-            first.save(1, b"the archive")
-    first.fail("Traceback:\nZeroDivisionError: twice nothing")
+            attempt.save(1, b"the archive")
+    attempt.fail("Traceback:\nZeroDivisionError: twice nothing")
     claim(services, run_id, "another")
     assert log()[-4:] == [
         (
@@ -82,17 +81,14 @@ def test_a_failed_attempt_keeps_its_traceback_and_the_next_says_where_it_goes_on
     ]
 
 
-def test_the_third_attempt_without_a_checkpoint_is_told_as_the_last(services, run_id, log):
+def test_the_log_names_the_last_attempt(services, run_id, log):
     for _ in range(lifecycle.ATTEMPTS):
         claim(services, run_id, "worker").fail("no luck")
     assert log()[-1] == ("error", 3, "Failed: 3 attempts without a new checkpoint.")
 
 
-def test_what_people_ask_is_told_when_it_is_asked_and_when_it_is_done(
-    services, run_id, report, api, texts
-):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
+def test_the_log_has_requests_and_their_completion(run_id, api, texts, attempt, record):
+    record(1)
     attempt.save(1, b"the archive")
     api.post(f"runs/{run_id}/pause")
     attempt.pause()
@@ -107,24 +103,24 @@ def test_what_people_ask_is_told_when_it_is_asked_and_when_it_is_done(
     ]
 
 
-def test_a_worker_that_is_told_to_stop_hands_its_run_back(services, run_id, texts):
+def test_the_log_names_a_stopped_worker(services, run_id, texts):
     claim(services, run_id, "worker").requeue()
     assert texts()[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
 
 
-def test_a_job_that_died_is_told(services, run_id, log):
+def test_the_log_names_a_dead_job(services, run_id, log):
     claim(services, run_id, "worker")
     leases.job_died(services, run_id, "worker", "killed by signal 9")
     assert ("error", 1, "Attempt 1 ended badly: killed by signal 9") in log()
 
 
-def test_a_refused_wish_leaves_no_entry(services, run_id, api, texts):
+def test_a_refused_action_leaves_no_entry(run_id, api, texts):
     before = texts()
     assert api.post(f"runs/{run_id}/resume").status_code == 409
     assert texts() == before
 
 
-def test_the_newest_entries_are_told_and_those_that_follow_one(api, services, run_id):
+def test_the_log_gives_the_newest_entries_or_those_after_an_id(api, services, run_id):
     for _ in range(3):
         ask(services, run_id, lifecycle.pause)
         ask(services, run_id, lifecycle.resume)
@@ -142,6 +138,4 @@ def test_the_newest_entries_are_told_and_those_that_follow_one(api, services, ru
 def test_the_log_of_no_run_is_not_found_and_a_limit_has_to_make_sense(api, run_id):
     assert api.get(f"runs/{uuid4()}/log").status_code == 404
     for wrong in ({"limit": 0}, {"after": -1}, {"after": 1 << 31}, {"after": 1 << 63}):
-        refused = api.get(f"runs/{run_id}/log", params=wrong)
-        assert refused.status_code == 422
-        assert refused.json()["errors"][0]["field"] in wrong
+        assert fields(api.get(f"runs/{run_id}/log", params=wrong))[0] in wrong

@@ -4,6 +4,7 @@ import re
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from answers import detail, fields
 from sqlalchemy.exc import TimeoutError
 
 from server.runs import routes
@@ -95,13 +96,11 @@ def test_bad_input_is_refused_with_field_and_reason(
         ("folding", {}, "memory"),
     ],
 )
-def test_a_run_that_needs_too_much_memory_is_told_which_field_decides(
+def test_a_run_that_needs_too_much_memory_names_the_field(
     api, services, experiment, change, field
 ):
     registry.report(services.sessions, "small", "cpu", 1000, "idle")
-    answer = api.post("runs", json={"experiment": experiment, **change})
-    assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == field
+    assert fields(api.post("runs", json={"experiment": experiment, **change}))[0] == field
 
 
 @pytest.mark.parametrize(
@@ -120,7 +119,7 @@ def test_a_run_that_needs_too_much_memory_is_told_which_field_decides(
         (b'"' + b"a" * (1 << 21) + b'"', 413, "At most 1,048,576 bytes"),
     ],
 )
-def test_what_is_not_a_plain_json_object_is_refused(api, body, status, words):
+def test_a_body_that_is_not_a_plain_object_is_refused(api, body, status, words):
     answer = api.post("runs", content=body)
     assert answer.status_code == status
     assert answer.headers["content-type"] == PROBLEM
@@ -128,16 +127,15 @@ def test_what_is_not_a_plain_json_object_is_refused(api, body, status, words):
 
 
 @pytest.mark.parametrize("body", [b"{", b"\xff\xfe", b"1" * 5000])
-def test_a_body_that_is_not_json_is_refused_in_our_words(api, body):
+def test_a_body_that_is_not_json_is_refused_without_parser_words(api, body):
     detail = api.post("creatures", content=body).json()["detail"]
     assert not re.search("codec|delimiter|Expecting|digits \\(", detail)
     assert detail.startswith("JSON is needed; the body ") or "object is needed" in detail
 
 
-def test_an_id_that_is_none_is_answered_with_what_one_looks_like(api):
+def test_a_malformed_id_is_answered_with_an_example(api):
     answer = api.get("runs/abc")
-    assert answer.status_code == 422
-    assert answer.json()["detail"] == (
+    assert detail(answer, 422) == (
         "run_id: needs an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427; got 'abc'"
     )
 
@@ -147,8 +145,7 @@ def test_a_run_must_fit_the_largest_live_worker(api, services, spec):
     assert needed["memory_limit_bytes"] == services.settings.max_bytes
     registry.report(services.sessions, "small", "cpu", 1000, "idle")
     answer = api.post("runs", json=spec)
-    assert answer.status_code == 422
-    assert f"{needed['memory_bytes']:,}" in answer.json()["detail"]
+    assert f"{needed['memory_bytes']:,}" in detail(answer, 422)
     assert "1,000 bytes are available" in answer.json()["detail"]
     registry.report(services.sessions, "large", "cpu", needed["memory_bytes"], "idle")
     assert api.post("runs", json=spec).status_code == 202
@@ -173,12 +170,10 @@ def test_the_same_key_at_once_gives_one_run(api, services, spec):
 def test_a_key_cannot_be_used_for_another_spec(api, spec):
     headers = {"Idempotency-Key": "a key"}
     run = api.post("runs", json=spec, headers=headers).json()
-    answer = api.post("runs", json={**spec, "seed": 1}, headers=headers)
-    assert answer.status_code == 422
-    assert run["id"] in answer.json()["detail"]
+    assert run["id"] in detail(api.post("runs", json={**spec, "seed": 1}, headers=headers), 422)
 
 
-def test_a_key_stands_for_a_spec_with_numbers_that_canonical_json_has_not(api, spec):
+def test_keys_work_with_integers_beyond_canonical_json(api, spec):
     spec["search"]["stop"] = {"evaluations": 2**53 + 1}
     headers = {"Idempotency-Key": "large"}
     first, second = (api.post("runs", json=spec, headers=headers) for _ in range(2))
@@ -188,7 +183,7 @@ def test_a_key_stands_for_a_spec_with_numbers_that_canonical_json_has_not(api, s
     assert api.post("runs", json=spec, headers=headers).status_code == 422
 
 
-def test_what_was_accepted_once_is_not_refused_when_it_is_asked_again(api, services, spec):
+def test_an_accepted_key_is_not_refused_later(api, services, spec):
     """A worker with the memory may have gone meanwhile."""
     headers = {"Idempotency-Key": "a key"}
     registry.report(services.sessions, "large", "cpu", 1 << 29, "idle")
@@ -214,15 +209,13 @@ def test_runs_are_listed_newest_first_in_pages(api, spec):
     assert [run["id"] for run in found] == [ids[2]]
 
 
-def test_queries_are_checked(api):
+def test_invalid_queries_are_refused(api):
     assert api.get("runs", params={"cursor": "nonsense"}).status_code == 422
-    answer = api.get("runs", params={"limit": 0})
-    assert answer.status_code == 422
-    assert answer.json()["errors"][0]["field"] == "limit"
+    assert fields(api.get("runs", params={"limit": 0}))[0] == "limit"
 
 
 @pytest.mark.parametrize("path", ["runs/00000000-0000-0000-0000-000000000000", "nothing"])
-def test_what_is_not_there_is_a_problem(api, path):
+def test_missing_paths_answer_with_a_problem(api, path):
     answer = api.get(path)
     assert answer.status_code == 404
     assert answer.headers["content-type"] == PROBLEM

@@ -1,8 +1,16 @@
 """Requests of the holder of a share."""
 
+from typing import Any
+
 import pytest
 
 from server.auth.capability import HEADER
+
+
+@pytest.fixture
+def file(file) -> dict[str, Any]:
+    """A creature file with a credit."""
+    return {**file, "credit": ["Ada"]}
 
 
 @pytest.fixture

@@ -5,17 +5,10 @@ import re
 import httpx
 import pytest
 
-from microcosmos.archive import creature
 from server.core import page
 
 INDEX = "<!doctype html><html><head><title>Microcosmos</title>\n</head><body></body></html>"
 HOSTILE = """</title><script>alert("x")</script>'&"""
-
-
-@pytest.fixture
-def known(api, identity) -> str:
-    file = creature.document(identity(3), None, None)
-    return api.post("creatures", json={**file, "credit": ["Ada"]}).json()["creature"]
 
 
 @pytest.fixture
@@ -25,7 +18,7 @@ def built(tmp_path, monkeypatch):
     monkeypatch.setattr(page, "BUILT", tmp_path / "dist")
 
 
-def test_the_page_tells_other_sites_what_it_shows(api, address, built, known, services):
+def test_the_page_of_a_share_has_previews_for_other_sites(api, address, built, known):
     sent = {"creature": known, "title": HOSTILE, "credit": [HOSTILE]}
     slug = api.post("shares", json=sent).json()["slug"]
     answer = api.get(f"{address}/s/{slug}")
@@ -59,7 +52,7 @@ def test_the_address_outside_is_what_the_settings_say(serve, built, known):
         )
 
 
-def test_the_page_of_what_is_gone_says_so_and_shows_nothing(api, address, built, known):
+def test_the_page_of_a_revoked_share_shows_nothing(api, address, built, known):
     slug = api.post("shares", json={"creature": known}).json()["slug"]
     api.delete(f"shares/{slug}")
     gone = api.get(f"{address}/s/{slug}")
@@ -68,7 +61,7 @@ def test_the_page_of_what_is_gone_says_so_and_shows_nothing(api, address, built,
 
 
 @pytest.mark.parametrize("name", ["%00", "a" * 10_000, "%ED%A0%80", "%0A"])
-def test_what_cannot_be_an_address_is_nobodys(api, address, built, name):
+def test_impossible_slugs_are_not_found(api, address, built, name):
     """Databases do not take every text; whoever sends it anyway is told no more than others."""
     for path in (f"{address}/s/{name}", f"{address}/s/{name}/creatures/x", f"shares/{name}"):
         assert api.get(path).status_code in (404, 422), path

@@ -3,7 +3,7 @@
 import pytest
 
 from microcosmos.archive import file
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.renderings import storage as renderings
 from server.tables import PREVIEW, REPLAY
 
@@ -43,7 +43,7 @@ def test_an_archive_is_shared_as_it_was(through, archive, attempt, report, run_i
         assert found.status_code == 404
 
 
-def test_a_shared_run_tells_nothing_that_its_owner_noted(api, through, archive, run_id):
+def test_a_shared_run_hides_its_owners_notes(api, through, archive, run_id):
     api.patch(f"runs/{run_id}", json={"name": "mine", "tags": ["a"], "note": "secret"})
     told = through(archive["slug"], f"runs/{run_id}")
     assert "secret" not in told.text
@@ -77,7 +77,7 @@ def test_a_past_generation_is_shared_without_a_file(api, through, run_id, attemp
     assert beyond.json()["errors"][0]["field"] == "generation"
 
 
-def test_strangers_wait_behind_everybody_and_only_so_many_of_them(
+def test_renderings_for_shares_wait_last_and_are_limited(
     through, services, archive, attempt, monkeypatch
 ):
     monkeypatch.setattr(renderings, "ANONYMOUS_LIMIT", 2)
@@ -90,7 +90,7 @@ def test_strangers_wait_behind_everybody_and_only_so_many_of_them(
     assert [job.args for job in jobs] == [[cover, PREVIEW], [names["creature"][0], REPLAY]]
 
 
-def test_a_deleted_run_leaves_the_commons_and_comes_back_to_them(
+def test_a_deleted_run_leaves_the_commons_until_restored(
     api, through, services, attempt, run_id
 ):
     attempt.finish()

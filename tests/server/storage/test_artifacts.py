@@ -13,13 +13,13 @@ def files(tmp_path) -> Artifacts:
     return Artifacts(str(tmp_path))
 
 
-def test_what_was_written_is_read(files):
+def test_files_are_read_as_written(files):
     stored = files.write("runs/1/a.h5", b"content")
     assert files.read(stored.path) == b"content"
     assert b"".join(files.stream(stored.path, 2, 5)) == b"nte"
 
 
-def test_a_full_disk_leaves_the_previous_file_and_no_remains(files, tmp_path, monkeypatch):
+def test_a_full_disk_leaves_the_previous_file_and_no_part(files, tmp_path, monkeypatch):
     files.write("runs/1/a.h5", b"before")
 
     def full(_):

@@ -4,8 +4,8 @@ from uuid import UUID
 
 import pytest
 
-from server.attempts.begin import claim
-from server.attempts.claim import Claim
+from server.attempts.attempt import Attempt
+from server.attempts.claim import claim
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
@@ -30,7 +30,7 @@ def six(post):
 def claimed(services):
     """Claims a run of a sweep for a worker."""
 
-    def claimed(run: str | UUID, worker: str = "worker") -> Claim:
+    def claimed(run: str | UUID, worker: str = "worker") -> Attempt:
         found = claim(services, UUID(str(run)), worker)
         assert found
         return found

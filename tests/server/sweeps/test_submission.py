@@ -13,7 +13,7 @@ from server.tables import Run, Sweep
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
 
-def test_a_sweep_is_each_case_with_each_seed_the_first_seed_first(api, services, six):
+def test_a_sweep_runs_each_case_with_each_seed_in_order(api, services, six):
     assert (six["total"], six["status_counts"], six["progress"]) == (6, {"queued": 6}, 0)
     assert [case["values"] for case in six["cases"]] == [
         {"world.viscosity": 0.05},
@@ -94,7 +94,7 @@ def test_a_part_that_is_off_can_be_given_fields(api, post):
         ({"name": "x" * 201}, "name", "200"),
     ],
 )
-def test_nothing_is_written_where_any_run_could_not_be(api, post, asked, field, words):
+def test_one_invalid_run_refuses_the_whole_sweep(api, post, asked, field, words):
     answer = post(**asked)
     assert answer.status_code == 422
     problem = answer.json()
@@ -104,7 +104,7 @@ def test_nothing_is_written_where_any_run_could_not_be(api, post, asked, field, 
     assert api.get("runs").json()["items"] == []
 
 
-def test_a_spec_that_is_wrong_by_itself_is_told_as_such(api, spec):
+def test_an_error_of_the_spec_is_reported_under_spec(api, spec):
     spec["world"]["viscosity"] = -1
     (error,) = api.post("sweeps", json={"spec": spec}).json()["errors"]
     assert error["field"] == "spec.world.viscosity"
@@ -113,7 +113,7 @@ def test_a_spec_that_is_wrong_by_itself_is_told_as_such(api, spec):
     assert (error["field"], "seeds end at 4294967296" in error["message"]) == ("seeds", True)
 
 
-def test_memory_is_refused_at_the_value_that_asks_for_it(api, post, spec):
+def test_memory_is_refused_at_the_value_that_needs_it(api, post, spec):
     spec["archive"]["descriptors"][1]["bins"] = 1024
     grid = {"archive.descriptors.0.bins": [16, 900, 1000], **VISCOSITIES}
     answer = post(grid=grid)
@@ -153,7 +153,7 @@ def test_the_same_key_at_once_gives_one_sweep(api, services, spec):
         assert f"sweep {answers[0].json()['id']}" in refused.json()["detail"]
 
 
-def test_whole_numbers_that_canonical_json_has_not_are_no_hindrance(api, spec):
+def test_sweeps_take_integers_beyond_canonical_json(api, spec):
     asked = {"spec": spec, "grid": {"search.stop.evaluations": [10**20, 10**21]}}
     answer = api.post("sweeps", json=asked, headers={"Idempotency-Key": "large"})
     assert answer.status_code == 202
@@ -162,7 +162,7 @@ def test_whole_numbers_that_canonical_json_has_not_are_no_hindrance(api, spec):
 
 
 @pytest.fixture
-def elite(claimed, services, run_id, report, identity):
+def elite(claimed, run_id, report, identity):
     """The name of a creature that lives in a finished run."""
     attempt = claimed(run_id)
     attempt.record(report(1, {0: 1.0}), 1.0)
@@ -170,7 +170,7 @@ def elite(claimed, services, run_id, report, identity):
     return creature.name(identity(1000))
 
 
-def test_what_a_sweep_begins_from_stays_as_long_as_its_runs(
+def test_initial_creatures_of_a_sweep_outlive_their_run(
     runs_of, claimed, api, services, post, spec, run_id, elite
 ):
     spec["search"]["initial"] = [elite]

@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 from sqlalchemy import event, insert, update
 
-from server.sweeps.comparison import common_generation
-from server.sweeps.summary import summary
+from server.sweeps.summary import common_generation, summary
 from server.tables import Generation, Run, Sweep
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
 
-def test_bands_are_the_quartiles_of_the_runs_that_have_got_so_far(api, services, post):
+def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services, post):
     sweep = post(seeds=4, grid=VISCOSITIES).json()
     rng = np.random.default_rng(0)
     lengths = [5, 3, 4, 0]
@@ -58,9 +57,7 @@ def test_bands_are_the_quartiles_of_the_runs_that_have_got_so_far(api, services,
     assert line["coverage"] == [*told[line["run"]][:, 1], None, None]
 
 
-def test_a_run_that_comes_back_while_a_summary_is_made_is_not_taken_for_another(
-    api, services, post
-):
+def test_a_run_restored_during_a_summary_is_not_mixed_up(api, services, post):
     sweep = post(seeds=3).json()
     runs = sweep["cases"][0]["runs"]
     for run, value in zip(runs, (1.0, 2.0, 3.0), strict=True):
@@ -123,9 +120,7 @@ def test_a_summary_asks_the_database_as_often_for_many_runs_as_for_few(services,
     assert sizes == [2, 2]
 
 
-def test_of_a_table_the_finals_are_the_figures_of_its_summary(
-    claimed, api, services, sweep, table
-):
+def test_finals_of_a_table_come_from_its_summary(claimed, api, sweep, table):
     found = api.post("sweeps", json={"spec": sweep, "grid": {"period": [40, 50]}}).json()
     assert (found["seeds"], found["total"]) == ([], 2)
     attempt = claimed(found["cases"][0]["runs"][0])
@@ -151,6 +146,6 @@ def test_of_a_table_the_finals_are_the_figures_of_its_summary(
         ([("failed", 7), ("cancelled", 3)], 3),
     ],
 )
-def test_runs_are_compared_at_a_generation_that_all_have_reached(runs, common):
+def test_runs_are_compared_at_a_common_generation(runs, common):
     rows = [SimpleNamespace(status=status, generation=last) for status, last in runs]
     assert common_generation(rows) == common

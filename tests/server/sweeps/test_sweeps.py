@@ -24,7 +24,7 @@ def test_single_runs_are_taken_before_those_of_a_sweep(runs_of, api, services, s
     assert both == 7
 
 
-def test_runs_that_are_resumed_together_wait_in_their_old_order(runs_of, services, post, api):
+def test_runs_resumed_together_keep_their_order(runs_of, services, post, api):
     sweep = post(seeds=30).json()
     with services.sessions.write.begin() as session:
         session.execute(update(Run).values(queued_at=datetime(2026, 1, 1, tzinfo=UTC)))
@@ -33,7 +33,7 @@ def test_runs_that_are_resumed_together_wait_in_their_old_order(runs_of, service
     assert waiting == runs_of(sweep)
 
 
-def test_runs_of_a_sweep_are_enqueued_again_where_redis_forgot_them(
+def test_runs_of_a_sweep_are_enqueued_again_after_redis_lost_them(
     runs_of, services, six, flush, api
 ):
     flush()
@@ -90,9 +90,7 @@ def test_sweeps_are_listed_in_pages_newest_first(api, post):
         assert api.get("sweeps", params={"cursor": cursor}).status_code == 422
 
 
-def test_who_steers_a_sweep_is_told_which_runs_were_left_alone(
-    runs_of, claimed, api, services, six, report
-):
+def test_actions_on_a_sweep_list_skipped_runs(runs_of, claimed, api, services, six, report):
     first, second, *waiting = map(UUID, runs_of(six))
     done, busy = claimed(first, "one"), claimed(second, "two")
     done.record(report(1), 1.0)
@@ -129,9 +127,7 @@ def test_a_sweep_has_a_name_that_can_be_changed(api, six):
     assert api.patch(f"sweeps/{UUID(int=5)}", json={"name": "x"}).status_code == 404
 
 
-def test_a_deleted_sweep_is_out_of_sight_and_comes_back_as_it_was(
-    runs_of, claimed, api, services, six
-):
+def test_a_deleted_sweep_is_hidden_and_restored_unchanged(runs_of, claimed, api, services, six):
     path = f"sweeps/{six['id']}"
     first, *others = runs_of(six)
     attempt = claimed(first)
@@ -163,7 +159,7 @@ def test_a_deleted_sweep_is_out_of_sight_and_comes_back_as_it_was(
     assert api.post(f"{path}/restore").json()["changed"] == []
 
 
-def test_what_happens_to_a_sweep_is_told_to_everybody(address, services, six, api):
+def test_changes_of_a_sweep_are_published(address, services, six, api):
     newest = services.redis.xrevrange(services.events.stream, count=1)[0][1]
     assert (newest[b"event"], json.loads(newest[b"data"])) == (b"sweep", {"sweep": six["id"]})
     api.post(f"sweeps/{six['id']}/cancel")

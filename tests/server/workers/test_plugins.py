@@ -1,12 +1,18 @@
-"""Plug-ins of workers are offered, checked and queued; the server never runs them."""
+"""Plug-ins that workers offer, and the runs that need them."""
+
+from uuid import UUID
 
 import pytest
+from answers import errors
 from declared import STRICT, A, B, declared
 
-from server.workers import registry
+from server.attempts.claim import claim
+from server.workers import plugins, registry
+from server.workers.plugins import KnownPlugins
+from worker.supervisor import runnable_queues
 
 
-def test_what_workers_have_is_among_the_choices_of_the_forms(api, services, have):
+def test_plug_ins_of_workers_appear_in_the_schemas(api, services, have):
     before = api.get("experiments").json()
     have(plugins=declared())
     after = {one["experiment"]: one["schema"] for one in api.get("experiments").json()}
@@ -31,7 +37,7 @@ def test_what_workers_have_is_among_the_choices_of_the_forms(api, services, have
     assert api.get("experiments").json() == before
 
 
-def test_a_run_says_which_version_it_needs_with_all_its_settings(api, have, mine):
+def test_a_run_pins_plug_in_versions_and_settings(api, have, mine):
     have(plugins=declared())
     answer = api.post("runs", json=mine)
     assert answer.status_code == 202, answer.text
@@ -51,7 +57,7 @@ def test_a_run_says_which_version_it_needs_with_all_its_settings(api, have, mine
     assert "plugin" not in api.post("runs", json=usual).json()["spec"]["task"]
 
 
-def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, mine):
+def test_a_plug_in_body_is_estimated_but_not_drawn(api, have, mine):
     have(plugins=declared())
     found = api.post("runs/estimate", json=mine).json()
     chain = {**mine, "body": {"builder": "chain", "nodes": 40}}
@@ -88,13 +94,12 @@ def test_what_a_body_needs_at_most_is_estimated_and_nothing_drawn(api, have, min
         ),
     ],
 )
-def test_what_nobody_has_is_refused_with_field_and_reason(
+def test_a_missing_plug_in_is_refused_with_field_and_reason(
     api, have, spec, part, value, field, words
 ):
     have(plugins=declared())
     answer = api.post("runs", json={**spec, part: value})
-    assert answer.status_code == 422
-    (error,) = answer.json()["errors"]
+    (error,) = errors(answer)
     assert error["field"] == field
     assert words in error["message"]
 
@@ -114,7 +119,7 @@ def test_what_nobody_has_is_refused_with_field_and_reason(
         "Mine.straight",
     ],
 )
-def test_a_name_is_looked_up_and_nothing_is_imported(api, have, spec, name, monkeypatch):
+def test_an_unknown_name_imports_nothing(api, have, spec, name, monkeypatch):
     have(plugins=declared())
     tried = []
     monkeypatch.setattr("importlib.import_module", lambda *given: tried.append(given))
@@ -126,7 +131,7 @@ def test_a_name_is_looked_up_and_nothing_is_imported(api, have, spec, name, monk
     assert not tried
 
 
-def test_workers_tell_what_they_have_and_what_they_could_not_load(api, have):
+def test_workers_list_plug_ins_and_failed_modules(api, have):
     have(plugins=declared(), unloaded=[{"module": "bad.py", "reason": "SyntaxError: x"}])
     (worker,) = api.get("workers").json()
     assert worker["plugins"][0] == {
@@ -139,9 +144,126 @@ def test_workers_tell_what_they_have_and_what_they_could_not_load(api, have):
     assert worker["unloaded"] == [{"module": "bad.py", "reason": "SyntaxError: x"}]
 
 
-def test_settings_never_send_the_server_anywhere(api, have, mine):
+def test_settings_never_make_the_server_fetch_a_url(api, have, mine):
     abroad = {"$ref": "http://127.0.0.1:9/schema.json"}
     body = [{**one, "settings": abroad} for one in declared() if one["kind"] == "body"]
     have(plugins=body)
     spec = {name: mine[name] for name in mine if name not in ("task", "archive")}
     assert api.post("runs", json=spec).status_code == 422
+
+
+def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, have, mine, row):
+    have("with", plugins=declared()), have("without"), have("other", plugins=declared(B))
+    run = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
+    with services.sessions.read() as session:
+        known = KnownPlugins(services, session)
+        pinned = run["spec"]["body"]["plugin"]["source"]
+        (able,) = known.having(pinned)
+    names = {"with": A, "other": B}
+    for worker in ("without", next(name for name in names if name != able), "nobody"):
+        assert claim(services, UUID(run["id"]), worker) is None
+        assert api.get(f"runs/{run['id']}").json()["status"] == "queued"
+    assert claim(services, UUID(run["id"]), able)
+
+
+def test_the_job_is_queued_for_its_plug_in_version(api, services, have, mine, spec):
+    have("with", plugins=declared())
+    first = api.post("runs", json=mine).json()["id"]
+    second = api.post("runs", json=spec).json()["id"]
+    assert services.jobs.runs.get_job_ids() == [second]
+    assert services.jobs.runs_at_hand() == {first, second}
+    jobs = [queue.get_job_ids() for queue in runnable_queues(services, {A})]
+    assert jobs == [[first], [second], []], "who came first is taken first, sweeps last"
+    for plugin_versions in (set(), {B}):
+        assert [
+            queue.get_job_ids() for queue in runnable_queues(services, plugin_versions)
+        ] == [
+            [second],
+            [],
+        ]
+
+
+def test_a_run_names_the_plug_in_it_waits_for(api, services, have, mine):
+    have("with", plugins=declared())
+    run = api.post("runs", json=mine).json()["id"]
+    assert (
+        api.get(f"runs/{run}").json()["waiting_reason"] == "A worker is free; this run is next."
+    )
+    registry.retire(services.sessions, "with")
+    have("without")
+    waiting = api.get(f"runs/{run}").json()["waiting_reason"]
+    assert waiting.startswith(f"Waits for a worker that has mine.cross (version {A[:12]}), ")
+    have("other", plugins=declared(B))
+    assert "; other has another version" in api.get(f"runs/{run}").json()["waiting_reason"]
+    late = api.post("runs", json={**mine, "body": {"builder": "mine.cross"}}).json()
+    assert late["spec"]["body"]["plugin"]["source"] == B, "the version that a live worker has"
+    have("again", plugins=declared())
+    assert "free" in api.get(f"runs/{run}").json()["waiting_reason"]
+
+
+def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services, run_id):
+    claim(services, run_id, "worker").refuse("mine.straight must give one number")
+    told = api.get(f"runs/{run_id}").json()
+    assert (told["status"], told["attempt"]) == ("failed", 1)
+    assert told["error"] == "mine.straight must give one number"
+
+
+def test_a_run_set_aside_continues_when_resumed(api, services, run_id):
+    claim(services, run_id, "worker").set_aside("mine.py is not what it was.")
+    told = api.get(f"runs/{run_id}").json()
+    assert (told["status"], told["warning"]) == (
+        "paused",
+        "mine.py is not what it was. Then resume the run.",
+    )
+    assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
+
+
+def test_plug_ins_that_no_worker_has_together_are_named(services, have):
+    have("one", plugins=declared()), have("two", plugins=declared(B))
+    with services.sessions.read() as session:
+        alive = KnownPlugins(services, session).alive
+    task = {"fitness": "mine.straight", "plugin": {"source": A, "title": "x"}}
+    body = {"builder": "mine.cross", "plugin": {"source": B, "title": "x"}}
+    assert plugins.needed_versions({"task": task, "body": body}) == [A, B]
+    assert "none has them together" in plugins.missing(alive, {"task": task, "body": body})
+
+
+def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sweep):
+    have(plugins=declared())
+    swim = {**sweep, "swimmers": ["worm", "mine.wiggler"]}
+    code = {
+        **{name: mine[name] for name in ("experiment", "world")},
+        "control": {"encoding": "mine.pulse", "period": 40},
+        "search": {"emitters": [{"operator": "iso+line"}]},
+    }
+    fold = {
+        "experiment": "folding",
+        "targets": [{"kind": "digit", "digit": 3}],
+        "body": {"builder": "mine.cross"},
+        "steps": 20,
+        "updates": 2,
+    }
+    for spec, part in ((swim, "plugins"), (code, "control"), (fold, "body")):
+        assert api.post("runs/estimate", json=spec).status_code == 200, part
+        answer = api.post("runs", json=spec)
+        assert answer.status_code == 202, answer.text
+        found = answer.json()["spec"][part]
+        version = found["mine.wiggler"] if part == "plugins" else found["plugin"]
+        assert version["source"] == A
+        assert (
+            api.get(f"runs/{answer.json()['id']}")
+            .json()["waiting_reason"]
+            .startswith("A worker is")
+        )
+    assert "plugins" not in api.post("runs", json=sweep).json()["spec"]
+
+
+def test_a_run_with_a_plugin_is_extended_as_it_is(api, services, have, mine):
+    have(plugins=declared(A))
+    run = api.post("runs", json=mine).json()
+    claim(services, UUID(run["id"]), "worker").finish()
+    have(plugins=declared(B))
+    longer = api.post(f"runs/{run['id']}/extend", json={"generations": 1})
+    assert longer.status_code == 202
+    search = {**run["spec"]["search"], "generations": run["generations"] + 1}
+    assert longer.json()["spec"] == {**run["spec"], "search": search}

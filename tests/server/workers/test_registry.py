@@ -5,7 +5,7 @@ from uuid import UUID
 import pytest
 from sqlalchemy import event
 
-from server.attempts.begin import claim
+from server.attempts.claim import claim
 from server.queue.order import in_order
 from server.runs.overview import read_runs
 from server.tables import Run
@@ -27,10 +27,8 @@ def waiting(api):
     return lambda run: api.get(f"runs/{run}").json()["waiting_reason"]
 
 
-def test_a_worker_tells_its_device_its_load_and_its_run(
-    api, services, spec, run_id, alive, report
-):
-    claim(services, run_id, "worker").record(report(5), 1.0)
+def test_a_worker_reports_its_device_load_and_run(api, spec, run_id, alive, record):
+    record(5)
     api.patch(f"runs/{run_id}", json={"name": "Wide"})
     alive("worker", "busy", run_id, kind="gpu", memory_used_bytes=1 << 30, load=0.75)
     (found,) = api.get("workers").json()
@@ -44,7 +42,7 @@ def test_a_worker_tells_its_device_its_load_and_its_run(
     assert carried["progress"] == 5 / carried["generations"]
 
 
-def test_since_when_changes_with_what_a_worker_is_at(api, services, run_id, alive):
+def test_since_changes_with_the_workers_status(api, run_id, alive):
     def since():
         return api.get("workers").json()[0]["since"]
 
@@ -59,14 +57,14 @@ def test_since_when_changes_with_what_a_worker_is_at(api, services, run_id, aliv
     assert since() > second
 
 
-def test_an_idle_worker_carries_nothing_out(api, alive):
+def test_an_idle_worker_has_no_run(api, alive):
     alive()
     (found,) = api.get("workers").json()
     assert (found["status"], found["run"], found["current_run"]) == ("idle", None, None)
     assert (found["memory_used_bytes"], found["load"]) == (None, None)
 
 
-def test_the_queue_has_the_runs_that_wait_in_their_order(api, services, spec, alive):
+def test_the_queue_lists_waiting_runs_in_order(api, services, spec, alive):
     ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(4)]
     api.post(f"runs/{ids[0]}/pause")
     claim(services, UUID(ids[1]), "worker")
@@ -84,7 +82,7 @@ def test_the_queue_has_the_runs_that_wait_in_their_order(api, services, spec, al
     )
 
 
-def test_a_run_tells_since_when_it_waits(api, services, run_id):
+def test_a_run_has_the_time_since_when_it_is_queued(api, services, run_id):
     first = api.get(f"runs/{run_id}").json()
     assert first["queued_at"] >= first["created_at"]
     assert first["queued_at"] == api.get("queue").json()["items"][0]["queued_at"]
@@ -98,7 +96,7 @@ def test_without_a_worker_a_run_says_how_to_start_one(run_id, waiting):
     assert "`make run` or `python -m worker.supervisor`" in waiting(run_id)
 
 
-def test_a_run_says_who_is_busy_and_how_many_are_before_it(api, services, spec, alive, waiting):
+def test_a_queued_run_names_busy_workers_and_its_position(api, services, spec, alive, waiting):
     ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(4)]
     claim(services, UUID(ids[0]), "worker")
     alive("worker", "busy", UUID(ids[0]))
@@ -128,7 +126,7 @@ def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, alive, waiti
     assert told == {run: waiting(run) for run in (*ids, third)}
 
 
-def test_more_workers_that_begin_than_runs_leave_none_before_a_new_one(api, spec, alive):
+def test_starting_workers_leave_no_run_ahead(api, spec, alive):
     alive("one", "busy"), alive("two", "busy")
     api.post("runs", json=spec)
     ahead = {"runs_ahead": 0, "workers": 2, "idle_workers": 0}

@@ -8,6 +8,8 @@ import { useFetched } from "../store/fetch";
 import { useStore } from "../store/store";
 import { type Toast, dismissToast, undoLatest, useToasts } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
+import { NotFound } from "../ui/NotFound";
+import { useTitle } from "../ui/Page";
 import { RunsPage } from "../runs/RunsPage";
 import { type PageLocation, useLocation } from "../store/router";
 import { text } from "./text";
@@ -36,60 +38,63 @@ const TITLES: Record<string, string> = {
 export function App() {
   const place = useLocation();
   const { page } = place.route;
-  const unknown = useSignedOut();
+  const signedOut = useSignedOut();
   useEffect(() => void loadPrincipal(), []);
-  useEffect(() => {
-    const title = unknown ? text.signIn : TITLES[page];
-    if (title) document.title = text.title(title);
-  }, [page, unknown]);
+  useTitle(signedOut ? text.signIn : (TITLES[page] ?? null));
   return (
     <>
       <header class="top">
-        <a class="brand" href="/">
-          <svg viewBox="0 0 32 20" aria-hidden="true">
-            <path d="M2 11c4-9 8-9 12 0s8 9 12 0c1.3-3 2.5-4.5 4-5" />
-          </svg>
-          {text.brand}
-        </a>
-        {!unknown && <Navigation page={page} />}
+        <Brand />
+        {!signedOut && <Navigation page={page} />}
       </header>
-      {unknown ? <SignInPage /> : <Page {...place} />}
-      {!unknown && <DropTarget />}
+      {signedOut ? <SignInPage /> : <RoutedPage {...place} />}
+      {!signedOut && <DropTarget />}
       <Toasts />
     </>
   );
 }
 
+/** The name of the product; on public pages it leaves them. */
+export function Brand({ target }: { target?: string }) {
+  return (
+    <a class="brand" href="/" target={target}>
+      <svg viewBox="0 0 32 20" aria-hidden="true">
+        <path d="M2 11c4-9 8-9 12 0s8 9 12 0c1.3-3 2.5-4.5 4-5" />
+      </svg>
+      {text.brand}
+    </a>
+  );
+}
+
+/** Links of the navigation, in order; a link without a page leaves the application. */
+const LINKS: [href: string, name: string, page: string | null][] = [
+  ["/", text.runs, "runs"],
+  ["/new", text.newRun, "new"],
+  ["/workers", text.workers, "workers"],
+  ["/shares", text.shares, "shares"],
+  ["/commons", text.commons, null],
+  ["/settings", text.settings, "settings"],
+];
+const HELP: (typeof LINKS)[0] = ["/help/", text.help, null];
+
 /** The navigation of a signed-in user. */
 function Navigation({ page }: { page: string }) {
   const refusal = useRefusal();
   const health = useFetched(readHealth, []);
+  const links = health.value?.help ? [...LINKS, HELP] : LINKS;
   return (
     <>
       <nav aria-label={text.pages}>
-        <a href="/" aria-current={page === "runs" ? "page" : undefined}>
-          {text.runs}
-        </a>
-        <a href="/new" aria-current={page === "new" ? "page" : undefined}>
-          {text.newRun}
-        </a>
-        <a href="/workers" aria-current={page === "workers" ? "page" : undefined}>
-          {text.workers}
-        </a>
-        <a href="/shares" aria-current={page === "shares" ? "page" : undefined}>
-          {text.shares}
-        </a>
-        <a href="/commons" target="_self">
-          {text.commons}
-        </a>
-        <a href="/settings" aria-current={page === "settings" ? "page" : undefined}>
-          {text.settings}
-        </a>
-        {health.value?.help && (
-          <a href="/help/" target="_self">
-            {text.help}
+        {links.map(([href, name, own]) => (
+          <a
+            key={href}
+            href={href}
+            target={own ? undefined : "_self"}
+            aria-current={own === page ? "page" : undefined}
+          >
+            {name}
           </a>
-        )}
+        ))}
       </nav>
       <span class="spring" />
       {!refusal && <OpenButton />}
@@ -98,7 +103,7 @@ function Navigation({ page }: { page: string }) {
   );
 }
 
-function Page({ route, query }: PageLocation) {
+function RoutedPage({ route, query }: PageLocation) {
   switch (route.page) {
     case "runs":
       return <RunsPage query={query} />;
@@ -121,12 +126,9 @@ function Page({ route, query }: PageLocation) {
     default:
       return (
         <main>
-          <section class="empty card">
-            <h1>{text.noSuchPage}</h1>
-            <p>
-              {text.noSuchPageAbout} <a href="/">{text.allRuns}</a>
-            </p>
-          </section>
+          <NotFound what={text.noSuchPage} reason={text.noSuchPageAbout}>
+            <a href="/">{text.allRuns}</a>
+          </NotFound>
         </main>
       );
   }

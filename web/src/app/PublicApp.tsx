@@ -1,6 +1,6 @@
 /** The frame around shared pages, for people without a token. */
 
-import { Toasts } from "./App";
+import { Brand, Toasts } from "./App";
 import { sharedSlug } from "../api/address";
 import { CommonsPage } from "../shares/CommonsPage";
 import { SharedPage } from "../shares/SharedPage";
@@ -13,12 +13,7 @@ export function PublicApp() {
   return (
     <>
       <header class="top">
-        <a class="brand" href="/" target="_self">
-          <svg viewBox="0 0 32 20" aria-hidden="true">
-            <path d="M2 11c4-9 8-9 12 0s8 9 12 0c1.3-3 2.5-4.5 4-5" />
-          </svg>
-          {text.brand}
-        </a>
+        <Brand target="_self" />
         <nav aria-label={text.pages}>
           <a href="/commons" target="_self" aria-current={sharedSlug ? undefined : "page"}>
             {text.commons}

@@ -4,7 +4,7 @@ import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Archive, Run } from "../api/types";
 import { type Elites } from "../store/elites";
 import { useCentroids, useMeasures, useHistory } from "../store/fetch";
-import { walkThrough } from "../store/history";
+import { walkThrough } from "../store/elites";
 import { setQuery } from "../store/router";
 import { type Measures, type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
 import { type Colouring, AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";

@@ -18,6 +18,7 @@ export const text = {
   colour: "Colour",
   palette: "Palette",
   simulating: "Simulating …",
+  inset: "The elite of this cell, swimming",
   fitness: "Fitness",
   generation: "Generation",
   open: "Open",

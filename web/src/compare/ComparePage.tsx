@@ -3,14 +3,16 @@
 import type { Experiment, Run } from "../api/types";
 import type { Curves as Columns } from "../store/curves";
 import { useCurvesOf, useExperiments } from "../store/fetch";
+import { setQuery } from "../store/router";
 import { useRuns } from "../store/store";
 import { Curves } from "../charts/curves/Curves";
 import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/look";
 import { type Plot, scoresOf } from "../charts/curves/plots";
 import { short, titleOf } from "../ui/format";
-import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
-import { type Compared, Legend } from "./Legend";
-import { Figures, Specs } from "./Tables";
+import { LineKey, MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
+import { StatusBadge } from "../run/RunStatus";
+import { Card, Empty, Page } from "../ui/Page";
+import { type Compared, Figures, Specs } from "./Tables";
 import { CurveOptions } from "../charts/curves/CurveOptions";
 import { text } from "./text";
 import "./compare.css";
@@ -25,17 +27,20 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
     run ? [{ run, place, name: nameOf(run, experiments) }] : [],
   );
   return (
-    <main>
-      <nav class="crumbs" aria-label={text.breadcrumbs}>
-        <a href="/">{text.runs}</a>
-      </nav>
-      <header class="page-head">
-        <h1>{text.compare}</h1>
-      </header>
-      {error && <p class="banner wrong">{error}</p>}
+    <Page
+      title={text.compare}
+      crumbs={[["/", text.runs]]}
+      error={error}
+      loading={ids.length > 0 && runs.length === 0 && text.loading}
+    >
       {asked.length > MAX_LINES && <p class="banner warning">{text.tooMany(MAX_LINES, asked.length)}</p>}
-      {ids.length === 0 && <NothingChosen />}
-      {ids.length > 0 && runs.length === 0 && !error && <p class="quiet loading">{text.loading}</p>}
+      {ids.length === 0 && (
+        <Empty title={text.nothingChosen} hint={text.nothingChosenHint}>
+          <a class="button primary" href="/">
+            {text.showRuns}
+          </a>
+        </Empty>
+      )}
       {runs.length > 0 && (
         <div class="compare">
           <Legend runs={runs} ids={ids} />
@@ -44,22 +49,32 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
           <Specs runs={runs} />
         </div>
       )}
-    </main>
+    </Page>
   );
 }
 
 const nameOf = (run: Run, experiments: Experiment[]) =>
   run.name ?? `${titleOf(run, experiments)} ${short(run.id)}`;
 
-function NothingChosen() {
+function Legend({ runs, ids }: { runs: Compared[]; ids: string[] }) {
+  const without = (id: string) => ids.filter((each) => each !== id).join() || null;
   return (
-    <section class="empty card">
-      <h2>{text.nothingChosen}</h2>
-      <p>{text.nothingChosenHint}</p>
-      <a class="button primary" href="/">
-        {text.showRuns}
-      </a>
-    </section>
+    <ul class="compare-legend" aria-label={text.runs}>
+      {runs.map(({ run, name, place }) => (
+        <li key={run.id}>
+          <LineKey index={place} />
+          <a href={`/runs/${run.id}`}>{name}</a>
+          <StatusBadge run={run} />
+          <button
+            class="plain small-button"
+            aria-label={text.remove(name)}
+            onClick={() => setQuery({ runs: without(run.id) })}
+          >
+            ✕
+          </button>
+        </li>
+      ))}
+    </ul>
   );
 }
 
@@ -76,11 +91,10 @@ function Plots({ runs, curves, query }: PlotsProps) {
     return own ? [{ name, colour: colourOf(place), dash: dashOf(place), curves: own }] : [];
   });
   return (
-    <section class="card" aria-labelledby="compare-curves">
-      <h2 id="compare-curves">{text.curves}</h2>
+    <Card id="curves" title={text.curves}>
       <CurveOptions look={look} />
       <Curves plots={overlayPlots(oneLinePerRun, drawn, look)} x={NO_X} look={look} />
-    </section>
+    </Card>
   );
 }
 

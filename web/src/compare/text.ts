@@ -1,7 +1,6 @@
 /** Texts of the comparison of runs. */
 
 export const text = {
-  breadcrumbs: "Breadcrumbs",
   runs: "Runs",
   compare: "Compare",
   tooMany: (limit: number, asked: number) =>
@@ -12,9 +11,6 @@ export const text = {
   showRuns: "Show all runs",
   curves: "Curves",
   remove: (name: string) => `Remove ${name}`,
-  qdScore: "QD score",
-  coverage: "Coverage",
-  bestFitness: "Best fitness",
   generations: "Generations",
   evaluations: "Evaluations",
   diverged: "Diverged",

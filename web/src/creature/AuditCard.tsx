@@ -1,11 +1,11 @@
 /** The physics audit of a creature: start it, wait for it, show its result. */
 
-import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import type { Audit, AuditRow } from "../api/types";
-import { poll } from "../store/polling";
+import { usePolled } from "../store/polling";
 import { setQuery } from "../store/router";
 import { number } from "../ui/format";
+import { CheckCard } from "./CheckCard";
 import { text } from "./text";
 import "./audit.css";
 
@@ -15,55 +15,25 @@ interface Props {
 }
 
 export function AuditCard({ sha, query }: Props) {
-  const asked = query.has("audit");
-  const { audit, note, error } = useAudit(sha, asked);
+  const requested = query.has("audit");
+  const {
+    value: audit,
+    note,
+    error,
+  } = usePolled(requested ? () => api.readAudit(sha) : null, [sha, requested]);
   return (
-    <section class="card audit" aria-labelledby="audit-title">
-      <div class="card-head">
-        <h2 id="audit-title">{text.audit}</h2>
-        {audit && <Verdict audit={audit} />}
-        <span class="spring" />
-        {!asked && <button onClick={() => setQuery({ audit: "" })}>{text.runAudit}</button>}
-      </div>
-      {!asked && <p class="quiet small">{text.auditAbout}</p>}
-      {asked && !audit && !error && (
-        <p class="quiet" role="status">
-          {note ? text.retrying(note) : text.auditing}
-        </p>
-      )}
-      {error && <p class="banner wrong">{error}</p>}
+    <CheckCard
+      {...{ note, error }}
+      name="audit"
+      title={text.audit}
+      verdict={audit && (audit.verdict.survives ? ["finished", text.survives] : ["failed", text.fails])}
+      button={requested ? null : text.runAudit}
+      onStart={() => setQuery({ audit: "" })}
+      running={requested && !audit ? text.auditing : null}
+    >
+      {!requested && <p class="quiet small">{text.auditAbout}</p>}
       {audit && <Figures audit={audit} />}
-    </section>
-  );
-}
-
-interface Shown {
-  audit: Audit | null;
-  note: string | null;
-  error: string | null;
-}
-
-/** The audit; requests are repeated until it is ready. */
-function useAudit(sha: string, asked: boolean): Shown {
-  const [state, setState] = useState<Shown>({ audit: null, note: null, error: null });
-  useEffect(() => {
-    if (!asked) return;
-    const change = (part: Partial<Shown>) => setState((old) => ({ ...old, ...part }));
-    return poll(() => api.readAudit(sha), {
-      value: (audit) => change({ audit }),
-      note: (note) => change({ note }),
-      error: (error) => change({ error }),
-    });
-  }, [sha, asked]);
-  return state;
-}
-
-function Verdict({ audit }: { audit: Audit }) {
-  const { survives } = audit.verdict;
-  return (
-    <span class={`badge ${survives ? "finished" : text.failed}`}>
-      {survives ? text.survives : text.fails}
-    </span>
+    </CheckCard>
   );
 }
 

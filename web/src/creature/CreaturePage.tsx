@@ -91,7 +91,7 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
           </section>
         </div>
         <div class="stack">
-          {replay?.drive && <SpaceTimeCard {...{ replay, query, moment }} />}
+          {replay && <SpaceTimeCard {...{ replay, query, moment }} />}
           <GenomeCard {...{ creature, moment }} every={replay?.header.every ?? null} />
           <FamilyCard {...{ creature, query }} />
           {creature.measured && <RemeasureCard sha={sha} />}

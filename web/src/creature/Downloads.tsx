@@ -4,9 +4,8 @@ import { useEffect, useState } from "preact/hooks";
 import { renderingReady, save } from "../api/files";
 import { type PictureFormat, creatureFileUrl, creatureH5Url, pictureUrl } from "../api/urls";
 import { sharedSlug } from "../api/address";
-import { messageOf } from "../api/problem";
 import { poll } from "../store/polling";
-import { showToast } from "../store/toasts";
+import { showFailure, showToast } from "../store/toasts";
 import { copyText } from "../ui/clipboard";
 import { FileLink } from "../ui/FileLink";
 import { text } from "./text";
@@ -43,7 +42,7 @@ function Download({ url, title }: { url: string; title: string }) {
     return poll(() => renderingReady(url), {
       value: () => {
         setBusy(false);
-        save(url).catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
+        save(url).catch(showFailure);
       },
       note: () => {},
       error: (message) => {

@@ -45,10 +45,10 @@ export function FamilyCard({ creature, query }: Props) {
         </p>
       )}
       {!value && !error && <p class="quiet loading">{text.loadingFamily}</p>}
-      {tree && tree.kin.length === 1 && (
+      {tree && tree.relatives.length === 1 && (
         <p class="quiet">{creature.provenance ? text.noParents(!sharedSlug) : text.noOrigin}</p>
       )}
-      {tree && tree.kin.length > 1 && <FamilyTree {...{ tree, hrefOf }} self={sha} />}
+      {tree && tree.relatives.length > 1 && <FamilyTree {...{ tree, hrefOf }} self={sha} />}
       {credited.length > 0 && <p class="quiet small">{text.creditAncestors(credited.join(", "))}</p>}
       {tree && (lost || tree.hidden > 0) && (
         <p class="quiet small">

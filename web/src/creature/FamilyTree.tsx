@@ -1,4 +1,4 @@
-/** Parents at the left, children at the right; bars show fitness, the longest the fittest. */
+/** A family tree: parents at the left, children at the right, bars for fitness. */
 
 import type { Relative } from "../api/types";
 import { number, short } from "../ui/format";
@@ -16,7 +16,7 @@ const TITLE_HEIGHT = 36;
 const NAME_HEIGHT = HIGH - 8;
 
 export function FamilyTree({ tree, self, hrefOf }: Props) {
-  const known = tree.kin.map(({ relative }) => relative.fitness ?? 0);
+  const known = tree.relatives.map(({ relative }) => relative.fitness ?? 0);
   const most = Math.max(1e-12, ...known.map(Math.abs));
   return (
     <div
@@ -38,7 +38,7 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
           </span>
         ))}
         <ul>
-          {tree.kin.map(({ relative, x, y }) => (
+          {tree.relatives.map(({ relative, x, y }) => (
             <li
               key={relative.creature}
               style={px({
@@ -81,37 +81,20 @@ interface NameProps {
 function Name({ relative, most, own, href }: NameProps) {
   const { creature, kept, fitness } = relative;
   const title = aboutOf(relative);
-  const inside = (
-    <>
-      <code>{short(creature)}</code>
-      {fitness !== null && (
-        <span class="family-fitness" style={{ width: `${(100 * Math.abs(fitness)) / most}%` }} />
-      )}
-    </>
-  );
-  if (own)
-    return (
-      <span class="family-name own" title={title}>
-        {inside}
-      </span>
-    );
-  if (!kept)
-    return (
-      <span class="family-name lost" title={title}>
-        {inside}
-      </span>
-    );
-  if (href === null)
-    return (
-      <span class="family-name" title={title}>
-        {inside}
-      </span>
-    );
-  return (
-    <a class="family-name" href={href} title={title} aria-label={title}>
-      {inside}
-    </a>
-  );
+  const common = {
+    class: `family-name ${own ? "own" : kept ? "" : "lost"}`,
+    title,
+    children: (
+      <>
+        <code>{short(creature)}</code>
+        {fitness !== null && (
+          <span class="family-fitness" style={{ width: `${(100 * Math.abs(fitness)) / most}%` }} />
+        )}
+      </>
+    ),
+  };
+  if (own || !kept || href === null) return <span {...common} />;
+  return <a href={href} aria-label={title} {...common} />;
 }
 
 /** Describe a relative. */

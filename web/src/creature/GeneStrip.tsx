@@ -1,11 +1,11 @@
-/** Genes that are numbers from −1 to 1, as bars side by side. */
+/** Numeric genes from −1 to 1 as bars. */
 
 import { useMemo } from "preact/hooks";
 import { count, number, percent } from "../ui/format";
 import { text } from "./text";
 
-/** Above this number of genes, a bar shows the largest of several. */
-const MOST = 400;
+/** With more genes, each bar shows the largest of several. */
+const MAX_BARS = 400;
 
 export function GeneStrip({ values }: { values: Float32Array }) {
   const bars = useMemo(() => barsOf(values), [values]);
@@ -31,9 +31,9 @@ export function GeneStrip({ values }: { values: Float32Array }) {
   );
 }
 
-/** At most `MOST` values, each the farthest from zero of those it stands for. */
+/** At most `MAX_BARS` values, each the largest in size of those that it represents. */
 export function barsOf(values: Float32Array): number[] {
-  const each = Math.max(1, Math.ceil(values.length / MOST));
+  const each = Math.max(1, Math.ceil(values.length / MAX_BARS));
   return Array.from({ length: Math.ceil(values.length / each) }, (_, k) =>
     values
       .subarray(k * each, (k + 1) * each)

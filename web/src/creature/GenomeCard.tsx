@@ -3,7 +3,7 @@
 import { useMemo, useState } from "preact/hooks";
 import { type NetworkFormat, networkUrl } from "../api/urls";
 import type { Creature, Spec, Vector } from "../api/types";
-import { decodeFloats } from "../decode/base64";
+import { decodeFloats } from "../decode/floats";
 import { layeredOf } from "../decode/layers";
 import { type Network as Graph, networkOf } from "../decode/network";
 import { GeneStrip } from "./GeneStrip";
@@ -23,7 +23,7 @@ const FORMS: [NetworkFormat, string][] = [
 interface Props {
   creature: Creature;
   moment: Moment;
-  /** Steps between the frames that a moment counts; null while there is no replay. */
+  /** Steps between frames of a moment; null without a replay. */
   every: number | null;
 }
 
@@ -41,7 +41,7 @@ export function GenomeCard({ creature, ...shown }: Props) {
 
 interface NetworkProps extends Omit<Props, "creature"> {
   network: Graph;
-  /** The creature whose network can be had as files. */
+  /** The creature whose network can be downloaded. */
   files: string | null;
   control: Spec;
   steps: number;

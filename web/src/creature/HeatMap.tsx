@@ -1,7 +1,8 @@
-/** Values over time (across) and space (up) as a picture, with a cursor at a moment. */
+/** A heat map over time (across) and space (up), with a cursor at a moment. */
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import { diverging, table } from "../ui/colours";
+import { ColourBar } from "../ui/ColourBar";
+import { css, diverging, table } from "../ui/colours";
 import type { Moment } from "../replay/moment";
 import { useTheme } from "../ui/theme";
 import { text } from "./text";
@@ -15,7 +16,7 @@ export interface Cells {
 
 interface Props {
   cells: Cells;
-  /** The value at which colours end, on both sides of zero. */
+  /** The absolute value at both ends of the colour map. */
   most: number;
   label: string;
   /** Text below while no cell is pointed at. */
@@ -23,7 +24,7 @@ interface Props {
   /** Text for the cell under the pointer or the arrow keys. */
   read: (column: number, row: number) => string;
   moment: Moment;
-  /** Where a moment stands, from 0 to 1 across; and back, where a click may choose one. */
+  /** The horizontal position of a moment, from 0 to 1; and the inverse, if a click can choose one. */
   place: (time: number) => number;
   timeAt?: (place: number) => number;
 }
@@ -77,7 +78,7 @@ export function HeatMap({ cells, most, label, about, read, moment, place, timeAt
   );
 }
 
-/** The cell that an arrow key leads to: from the one that is read, or else from this column. */
+/** The cell after an arrow key, from the one that is read or from the current column. */
 export function moveSpot(
   key: string,
   spot: Spot | null,
@@ -125,11 +126,23 @@ function Cursor({ moment, place }: Pick<Props, "moment" | "place">) {
   const line = useRef<HTMLSpanElement>(null);
   useEffect(() => {
     const move = () => {
-      // A film may tick once more in the frame in which the page is left.
+      // The clock may tick once more after the page was left.
       line.current?.style.setProperty("left", `${100 * place(moment.time)}%`);
     };
     move();
     return moment.listen(move);
   }, [moment, place]);
   return <span ref={line} class="heat-cursor" />;
+}
+
+export function DivergingLegend({ title, end }: { title: string; end: string }) {
+  const theme = useTheme();
+  return (
+    <ColourBar
+      name={title}
+      label={text.divergingLegend(title, end)}
+      colourAt={(share) => css(diverging(2 * share - 1, theme))}
+      numbers={[`−${end}`, "0", end]}
+    />
+  );
 }

@@ -9,8 +9,8 @@ import "./creature.css";
 import "./details.css";
 
 const RADIUS = 13;
-/** A small network is not blown up beyond this, a large one scrolls rather than shrink. */
-const [LARGEST, SMALLEST] = [1.2, 0.5];
+/** Bounds of the scale; a network that is too large scrolls. */
+const [MAX_SCALE, MIN_SCALE] = [1.2, 0.5];
 
 interface Props {
   network: Network;
@@ -29,7 +29,7 @@ export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
       <div class="scroll">
         <svg
           viewBox={`0 0 ${width} ${height}`}
-          style={{ maxWidth: `${LARGEST * width}px`, minWidth: `${SMALLEST * width}px` }}
+          style={{ maxWidth: `${MAX_SCALE * width}px`, minWidth: `${MIN_SCALE * width}px` }}
           role={onChoose ? "group" : "img"}
           class={chosen === null ? "" : "choosing"}
           aria-label={text.networkLabel(summary)}
@@ -65,10 +65,9 @@ interface WireProps {
 function Wire({ link, spots, strongest, into }: WireProps) {
   const [from, to] = [spots.get(link.source), spots.get(link.target)];
   if (!from || !to) return null;
-  const sign = link.weight < 0 ? text.negative : text.positive;
   return (
     <path
-      class={`wire ${sign} ${link.enabled ? "" : "off"} ${into ? "into" : ""}`}
+      class={`wire ${link.weight < 0 ? "negative" : ""} ${link.enabled ? "" : "off"} ${into ? "into" : ""}`}
       d={pathOf(from, to)}
       stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / strongest}
     >
@@ -82,7 +81,7 @@ function pathOf(from: Spot, to: Spot): string {
     const [side, top] = [2.2 * RADIUS, from.y - 4 * RADIUS];
     return `M${from.x},${from.y} C${from.x - side},${top} ${from.x + side},${top} ${to.x},${to.y}`;
   }
-  // Where a wire leads back, or stays in its column, it leaves and arrives at the left.
+  // A wire that leads back or stays in its column bends to the left.
   const bend = to.x > from.x ? (to.x - from.x) / 2 : -4 * RADIUS;
   const [a, b] = [from.x + bend, to.x - Math.abs(bend)];
   return `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
@@ -145,7 +144,7 @@ const SHAPES: Record<string, (x: number) => number> = {
   square: (x) => 1.6 * x * x - 0.8,
 };
 
-/** The shape of a node's function, as a sign inside its circle. */
+/** The graph of a node's activation function, inside its circle. */
 function Curve({ activation }: { activation: string }) {
   const shape = SHAPES[activation];
   if (!shape) return null;

@@ -1,13 +1,12 @@
-/** Outputs of a network, and of the node that is pointed at, over the body and time. */
+/** Outputs of a network, and of a chosen node, along the body and over time. */
 
 import { useCallback, useMemo, useState } from "preact/hooks";
 import type { Spec } from "../api/types";
 import type { Network, Neuron } from "../decode/network";
-import { COLUMNS, type Activations, ROWS, activationsOf, shareOf, sampledTimes } from "../decode/activations";
+import { COLUMNS, type Activations, ROWS, activationsOf, inputsOf, phaseOf } from "../decode/activations";
 import { number } from "../ui/format";
 import type { Moment } from "../replay/moment";
-import { HeatMap } from "./HeatMap";
-import { DivergingLegend } from "./SpaceTime";
+import { DivergingLegend, HeatMap } from "./HeatMap";
 import { text } from "./text";
 
 interface Props {
@@ -21,27 +20,27 @@ interface Props {
 
 export function NetworkOutputs({ network, chosen, control, steps, moment, every }: Props) {
   const [energy, setEnergy] = useState(0);
-  const sight = useMemo(() => sampledTimes(control), [control]);
+  const inputs = useMemo(() => inputsOf(control), [control]);
   const pictures = useMemo(
     () => activationsOf(network, control, steps, energy),
     [network, control, steps, energy],
   );
   const outputs = network.neurons.filter(({ role }) => role === "output");
   const other = network.neurons.find(({ id, role }) => id === chosen && role !== "output");
-  const shared = { pictures, sight, moment, every };
+  const shared = { pictures, inputs, moment, every };
   return (
     <div class="outputs">
       <h3>{text.outputs}</h3>
       <p class="quiet small">
         {text.outputAxes(
-          sight.recurrent
+          inputs.recurrent
             ? text.settledSteps(pictures.from, pictures.to)
-            : sight.timer === "linear"
+            : inputs.timer === "linear"
               ? text.wholeLife
-              : text.onePeriod(number(sight.period)),
+              : text.onePeriod(number(inputs.period)),
         )}
       </p>
-      {sight.senses && (
+      {inputs.senses && (
         <label class="compact">
           {text.sensedEnergy}
           <input
@@ -69,22 +68,22 @@ export function NetworkOutputs({ network, chosen, control, steps, moment, every 
 interface PictureProps extends Pick<Props, "moment" | "every"> {
   neuron: Neuron;
   pictures: Activations;
-  sight: ReturnType<typeof sampledTimes>;
+  inputs: ReturnType<typeof inputsOf>;
   chosen: boolean;
 }
 
-/** Outputs act through tanh; growth counts by its sign alone, and other nodes as they are. */
+/** Outputs act through tanh, except growth, of which only the sign counts. */
 const squashed = ({ role, label }: Neuron) => role === "output" && label !== "growth";
 
-function Picture({ neuron, pictures, sight, moment, every, chosen }: PictureProps) {
-  const said = pictures.values.get(neuron.id)!;
-  const values = useMemo(() => (squashed(neuron) ? said.map(Math.tanh) : said), [neuron, said]);
+function Picture({ neuron, pictures, inputs, moment, every, chosen }: PictureProps) {
+  const raw = pictures.values.get(neuron.id)!;
+  const values = useMemo(() => (squashed(neuron) ? raw.map(Math.tanh) : raw), [neuron, raw]);
   const most = squashed(neuron) ? 1 : values.reduce((top, value) => Math.max(top, Math.abs(value)), 0);
   const name = neuron.label || text.node(neuron.id);
   const { from, to } = pictures;
   const place = useCallback(
-    (time: number) => shareOf(time * (every ?? 0), { from, to }, sight),
-    [every, sight, from, to],
+    (time: number) => phaseOf(time * (every ?? 0), { from, to }, inputs),
+    [every, inputs, from, to],
   );
   const read = (column: number, row: number) => {
     const value = number(values[column * ROWS + row]);

@@ -1,11 +1,10 @@
 /** The button that starts a refinement run from a creature. */
 
 import * as api from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Creature, Json } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { applyResponse } from "../store/store";
-import { showToast } from "../store/toasts";
+import { showFailure } from "../store/toasts";
 import { navigate } from "../store/router";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
@@ -31,7 +30,7 @@ export function RefineButton({ creature, run }: Props) {
       const made = await applyResponse("change", api.createRun(spec, newIdempotencyKey()));
       navigate(`/runs/${made.id}`);
     } catch (error) {
-      showToast({ kind: "wrong", text: messageOf(error) });
+      showFailure(error);
     }
   };
   return (

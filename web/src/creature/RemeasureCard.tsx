@@ -1,76 +1,58 @@
 /** Measure a creature again and compare with the numbers of its file. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import * as api from "../api/client";
 import { sharedSlug } from "../api/address";
 import { messageOf } from "../api/problem";
 import type { Measurement } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { poll } from "../store/polling";
+import { usePolled } from "../store/polling";
 import { number, words } from "../ui/format";
+import { CheckCard } from "./CheckCard";
 import { text } from "./text";
 
-type State = "unknown" | "never" | "underway" | Measurement;
-
 export function RemeasureCard({ sha }: { sha: string }) {
-  const { state, note, error, start } = useMeasurement(sha);
+  const { found, idle, running, note, error, start } = useMeasurement(sha);
   const refusal = useRefusal();
-  const found = typeof state === "string" ? null : state;
-  if (sharedSlug && !found) return null; // Visitors of a share cannot start a measurement.
-  const idle = state !== "unknown" && state !== "underway";
+  const result = found === "never" ? null : found;
+  if (sharedSlug && !result) return null; // Visitors of a share cannot start a measurement.
+  const mayStart = !sharedSlug && !refusal && (idle || error !== null);
   return (
-    <section class="card" aria-labelledby="measured-title">
-      <div class="card-head">
-        <h2 id="measured-title">{text.remeasured}</h2>
-        {found && <Verdict {...found} />}
-        <span class="spring" />
-        {!sharedSlug && !refusal && (idle || error) && (
-          <button onClick={() => void start()}>{found ? text.measureAgain : text.measure}</button>
-        )}
-      </div>
-      {state === "never" && <p class="quiet small">{text.measureAbout}</p>}
-      {state === "underway" && !error && (
-        <p class="quiet" role="status">
-          {note ? text.retrying(note) : text.measuring}
-        </p>
-      )}
-      {error && <p class="banner wrong">{error}</p>}
-      {found && <MeasurementResult {...found} />}
-    </section>
+    <CheckCard
+      {...{ note, error }}
+      name="measured"
+      title={text.remeasured}
+      verdict={result && (result.exact ? ["finished", text.identical] : ["paused", text.differs])}
+      button={mayStart ? (result ? text.measureAgain : text.measure) : null}
+      onStart={() => void start()}
+      running={running ? text.measuring : null}
+    >
+      {found === "never" && <p class="quiet small">{text.measureAbout}</p>}
+      {result && <MeasurementResult {...result} />}
+    </CheckCard>
   );
 }
 
 /** The measurement of a creature on this server, and a function that starts one. */
 function useMeasurement(sha: string) {
-  const [state, setState] = useState<State>("unknown");
-  const [note, setNote] = useState<string | null>(null);
-  const [error, setError] = useState<string | null>(null);
   const [turn, setTurn] = useState(0);
-  useEffect(() => {
-    const read = async () => {
-      const found = await api.readMeasurement(sha);
-      if (found === null) setState("underway");
-      return found;
-    };
-    return poll(read, { value: setState, note: setNote, error: setError });
-  }, [sha, turn]);
+  const [starting, setStarting] = useState(false);
+  const [failed, setFailed] = useState<string | null>(null);
+  const { value, answered, note, error } = usePolled(() => api.readMeasurement(sha), [sha, turn]);
   const start = async () => {
-    setError(null);
-    setState("underway");
+    setFailed(null);
+    setStarting(true);
     try {
       await api.startMeasurement(sha);
       setTurn((count) => count + 1);
     } catch (reason) {
-      setError(messageOf(reason));
+      setFailed(messageOf(reason));
     }
+    setStarting(false);
   };
-  return { state, note, error, start };
-}
-
-function Verdict({ exact }: Measurement) {
-  return (
-    <span class={`badge ${exact ? "finished" : "paused"}`}>{exact ? text.identical : text.differs}</span>
-  );
+  const running = starting || (answered && value === null);
+  const found = starting ? null : value;
+  return { found, idle: found !== null, running, note, error: failed ?? error, start };
 }
 
 function MeasurementResult({ exact, device, recorded_device, fitness, figures }: Measurement) {

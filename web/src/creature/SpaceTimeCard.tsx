@@ -1,13 +1,31 @@
 /** The shape of the body over time: rest shape and actual shape. */
 
+import { useCallback, useMemo } from "preact/hooks";
 import type { Replay } from "../decode/replay";
-import { setQuery } from "../store/router";
-import { Segments } from "../ui/Select";
+import { anglesOf, lengthsOf, sizeOf } from "../decode/shape";
 import type { Moment } from "../replay/moment";
-import { type Measure, SpaceTime } from "./SpaceTime";
+import { setQuery } from "../store/router";
+import { number, percent } from "../ui/format";
+import { Segments } from "../ui/Select";
+import { DivergingLegend, HeatMap } from "./HeatMap";
 import { text } from "./text";
 
-const TITLES: [Measure, string][] = [
+const QUANTITIES = {
+  angles: {
+    ...{ of: anglesOf, item: "joint", unit: text.angleUnit },
+    ...{ rest: text.restAngles, actual: text.bodyAngles },
+    write: (value: number) => `${number(value)} rad`,
+  },
+  lengths: {
+    ...{ of: lengthsOf, item: "edge", unit: text.lengthUnit },
+    ...{ rest: text.restLengths, actual: text.bodyLengths },
+    write: (value: number) => percent(value),
+  },
+};
+
+type Quantity = keyof typeof QUANTITIES;
+
+const TITLES: [Quantity, string][] = [
   ["angles", text.angles],
   ["lengths", text.lengths],
 ];
@@ -19,7 +37,7 @@ interface Props {
 }
 
 export function SpaceTimeCard({ replay, query, moment }: Props) {
-  const measure: Measure = query.get("shape") === "lengths" ? "lengths" : "angles";
+  const quantity = query.get("shape") === "lengths" ? "lengths" : "angles";
   return (
     <section class="card" aria-labelledby="shape-title">
       <div class="card-head">
@@ -28,11 +46,54 @@ export function SpaceTimeCard({ replay, query, moment }: Props) {
         <Segments
           label={text.shapeView}
           choices={TITLES}
-          value={measure}
+          value={quantity}
           onChoose={(name) => setQuery({ shape: name === "angles" ? null : name })}
         />
       </div>
-      <SpaceTime {...{ replay, measure, moment }} />
+      <SpaceTime {...{ replay, quantity, moment }} />
     </section>
+  );
+}
+
+function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quantity: Quantity }) {
+  const { of, item, unit, write, ...titles } = QUANTITIES[quantity];
+  const shape = useMemo(() => of(replay), [replay, of]);
+  const most = useMemo(() => sizeOf(shape.rest, shape.actual), [shape]);
+  const { frames, every, steps } = replay.header;
+  const place = useCallback((time: number) => (time + 0.5) / frames, [frames]);
+  const timeAt = (share: number) => Math.min(frames - 1, Math.max(0, share * frames - 0.5));
+  const { items } = shape.rest;
+  const read = (column: number, row: number) => {
+    const [rest, actual] = [shape.rest, shape.actual].map(({ values }) =>
+      write(values[column * items + row]!),
+    );
+    return text.shapeAt(Math.min(steps, column * every), item, row + 1, rest!, actual!);
+  };
+  if (items === 0) return <p class="quiet">{text.hasNo(item)}</p>;
+  return (
+    <div class="space-time">
+      {(["rest", "actual"] as const).map((part) => (
+        <figure key={part}>
+          <figcaption>{titles[part]}</figcaption>
+          <div class="heat-frame">
+            <span class="heat-up">
+              <span>{items}</span>
+              <span class="heat-name">{item}</span>
+              <span>1</span>
+            </span>
+            <HeatMap
+              cells={{ columns: frames, rows: items, values: shape[part].values }}
+              label={text.shapeMap(titles[part], steps, items, item)}
+              {...{ most, read, moment, place, timeAt }}
+            />
+          </div>
+        </figure>
+      ))}
+      <p class="heat-across small quiet">
+        <span>{text.step(0)}</span>
+        <span>{text.step(steps)}</span>
+      </p>
+      <DivergingLegend title={unit} end={write(most)} />
+    </div>
   );
 }

@@ -1,15 +1,13 @@
-/** A creature's page: replays of the second format, what they show, networks, relatives. */
-
 import { describe, expect, it } from "vitest";
 import type { Ancestors, Creature, Relative } from "../api/types";
 import { familyLayoutOf } from "./relatives";
 import { formOf, groupsOf } from "./facts";
 import { moveSpot } from "./HeatMap";
 
-describe("a picture over time and space", () => {
+describe("a heat map", () => {
   const cells = { columns: 5, rows: 3 };
 
-  it("is read by arrow keys from the moment shown on, and no further than its edges", () => {
+  it("is read with arrow keys, from the current moment, up to its edges", () => {
     expect(moveSpot("ArrowUp", null, 2, cells)).toEqual({ column: 2, row: 0 });
     expect(moveSpot("ArrowDown", null, 2, cells)).toEqual({ column: 2, row: 2 });
     expect(moveSpot("ArrowRight", null, 2, cells)).toEqual({ column: 3, row: 0 });
@@ -37,7 +35,7 @@ describe("a family tree", () => {
     more: false,
   };
 
-  it("stands in columns, the oldest first, joined as parent and child", () => {
+  it("has columns, the oldest first, and lines from parents to children", () => {
     const tree = familyLayoutOf(me, ancestors, { total: 1, items: [person("child", 1, ["me"])] });
     expect(tree.columns.map(({ title }) => title)).toEqual([
       "Grandparents",
@@ -51,10 +49,10 @@ describe("a family tree", () => {
     expect(lines.sort()).toEqual(["a me", "b me", "me child", "old a", "old b"]);
   });
 
-  it("draws the first children, which are the fittest, and says how many it leaves out", () => {
+  it("draws the fittest children, and counts the others", () => {
     const items = Array.from({ length: 12 }, (_, i) => person(`c${i}`, 1, ["me"], 11 - i));
     const tree = familyLayoutOf(me, ancestors, { total: 30, items });
-    const drawn = tree.kin.filter(({ relative }) => relative.creature.startsWith("c"));
+    const drawn = tree.relatives.filter(({ relative }) => relative.creature.startsWith("c"));
     expect(drawn.map(({ relative }) => relative.fitness)).toEqual([11, 10, 9, 8, 7, 6, 5, 4]);
     expect(tree.hidden).toBe(22);
   });
@@ -66,7 +64,7 @@ describe("facts", () => {
     measured: { fitness: 1, descriptors: {}, measures: { displacement: 2, mach: 0.1, connections: 4 } },
   } as unknown as Creature;
 
-  it("stand in groups, each once", () => {
+  it("are in groups, each once", () => {
     const groups = groupsOf(creature);
     expect(groups.map(({ title }) => title)).toEqual(["Result", "Network", "Flow"]);
     expect(groups.flatMap(({ rows }) => rows).map(([name]) => name)).toEqual([
@@ -77,7 +75,7 @@ describe("facts", () => {
     ]);
   });
 
-  it("say nothing of the coupling where there is no fluid", () => {
+  it("do not mention the coupling without a fluid", () => {
     expect(formOf(creature)).toEqual([]);
   });
 });

@@ -1,19 +1,25 @@
 import { describe, expect, it } from "vitest";
 import type { Creature, Spec } from "../api/types";
 import { couplingFacts, forceFreeShare, isForceFree } from "../ui/coupling";
-import { measurementsOf, originOf } from "./facts";
+import { groupsOf, originOf } from "./facts";
 
 describe("a creature file", () => {
   const identity = {
-    genome: { encoding: "cppn" },
+    genome: { encoding: "cppn", control: {} },
     body: { nodes: 8 },
     world: { width: 64, height: 32, viscosity: 0.05 },
   };
   const told = (creature: Creature) =>
-    Object.fromEntries([...measurementsOf(creature), ...originOf(creature)]);
-  const bare = { identity, measured: null, provenance: null, licence: "CC0" } as unknown as Creature;
+    Object.fromEntries([...groupsOf(creature).flatMap(({ rows }) => rows), ...originOf(creature)]);
+  const bare = {
+    identity,
+    measured: null,
+    provenance: null,
+    licence: "CC0",
+    sha256: "ab",
+  } as unknown as Creature;
 
-  it("without figures and origin says so", () => {
+  it("without measures and origin says so", () => {
     expect(told(bare)).toEqual({
       Fitness: "not measured",
       Generation: "unknown",
@@ -24,17 +30,18 @@ describe("a creature file", () => {
       World: "64 × 32 cells, ν = 0.05",
       Device: "unknown",
       Licence: "CC0",
+      "SHA-256": "ab",
     });
   });
 
-  it("with figures shows each of them, zeros too", () => {
+  it("with measures shows each of them, also zeros", () => {
     const measured = { fitness: 0, descriptors: { speed: 0.5 }, measures: {}, block: 1, device: "cpu" };
     const provenance = { parents: [], operator: "random", generation: 0, seed: 0, version: "1" };
     const facts = told({ ...bare, measured, provenance });
     expect(facts).toMatchObject({ Fitness: "0", Speed: "0.5", Generation: "0", "Random seed": "0" });
   });
 
-  it("of a gait names swimmer and period, and figures with their units", () => {
+  it("of a gait names swimmer and period, and measures with their units", () => {
     const genome = { encoding: "gait", swimmer: "worm", period: 600, ramp: 1 };
     const measured = {
       fitness: 2,
@@ -55,7 +62,7 @@ describe("a creature file", () => {
     expect(facts).not.toHaveProperty("Fitness");
   });
 
-  it("says in which form its body is coupled, and whether that is force-free", () => {
+  it("describes the coupling, and whether it is force-free", () => {
     const paper = { projection: "none", theta_feedback: 0, layers: 2 };
     expect(isForceFree(paper)).toBe(false);
     expect(isForceFree({ projection: "force" })).toBe(true);

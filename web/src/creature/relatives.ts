@@ -1,4 +1,4 @@
-/** A creature between its ancestors and its children, as columns of names and lines. */
+/** Layout of a family tree: ancestors, the creature and its children in columns. */
 
 import type { Ancestors, Children, Relative } from "../api/types";
 import { text } from "./text";
@@ -12,30 +12,29 @@ export interface PlacedRelative {
 export interface FamilyLayout {
   width: number;
   height: number;
-  kin: PlacedRelative[];
+  relatives: PlacedRelative[];
   /** From a parent to its child. */
   lines: [PlacedRelative, PlacedRelative][];
-  /** Of each column its middle and what stands in it. */
   columns: { x: number; title: string }[];
   hidden: number;
 }
 
-/** Parents, oneself and children fit on a phone. */
+/** Size of a name, in pixels: parents, creature and children fit on a phone. */
 export const [WIDE, HIGH] = [92, 34];
 const GAP = 20;
-/** Children, or ancestors of one generation, that are drawn. */
-const MOST = 8;
+/** Relatives drawn per generation. */
+const MAX_PER_COLUMN = 8;
 
-/** Children come as the fittest first, and ancestors as the nearest. */
+/** Children are sorted by fitness, ancestors by distance. */
 export function familyLayoutOf(self: Relative, ancestors: Ancestors, children: Children): FamilyLayout {
   const deepest = Math.max(0, ...ancestors.items.map(({ distance }) => distance));
   const levels = Array.from({ length: deepest }, (_, i) =>
     ancestors.items.filter(({ distance }) => distance === deepest - i),
   );
   const below = children.items.length > 0 ? [children.items] : [];
-  const columns = [...levels, [self], ...below].map((level) => level.slice(0, MOST));
+  const columns = [...levels, [self], ...below].map((level) => level.slice(0, MAX_PER_COLUMN));
   const height = HIGH * Math.max(...columns.map((column) => column.length));
-  const kin = columns.flatMap((column, i) =>
+  const relatives = columns.flatMap((column, i) =>
     column.map((relative, k) => ({
       relative,
       x: i * (WIDE + GAP),
@@ -45,22 +44,22 @@ export function familyLayoutOf(self: Relative, ancestors: Ancestors, children: C
   return {
     width: columns.length * (WIDE + GAP) - GAP,
     height,
-    kin,
-    lines: linesOf(kin, self, ancestors),
+    relatives,
+    lines: linesOf(relatives, self, ancestors),
     columns: columns.map((_, i) => ({ x: i * (WIDE + GAP), title: titleOf(deepest - i) })),
-    hidden: children.total - Math.min(MOST, children.items.length),
+    hidden: children.total - Math.min(MAX_PER_COLUMN, children.items.length),
   };
 }
 
 function linesOf(
-  kin: PlacedRelative[],
+  relatives: PlacedRelative[],
   self: Relative,
   { parents }: Ancestors,
 ): [PlacedRelative, PlacedRelative][] {
-  const byName = new Map(kin.map((one) => [one.relative.creature, one]));
+  const byName = new Map(relatives.map((one) => [one.relative.creature, one]));
   const me = byName.get(self.creature)!;
-  return kin.flatMap((child): [PlacedRelative, PlacedRelative][] => {
-    // Of a child's parents only this creature has a place beside it.
+  return relatives.flatMap((child): [PlacedRelative, PlacedRelative][] => {
+    // Other parents of a child are not shown.
     if (child.x > me.x) return [[me, child]];
     const names = child === me ? parents : child.relative.parents;
     return [...new Set(names)]

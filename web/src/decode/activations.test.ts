@@ -2,12 +2,12 @@ import { describe, expect, it } from "vitest";
 import type { Genes, Spec, Vector } from "../api/types";
 import { layeredOf } from "./layers";
 import { networkOf } from "./network";
-import { ROWS, activationsOf, shareOf, sampledTimes } from "./activations";
+import { ROWS, activationsOf, inputsOf, phaseOf } from "./activations";
 import cases from "./networks.fixture.json";
 
-describe("what a network computes", () => {
+describe("the values of a network", () => {
   cases.forEach(({ genome, steps, said }, number) => {
-    it(`is what the engine computes, network ${number + 1}`, () => {
+    it(`equal those of the engine, network ${number + 1}`, () => {
       const inherited = genome as unknown as Genes & Vector;
       const network = "nodes" in genome ? networkOf(inherited) : layeredOf(inherited)!;
       const { values } = activationsOf(network, genome.control as unknown as Spec, steps);
@@ -24,7 +24,7 @@ describe("what a network computes", () => {
     });
   });
 
-  it("depends on the energy it senses", () => {
+  it("depend on the sensed energy", () => {
     const { genome, steps } = cases[0]!;
     const sensing = { ...genome.control, sense_energy: true } as unknown as Spec;
     const genes = {
@@ -39,15 +39,15 @@ describe("what a network computes", () => {
     expect(new Set(values.get(4))).toEqual(new Set([1.5]));
   });
 
-  it("has its cursor in phase, also where a memory is shown from the middle of a period", () => {
-    const recurrent = sampledTimes({ period: 30, recurrent: true });
-    const at = (step: number, from: number) => shareOf(step, { from, to: from + 30 }, recurrent);
+  it("have a cursor in phase, also if a recurrent network starts within a period", () => {
+    const recurrent = inputsOf({ period: 30, recurrent: true });
+    const at = (step: number, from: number) => phaseOf(step, { from, to: from + 30 }, recurrent);
     expect(at(75, 70)).toBeCloseTo(5 / 30);
     expect(at(69, 70)).toBeCloseTo(29 / 30);
     expect(at(10, 70)).toBe(0);
     expect(at(75, 0)).toBeCloseTo(0.5);
-    const linear = sampledTimes({ timer: "linear", period: 30 });
-    expect(shareOf(75, { from: 0, to: 100 }, linear)).toBe(0.75);
+    const linear = inputsOf({ timer: "linear", period: 30 });
+    expect(phaseOf(75, { from: 0, to: 100 }, linear)).toBe(0.75);
   });
 });
 

@@ -1,8 +1,10 @@
 import { describe, expect, it } from "vitest";
 import type { Genes } from "../api/types";
-import { decodeFloats } from "./base64";
+import { decodeFloats } from "./floats";
 import { networkOf } from "./network";
 import { decodeReplay } from "./replay";
+import { angles, header, lengths, positions, replayBytes } from "./replay.fixture";
+import { anglesOf, lengthsOf } from "./shape";
 
 const base64 = (bytes: number[]) => btoa(String.fromCharCode(...bytes));
 const floats = (values: number[]) => base64([...new Uint8Array(Float32Array.from(values).buffer)]);
@@ -14,35 +16,26 @@ describe("base64 floats", () => {
     expect([...decodeFloats(text)]).toEqual([1.5, -2]);
   });
 
-  it("are refused where bytes are missing", () => {
+  it("are refused if bytes are missing", () => {
     expect(() => decodeFloats(base64([1, 2, 3]))).toThrow("multiple of 4 bytes, got 3");
   });
 });
 
-function replayBytes(header: object, positions: number[], vorticity: number[]): ArrayBuffer {
-  let text = JSON.stringify(header);
-  while ((4 + text.length) % 4) text += " ";
-  const bytes = new Uint8Array(4 + text.length + 4 * positions.length + vorticity.length);
-  new DataView(bytes.buffer).setUint32(0, text.length, true);
-  bytes.set(new TextEncoder().encode(text), 4);
-  bytes.set(new Uint8Array(Float32Array.from(positions).buffer), 4 + text.length);
-  bytes.set(vorticity, 4 + text.length + 4 * positions.length);
-  return bytes.buffer;
-}
-
 describe("a replay", () => {
-  const header = { format: "microcosmos-replay/1", frames: 2, nodes: 1, size: [2, 1] };
-  const positions = [0.5, 1.25, -3, 4];
+  const replay = decodeReplay(replayBytes());
 
-  it("is split into positions and signed vorticity", () => {
-    const replay = decodeReplay(replayBytes(header, positions, [1, 127, 255, 129]));
+  it("holds positions, rest shapes, signed vorticity, velocity and energy", () => {
     expect(replay.header.frames).toBe(2);
     expect([...replay.positions]).toEqual(positions);
+    expect([...replay.angles]).toEqual(angles);
+    expect([...replay.lengths]).toEqual(lengths);
     expect([...replay.vorticity]).toEqual([1, 127, -1, -127]);
+    expect([...replay.velocity]).toEqual([10, 20, 30, 40, 50, 60, 70, 80]);
+    expect([...replay.energy]).toEqual([0, 255]);
   });
 
-  it("that is cut short is refused with both sizes", () => {
-    const whole = replayBytes(header, positions, [0, 0, 0, 0]);
+  it("that is too short is refused with both sizes", () => {
+    const whole = replayBytes();
     const short = whole.slice(0, whole.byteLength - 1);
     expect(() => decodeReplay(short)).toThrow(
       `2 frames need ${whole.byteLength} bytes, got ${short.byteLength}`,
@@ -50,8 +43,16 @@ describe("a replay", () => {
   });
 
   it("of another format is refused", () => {
-    const bytes = replayBytes({ ...header, format: "other/9" }, positions, [0, 0, 0, 0]);
-    expect(() => decodeReplay(bytes)).toThrow("got other/9");
+    expect(() => decodeReplay(replayBytes({ ...header, format: "other/9" }))).toThrow("got other/9");
+  });
+
+  it("gives rest and actual angles and lengths as changes from the start", () => {
+    const turned = anglesOf(replay);
+    expect([...turned.rest.values]).toEqual([0.25, 0.5]);
+    expect(turned.actual.values[1]).toBeCloseTo(Math.PI / 2, 6);
+    const stretched = lengthsOf(replay);
+    expect([...stretched.rest.values]).toEqual([0, 0, 0.25, 0]);
+    expect([...stretched.actual.values]).toEqual([0, 0, 0, 0.5]);
   });
 });
 
@@ -75,7 +76,7 @@ describe("a network", () => {
     },
   };
 
-  it("has each node one layer beyond the last of its sources, cycles notwithstanding", () => {
+  it("puts each node one layer after its last source, also with cycles", () => {
     const { neurons } = networkOf({
       ...genome,
       connections: { ...genome.connections, source: [0, 4, 5, 1, 0], target: [4, 5, 2, 3, 5] },
@@ -84,13 +85,13 @@ describe("a network", () => {
     expect(networkOf(genome).depth).toBeLessThan(genome.nodes.id.length);
   });
 
-  it("with cycles of any length has no more layers than its longest way without one", () => {
+  it("has no more layers than its longest path without a cycle", () => {
     const ring = { ...genome.connections, source: [0, 4, 5, 4, 1], target: [4, 5, 4, 4, 3] };
     const { neurons } = networkOf({ ...genome, connections: ring });
     expect(neurons.map(({ depth }) => depth)).toEqual([0, 0, 2, 2, 1, 2]);
   });
 
-  it("keeps weights, biases, names and what is switched off", () => {
+  it("keeps weights, biases, names and disabled links", () => {
     const { neurons, links } = networkOf(genome);
     expect(neurons[2]).toMatchObject({ role: "output", label: "rest angle", bias: 0.5 });
     expect(neurons[4]).toMatchObject({ role: "hidden", label: "", activation: "gaussian" });

@@ -1,8 +1,8 @@
-/** What a network computes, from its genes; as `genomes/cppn.py` and `recurrent.py` have it. */
+/** Evaluate a network from its genes, as `genomes/cppn.py` and `recurrent.py` do. */
 
 import type { Link, Network, Neuron } from "./network";
 
-/** Values are kept within this, as in the engine. */
+/** The engine clips values to this bound too. */
 const BOUND = 1e6;
 
 const ACTIVATIONS: Record<string, (z: number) => number> = {
@@ -17,33 +17,27 @@ const ACTIVATIONS: Record<string, (z: number) => number> = {
   square: (z) => z * z,
 };
 
-/** By node, a value at each point. */
+/** Values of each node at each point. */
 export type Values = Map<number, Float64Array>;
 
 /** All nodes of a feed-forward network; `inputs` in the order of the input nodes. */
 export function evaluate(network: Network, inputs: Float64Array[]): Values {
-  const arriving = arrivingAt(network);
-  const values: Values = new Map();
-  const visit = (neuron: Neuron) => {
-    const place = network.neurons.indexOf(neuron);
-    const links = arriving.get(neuron.id) ?? [];
-    values.set(
-      neuron.id,
-      neuron.role === "input" ? inputs[place]! : computed(neuron, links, values, inputs[0]!.length),
-    );
-  };
-  inOrder(network).forEach(visit);
+  const incoming = incomingLinks(network);
+  const values: Values = new Map(
+    network.neurons.flatMap(({ id, role }, i) => (role === "input" ? [[id, inputs[i]!]] : [])),
+  );
+  for (const neuron of topologicalOrder(network, incoming)) {
+    if (neuron.role === "input") continue;
+    values.set(neuron.id, activate(neuron, incoming.get(neuron.id)!, values, inputs[0]!.length));
+  }
   return values;
 }
 
-/**
- * All nodes of a network with cycles, one step later: every node reads what the others said in
- * the step before, and the new inputs.
- */
+/** All nodes of a recurrent network one step later; each reads the values of the step before. */
 export function advance(network: Network, before: Values, inputs: Float64Array[]): Values {
-  const arriving = arrivingAt(network);
+  const incoming = incomingLinks(network);
   const points = inputs[0]!.length;
-  const seen: Values = new Map(
+  const known: Values = new Map(
     network.neurons.map(({ id, role }, i) => [
       id,
       role === "input" ? inputs[i]! : (before.get(id) ?? new Float64Array(points)),
@@ -52,47 +46,46 @@ export function advance(network: Network, before: Values, inputs: Float64Array[]
   return new Map(
     network.neurons.map((neuron) => {
       const { id, role } = neuron;
-      const value = role === "input" ? seen.get(id)! : computed(neuron, arriving.get(id) ?? [], seen, points);
-      return [id, value];
+      return [id, role === "input" ? known.get(id)! : activate(neuron, incoming.get(id)!, known, points)];
     }),
   );
 }
 
-function computed({ activation, bias }: Neuron, links: Link[], values: Values, points: number) {
-  const found = new Float64Array(points).fill(bias);
+function activate({ activation, bias }: Neuron, links: Link[], values: Values, points: number) {
+  const sums = new Float64Array(points).fill(bias);
   for (const { source, weight } of links) {
     const from = values.get(source)!;
-    for (let i = 0; i < points; i++) found[i]! += weight * from[i]!;
+    for (let i = 0; i < points; i++) sums[i]! += weight * from[i]!;
   }
   const apply = ACTIVATIONS[activation]!;
-  return found.map((z) => Math.min(BOUND, Math.max(-BOUND, apply(z))));
+  return sums.map((z) => Math.min(BOUND, Math.max(-BOUND, apply(z))));
 }
 
-const known = new WeakMap<Network, Map<number, Link[]>>();
+const cache = new WeakMap<Network, Map<number, Link[]>>();
 
-/** The links in use that lead to each node. */
-function arrivingAt(network: Network): Map<number, Link[]> {
-  let found = known.get(network);
-  if (found) return found;
-  found = new Map<number, Link[]>(network.neurons.map(({ id }) => [id, []]));
-  for (const link of network.links) if (link.enabled) found.get(link.target)?.push(link);
-  known.set(network, found);
-  return found;
+/** The enabled links into each node. */
+function incomingLinks(network: Network): Map<number, Link[]> {
+  let incoming = cache.get(network);
+  if (incoming) return incoming;
+  incoming = new Map<number, Link[]>(network.neurons.map(({ id }) => [id, []]));
+  for (const link of network.links) if (link.enabled) incoming.get(link.target)?.push(link);
+  cache.set(network, incoming);
+  return incoming;
 }
 
-/** Neurons so that whatever one reads comes before it. */
-function inOrder(network: Network): Neuron[] {
-  const byId = new Map(network.neurons.map((neuron) => [neuron.id, neuron]));
-  const arriving = arrivingAt(network);
+/** The neurons, sources before targets. */
+function topologicalOrder({ neurons }: Network, incoming: Map<number, Link[]>): Set<Neuron> {
+  const byId = new Map(neurons.map((neuron) => [neuron.id, neuron]));
   const order = new Set<Neuron>();
-  const waiting = [...network.neurons].reverse();
-  while (waiting.length > 0) {
-    const neuron = waiting.at(-1)!;
-    const missing = (arriving.get(neuron.id) ?? [])
+  const stack = [...neurons].reverse();
+  while (stack.length > 0) {
+    const neuron = stack.at(-1)!;
+    const missing = incoming
+      .get(neuron.id)!
       .map(({ source }) => byId.get(source)!)
       .filter((source) => !order.has(source));
-    if (order.has(neuron) || missing.length === 0) order.add(waiting.pop()!);
-    else waiting.push(...missing);
+    if (order.has(neuron) || missing.length === 0) order.add(stack.pop()!);
+    else stack.push(...missing);
   }
-  return [...order];
+  return order;
 }

@@ -1,18 +1,18 @@
-/** A network of given layers as a graph: its genes are rows of a bias and weights. */
+/** A layered network as a graph; its genes are one row of bias and weights per neuron. */
 
 import type { Spec, Vector } from "../api/types";
-import { decodeFloats } from "./base64";
+import { decodeFloats } from "./floats";
 import type { Link, Network, Neuron } from "./network";
 
-/** Links that can still be told apart. */
-const MOST = 600;
+/** More links cannot be told apart. */
+const MAX_LINKS = 600;
 
-/** Null where there are no layers, or too many links to be drawn. */
+/** Null without layers, or with too many links to draw. */
 export function layeredOf({ encoding, control, values, inputs, outputs }: Vector): Network | null {
   if (encoding !== "weights" || !inputs || !outputs) return null;
   const sizes = [inputs.length, ...(control.hidden as number[]), outputs.length];
   const links = sizes.slice(1).reduce((sum, size, i) => sum + size * sizes[i]!, 0);
-  return links > MOST ? null : graph(sizes, decodeFloats(values), control, inputs, outputs);
+  return links > MAX_LINKS ? null : graph(sizes, decodeFloats(values), control, inputs, outputs);
 }
 
 function graph(sizes: number[], genes: Float32Array, control: Spec, inputs: string[], outputs: string[]) {
@@ -38,7 +38,7 @@ function graph(sizes: number[], genes: Float32Array, control: Spec, inputs: stri
   return { neurons, links, depth: last };
 }
 
-/** Inputs come first and outputs behind them, as among the genes of NEAT. */
+/** Inputs are numbered first, then outputs, as in NEAT. */
 function numbersOf(sizes: number[]): number[][] {
   const last = sizes.length - 1;
   let next = sizes[0]! + sizes[last]!;

@@ -1,31 +1,17 @@
-/** The motion of one creature without the fluid: header, positions. */
+/** Motions: the recorded positions of one creature without the fluid. */
 
-import { readHeader, floats } from "./replay";
+import { floatsAt } from "./floats";
+import { type Header, type Replay, readHeader } from "./replay";
 
-export interface MotionHeader {
-  format: string;
-  frames: number;
-  /** Steps between frames. */
-  every: number;
-  steps: number;
-  nodes: number;
-  edges: [number, number][];
-  size: [number, number];
+export interface Motion extends Pick<Replay, "positions"> {
+  header: Pick<Header, "frames" | "every" | "steps" | "nodes" | "edges" | "size">;
 }
-
-export interface Motion {
-  header: MotionHeader;
-  /** (frames, nodes, 2), unwrapped lattice coordinates. */
-  positions: Float32Array;
-}
-
-const FORMAT = "microcosmos-motion/1";
 
 export function decodeMotion(buffer: ArrayBuffer): Motion {
-  const { header, start } = readHeader<MotionHeader>(buffer, [FORMAT]);
+  const { header, start } = readHeader<Motion["header"]>(buffer, "microcosmos-motion/1");
   const count = header.frames * header.nodes * 2;
   if (start + 4 * count !== buffer.byteLength) {
     throw new Error(`motion: needs ${start + 4 * count} bytes, got ${buffer.byteLength}`);
   }
-  return { header, positions: floats(buffer, start, count) };
+  return { header, positions: floatsAt(buffer, start, count) };
 }

@@ -1,7 +1,7 @@
-/** A genome's arrays as a graph: nodes with their depth, links with their weights. */
+/** A genome as a graph: nodes with their depth, links with their weights. */
 
 import type { Genes } from "../api/types";
-import { decodeFloats } from "./base64";
+import { decodeFloats } from "./floats";
 
 export interface Neuron {
   id: number;
@@ -53,7 +53,7 @@ function roleOf(id: number, inputs: number, outputs: number): Neuron["role"] {
   return id < inputs + outputs ? "output" : "hidden";
 }
 
-/** The links without those that lead back to where a way began: the rest has no cycle. */
+/** The links without those that close a cycle. */
 function forwardOf(ids: number[], links: Link[]): Link[] {
   const leaving = new Map<number, Link[]>(ids.map((id) => [id, []]));
   for (const link of links) leaving.get(link.source)?.push(link);
@@ -61,22 +61,22 @@ function forwardOf(ids: number[], links: Link[]): Link[] {
   const done = new Set<number>();
   const back = new Set<Link>();
   for (const start of ids) {
-    const way = entered.has(start) ? [] : [start];
-    while (way.length > 0) {
-      const here = way.at(-1)!;
+    const path = entered.has(start) ? [] : [start];
+    while (path.length > 0) {
+      const here = path.at(-1)!;
       entered.add(here);
       const link = leaving.get(here)?.pop();
       if (!link) {
         done.add(here);
-        way.pop();
-      } else if (!entered.has(link.target)) way.push(link.target);
+        path.pop();
+      } else if (!entered.has(link.target)) path.push(link.target);
       else if (!done.has(link.target)) back.add(link);
     }
   }
   return links.filter((link) => !back.has(link));
 }
 
-/** The longest way from an input to each node; outputs share the last layer. */
+/** The longest path from an input to each node; outputs share the last layer. */
 function depthsOf(ids: number[], links: Link[], inputs: number, outputs: number) {
   const depths = new Map(ids.map((id) => [id, id < inputs ? 0 : 1]));
   for (let round = 0; round < ids.length; round++) {

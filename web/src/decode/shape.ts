@@ -1,44 +1,40 @@
-/** The shape of a body over time: what is asked of joints and edges, and what they do. */
+/** The shape of a body over time: rest shape and actual shape of joints and edges. */
 
 import type { Replay } from "./replay";
 
-/** Values of (frame, item), side by side. */
+/** (frame, item) values. */
 export interface Course {
   items: number;
   values: Float32Array;
 }
 
 export interface Shape {
-  /** What the drive asks for, less what the body had at the start. */
-  asked: Course;
-  /** What the body did, less the same. */
-  done: Course;
-  /** What each item had at the start. */
-  start: Float32Array;
+  /** The rest shape, as change from the initial shape. */
+  rest: Course;
+  /** The actual shape, as change from the initial shape. */
+  actual: Course;
 }
 
-/** Of each joint the angle in rad from its first edge to its second, turned the shorter way. */
+/** Signed angle of each joint, in rad, from its first edge to its second. */
 export function anglesOf(replay: Replay): Shape {
-  const { header, drive } = replay;
-  const joints = header.joints!;
-  const done = courseOf(replay, joints.length, (frame) => {
-    const along = header.edges.map((edge) => edgeAt(replay, frame, edge));
+  const { edges, joints } = replay.header;
+  const actual = courseOf(replay, joints.length, (frame) => {
+    const along = edges.map((edge) => edgeAt(replay, frame, edge));
     return joints.map(([first, second]) => {
       const [a, b] = [along[first]!, along[second]!];
       return Math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
     });
   });
-  return lessStart({ items: joints.length, values: drive!.angles }, done, (x, from) => x - from);
+  return fromStart({ items: joints.length, values: replay.angles }, actual, (x, start) => x - start);
 }
 
-/** Of each edge its length, as a part of that at the start. */
+/** Length of each edge, relative to its initial length. */
 export function lengthsOf(replay: Replay): Shape {
   const { edges } = replay.header;
-  const done = courseOf(replay, edges.length, (frame) =>
+  const actual = courseOf(replay, edges.length, (frame) =>
     edges.map((edge) => Math.hypot(...edgeAt(replay, frame, edge))),
   );
-  const asked = { items: edges.length, values: replay.drive!.lengths };
-  return lessStart(asked, done, (x, from) => x / from - 1);
+  return fromStart({ items: edges.length, values: replay.lengths }, actual, (x, start) => x / start - 1);
 }
 
 function edgeAt({ header, positions }: Replay, frame: number, [a, b]: [number, number]) {
@@ -53,16 +49,15 @@ function courseOf({ header }: Replay, items: number, at: (frame: number) => numb
   return { items, values };
 }
 
-function lessStart(asked: Course, done: Course, change: (value: number, from: number) => number): Shape {
-  const start = done.values.slice(0, done.items);
+function fromStart(rest: Course, actual: Course, change: (value: number, start: number) => number): Shape {
   const changed = ({ items, values }: Course): Course => ({
     items,
-    values: values.map((value, i) => change(value, start[i % items]!)),
+    values: values.map((value, i) => change(value, actual.values[i % items]!)),
   });
-  return { asked: changed(asked), done: changed(done), start };
+  return { rest: changed(rest), actual: changed(actual) };
 }
 
-/** The size that one value in two hundred exceeds: the end of a scale of colours. */
+/** The 99.5th percentile of absolute values: the end of a colour scale. */
 export function sizeOf(...courses: Course[]): number {
   const sizes = Float32Array.from(courses.flatMap(({ values }) => [...values.map(Math.abs)])).sort();
   return sizes[Math.floor(0.995 * (sizes.length - 1))] || sizes.at(-1) || 0;

@@ -1,11 +1,10 @@
 /** The base of the spec, the number of changes, and undo. */
 
 import { importCreature } from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Experiment } from "../api/types";
 import { formatCells } from "../store/cellRanges";
 import type { Base, ForkSource, Draft } from "../store/draft";
-import { showToast } from "../store/toasts";
+import { showFailure } from "../store/toasts";
 import { navigate } from "../store/router";
 import { equalPreset } from "./form/changes";
 import { count, short } from "../ui/format";
@@ -99,6 +98,6 @@ async function open(file: CreatureFile): Promise<void> {
     const { creature } = await importCreature(new Blob([file.text], { type: "application/json" }));
     navigate(`/creatures/${creature}`);
   } catch (error) {
-    showToast({ kind: "wrong", text: messageOf(error) });
+    showFailure(error);
   }
 }

@@ -1,90 +1,118 @@
-/** Estimated cost of a run: time, memory, evaluations, work. */
+/** Estimated costs: time, memory, evaluations and work. */
 
+import type { ComponentChildren } from "preact";
 import type { Estimate, SweepEstimate } from "../api/types";
-import { about, basis, rough, wait } from "./costText";
+import { Card } from "../ui/Page";
+import { Term } from "../ui/Term";
 import { bytes, count, number, words } from "../ui/format";
 import { text } from "./text";
 
 interface Props {
   estimate: Estimate | SweepEstimate | null;
-  /** How many runs it is for. */
+  /** The number of runs. */
   runs?: number;
   problem: string | null;
 }
 
 /** The estimate in short, beside the start button. */
 export function Costs({ estimate, runs = 1, problem }: Props) {
-  if (problem) {
+  if (problem || !estimate) {
     return (
-      <p class="costs wrong-text" role="status">
-        {problem}
-      </p>
-    );
-  }
-  if (!estimate) {
-    return (
-      <p class="costs quiet" role="status">
-        {text.estimating}
+      <p class={`costs ${problem ? "wrong-text" : "quiet"}`} role="status">
+        {problem ?? text.estimating}
       </p>
     );
   }
   const { memory_bytes, memory_limit_bytes, evaluations } = estimate;
+  const { queue, seconds } = estimate;
+  const shared = runs > 1 && seconds !== null && queue.workers > 1;
   return (
     <dl class="costs" aria-label={text.estimate}>
-      <div>
-        <dt>{runs > 1 ? text.timeOfRuns(count(runs)) : text.time}</dt>
-        <dd>
-          {about(estimate) ?? text.unknown}
-          {runs > 1 && estimate.seconds !== null && <PerWorker estimate={estimate} />}
-        </dd>
-      </div>
-      <div class={memory_bytes > memory_limit_bytes ? "wrong-text" : ""}>
-        <dt>{runs > 1 ? text.memoryEach : text.memory}</dt>
-        <dd>
-          {bytes(memory_bytes)} <span class="quiet">{text.ofMemory(bytes(memory_limit_bytes))}</span>
-        </dd>
-      </div>
-      <div>
-        <dt>{text.evaluations}</dt>
-        <dd>{count(evaluations)}</dd>
-      </div>
+      <Cost name={runs > 1 ? text.timeOfRuns(count(runs)) : text.time}>
+        {about(estimate) ?? text.unknown}
+        {shared && <span class="quiet">{text.onWorkers(queue.workers, rough(seconds / queue.workers))}</span>}
+      </Cost>
+      <Cost name={runs > 1 ? text.memoryEach : text.memory} wrong={memory_bytes > memory_limit_bytes}>
+        {bytes(memory_bytes)} <span class="quiet">{text.ofMemory(bytes(memory_limit_bytes))}</span>
+      </Cost>
+      <Cost name={text.evaluations}>{count(evaluations)}</Cost>
     </dl>
   );
 }
 
-/** Several workers share the runs. */
-function PerWorker({ estimate: { seconds, queue } }: { estimate: Estimate | SweepEstimate }) {
-  if (queue.workers < 2) return null;
-  return <span class="quiet">{text.onWorkers(queue.workers, rough(seconds! / queue.workers))}</span>;
+interface CostProps {
+  name: string;
+  wrong?: boolean;
+  children: ComponentChildren;
+}
+
+function Cost({ name, wrong = false, children }: CostProps) {
+  return (
+    <div class={wrong ? "wrong-text" : ""}>
+      <dt>
+        <Term name={name} />
+      </dt>
+      <dd>{children}</dd>
+    </div>
+  );
 }
 
 /** The estimate in full, with its basis. */
 export function CostDetails({ estimate }: { estimate: Estimate }) {
   const { memory_bytes, memory_limit_bytes, evaluations, cell_steps, speed } = estimate;
   const fits = memory_bytes <= memory_limit_bytes;
+  const memory = text.memoryNeeded(bytes(memory_limit_bytes), fits);
+  const pace = speed ? text.pace(number(speed.cell_steps_per_second)) : "";
   return (
-    <section class="card cost-details" aria-labelledby="cost-title">
-      <h2 id="cost-title">{text.cost}</h2>
-      <p>
-        <b>{words(about(estimate) ?? text.time)}</b> <span class="quiet">{basis(estimate)}.</span>
-      </p>
-      <p>
-        <b>{bytes(memory_bytes)}</b>{" "}
-        <span class={fits ? "quiet" : "wrong-text"}>
-          {text.memoryNeeded(bytes(memory_limit_bytes), fits)}
-        </span>
-      </p>
-      <p>
-        <b>{count(evaluations)}</b> <span class="quiet">{text.evaluationsAbout}</span>
-      </p>
-      <p>
-        <b>{number(cell_steps)}</b>{" "}
-        <span class="quiet">
-          {text.cellSteps}
-          {speed && text.pace(number(speed.cell_steps_per_second))}
-        </span>
-      </p>
+    <Card id="cost" kind="cost-details" title={text.cost}>
+      <Detail value={words(about(estimate) ?? text.time)} about={`${basis(estimate)}.`} />
+      <Detail value={bytes(memory_bytes)} about={memory} wrong={!fits} />
+      <Detail value={count(evaluations)} about={text.evaluationsAbout} />
+      <Detail value={number(cell_steps)} about={`${text.cellSteps}${pace}`} />
       <p class="quiet">{wait(estimate)}</p>
-    </section>
+    </Card>
   );
+}
+
+function Detail({ value, about, wrong = false }: { value: string; about: string; wrong?: boolean }) {
+  return (
+    <p>
+      <b>{value}</b> <span class={wrong ? "wrong-text" : "quiet"}>{about}</span>
+    </p>
+  );
+}
+
+/** A rounded duration. */
+export function rough(seconds: number): string {
+  if (seconds < 10) return "10 s";
+  if (seconds < 90) return `${5 * Math.round(seconds / 5)} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  if (seconds < 36 * 3600) return `${Math.round((10 * seconds) / 3600) / 10} h`;
+  return seconds < 365 * 86400 ? text.days(Math.round(seconds / 86400)) : text.overAYear;
+}
+
+/** The estimated time in short; null if unknown. */
+export function about({ seconds }: Pick<Estimate, "seconds">): string | null {
+  if (seconds === null) return null;
+  return seconds < 10 ? text.fewSeconds : text.about(rough(seconds));
+}
+
+/** The range is shown if the slowest and the fastest earlier run differ by this factor. */
+const WIDE = 1.5;
+
+/** The basis of the estimated time. */
+export function basis({ speed }: Estimate): string {
+  if (!speed) return text.noPace;
+  const [low, high] = [rough(speed.low), rough(speed.high)];
+  const wide = speed.high > WIDE * speed.low && low !== high;
+  const range = wide ? text.paceRange(low, high) : "";
+  return text.basis(speed.device, text.basedOn(speed.runs), range);
+}
+
+/** The reason why the run has to wait. */
+export function wait({ queue }: Estimate): string {
+  const { runs_ahead, workers, idle_workers } = queue;
+  if (workers === 0) return text.noWorker;
+  if (runs_ahead > 0) return text.queued(runs_ahead);
+  return idle_workers > 0 ? text.workerFree : text.workerBusy;
 }

@@ -1,4 +1,4 @@
-/** The spec at hand: as a form or as JSON, with what it is about and what it will cost. */
+/** The editor of a spec, as a form or as JSON, with a drawing and the estimated cost. */
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Experiment, Json } from "../api/types";
@@ -51,14 +51,14 @@ export function Editor(props: Props) {
       <div class="new-columns">
         <aside class="new-side" aria-label={text.overview}>
           <section class={`card ${check.estimate ? "" : "stale"}`} aria-label={text.body}>
-            <BodyDrawing drawing={check.drawing} />
+            <BodyDrawing drawing={editor.drawing} />
           </section>
           {check.estimate && <CostDetails estimate={check.estimate} />}
         </aside>
         <div class="new-spec">
           <SpecView {...props} {...{ editor, illegible }} onProblem={setIllegible} />
           {forking ? (
-            <ForkCard {...editor.fork} errors={[...editor.refused, ...check.errors]} />
+            <ForkCard fork={editor.fork} errors={[...editor.refused, ...check.errors]} />
           ) : (
             <SweepCard
               sweeping={sweep}

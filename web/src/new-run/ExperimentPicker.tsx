@@ -1,14 +1,14 @@
 /** The choice of an experiment and a preset. */
 
 import type { Estimate, Experiment, Preset } from "../api/types";
-import { about } from "./costText";
+import { about } from "./Costs";
 import { bytes, words } from "../ui/format";
 import { text } from "./text";
 
 interface Props {
   experiments: Experiment[];
   chosen: Experiment;
-  /** The preset that the spec was begun from, if any. */
+  /** The preset that the spec started from, if any. */
   preset: Preset | null;
   estimates: ReadonlyMap<Preset, Estimate>;
   onExperiment: (experiment: Experiment) => void;

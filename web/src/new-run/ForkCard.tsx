@@ -1,41 +1,78 @@
-/** The name of a fork, and errors about its initial creatures. */
+/** A fork: a new run that starts from creatures of another one. */
 
-import type { FieldError } from "../api/types";
+import { useEffect, useMemo, useState } from "preact/hooks";
+import type { FieldError, ForkRequest } from "../api/types";
+import type { Draft, ForkSource } from "../store/draft";
+import { Card } from "../ui/Page";
+import { Messages } from "./form/Entry";
+import { mergePatch, withInitial } from "./initialCreatures";
+import type { Alternative } from "./submission";
 import { text } from "./text";
 
-interface Props {
-  /** Null where it cannot be given one yet. */
+export interface Fork {
+  /** Null if the fork is sent as an ordinary run, which has no name yet. */
   name: string | null;
-  errors: readonly FieldError[];
   onName: (name: string) => void;
+  /** The request; null if the spec says everything. */
+  sent: Alternative | null;
 }
 
-export function ForkCard({ name, errors, onName }: Props) {
-  const wrong = errors.filter(({ field }) => isForkField(field));
+export function useFork({ base, spec }: Draft): Fork {
+  const [name, onName] = useState("");
+  useEffect(() => onName(""), [base]);
+  const sent = useMemo(() => forkOf({ base, spec }, name), [base, spec, name]);
+  return { name: sent && name, onName, sent };
+}
+
+/** The request for a fork, with the changes of the spec. */
+export function forkOf({ base, spec }: Draft, name: string): Alternative | null {
+  const { run = null, at = null } = base.fork ?? {};
+  if (run === null) return null;
+  // The server ignores initial creatures in the spec of a fork.
+  const patch = mergePatch(withInitial(base.spec, []), withInitial(spec, []));
+  const then = at === null ? {} : { generation: at };
+  return { fork: { run, from: fromOf(base.fork!), ...then, spec: patch, name: name.trim() || null } };
+}
+
+function fromOf({ creature, cells }: ForkSource): ForkRequest["from"] {
+  if (creature !== null) return { creatures: [creature] };
+  return cells === null ? { archive: true } : { cells };
+}
+
+/** The name of a fork, and errors about its initial creatures. */
+export function ForkCard({ fork, errors }: { fork: Fork; errors: readonly FieldError[] }) {
+  const wrong = errors.filter(({ field }) => isForkField(field)).map(({ message }) => message);
   return (
-    <section class="card sweep-card" aria-labelledby="fork-title">
-      <h2 id="fork-title">{text.fork}</h2>
+    <Card id="fork" kind="sweep-card" title={text.fork}>
       <p class="help">{text.forkAbout}</p>
-      {name !== null && (
+      {fork.name !== null && (
         <div class="sweep-entries">
-          <label class="sweep-name-field">
-            <span>{text.runName}</span>
-            <input
-              type="text"
-              maxLength={200}
-              value={name}
-              placeholder={text.optional}
-              onInput={(event) => onName(event.currentTarget.value)}
-            />
-          </label>
+          <NameEntry title={text.runName} value={fork.name} onChange={fork.onName} />
         </div>
       )}
-      {wrong.map(({ message }) => (
-        <p key={message} class="wrong-text small" role="alert">
-          {message}
-        </p>
-      ))}
-    </section>
+      <Messages messages={wrong} />
+    </Card>
+  );
+}
+
+interface NameProps {
+  title: string;
+  value: string;
+  onChange: (name: string) => void;
+}
+
+export function NameEntry({ title, value, onChange }: NameProps) {
+  return (
+    <label class="sweep-name-field">
+      <span>{title}</span>
+      <input
+        type="text"
+        maxLength={200}
+        value={value}
+        placeholder={text.optional}
+        onInput={(event) => onChange(event.currentTarget.value)}
+      />
+    </label>
   );
 }
 

@@ -1,29 +1,26 @@
-/** A new run: begin from something, change what should differ, see what it costs, start it. */
+/** The page of a new run: choose a source, change its spec, see the cost, start. */
 
 import { useEffect, useState } from "preact/hooks";
-import { messageOf } from "../api/problem";
 import type { Experiment } from "../api/types";
 import { useExperiments } from "../store/fetch";
 import { setQuery } from "../store/router";
+import { Page } from "../ui/Page";
 import { ExperimentPicker } from "./ExperimentPicker";
-import { readText } from "./readDocument";
-import { BaseBar, type CreatureFile } from "./BaseBar";
+import { BaseBar } from "./BaseBar";
 import { Editor } from "./Editor";
 import { usePresetCosts } from "./estimate";
-import { ofFound, ofPreset, completeSpec } from "./sources";
-import { OpenFileButton, useDocumentDrop } from "./OpenDocument";
-import { type DraftState, useDraft } from "./draftState";
+import { ofPreset } from "./sources";
+import { OpenFileButton, type Take, useDocument } from "./OpenDocument";
+import { useDraft } from "./draftState";
 import { text } from "./text";
 import "./new-run.css";
 
 export function NewRunPage({ query }: { query: URLSearchParams }) {
   const { value: experiments, error } = useExperiments();
   return (
-    <main>
-      {error && <p class="banner wrong">{error}</p>}
-      {!experiments && !error && <p class="quiet loading">{text.loading}</p>}
+    <Page error={error} loading={!experiments && text.loading}>
       {experiments && <NewRunForm experiments={experiments} query={query} />}
-    </main>
+    </Page>
   );
 }
 
@@ -75,36 +72,6 @@ function NewRunForm({ experiments, query }: NewRunProps) {
       )}
     </>
   );
-}
-
-type Take = (text: string, name: string, typed?: boolean) => string | null;
-
-/** Starts from a document; what was typed as JSON goes on from the same beginning. */
-function useDocument(
-  draft: DraftState,
-  experiments: Experiment[],
-  chosen: Experiment,
-  own: Experiment | undefined,
-): { take: Take; file: CreatureFile | null } {
-  const [file, setFile] = useState<CreatureFile | null>(null);
-  const take: Take = (text, name, typed = false) => {
-    try {
-      const found = readText(text, chosen.experiment === "refinement");
-      const same = typed && found.kind === "spec" && found.spec.experiment === own?.experiment;
-      if (same) {
-        const spec = completeSpec(found.spec, experiments);
-        draft.change(() => spec);
-      } else {
-        draft.startFrom(ofFound(found, name, experiments));
-        setFile(found.kind === "creature" ? { sha: found.creature.sha256, text } : null);
-      }
-      return null;
-    } catch (error) {
-      return messageOf(error);
-    }
-  };
-  useDocumentDrop(take);
-  return { take, file };
 }
 
 function Header({ take, onPaste }: { take: Take; onPaste: () => void }) {

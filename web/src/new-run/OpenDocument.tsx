@@ -1,14 +1,49 @@
 /** Documents that are pasted, dropped or opened. */
 
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { messageOf } from "../api/problem";
+import type { Experiment } from "../api/types";
 import { showToast } from "../store/toasts";
 import { FileButton, useFileDrop } from "../ui/DropTarget";
+import type { CreatureFile } from "./BaseBar";
+import type { DraftState } from "./draftState";
+import { readText } from "./readDocument";
+import { completeSpec, ofFound } from "./sources";
 import { text } from "./text";
 
-type Take = (text: string, file: string) => string | null;
+/** Take a document; return what is wrong with it, or null. */
+export type Take = (text: string, name: string, typed?: boolean) => string | null;
+
+/** Start from documents; JSON typed in the editor changes the spec and keeps its source. */
+export function useDocument(
+  draft: DraftState,
+  experiments: Experiment[],
+  chosen: Experiment,
+  own: Experiment | undefined,
+): { take: Take; file: CreatureFile | null } {
+  const [file, setFile] = useState<CreatureFile | null>(null);
+  const take: Take = (text, name, typed = false) => {
+    try {
+      const found = readText(text, chosen.experiment === "refinement");
+      const same = typed && found.kind === "spec" && found.spec.experiment === own?.experiment;
+      if (same) {
+        const spec = completeSpec(found.spec, experiments);
+        draft.change(() => spec);
+      } else {
+        draft.startFrom(ofFound(found, name, experiments));
+        setFile(found.kind === "creature" ? { sha: found.creature.sha256, text } : null);
+      }
+      return null;
+    } catch (error) {
+      return messageOf(error);
+    }
+  };
+  useDocumentDrop(take);
+  return { take, file };
+}
 
 /** Handle text pasted outside fields, and dropped files. */
-export function useDocumentDrop(take: Take): void {
+function useDocumentDrop(take: Take): void {
   const latest = useRef(take);
   latest.current = take;
   useFileDrop(text.dropDocument, (file) => {

@@ -4,7 +4,11 @@ import type { FieldError, Json } from "../api/types";
 import { number } from "../ui/format";
 import { valueAt } from "./form/document";
 import type { Leaf } from "./form/fields";
-import { nameOf } from "./sweepGrid";
+import { Card } from "../ui/Page";
+import { Options } from "../ui/Select";
+import { NameEntry } from "./ForkCard";
+import { Messages } from "./form/Entry";
+import { type Axis, nameOf } from "./sweepGrid";
 import { type SweepForm, isSweep, complaintsOf } from "./sweep";
 import { text } from "./text";
 import "./sweep.css";
@@ -24,24 +28,22 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
     if (next) change({ axes: [...axes, { path: next.path, text: textOf(valueAt(spec, next.path)) }] });
   };
   return (
-    <section class="card sweep-card" aria-labelledby="sweep-title">
-      <h2 id="sweep-title">{text.sweep}</h2>
+    <Card id="sweep" kind="sweep-card" title={text.sweep}>
       <p class="help">{text.sweepAbout}</p>
       <Entries sweeping={sweeping} />
-      <Wrong said={[problems.seeds, ...complaintsOf(errors, "seeds")]} />
+      <Messages messages={[problems.seeds, ...complaintsOf(errors, "seeds")]} />
       {axes.map((axis, i) => (
         <Row
           key={i}
           fields={fields}
-          path={axis.path}
-          text={axis.text}
-          said={[problems.axes[i] ?? null, ...complaintsOf(errors, `grid.${axis.path}`)]}
+          axis={axis}
+          messages={[problems.axes[i] ?? null, ...complaintsOf(errors, `grid.${axis.path}`)]}
           taken={axes.map(({ path }) => path)}
           onChange={(next) => change({ axes: axes.with(i, next) })}
           onRemove={() => change({ axes: axes.toSpliced(i, 1) })}
         />
       ))}
-      <Wrong said={[problems.total, ...complaintsOf(errors, "grid")]} />
+      <Messages messages={[problems.total, ...complaintsOf(errors, "grid")]} />
       <p class="sweep-foot">
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
           {text.addAxis(axes.length === 0)}
@@ -52,11 +54,11 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
           </span>
         )}
       </p>
-    </section>
+    </Card>
   );
 }
 
-/** How many seeds, and what the sweep is called. */
+/** The number of seeds and the name of the sweep. */
 function Entries({ sweeping }: { sweeping: SweepForm }) {
   const { seeded, seeds, name, problems, change } = sweeping;
   return (
@@ -74,16 +76,7 @@ function Entries({ sweeping }: { sweeping: SweepForm }) {
         </label>
       )}
       {isSweep(sweeping) && (
-        <label class="sweep-name-field">
-          <span>{text.sweepName}</span>
-          <input
-            type="text"
-            maxLength={200}
-            value={name}
-            placeholder={text.optional}
-            onInput={(event) => change({ name: event.currentTarget.value })}
-          />
-        </label>
+        <NameEntry title={text.sweepName} value={name} onChange={(name) => change({ name })} />
       )}
     </div>
   );
@@ -95,25 +88,27 @@ export function goToSweep(): void {
   card?.querySelector<HTMLElement>("input, button")?.focus({ preventScroll: true });
 }
 
-const textOf = (value: Json): string =>
-  value === null || typeof value === "object" ? "" : typeof value === "number" ? plain(value) : String(value);
-
-/** A number as one types it. */
-const plain = (value: number) => (Math.abs(value) >= 1e-4 ? String(value) : number(value, 6));
+/** The value of a field as a person would type it. */
+function textOf(value: Json): string {
+  if (value === null || typeof value === "object") return "";
+  return typeof value === "number" && Math.abs(value) < 1e-4 ? number(value, 6) : String(value);
+}
 
 interface RowProps {
   fields: readonly Leaf[];
-  path: string;
-  text: string;
-  said: (string | null)[];
+  axis: Axis;
+  messages: (string | null)[];
+  /** Paths of all axes. */
   taken: string[];
-  onChange: (axis: { path: string; text: string }) => void;
+  onChange: (axis: Axis) => void;
   onRemove: () => void;
 }
 
-function Row({ fields, path, text: typed, said, taken, onChange, onRemove }: RowProps) {
-  const known = fields.some((field) => field.path === path);
+function Row({ fields, axis, messages, taken, onChange, onRemove }: RowProps) {
+  const { path } = axis;
   const field = fields.find((one) => one.path === path);
+  const free = fields.filter((one) => one.path === path || !taken.includes(one.path));
+  const choices = free.map((one) => [one.path, nameOf(one)] as const);
   return (
     <div class="sweep-axis" role="group" aria-label={text.sweepOver(path)}>
       <select
@@ -121,27 +116,20 @@ function Row({ fields, path, text: typed, said, taken, onChange, onRemove }: Row
         value={path}
         onChange={(event) => onChange({ path: event.currentTarget.value, text: "" })}
       >
-        {!known && <option value={path}>{path}</option>}
-        {fields
-          .filter((one) => one.path === path || !taken.includes(one.path))
-          .map((one) => (
-            <option key={one.path} value={one.path}>
-              {nameOf(one)}
-            </option>
-          ))}
+        <Options of={field ? choices : [[path, path], ...choices]} />
       </select>
       <input
         type="text"
         aria-label={text.valuesOf(path)}
         placeholder={hintOf(field)}
-        value={typed}
-        aria-invalid={said.some(Boolean)}
+        value={axis.text}
+        aria-invalid={messages.some(Boolean)}
         onInput={(event) => onChange({ path, text: event.currentTarget.value })}
       />
       <button type="button" class="plain" aria-label={text.removeAxis(path)} onClick={onRemove}>
         ✕
       </button>
-      <Wrong said={said} />
+      <Messages messages={messages} />
     </div>
   );
 }
@@ -151,13 +139,4 @@ function hintOf(field: Leaf | undefined): string {
   if (field?.kind === "flag") return text.flagValues;
   if (field?.kind === "number") return text.commaValues;
   return text.jsonValues;
-}
-
-function Wrong({ said }: { said: (string | null)[] }) {
-  const sentences = [...new Set(said.filter(Boolean))];
-  return sentences.map((sentence) => (
-    <p key={sentence} class="wrong-text small" role="alert">
-      {sentence}
-    </p>
-  ));
 }

@@ -13,7 +13,7 @@ import {
   loadDraft,
   saveDraft,
 } from "../store/draft";
-import { dismissToast, showToast } from "../store/toasts";
+import { dismissToast, offerUndo } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { changedPaths } from "./form/changes";
 import { withInitial } from "./initialCreatures";
@@ -62,7 +62,7 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]): Dra
     setProblem(null);
   };
   const replace = (next: Draft, note: string) => {
-    if (current && (changed.size > 0 || current.base.fork)) offerUndo(note, () => put(current));
+    if (current && (changed.size > 0 || current.base.fork)) replaceUndo(note, () => put(current));
     put(next);
   };
   const startFrom = (base: Base) => replace({ base, spec: base.spec }, text.replaced);
@@ -128,11 +128,7 @@ function useKept(current: Draft | null, changed: ReadonlySet<string>): void {
 
 let undoToast = 0;
 
-function offerUndo(note: string, undo: () => void): void {
-  const run = () => {
-    dismissToast(undoToast);
-    undo();
-  };
+function replaceUndo(note: string, undo: () => void): void {
   dismissToast(undoToast);
-  undoToast = showToast({ kind: "note", text: note, action: { label: text.undo, run } });
+  undoToast = offerUndo(note, undo);
 }

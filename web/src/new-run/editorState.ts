@@ -1,18 +1,19 @@
-/** The form of a draft with its errors, its cost, and what is sent when it is submitted. */
+/** The form of a draft with its errors, its cost and its request. */
 
-import { useEffect, useMemo, useState } from "preact/hooks";
-import type { Experiment, FieldError, Json, Spec } from "../api/types";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import * as api from "../api/client";
+import type { Drawing, Experiment, FieldError, Json, Spec } from "../api/types";
 import type { Draft } from "../store/draft";
 import type { DraftState } from "./draftState";
-import { HAS_ERRORS, useEstimate } from "./estimate";
-import { useFork } from "./fork";
-import { isForkField } from "./ForkCard";
+import { useEstimate } from "./estimate";
+import { isForkField, useFork } from "./ForkCard";
 import { complaints, messagesByPath, withValue } from "./form/document";
 import type { FormState } from "./form/Entry";
 import { type Section, formOf } from "./form/fields";
 import { withoutInitial } from "./initialCreatures";
 import { useSubmission } from "./submission";
-import { type SweepForm, isSweep, useSweepEstimate, useSweepForm } from "./sweep";
+import { type SweepForm, isSweep, useSweepForm } from "./sweep";
+import { text } from "./text";
 
 export function useEditor(draft: DraftState, current: Draft, experiment: Experiment) {
   const { spec, base } = current;
@@ -22,11 +23,13 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
     return forking ? withoutInitial(whole) : whole;
   }, [experiment, forking]);
   const slips = useMemo(() => complaints(form, spec), [form, spec]);
-  const check = useEstimate(spec, slips);
+  const check = useEstimate(slips.length === 0 ? spec : null, api.estimateRun);
+  const drawing = useRef<Drawing | null>(null);
+  if (check.estimate) drawing.current = check.estimate.drawing;
   const sweep = useSweepForm(form, spec, experiment);
   const fork = useFork(current);
   const many = forking ? null : sweep.sent;
-  const all = useSweepEstimate(slips.length === 0 ? many : null);
+  const all = useEstimate(slips.length === 0 ? many : null, api.estimateSweep);
   const sent = useMemo(() => many && { sweep: many }, [many]);
   const submission = useSubmission(spec, fork.sent ?? sent);
   const refused = (submission.refusal?.errors ?? []).map(fieldError);
@@ -44,34 +47,34 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
     close,
   };
   const slipped = !forking && isSweep(sweep) && !many && hasProblems(sweep);
-  const problem =
-    submission.refusal?.message ??
-    check.problem ??
-    (slipped || all.errors.length > 0 ? HAS_ERRORS : all.problem);
+  const unsent = slips.length > 0 || slipped ? text.hasErrors : null;
+  const problem = submission.refusal?.problem ?? unsent ?? check.problem ?? all.problem;
   return {
     ...{ form, state, errors, refused, forking, fork, sweep, check, submission, slipped, problem },
+    /** The last drawing, which stays while values are typed. */
+    drawing: drawing.current,
     sweepErrors: all.errors,
     estimate: many ? all.estimate : check.estimate,
-    /** How many runs will be started, if what is typed is right. */
+    /** The number of runs that the request starts. */
     runs: many ? sweep.total : 1,
   };
 }
 
 export type EditorState = ReturnType<typeof useEditor>;
 
-/** What a refused sweep says of the spec itself stands beside its fields. */
+/** Errors of a sweep about its spec, by the fields of the spec. */
 const specErrors = (errors: readonly FieldError[]): FieldError[] =>
   errors
     .filter(({ field }) => field.startsWith("spec."))
     .map((error) => ({ ...error, field: error.field.slice("spec.".length) }));
 
-/** What a creature does not fit may be told of a part of the spec: `control: inputs`. */
+/** An error about a creature may name a part of the spec: `control: inputs`. */
 const fieldError = (error: FieldError): FieldError => ({ ...error, field: error.field.replace(/: .*/, "") });
 
 const hasProblems = ({ problems: { seeds, axes, total } }: SweepForm) =>
   [seeds, total, ...axes].some((problem) => problem !== null);
 
-/** Which parts are shown closed: at first those that are seldom changed. */
+/** The collapsed sections: at first those that are seldom changed. */
 function useClosed(form: Section): [ReadonlySet<string>, FormState["close"]] {
   const seldom = useMemo(
     () => new Set(form.fields.filter((field) => "seldom" in field).map(({ path }) => path)),

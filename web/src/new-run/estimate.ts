@@ -1,64 +1,57 @@
-/** The estimated cost of a spec, and the errors that the server finds. */
+/** Estimated costs, and the errors that the server finds. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { Problem, messageOf } from "../api/problem";
-import type { Drawing, Estimate, Experiment, FieldError, Preset, Spec } from "../api/types";
+import type { Estimate, Experiment, FieldError, Preset } from "../api/types";
 import { text } from "./text";
 
 const SETTLED_MS = 350;
 
-export const HAS_ERRORS = text.hasErrors;
+/** An error of the server: its fields, and a sentence. */
+export function refusalOf(error: unknown): { errors: FieldError[]; problem: string } {
+  const errors = error instanceof Problem ? error.errors : [];
+  return { errors, problem: errors.length > 0 ? text.hasErrors : messageOf(error) };
+}
 
-export interface Check {
-  estimate: Estimate | null;
-  /** The last drawing; it stays while values are typed. */
-  drawing: Drawing | null;
+interface Check<T> {
+  estimate: T | null;
   errors: FieldError[];
   problem: string | null;
 }
 
-const UNCHECKED: Check = { estimate: null, drawing: null, errors: [], problem: null };
-
-/** Ask the server after a pause in typing, unless the form finds errors itself. */
-export function useEstimate(spec: Spec | null, slips: FieldError[]): Check {
-  const [check, setCheck] = useState(UNCHECKED);
+/** Ask for an estimate after a pause in typing; the last answer stays until the next one. */
+export function useEstimate<Asked, T>(
+  asked: Asked | null,
+  estimateOf: (asked: Asked) => Promise<T>,
+): Check<T> {
+  const unchecked = { estimate: null, errors: [], problem: null };
+  const [check, setCheck] = useState<Check<T>>(unchecked);
   useEffect(() => {
-    if (!spec) return;
-    if (slips.length > 0) {
-      return setCheck((old) => ({ ...old, estimate: null, errors: [], problem: HAS_ERRORS }));
-    }
+    if (asked === null) return setCheck(unchecked);
     let wanted = true;
-    const show = (next: Partial<Check>) => {
-      if (wanted) setCheck(({ drawing }) => ({ ...UNCHECKED, drawing, ...next }));
-    };
+    const show = (next: Partial<Check<T>>) => wanted && setCheck({ ...unchecked, ...next });
     const timer = setTimeout(() => {
-      api
-        .estimateRun(spec)
-        .then((estimate) => show({ estimate, drawing: estimate.drawing }))
-        .catch((error) => {
-          const errors = error instanceof Problem ? error.errors : [];
-          show({ errors, problem: errors.length ? HAS_ERRORS : messageOf(error) });
-        });
+      estimateOf(asked).then(
+        (estimate) => show({ estimate }),
+        (error) => show(refusalOf(error)),
+      );
     }, SETTLED_MS);
     return () => {
       wanted = false;
       clearTimeout(timer);
     };
-  }, [spec, slips]);
+  }, [asked]);
   return check;
 }
 
-/** The estimated cost of each preset of an experiment. */
+/** The estimated cost of each preset of an experiment; a preset without an answer shows none. */
 export function usePresetCosts({ presets }: Experiment): ReadonlyMap<Preset, Estimate> {
   const [known, setKnown] = useState<ReadonlyMap<Preset, Estimate>>(new Map());
   useEffect(() => {
-    const learn = (preset: Preset, estimate: Estimate) =>
-      setKnown((old) => new Map(old).set(preset, estimate));
     for (const preset of presets.filter((one) => !known.has(one))) {
-      // Without an answer a preset shows no cost; the spec's own estimate tells what is wrong.
       api.estimateRun(preset.spec).then(
-        (estimate) => learn(preset, estimate),
+        (estimate) => setKnown((old) => new Map(old).set(preset, estimate)),
         () => {},
       );
     }

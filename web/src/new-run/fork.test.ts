@@ -3,8 +3,7 @@
 import { describe, expect, inject, it, vi } from "vitest";
 import type { Json, Spec } from "../api/types";
 import { addressOf } from "../store/draft";
-import { isForkField } from "./ForkCard";
-import { forkOf } from "./fork";
+import { forkOf, isForkField } from "./ForkCard";
 import { MAX_CREATURES, addressed, load } from "./sources";
 import { type Section, formOf } from "./form/fields";
 import { placesOf } from "./form/document";

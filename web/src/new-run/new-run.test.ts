@@ -3,7 +3,7 @@ import type { DrawnBody, Estimate } from "../api/types";
 import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../store/draft";
 import { load, ofPreset, titleOfBase } from "./sources";
 import { branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
-import { about, basis, rough, wait } from "./costText";
+import { about, basis, rough, wait } from "./Costs";
 
 const EXPERIMENTS = inject("experiments");
 

@@ -2,24 +2,19 @@
 
 import { useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
-import { Problem, messageOf } from "../api/problem";
-import type { FieldError, ForkRequest, Spec, SweepRequest } from "../api/types";
+import type { ForkRequest, Spec, SweepRequest } from "../api/types";
 import { discardDraft } from "../store/draft";
 import { applyResponse } from "../store/store";
 import { navigate } from "../store/router";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
-import { HAS_ERRORS } from "./estimate";
+import { refusalOf } from "./estimate";
 
-/** What is sent in place of a spec alone. */
+/** A request in place of a spec alone. */
 export type Alternative = { sweep: SweepRequest } | { fork: ForkRequest };
 
-interface Refusal {
-  asked: Spec | Alternative;
-  message: string;
-  errors: FieldError[];
-}
+type Refusal = ReturnType<typeof refusalOf> & { asked: Spec | Alternative };
 
-/** Sends the spec, or what is wanted instead; the same sent again, after a lost answer, is the same submission. */
+/** Send the spec, or another request; the same request sent again after a lost answer has the same key. */
 export function useSubmission(spec: Spec, instead: Alternative | null) {
   const asked = instead ?? spec;
   const [busy, setBusy] = useState(false);
@@ -34,8 +29,7 @@ export function useSubmission(spec: Spec, instead: Alternative | null) {
       discardDraft();
       navigate(page);
     } catch (error) {
-      const errors = error instanceof Problem ? error.errors : [];
-      setRefusal({ asked, message: errors.length ? HAS_ERRORS : messageOf(error), errors });
+      setRefusal({ asked, ...refusalOf(error) });
       setBusy(false);
       requestAnimationFrame(showFirstError);
     }
@@ -43,7 +37,7 @@ export function useSubmission(spec: Spec, instead: Alternative | null) {
   return { start, busy, refusal: refusal?.asked === asked ? refusal : null };
 }
 
-/** Where what was started can be seen. */
+/** Send a request; return the address of its page. */
 async function submit(spec: Spec, instead: Alternative | null, key: string): Promise<string> {
   if (instead && "sweep" in instead) return `/sweeps/${(await api.createSweep(instead.sweep, key)).id}`;
   const made = instead ? api.forkRun(instead.fork, key) : api.createRun(spec, key);

@@ -1,14 +1,10 @@
 /** The state of a sweep: seeds, and fields of the grid. */
 
 import { useEffect, useMemo, useState } from "preact/hooks";
-import * as api from "../api/client";
-import { Problem, messageOf } from "../api/problem";
-import type { Experiment, FieldError, Spec, SweepEstimate, SweepRequest } from "../api/types";
+import type { Experiment, FieldError, Spec, SweepRequest } from "../api/types";
 import type { Leaf, Section } from "./form/fields";
 import { type Axis, MOST, hasSeed, readSeeds, readValues, sweepable } from "./sweepGrid";
 import { text } from "./text";
-
-const SETTLED_MS = 350;
 
 export interface SweepForm {
   seeded: boolean;
@@ -18,9 +14,9 @@ export interface SweepForm {
   /** Fields that a grid can run over. */
   fields: readonly Leaf[];
   problems: { seeds: string | null; axes: (string | null)[]; total: string | null };
-  /** How many runs; one is no sweep. */
+  /** The number of runs. */
   total: number;
-  /** What is to be sent; null for a single run, or where something is wrong. */
+  /** The request; null for a single run or invalid values. */
   sent: SweepRequest | null;
   change: (change: Partial<Typed>) => void;
 }
@@ -61,38 +57,6 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
 
 /** True if more than one run is asked for, valid or not. */
 export const isSweep = ({ seeds, axes }: SweepForm) => axes.length > 0 || seeds.trim() !== "1";
-
-export interface SweepCheck {
-  estimate: SweepEstimate | null;
-  errors: FieldError[];
-  problem: string | null;
-}
-
-const UNCHECKED: SweepCheck = { estimate: null, errors: [], problem: null };
-
-/** The estimated cost of all runs, requested after a pause in typing. */
-export function useSweepEstimate(sent: SweepRequest | null): SweepCheck {
-  const [check, setCheck] = useState(UNCHECKED);
-  useEffect(() => {
-    setCheck(UNCHECKED);
-    if (!sent) return;
-    let wanted = true;
-    const show = (next: Partial<SweepCheck>) => wanted && setCheck({ ...UNCHECKED, ...next });
-    const timer = setTimeout(() => {
-      api
-        .estimateSweep(sent)
-        .then((estimate) => show({ estimate }))
-        .catch((error) =>
-          show({ errors: error instanceof Problem ? error.errors : [], problem: messageOf(error) }),
-        );
-    }, SETTLED_MS);
-    return () => {
-      wanted = false;
-      clearTimeout(timer);
-    };
-  }, [sent]);
-  return check;
-}
 
 /** Errors of the server for one field of the grid, or for the seeds. */
 export function complaintsOf(errors: readonly FieldError[], path: string): string[] {

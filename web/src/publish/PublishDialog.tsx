@@ -2,16 +2,17 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Creature, Share, ShareRequest } from "../api/types";
+import { inDays } from "../ui/format";
 import { Options } from "../ui/Select";
+import { useSubmit } from "../ui/submit";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import "./publish.css";
 
 export interface Props {
   of: { creature: string } | { run: string };
-  /** What it is called so far, if anything. */
+  /** Its present title, or nothing. */
   title: string;
   file?: Creature;
 }
@@ -29,9 +30,8 @@ const TERMS = [
   ["30", text.inAMonth],
   ["date", text.onADate],
 ] as const;
-const DAY_MS = 86_400_000;
 
-/** Opens whenever `opened` grows; keeps what was typed. */
+/** The dialog opens whenever `opened` grows, with the values typed before. */
 export function PublishDialog({ opened, ...props }: Props & { opened: number }) {
   const dialog = useRef<HTMLDialogElement>(null);
   const [share, setShare] = useState<Share | null>(null);
@@ -57,23 +57,11 @@ interface FormProps extends Props {
 }
 
 function PublishForm({ of, title, file, onDone, onEnd }: FormProps) {
-  const [busy, setBusy] = useState(false);
-  const [error, setError] = useState<string | null>(null);
-  const submit = async (event: SubmitEvent) => {
-    event.preventDefault();
-    setBusy(true);
-    setError(null);
-    try {
-      onDone(
-        await api.publish({ ...of, ...requestOf(new FormData(event.currentTarget as HTMLFormElement)) }),
-      );
-    } catch (reason) {
-      setError(messageOf(reason));
-    }
-    setBusy(false);
-  };
+  const { busy, error, onSubmit } = useSubmit(async (form) =>
+    onDone(await api.publish({ ...of, ...requestOf(new FormData(form)) })),
+  );
   return (
-    <form onSubmit={(event) => void submit(event as unknown as SubmitEvent)}>
+    <form onSubmit={onSubmit}>
       <h2 id="publish-title">{text.publish}</h2>
       <p class="quiet small">{text.about("run" in of)}</p>
       <Fields title={title} file={file} />
@@ -154,7 +142,7 @@ export function requestOf(form: FormData, now = Date.now()): ShareRequest {
 
 function endOf(term: string, until: string, now: number): string | null {
   if (term === "date") return new Date(until).toISOString();
-  return term === "never" ? null : new Date(now + Number(term) * DAY_MS).toISOString();
+  return term === "never" ? null : inDays(Number(term), now);
 }
 
 function Published({ share, onEnd }: { share: Share; onEnd: () => void }) {

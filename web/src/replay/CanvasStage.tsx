@@ -1,4 +1,4 @@
-/** A canvas of a fixed shape that is drawn again whenever its size or its content changes. */
+/** A canvas of fixed proportions, redrawn when its size or its content changes. */
 
 import { useEffect, useRef } from "preact/hooks";
 import { type Size, useSize } from "../ui/canvas";
@@ -11,7 +11,7 @@ interface Props {
   /** Values that `draw` depends on. */
   inputs: unknown[];
   blank?: boolean;
-  /** Whether the stage stays lower than the window. */
+  /** Keep the stage lower than the window. */
   fits?: boolean;
   onClick?: () => void;
 }

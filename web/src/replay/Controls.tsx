@@ -1,5 +1,6 @@
 /** Controls of a replay, and the legend of its field. */
 
+import { Check, Segments, Select } from "../ui/Select";
 import { ColourBar } from "../ui/ColourBar";
 import { css } from "../ui/colours";
 import { number } from "../ui/format";
@@ -7,74 +8,42 @@ import type { Field, FieldName } from "./fields";
 import { type ReplayView, SPEEDS } from "./look";
 import { text } from "./text";
 
+const SPEED_CHOICES = SPEEDS.map((speed) => [String(speed), `${speed} ×`] as const);
+
 export function Speed({ value, onChange }: { value: number; onChange: (speed: number) => void }) {
   return (
-    <label class="compact">
-      {text.speed}
-      <select value={String(value)} onChange={(event) => onChange(Number(event.currentTarget.value))}>
-        {SPEEDS.map((speed) => (
-          <option key={speed} value={String(speed)}>
-            {speed} ×
-          </option>
-        ))}
-      </select>
-    </label>
+    <Select
+      title={text.speed}
+      choices={SPEED_CHOICES}
+      value={String(value)}
+      onChange={(speed) => onChange(Number(speed))}
+    />
   );
 }
-
-const TITLES: Record<FieldName, string> = {
-  vorticity: text.vorticity,
-  speed: text.speed,
-  energy: text.energy,
-  none: text.none,
-};
 
 interface Props {
   names: FieldName[];
   name: FieldName;
   look: ReplayView;
   change: (part: Partial<ReplayView>) => void;
-  /** True if the replay has the flow that tracers follow. */
-  flows: boolean;
 }
 
-export function LookChoice({ names, name, look, change, flows }: Props) {
+export function LookChoice({ names, name, look, change }: Props) {
   return (
     <div class="view-options">
       {names.length > 1 && (
-        <div class="tabs" role="group" aria-label={text.field}>
-          {names.map((each) => (
-            <button
-              key={each}
-              type="button"
-              aria-pressed={each === name}
-              onClick={() => change({ field: each })}
-            >
-              {TITLES[each]}
-            </button>
-          ))}
-        </div>
+        <Segments
+          label={text.field}
+          choices={names.map((each) => [each, text.fields[each]] as const)}
+          value={name}
+          onChoose={(field) => change({ field })}
+        />
       )}
-      {flows && names.includes("speed") && (
-        <Check label={text.tracers} checked={look.tracers} onChange={(tracers) => change({ tracers })} />
+      {names.includes("speed") && (
+        <Check title={text.tracers} on={look.tracers} onChange={(tracers) => change({ tracers })} />
       )}
-      <Check label={text.follow} checked={look.follow} onChange={(follow) => change({ follow })} />
+      <Check title={text.follow} on={look.follow} onChange={(follow) => change({ follow })} />
     </div>
-  );
-}
-
-interface CheckProps {
-  label: string;
-  checked: boolean;
-  onChange: (checked: boolean) => void;
-}
-
-function Check({ label, checked, onChange }: CheckProps) {
-  return (
-    <label class="compact">
-      <input type="checkbox" checked={checked} onChange={(event) => onChange(event.currentTarget.checked)} />
-      {label}
-    </label>
   );
 }
 

@@ -1,4 +1,4 @@
-/** A small replay that plays by itself, again and again. */
+/** A small replay that plays in a loop. */
 
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { Replay } from "../decode/replay";
@@ -8,16 +8,15 @@ import { CanvasStage } from "./CanvasStage";
 import { useClock } from "./clock";
 import { fieldOf } from "./fields";
 import { FluidPainter } from "./fluid";
-import { chainsOf } from "./motion";
-import { drawScene, wayOf } from "./scene";
+import { drawScene, sceneOf } from "./scene";
 
-/** Steps of the simulation in a second. */
+/** Simulated steps per second. */
 const STEPS_PER_SECOND = 80;
 
 interface Props {
   replay: Replay;
   name: string;
-  /** Once its first frame is drawn. */
+  /** Called when the first frame is drawn. */
   onFirst?: () => void;
 }
 
@@ -32,8 +31,7 @@ export function ReplayLoop({ replay, name, onFirst }: Props) {
   });
   const scene = useMemo(() => {
     const painter = new FluidPainter(replay, fieldOf("vorticity", [replay], theme)!);
-    const chains = chainsOf(replay.header.edges);
-    return { replay, painter, chains, way: wayOf(replay), follow: true, theme };
+    return sceneOf(replay, { painter, follow: true, theme });
   }, [replay, theme]);
   const draw = (canvas: HTMLCanvasElement, size: Size) => {
     drawScene(canvas, size, scene, still ? frames - 1 : time);

@@ -1,9 +1,9 @@
-/** Replays to watch, one or several side by side: play, pause, step, scrub, speed. */
+/** Player of one replay or several side by side: play, pause, step, scrub, speed. */
 
 import type { ComponentChildren, RefObject } from "preact";
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { Replay } from "../decode/replay";
-import { useTheme } from "../ui/theme";
+import { type Theme, useTheme } from "../ui/theme";
 import { CanvasStage } from "./CanvasStage";
 import { useClock, useKeys } from "./clock";
 import { FieldLegend, LookChoice, Speed } from "./Controls";
@@ -11,31 +11,30 @@ import { type Field, fieldOf, fieldsOf } from "./fields";
 import { FluidPainter } from "./fluid";
 import { type ReplayView, DEFAULT_VIEW } from "./look";
 import { type Moment, newMoment, useMoment } from "./moment";
-import { chainsOf } from "./motion";
-import { drawScene, wayOf } from "./scene";
+import { drawScene, sceneOf } from "./scene";
 import { Tracers } from "./tracers";
 import { IconButton, StepRange } from "./Transport";
 import { text } from "./text";
 import "./replay.css";
 
-/** Steps of the simulation in a second at speed 1. */
+/** Simulated steps per second at speed 1. */
 const STEPS_PER_SECOND = 40;
 
-/** A replay, and what it is called where it is not alone. */
-export interface Film {
+/** A replay, with a name if there are several. */
+interface Film {
   replay: Replay;
   name?: ComponentChildren;
 }
 
 interface Props {
   films: Film[];
-  /** Left out, the player keeps its own. */
+  /** By default, the player keeps its own moment and view. */
   moment?: Moment;
   look?: ReplayView;
   onLook?: (change: Partial<ReplayView>) => void;
 }
 
-/** Films of one task: equally long, in one clock and on one scale of colours. */
+/** The films have the same length, and share a clock and a colour scale. */
 export function ReplayPlayer({ films, ...given }: Props) {
   const theme = useTheme();
   const [own, setOwn] = useState(DEFAULT_VIEW);
@@ -47,7 +46,6 @@ export function ReplayPlayer({ films, ...given }: Props) {
   const field = useMemo(() => fieldOf(name, replays, theme), [replays, name, theme]);
   const player = useRef<HTMLDivElement>(null);
   const playback = usePlayback(replays[0]!, look.speed, given.moment, player);
-  const flows = replays.every(({ drive }) => drive);
   return (
     <div ref={player} class="player" role="group" aria-label={text.player} tabIndex={-1}>
       <div class="stages">
@@ -55,7 +53,7 @@ export function ReplayPlayer({ films, ...given }: Props) {
           <figure key={i}>
             <Stage
               {...{ replay, theme, field }}
-              tracing={look.tracers && flows}
+              tracing={look.tracers}
               follow={look.follow}
               time={playback.moment.time}
               onClick={playback.toggle}
@@ -68,7 +66,7 @@ export function ReplayPlayer({ films, ...given }: Props) {
         <Transport {...playback} header={replays[0]!.header} />
         <Speed value={look.speed} onChange={(speed) => change({ speed })} />
       </div>
-      <LookChoice {...{ names, name, look, change, flows }} />
+      <LookChoice {...{ names, name, look, change }} />
       {field && <FieldLegend field={field} />}
     </div>
   );
@@ -80,7 +78,7 @@ interface Playback {
   step: (by: 1 | -1) => void;
 }
 
-/** The moment that is shown, moved by the clock and by keys on the player. */
+/** The moment shown, moved by the clock and by keys. */
 function usePlayback(
   { header: { frames, every } }: Replay,
   speed: number,
@@ -132,7 +130,7 @@ function Transport({ moment, toggle, step, header }: Playback & { header: Replay
 
 interface StageProps {
   replay: Replay;
-  theme: "light" | "dark";
+  theme: Theme;
   field: Field | null;
   tracing: boolean;
   follow: boolean;
@@ -144,8 +142,7 @@ function Stage({ replay, theme, field, tracing, follow, time, onClick }: StagePr
   const tracers = useMemo(() => (tracing ? new Tracers(replay) : null), [replay, tracing]);
   const scene = useMemo(() => {
     const painter = field && new FluidPainter(replay, field);
-    const chains = chainsOf(replay.header.edges);
-    return { replay, painter, chains, way: wayOf(replay), follow, theme: field?.ground ?? theme };
+    return sceneOf(replay, { painter, follow, theme: field?.ground ?? theme });
   }, [replay, theme, field, follow]);
   return (
     <CanvasStage

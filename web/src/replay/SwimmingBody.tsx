@@ -1,4 +1,4 @@
-/** One small creature on the move, in a square of its own. */
+/** One small moving creature in a square. */
 
 import { useEffect, useRef } from "preact/hooks";
 import type { Motion } from "../decode/motion";
@@ -8,7 +8,7 @@ import { prefersStillness, useTheme } from "../ui/theme";
 import { traceBody } from "./bodyPath";
 import "./replay.css";
 
-/** All of a replay passes in so many seconds. */
+/** Duration of a loop. */
 const SECONDS = 5;
 const INKS = { light: "#12222c", dark: "#fdf8ec" };
 
@@ -24,7 +24,6 @@ export function SwimmingBody({ motion }: { motion: Motion | null }) {
     context.lineJoin = context.lineCap = "round";
     context.lineWidth = Math.max(1.25, width / 48);
     context.strokeStyle = INKS[theme];
-    context.beginPath();
     traceBody(context, motion, share.current, [0, 0, width]);
     context.stroke();
   };

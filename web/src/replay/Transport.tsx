@@ -13,7 +13,7 @@ interface ButtonProps {
   icon: keyof typeof PATHS;
   label: string;
   title?: string;
-  /** Keys that do the same, as `aria-keyshortcuts` has them. */
+  /** Keyboard shortcuts, in the form of `aria-keyshortcuts`. */
   keys?: string;
   disabled?: boolean;
   onClick: () => void;
@@ -43,9 +43,9 @@ interface SliderProps {
   label: string;
   value: number;
   last: number;
-  /** Smallest movement; `any` where time is continuous. */
+  /** Smallest movement; `any` if time is continuous. */
   step?: "any" | 1;
-  /** The value as a screen reader says it. */
+  /** The value for screen readers. */
   valueText: string;
   keys?: string;
   title?: string;
@@ -70,13 +70,13 @@ export function TimeRange({ label, last, valueText, keys, onScrub, ...rest }: Sl
 }
 
 interface StepProps extends Pick<SliderProps, "last" | "onScrub" | "keys" | "title"> {
-  /** The moment in frames, of which each lasts `every` steps. */
+  /** In frames of `every` steps. */
   time: number;
   every: number;
   steps: number;
 }
 
-/** A slider over the frames of a replay, and the step it stands at. */
+/** A slider over the frames of a replay, with the step number. */
 export function StepRange({ time, every, steps, ...rest }: StepProps) {
   const step = Math.min(steps, Math.round(time * every));
   const valueText = text.step(step, steps);

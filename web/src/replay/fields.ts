@@ -1,7 +1,8 @@
-/** Fields of the fluid that can be shown: integer planes, units and colours. */
+/** Fields of the fluid: integer planes, units and colours. */
 
 import type { Replay } from "../decode/replay";
 import { type Rgb, diverging, table, viridis } from "../ui/colours";
+import type { Theme } from "../ui/theme";
 import { text } from "./text";
 
 export type FieldName = "vorticity" | "speed" | "energy" | "none";
@@ -10,43 +11,41 @@ export interface Field {
   name: FieldName;
   title: string;
   unit: string;
-  /** The ends of the colours; beyond them nothing changes any more. */
+  /** Values at the ends of the colour map. */
   range: [number, number];
   colour: (t: number) => Rgb;
-  /** Whether a dark or a light ink stands out. */
-  ground: "light" | "dark";
-  /** (width, height) of a replay's frame; level + `zero` is the place in a table of colours. */
+  /** Brightness of the field; ink has the other one. */
+  ground: Theme;
+  /** Levels (width, height) of a frame; level + `zero` is the index in the colour table. */
   plane: (replay: Replay, frame: number) => ArrayLike<number>;
   zero: number;
   /** The value of one level in this replay. */
   quantum: (replay: Replay) => number;
 }
 
-/** The fields that every one of the replays has. */
+/** The fields that all replays contain. */
 export function fieldsOf(replays: Replay[]): FieldName[] {
-  const driven = replays.every(({ drive }) => drive);
-  const energy = replays.every(({ header }) => header.energy?.frames);
+  const energy = replays.every(({ header }) => header.energy.frames);
   const fluid = replays.some((replay) => strongest(replay) > 0);
   return [
-    ...(fluid ? (["vorticity"] as const) : []),
-    ...(fluid && driven ? (["speed"] as const) : []),
+    ...(fluid ? (["vorticity", "speed"] as const) : []),
     ...(energy ? (["energy"] as const) : []),
     "none",
   ];
 }
 
-/** One field on one scale of colours for all replays; null where the water is left blank. */
-export function fieldOf(name: FieldName, replays: Replay[], theme: "light" | "dark"): Field | null {
+/** A field with one colour scale for all replays; null for no field. */
+export function fieldOf(name: FieldName, replays: Replay[], theme: Theme): Field | null {
   if (name === "vorticity") return vorticityOf(replays, theme);
   if (name === "speed") return speedOf(replays);
   return name === "energy" ? energyOf(replays, theme) : null;
 }
 
-function vorticityOf(replays: Replay[], theme: "light" | "dark"): Field {
+function vorticityOf(replays: Replay[], theme: Theme): Field {
   const most = Math.max(...replays.map(strongest));
   return {
     name: "vorticity",
-    title: text.vorticity,
+    title: text.fields.vorticity,
     unit: "1/step",
     range: [-most, most],
     colour: (t) => diverging(2 * t - 1, theme),
@@ -61,7 +60,7 @@ function speedOf(replays: Replay[]): Field {
   const speeds = new Map(replays.map((replay) => [replay, new Speeds(replay)]));
   return {
     name: "speed",
-    title: text.speed,
+    title: text.fields.speed,
     unit: "cells/step",
     range: [0, Math.max(...[...speeds.values()].map((each) => each.strongest()))],
     colour: viridis,
@@ -72,18 +71,17 @@ function speedOf(replays: Replay[]): Field {
   };
 }
 
-function energyOf(replays: Replay[], theme: "light" | "dark"): Field {
+function energyOf(replays: Replay[], theme: Theme): Field {
   return {
     name: "energy",
-    title: text.energy,
+    title: text.fields.energy,
     unit: text.density,
-    range: [0, Math.max(...replays.map(({ header }) => header.energy!.scale))],
+    range: [0, Math.max(...replays.map(({ header }) => header.energy.scale))],
     colour: (t) => diverging(0.85 * t, theme),
     ground: theme,
-    plane: ({ drive, header }, frame) =>
-      planeOf(drive!.energy, header, Math.min(frame, header.energy!.frames - 1)),
+    plane: ({ energy, header }, frame) => planeOf(energy, header, Math.min(frame, header.energy.frames - 1)),
     zero: 0,
-    quantum: ({ header }) => header.energy!.scale / 255,
+    quantum: ({ header }) => header.energy.scale / 255,
   };
 }
 
@@ -92,40 +90,40 @@ function planeOf<T extends Int8Array | Uint8Array>(levels: T, { size }: Replay["
   return levels.subarray(frame * cells, (frame + 1) * cells);
 }
 
-/** Levels of speed reach as far as both parts of the velocity at their largest. */
-const quantumOfSpeed = ({ header }: Replay) => (Math.SQRT2 * header.velocity!.scale) / 255;
+/** The highest level of speed is that of both velocity components at their largest. */
+const quantumOfSpeed = ({ header }: Replay) => (Math.SQRT2 * header.velocity.scale) / 255;
 
-/** |u| of every frame that was asked for. */
+/** |u| of each frame, computed on demand. */
 class Speeds {
   private readonly planes: (Uint8Array | undefined)[] = [];
 
   constructor(private readonly replay: Replay) {}
 
   plane(frame: number): Uint8Array {
-    return (this.planes[frame] ??= this.made(frame));
+    return (this.planes[frame] ??= this.compute(frame));
   }
 
-  private made(frame: number): Uint8Array {
-    const { header, drive } = this.replay;
+  private compute(frame: number): Uint8Array {
+    const { header, velocity } = this.replay;
     const cells = header.size[0] * header.size[1];
     const start = 2 * frame * cells;
-    const levels = header.velocity!.scale / 127 / quantumOfSpeed(this.replay);
+    const levels = header.velocity.scale / 127 / quantumOfSpeed(this.replay);
     return Uint8Array.from({ length: cells }, (_, i) => {
-      const [x, y] = [drive!.velocity[start + i]!, drive!.velocity[start + cells + i]!];
+      const [x, y] = [velocity[start + i]!, velocity[start + cells + i]!];
       return Math.min(255, Math.round(levels * Math.sqrt(x * x + y * y)));
     });
   }
 
-  /** The speed that one value in a hundred exceeds, over a few moments. */
+  /** The 99th percentile of speed, over a few frames. */
   strongest(): number {
     const { frames } = this.replay.header;
-    const looked = [0.25, 0.5, 0.75, 1].map((share) => this.plane(Math.round(share * (frames - 1))));
-    const values = Uint8Array.from(looked.flatMap((plane) => [...plane])).sort();
+    const samples = [0.25, 0.5, 0.75, 1].map((share) => this.plane(Math.round(share * (frames - 1))));
+    const values = Uint8Array.from(samples.flatMap((plane) => [...plane])).sort();
     return (values[Math.floor(0.99 * values.length)]! || 1) * quantumOfSpeed(this.replay);
   }
 }
 
-/** The vorticity that only one value in a hundred exceeds, of those that are not zero; 0: none. */
+/** The 99th percentile of nonzero absolute vorticity; 0 if there is none. */
 export function strongest({ vorticity, header }: Replay): number {
   const counts = new Array<number>(129).fill(0);
   for (const value of vorticity) counts[Math.abs(value)]!++;
@@ -139,7 +137,7 @@ export function strongest({ vorticity, header }: Replay): number {
   return header.vorticity.scale / 127;
 }
 
-/** The colour of each level, from −`zero` on. */
+/** The colour of each level, starting at −`zero`. */
 export function coloursOf(field: Field, replay: Replay): Uint32Array {
   const [low, high] = field.range;
   const quantum = field.quantum(replay);

@@ -1,10 +1,10 @@
-/** A field of the fluid around a camera as an image; the world repeats in both directions. */
+/** Paint a field of the fluid around a camera; the world repeats in both directions. */
 
 import type { Replay } from "../decode/replay";
 import { type Field, coloursOf } from "./fields";
-import type { Point } from "./motion";
+import { type Point, wrap } from "./motion";
 
-/** Cells drawn beyond the view, so that smoothing never sees the image's edge. */
+/** Cells drawn beyond the view, so that smoothing does not reach the image's edge. */
 const MARGIN = 2;
 
 export class FluidPainter {
@@ -22,7 +22,7 @@ export class FluidPainter {
     this.colours = coloursOf(field, replay);
   }
 
-  /** Fills a context of `scale` pixels a cell with the flow at `time` around `camera`. */
+  /** Fill a context of `scale` pixels per cell with the flow at `time` around `camera`. */
   paint(context: CanvasRenderingContext2D, time: number, camera: Point, scale: number): void {
     const [width, height] = this.replay.header.size;
     const left = camera[0] - width / 2;
@@ -62,8 +62,4 @@ export class FluidPainter {
       }
     }
   }
-}
-
-function wrap(value: number, size: number): number {
-  return ((value % size) + size) % size;
 }

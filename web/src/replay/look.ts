@@ -1,4 +1,4 @@
-/** How a replay is looked at; kept in the address by whoever has one. */
+/** The view of a replay, as the address holds it. */
 
 import type { FieldName } from "./fields";
 
@@ -25,7 +25,7 @@ export function replayViewOf(query: URLSearchParams): ReplayView {
   };
 }
 
-/** What of the address changes with a look; usual choices leave no word there. */
+/** Changes of the address for changes of the view; defaults have no parameter. */
 export function queryOf(change: Partial<ReplayView>): Record<string, string | null> {
   const words: Record<string, string | null> = {};
   if (change.field !== undefined) words.field = change.field;

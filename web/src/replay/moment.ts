@@ -1,10 +1,10 @@
-/** The moment of a replay that everything on a page shows, whoever moves it. */
+/** The moment of a replay that all parts of a page show. */
 
 import { useEffect, useState } from "preact/hooks";
 import { prefersStillness } from "../ui/theme";
 
 export class Moment {
-  /** In frames, a fraction among them. */
+  /** In frames; may be a fraction. */
   time = 0;
   playing: boolean;
   private readonly listeners = new Set<() => void>();
@@ -20,34 +20,34 @@ export class Moment {
 
   move(time: number): void {
     this.time = time;
-    this.tell();
+    this.notify();
   }
 
   play(playing: boolean): void {
     this.playing = playing;
-    this.tell();
+    this.notify();
   }
 
-  /** Stops at a moment somebody has chosen. */
+  /** Stop at a moment. */
   scrub(time: number): void {
     this.playing = false;
     this.move(time);
   }
 
-  /** One frame on or back, and stops there. */
+  /** Stop at the next or previous frame. */
   step(by: 1 | -1, last: number): void {
     const whole = by > 0 ? Math.floor(this.time + 1e-6) + 1 : Math.ceil(this.time - 1e-6) - 1;
     this.scrub(Math.min(last, Math.max(0, whole)));
   }
 
-  private tell(): void {
+  private notify(): void {
     for (const listener of [...this.listeners]) listener();
   }
 }
 
 export const newMoment = () => new Moment(!prefersStillness());
 
-/** Draws a component anew whenever the moment changes. */
+/** Redraw a component when the moment changes. */
 export function useMoment(moment: Moment): Moment {
   const [, draw] = useState(0);
   useEffect(() => moment.listen(() => draw((n) => n + 1)), [moment]);

@@ -1,14 +1,14 @@
 import { describe, expect, it } from "vitest";
-import type { Replay } from "../decode/replay";
+import type { Motion } from "../decode/motion";
 import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 
 describe("motion", () => {
   const replay = {
     header: { frames: 2, nodes: 2 },
     positions: Float32Array.from([0, 0, 2, 0, 1, 2, 3, 2]),
-  } as Replay;
+  } as Motion;
 
-  it("is linear between recorded frames and stops at the last", () => {
+  it("interpolates between recorded frames and stops at the last", () => {
     expect(positionsAt(replay, 0.5)).toEqual([
       [0.5, 1],
       [2.5, 1],

@@ -1,11 +1,14 @@
-/** Where the body is between recorded frames, and the smooth lines through its nodes. */
+/** Positions between recorded frames, and smooth lines through them. */
 
-import type { Replay } from "../decode/replay";
+import type { Motion } from "../decode/motion";
 
 export type Point = [number, number];
 
 /** Node positions at a fractional frame, unwrapped. */
-export function positionsAt({ header, positions }: Replay, time: number): Point[] {
+export function positionsAt(
+  { header, positions }: Pick<Motion, "positions" | "header">,
+  time: number,
+): Point[] {
   const { nodes, frames } = header;
   const before = Math.max(0, Math.min(frames - 1, Math.floor(time)));
   const after = Math.min(frames - 1, before + 1);
@@ -17,12 +20,17 @@ export function positionsAt({ header, positions }: Replay, time: number): Point[
   });
 }
 
+/** A coordinate within a world that repeats. */
+export function wrap(value: number, size: number): number {
+  return ((value % size) + size) % size;
+}
+
 export function meanOf(points: Point[]): Point {
   const sum = points.reduce(([x, y], point) => [x + point[0], y + point[1]], [0, 0]);
   return [sum[0] / points.length, sum[1] / points.length];
 }
 
-/** The body's edges as few long lines of nodes; they end at tips and branches. */
+/** The body's edges as long chains of nodes, which end at tips and branches. */
 export function chainsOf(edges: readonly (readonly [number, number])[]): number[][] {
   const around = new Map<number, Set<number>>();
   const touch = (node: number) => around.get(node) ?? around.set(node, new Set()).get(node)!;
@@ -48,7 +56,7 @@ export function chainsOf(edges: readonly (readonly [number, number])[]): number[
     }
   };
   for (const node of around.keys()) if (!through.has(node)) walk(node);
-  for (const node of through) walk(node); // Rings have no tip to begin at.
+  for (const node of through) walk(node); // Rings have no tip.
   return chains;
 }
 
@@ -58,11 +66,12 @@ function key(a: number, b: number): string {
 
 /** Bézier pieces of the Catmull-Rom spline through the points: control, control, end. */
 export function splineOf(points: Point[]): [Point, Point, Point][] {
-  const closed = points.length > 2 && same(points[0]!, points.at(-1)!);
+  const [first, last] = [points[0]!, points.at(-1)!];
+  const closed = points.length > 2 && first[0] === last[0] && first[1] === last[1];
   const at = (i: number): Point => {
     if (i >= 0 && i < points.length) return points[i]!;
     if (closed) return i < 0 ? points.at(-2)! : points[1]!;
-    return i < 0 ? points[0]! : points.at(-1)!;
+    return i < 0 ? first : last;
   };
   return points.slice(0, -1).map((_, i) => {
     const [p0, p1, p2, p3] = [at(i - 1), at(i), at(i + 1), at(i + 2)];
@@ -72,8 +81,4 @@ export function splineOf(points: Point[]): [Point, Point, Point][] {
     ];
     return [sixth(p1, p0, p2, 1), sixth(p2, p1, p3, -1), p2];
   });
-}
-
-function same(a: Point, b: Point): boolean {
-  return a[0] === b[0] && a[1] === b[1];
 }

@@ -1,4 +1,4 @@
-/** Replays, which a worker renders on request. */
+/** Replays, which workers render on request. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -8,19 +8,19 @@ import { text } from "./text";
 import "./replay.css";
 
 interface Rendered {
-  /** In the order in which they were asked for, once all of them are there. */
+  /** In the order of the request; null until all are rendered. */
   replays: Replay[] | null;
   note: string | null;
   error: string | null;
 }
 
-/** Bytes of replays that a tab keeps for who comes back to them. */
+/** Bytes of replays that a tab caches. */
 const MAX_CACHED_BYTES = 64e6;
 const cache = new Map<string, Replay>();
 
 const sizeOf = ({ positions, vorticity }: Replay) => positions.byteLength + vorticity.buffer.byteLength;
 
-/** As the newest; the oldest ones beyond what is kept go, but never this one. */
+/** Add a replay as the newest, and drop the oldest ones beyond the limit. */
 function addToCache(sha: string, replay: Replay): void {
   cache.delete(sha);
   cache.set(sha, replay);
@@ -33,38 +33,37 @@ function addToCache(sha: string, replay: Replay): void {
 }
 
 interface State {
-  /** Whom this is about. */
-  asked: string;
+  requested: string;
   found: ReadonlyMap<string, Replay>;
   note: string | null;
   error: string | null;
 }
 
-const NOTHING: Omit<State, "asked"> = { found: new Map(), note: null, error: null };
+const NOTHING: Omit<State, "requested"> = { found: new Map(), note: null, error: null };
 
 /** Replays of creatures; requests are repeated until they are rendered. */
 export function useReplays(shas: string[]): Rendered {
-  const asked = shas.join();
-  const [state, setState] = useState<State>({ ...NOTHING, asked });
+  const requested = shas.join();
+  const [state, setState] = useState<State>({ ...NOTHING, requested });
   useEffect(() => {
     const change = (part: Partial<State>) => setState((old) => ({ ...old, ...part }));
-    const there = (sha: string, replay: Replay) => {
+    const add = (sha: string, replay: Replay) => {
       addToCache(sha, replay);
       setState((old) => ({ ...old, found: new Map(old.found).set(sha, replay) }));
     };
-    setState({ ...NOTHING, asked });
+    setState({ ...NOTHING, requested });
     const ends = shas.map((sha) => {
       const known = cache.get(sha);
-      if (known) return there(sha, known);
+      if (known) return add(sha, known);
       return poll(async () => decoded(await api.readReplay(sha)), {
-        value: (replay) => there(sha, replay),
+        value: (replay) => add(sha, replay),
         note: (note) => change({ note }),
         error: (error) => change({ error }),
       });
     });
     return () => ends.forEach((end) => end?.());
-  }, [asked]);
-  const { found, note, error } = state.asked === asked ? state : NOTHING;
+  }, [requested]);
+  const { found, note, error } = state.requested === requested ? state : NOTHING;
   const replays = shas.flatMap((sha) => found.get(sha) ?? []);
   return { replays: replays.length === shas.length ? replays : null, note, error };
 }

@@ -1,24 +1,25 @@
-/** One moment of a replay: flow, way gone, body, and the body's neighbours in other tiles. */
+/** Draw one moment of a replay: flow, path, body, and the copies of the body in other tiles. */
 
 import type { Replay } from "../decode/replay";
 import { type Size, prepare } from "../ui/canvas";
+import type { Theme } from "../ui/theme";
 import type { FluidPainter } from "./fluid";
-import { type Point, meanOf, positionsAt, splineOf } from "./motion";
+import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 import { type Tracers, drawTracers } from "./tracers";
 
-/** Cells between the points of the grid that stands still while the camera moves. */
+/** Cells between points of the grid, which is fixed in the world. */
 const GRID = 8;
 
-export interface Scene {
+interface Scene {
   replay: Replay;
-  /** Null: bodies alone. */
+  /** Null if no field is shown. */
   painter: FluidPainter | null;
   chains: number[][];
   /** The body's mean position in each frame. */
-  way: Point[];
+  path: Point[];
   follow: boolean;
-  /** Of the ink: for a light or a dark ground. */
-  theme: "light" | "dark";
+  /** Of the background under the ink. */
+  theme: Theme;
   tracers?: Tracers | null;
 }
 
@@ -27,9 +28,10 @@ const INK = {
   dark: { body: "#fdf8ec", halo: "rgb(4 10 14 / 0.75)", faint: "rgb(230 240 245 / 0.26)" },
 };
 
-export function wayOf(replay: Replay): Point[] {
-  const { frames } = replay.header;
-  return Array.from({ length: frames }, (_, frame) => meanOf(positionsAt(replay, frame)));
+export function sceneOf(replay: Replay, look: Pick<Scene, "painter" | "follow" | "theme">): Scene {
+  const { frames, edges } = replay.header;
+  const path = Array.from({ length: frames }, (_, frame) => meanOf(positionsAt(replay, frame)));
+  return { replay, chains: chainsOf(edges), path, ...look };
 }
 
 export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, time: number) {
@@ -38,7 +40,7 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
   const scale = size.width / width;
   const points = positionsAt(scene.replay, time);
   const mean = meanOf(points);
-  const camera = scene.follow ? mean : scene.way[0]!;
+  const camera = scene.follow ? mean : scene.path[0]!;
   const screen = ([x, y]: Point): Point => [
     (x - camera[0] + width / 2) * scale,
     (camera[1] - y + height / 2) * scale,
@@ -50,13 +52,13 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
   }
   for (const shift of tiles(mean, camera, [width, height])) {
     const moved = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
-    drawWay(context, [...scene.way.slice(0, Math.floor(time) + 1), mean].map(moved), scene.theme);
+    drawPath(context, [...scene.path.slice(0, Math.floor(time) + 1), mean].map(moved), scene.theme);
     const lines = scene.chains.map((chain) => chain.map((node) => moved(points[node]!)));
     drawBody(context, lines, Math.min(11, Math.max(3, 0.6 * scale)), scene.theme);
   }
 }
 
-/** Shifts by whole worlds that bring the body near the view, the ones beside it included. */
+/** Shifts by whole worlds that bring the body near the view, and their neighbours. */
 function tiles(mean: Point, camera: Point, [width, height]: [number, number]): Point[] {
   const i = Math.round((camera[0] - mean[0]) / width);
   const j = Math.round((camera[1] - mean[1]) / height);
@@ -80,23 +82,18 @@ function drawGrid(
   }
 }
 
-function drawWay(context: CanvasRenderingContext2D, way: Point[], theme: "light" | "dark") {
+function drawPath(context: CanvasRenderingContext2D, path: Point[], theme: Theme) {
   context.strokeStyle = INK[theme].body;
   context.globalAlpha = 0.55;
   context.lineWidth = 1.25;
   context.beginPath();
-  context.arc(...way[0]!, 3, 0, 2 * Math.PI);
-  way.forEach((point, i) => (i === 0 ? context.moveTo(...point) : context.lineTo(...point)));
+  context.arc(...path[0]!, 3, 0, 2 * Math.PI);
+  path.forEach((point, i) => (i === 0 ? context.moveTo(...point) : context.lineTo(...point)));
   context.stroke();
   context.globalAlpha = 1;
 }
 
-function drawBody(
-  context: CanvasRenderingContext2D,
-  lines: Point[][],
-  width: number,
-  theme: "light" | "dark",
-) {
+function drawBody(context: CanvasRenderingContext2D, lines: Point[][], width: number, theme: Theme) {
   context.lineCap = context.lineJoin = "round";
   context.beginPath();
   for (const line of lines) {

@@ -2,15 +2,12 @@
 
 export const text = {
   speed: "Speed",
-  vorticity: "Vorticity",
-  energy: "Energy",
-  none: "None",
+  fields: { vorticity: "Vorticity", speed: "Speed", energy: "Energy", none: "None" },
   field: "Field",
   tracers: "Tracers",
   follow: "Follow",
   legend: (title: string, low: unknown, high: unknown, unit: string) =>
     `${title} from ${low} to ${high} ${unit}`,
-  inset: "The elite of this cell, swimming",
   player: "Replay player",
   frameBack: "Previous frame",
   pause: "Pause",

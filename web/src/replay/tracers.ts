@@ -1,16 +1,16 @@
 /**
- * Passive particles carried by the recorded flow. They are let go together at the start, so that
- * where they are depends on the moment alone: going back in time takes them back.
+ * Passive particles in the recorded flow. All start in the first frame, so their positions depend
+ * on the time alone, also when a user goes back.
  */
 
 import type { Replay } from "../decode/replay";
-import type { Point } from "./motion";
+import { type Point, wrap } from "./motion";
 
-/** Cells for each particle, and how many there are at most. */
-const [ROOM, MOST] = [7, 1500];
-/** Cells that a particle may go in one step of the integration. */
+/** Cells per particle, and the largest number of particles. */
+const [ROOM, MAX_COUNT] = [7, 1500];
+/** The largest distance in one step of the integration, in cells. */
 const STRIDE = 0.5;
-/** Frames that a trail shows, in pieces that fade. */
+/** Frames of a trail, and its pieces, which fade. */
 const TRAIL = 32;
 const PIECES = 4;
 
@@ -19,28 +19,23 @@ export class Tracers {
   /** (particle, 2) for each frame so far, unwrapped. */
   private readonly tracks: Float32Array[];
 
-  /** Of the world, in cells. */
-  get size(): [number, number] {
-    return this.replay.header.size;
-  }
-
-  constructor(private readonly replay: Replay) {
+  constructor(readonly replay: Replay) {
     const [width, height] = replay.header.size;
-    this.count = Math.min(MOST, Math.round((width * height) / ROOM));
+    this.count = Math.min(MAX_COUNT, Math.round((width * height) / ROOM));
     this.tracks = [spread(this.count, width, height)];
   }
 
-  /** Where they are at a frame. */
+  /** Positions at a frame. */
   at(frame: number): Float32Array {
     while (this.tracks.length <= frame) {
-      this.tracks.push(this.carried(this.tracks.at(-1)!, this.tracks.length - 1));
+      this.tracks.push(this.advance(this.tracks.at(-1)!, this.tracks.length - 1));
     }
     return this.tracks[frame]!;
   }
 
-  private carried(from: Float32Array, frame: number): Float32Array {
+  private advance(from: Float32Array, frame: number): Float32Array {
     const { every, velocity } = this.replay.header;
-    const parts = Math.max(1, Math.ceil((every * velocity!.scale) / STRIDE));
+    const parts = Math.max(1, Math.ceil((every * velocity.scale) / STRIDE));
     const dt = every / parts;
     const to = from.slice();
     for (let i = 0; i < to.length; i += 2) {
@@ -58,7 +53,7 @@ export class Tracers {
   }
 }
 
-/** Evenly but in no pattern: the additive recurrence of the plastic number (M. Roberts, 2018). */
+/** Quasirandom positions: the additive recurrence of the plastic number (M. Roberts, 2018). */
 function spread(count: number, width: number, height: number): Float32Array {
   const plastic = 1.324717957244746;
   return Float32Array.from({ length: 2 * count }, (_, i) => {
@@ -67,8 +62,8 @@ function spread(count: number, width: number, height: number): Float32Array {
   });
 }
 
-/** The fluid's velocity in cells a step, linear between cells and frames. */
-export function velocityAt({ header, drive }: Replay, time: number, x: number, y: number): Point {
+/** The fluid's velocity in cells per step, interpolated between cells and frames. */
+export function velocityAt({ header, velocity }: Replay, time: number, x: number, y: number): Point {
   const [width, height] = header.size;
   const cells = width * height;
   const before = Math.min(header.frames - 1, Math.floor(time));
@@ -79,12 +74,12 @@ export function velocityAt({ header, drive }: Replay, time: number, x: number, y
   const [west, east] = [wrap(i, width) * height, wrap(i + 1, width) * height];
   const [south, north] = [wrap(j, height), wrap(j + 1, height)];
   const plane = (first: number) => {
-    const at = (cell: number) => drive!.velocity[first + cell]!;
+    const at = (cell: number) => velocity[first + cell]!;
     const low = (1 - a) * at(west + south) + a * at(east + south);
     const high = (1 - a) * at(west + north) + a * at(east + north);
     return (1 - b) * low + b * high;
   };
-  const unit = header.velocity!.scale / 127;
+  const unit = header.velocity.scale / 127;
   const part = (k: number) =>
     unit * ((1 - t) * plane((2 * before + k) * cells) + t * plane((2 * after + k) * cells));
   return [part(0), part(1)];
@@ -97,7 +92,7 @@ interface Look {
   colour: string;
 }
 
-/** Every particle once, in the tile around the camera, with the way it has come. */
+/** Draw each particle with its trail, in the tile around the camera. */
 export function drawTracers(context: CanvasRenderingContext2D, tracers: Tracers, look: Look) {
   const now = Math.floor(look.time);
   const first = Math.max(0, now - TRAIL);
@@ -110,7 +105,7 @@ export function drawTracers(context: CanvasRenderingContext2D, tracers: Tracers,
   const step = Math.max(1, Math.ceil((frames.length - 1) / PIECES));
   for (let start = 0; start < frames.length - 1; start += step) {
     context.globalAlpha = 0.12 + (0.4 * (start + step)) / frames.length;
-    drawWays(context, frames.slice(start, start + step + 1), shifts, look);
+    drawTrails(context, frames.slice(start, start + step + 1), shifts, look);
   }
   context.globalAlpha = 0.75;
   const heads = frames.at(-1)!;
@@ -121,7 +116,7 @@ export function drawTracers(context: CanvasRenderingContext2D, tracers: Tracers,
   context.globalAlpha = 1;
 }
 
-function drawWays(
+function drawTrails(
   context: CanvasRenderingContext2D,
   frames: Float32Array[],
   shifts: Float32Array,
@@ -138,9 +133,9 @@ function drawWays(
   context.stroke();
 }
 
-/** What brings each particle into the tile of which the camera is the middle, in pixels. */
+/** Shifts in pixels that bring each particle into the tile around the camera. */
 function shiftsOf(heads: Float32Array, tracers: Tracers, { camera, scale }: Look): Float32Array {
-  const size = tracers.size;
+  const { size } = tracers.replay.header;
   return heads.map((value, i) => {
     const [side, middle] = [size[i & 1]!, camera[i & 1]!];
     const away = wrap(value - middle + side / 2, side) - value;
@@ -154,8 +149,4 @@ function screen(frame: Float32Array, i: number, shifts: Float32Array, { scale }:
 
 function mixed(a: Float32Array, b: Float32Array, t: number): Float32Array {
   return a.map((value, i) => (1 - t) * value + t * b[i]!);
-}
-
-function wrap(value: number, size: number): number {
-  return ((value % size) + size) % size;
 }

@@ -2,7 +2,7 @@
 
 import type { Run } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { extend, remove, restore } from "../store/lifecycle";
+import { extend, remove, restore } from "../store/commands";
 import { moment, short } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
 import { text } from "./text";

@@ -5,57 +5,50 @@ import { useLog } from "../store/log";
 import { setQuery } from "../store/router";
 import { Select } from "../ui/Select";
 import { count } from "../ui/format";
-import { LEVELS, type Level, LogList, atLeast, textOf } from "./LogList";
+import { LEVELS, LogList, atLeast, textOf } from "./LogList";
+import { Card } from "../ui/Page";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import "./log.css";
-
-const NAMES: Record<Level, string> = {
-  info: text.logAll,
-  warning: text.logWarnings,
-  error: text.logErrors,
-};
 
 export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
   const { value: entries, error, earlier } = useLog(run);
   const level = LEVELS.find((name) => name === query.get("level")) ?? "info";
   const shown = atLeast(entries ?? [], level);
+  const head = (
+    <>
+      {shown.length > 0 && <span class="quiet">{text.entries(count(shown.length), earlier !== null)}</span>}
+      {earlier && (
+        <button class="slim" onClick={earlier}>
+          {text.showEarlier}
+        </button>
+      )}
+      <span class="spring" />
+      <Select
+        title={text.show}
+        choices={LEVELS.map((name) => [name, text.levels[name]])}
+        value={level}
+        onChange={(name) => setQuery({ level: name === "info" ? null : name })}
+      />
+      {shown.length > 0 && (
+        <button class="slim" onClick={() => copyText(textOf(shown), text.logCopied)}>
+          {text.copy}
+        </button>
+      )}
+    </>
+  );
   return (
-    <section class="card log-card" id="log" aria-labelledby="log-title" tabIndex={-1}>
-      <div class="card-head wraps">
-        <h2 id="log-title">{text.log}</h2>
-        {shown.length > 0 && <span class="quiet">{text.entries(count(shown.length), earlier !== null)}</span>}
-        {earlier && (
-          <button class="slim" onClick={earlier}>
-            {text.showEarlier}
-          </button>
-        )}
-        <span class="spring" />
-        <Select
-          title={text.show}
-          choices={LEVELS.map((name) => [name, NAMES[name]])}
-          value={level}
-          onChange={(name) => setQuery({ level: name === "info" ? null : name })}
-        />
-        {shown.length > 0 && (
-          <button class="slim" onClick={() => copyText(textOf(shown), text.logCopied)}>
-            {text.copy}
-          </button>
-        )}
-      </div>
+    <Card id="log" title={text.log} head={head}>
       {error && <p class="banner wrong">{error}</p>}
       {!entries && !error && <p class="quiet waiting">{text.loadingLog}</p>}
-      {entries && shown.length === 0 && <p class="quiet">{emptyOf(entries.length, level)}</p>}
+      {entries && shown.length === 0 && (
+        <p class="quiet">{entries.length === 0 ? text.logEmpty : text.noEntries[level]}</p>
+      )}
       {shown.length > 0 && (
         <div class="log-scroll" tabIndex={0} role="group" aria-label={text.logOrder}>
           <LogList entries={shown} />
         </div>
       )}
-    </section>
+    </Card>
   );
-}
-
-function emptyOf(all: number, level: Level): string {
-  if (all === 0) return text.logEmpty;
-  return level === "error" ? text.noErrors : text.noWarnings;
 }

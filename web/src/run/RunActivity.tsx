@@ -1,6 +1,8 @@
 /** The activity of a run before its first generation. */
 
 import type { Run } from "../api/types";
+import { useRunRefresh } from "../store/fetch";
+import { useTick } from "../store/timing";
 import { duration } from "../ui/format";
 import { text } from "./text";
 import "../replay/replay.css";
@@ -20,9 +22,11 @@ export function elapsedOf({ status, started_at, queued_at }: Run, now: number): 
   return since && duration(Math.max(0, Math.floor((now - Date.parse(since)) / 1000)));
 }
 
-export function RunActivity({ run, now }: { run: Run; now: number }) {
+export function RunActivity({ run }: { run: Run }) {
   const activity = activityOf(run);
-  const elapsed = elapsedOf(run, now);
+  useTick(1000, activity !== null);
+  const elapsed = elapsedOf(run, Date.now());
+  useRunRefresh(run.id, run.status === "queued" || run.status === "running");
   if (!activity) return null;
   return (
     <p class="activity">

@@ -12,6 +12,7 @@ import { type CurveView, type OtherRun, arrangePlots, curveViewOf } from "../cha
 import { REASONS, divergedBy, scoresOf, workOf } from "../charts/curves/plots";
 import { count, percent, short, titleOf, words } from "../ui/format";
 import { CurveOptions } from "../charts/curves/CurveOptions";
+import { Card } from "../ui/Page";
 import { RunPicker } from "./RunPicker";
 import { text } from "./text";
 
@@ -34,8 +35,7 @@ interface ComparedRuns {
 export function CurvesCard({ run, curves, query, beside: { ids, others, error } }: Props) {
   const look = curveViewOf(query);
   return (
-    <section class="card curves-card" id="curves" aria-labelledby="curves-title" tabIndex={-1}>
-      <h2 id="curves-title">{text.curves}</h2>
+    <Card id="curves" kind="curves-card" title={text.curves}>
       {curves && <CurveOptions look={look} />}
       {curves && !sharedSlug && <ComparedList {...{ run, ids, others }} />}
       {error && <p class="wrong-text small">{error}</p>}
@@ -44,7 +44,7 @@ export function CurvesCard({ run, curves, query, beside: { ids, others, error } 
       ) : (
         <p class="quiet waiting">{text.noCurves}</p>
       )}
-    </section>
+    </Card>
   );
 }
 
@@ -52,14 +52,12 @@ export function CurvesCard({ run, curves, query, beside: { ids, others, error } 
 export function SearchCard({ run, curves, query, beside }: Props & { curves: Columns }) {
   const look = curveViewOf(query);
   const plots = arrangePlots(workOf, curves, beside.others, look);
-  const diverged = divergedBy(curves);
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
-    <section class="card search-card" id="search" aria-labelledby="work-title" tabIndex={-1}>
-      <h2 id="work-title">{text.search}</h2>
+    <Card id="search" kind="search-card" title={text.search}>
       <Curves plots={plots} x={placesOf(curves, look)} look={look} />
-      <DivergedTable run={run} reasons={diverged} />
-    </section>
+      <DivergedTable run={run} reasons={divergedBy(curves)} />
+    </Card>
   );
 }
 
@@ -67,30 +65,21 @@ export function SearchCard({ run, curves, query, beside }: Props & { curves: Col
 function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, count: number][] }) {
   const known = reasons.reduce((sum, [, number]) => sum + number, 0);
   const unknown = run.diverged - known;
-  if (run.diverged === 0) {
-    return <p class="quiet small">{text.noneDiverged}</p>;
-  }
-  const share = (number: number) => percent(number / Math.max(1, run.evaluations));
+  if (run.diverged === 0) return <p class="quiet small">{text.noneDiverged}</p>;
+  const rows = reasons.map(([reason, number]) => [words(reason), number, REASONS[reason] ?? ""] as const);
+  if (unknown > 0) rows.push([text.unknown, unknown, text.reasonMissing]);
   return (
     <table class="plain-table diverged">
       <caption>{text.divergedCaption}</caption>
       <tbody>
-        {reasons.map(([reason, number]) => (
-          <tr key={reason}>
-            <th scope="row">{words(reason)}</th>
+        {rows.map(([name, number, about]) => (
+          <tr key={name}>
+            <th scope="row">{name}</th>
             <td class="figure">{count(number)}</td>
-            <td class="figure quiet">{share(number)}</td>
-            <td class="quiet">{REASONS[reason] ?? ""}</td>
+            <td class="figure quiet">{percent(number / Math.max(1, run.evaluations))}</td>
+            <td class="quiet">{about}</td>
           </tr>
         ))}
-        {unknown > 0 && (
-          <tr>
-            <th scope="row">{text.unknown}</th>
-            <td class="figure">{count(unknown)}</td>
-            <td class="figure quiet">{share(unknown)}</td>
-            <td class="quiet">{text.reasonMissing}</td>
-          </tr>
-        )}
       </tbody>
     </table>
   );

@@ -1,25 +1,23 @@
-/** One run: how it is doing, what it has come to, and its files. */
+/** The page of a run: status, figures, results and files. */
 
-import { useEffect } from "preact/hooks";
 import type { Run } from "../api/types";
 import type { Detail } from "../store/detail";
 import type { Elites } from "../store/elites";
 import { hasArchive, useExperiments, useRunDetail } from "../store/fetch";
-import { useRunRefresh } from "../store/refresh";
 import { lazy } from "../ui/lazy";
 import { useRefusal } from "../store/principal";
 import { useStore } from "../store/store";
-import { useNow } from "../store/runPage";
-import { editRun } from "../store/edit";
+import { editRun } from "../store/commands";
 import { forceFreeShare } from "../ui/coupling";
-import { RunActivity, activityOf } from "./RunActivity";
+import { RunActivity } from "./RunActivity";
 import { endReasonOf } from "./endReason";
-import { count, number, short, titleOf } from "../ui/format";
+import { count, moment, number, short, titleOf } from "../ui/format";
 import { NotForceFree } from "../ui/NotForceFree";
+import { Page, useTitle } from "../ui/Page";
 import { NotFound } from "../ui/NotFound";
 import { type Figure, figuresOf, generationsOf } from "./figures";
 import { CommandButtons, StatusBadge, RunProgress, timeOf } from "./RunStatus";
-import { NameField } from "./RunLabels";
+import { NameField } from "./NameField";
 import { ArchiveRun } from "./ArchiveRun";
 import { FilesCard } from "./FilesCard";
 import { ForkLink } from "../ui/ForkLink";
@@ -27,7 +25,6 @@ import { ForkedFrom, BinNotice, LifecycleButtons } from "./Lifecycle";
 import { LogCard } from "./LogCard";
 import { PublishButton } from "../publish/PublishButton";
 import { SpecCard } from "./spec/SpecCard";
-import { commandsFor } from "./runCommands";
 import { text } from "./text";
 import { Term } from "../ui/Term";
 import "./run.css";
@@ -49,30 +46,22 @@ export function RunPage({ id, query }: Props) {
   const { error } = useRunDetail(id);
   const run = useStore((state) => state.runs.get(id));
   const detail = useStore((state) => state.details.get(id));
-  const title = useTitle(run);
-  useEffect(() => {
-    document.title = text.pageTitle(title);
-  }, [title]);
+  const experiments = useExperiments().value ?? [];
+  const title = run ? titleOf(run, experiments) : text.run;
+  useTitle(title);
   if (!run) {
     return (
-      <main>
-        {error ? (
-          <NotFound what={text.noSuchRun} reason={error} id={id} />
-        ) : (
-          <p class="quiet loading">{text.loadingRun}</p>
-        )}
-      </main>
+      <Page loading={!error && text.loadingRun}>
+        {error && <NotFound what={text.noSuchRun} reason={error} id={id} />}
+      </Page>
     );
   }
+  const sweep = run.sweep ? [[`/sweeps/${run.sweep}`, text.sweep] as const] : [];
   return (
-    <main>
-      <nav class="crumbs" aria-label={text.breadcrumbs}>
-        <a href="/">{text.runs}</a>
-        {run.sweep && <a href={`/sweeps/${run.sweep}`}>{text.sweep}</a>}
-      </nav>
+    <Page crumbs={[["/", text.runs], ...sweep]}>
       <Header run={run} title={title} />
       {run.deleted_at ? <BinNotice run={run} /> : <RunSections {...{ run, query, error, detail }} />}
-    </main>
+    </Page>
   );
 }
 
@@ -99,7 +88,7 @@ function Header({ run, title }: { run: Run; title: string }) {
       )}
       {hasArchive(run) && !!run.coverage && !run.deleted_at && <ForkLink run={run.id} title={text.fork} />}
       {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
-      {!refusal && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={title} />}
+      {!refusal && !run.deleted_at && <CommandButtons {...{ run, title }} name={title} />}
       {!refusal && <LifecycleButtons run={run} title={title} />}
     </header>
   );
@@ -119,7 +108,7 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
       <Banners run={run} />
       <ForkedFrom run={run} />
       <RunFacts run={run} />
-      <CurrentActivity run={run} />
+      <RunActivity run={run} />
       <SectionLinks run={run} />
       {run.status === "finished" && hasArchive(run) && <p class="quiet ending">{endReasonOf(run)}</p>}
       {run.experiment === "gaits" && <GaitsRun run={run} query={query} />}
@@ -132,7 +121,7 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
       <div class="run-columns run-record">
         <div class="stack">
           <LogCard run={run} query={query} />
-          <FilesCard run={run} />
+          <FilesCard run={run} about={text.filesAbout(hasArchive(run), moment(run.created_at), run)} />
         </div>
         <SpecCard run={run} query={query} />
       </div>
@@ -142,35 +131,19 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
 
 const NO_ELITES: Elites = new Map();
 
-/** What it is doing while its figures do not tell yet; how long it has been at it. */
-function CurrentActivity({ run }: { run: Run }) {
-  const asked = activityOf(run) !== null;
-  const now = useNow(asked);
-  useRunRefresh(run.id, run.status === "queued" || run.status === "running");
-  return asked ? <RunActivity run={run} now={now} /> : null;
-}
-
-/** Ways within a long page. */
-function SectionLinks({ run }: { run: Run }) {
-  const kinds: Record<string, [id: string, name: string][]> = {
-    folding: [["folds", text.pictures]],
-    neuroevolution: [
-      ["species", text.species],
-      ["network", text.network],
-    ],
-  };
-  const sections: [id: string, name: string][] = [
-    ...(hasArchive(run)
-      ? ([
-          ["archive", text.archive],
-          ["curves", text.curves],
-        ] as [string, string][])
-      : []),
-    ...(kinds[run.experiment] ?? []),
+/** Links to the cards of the page. */
+function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
+  const search = "search" in spec;
+  const sections = [
+    search && ["archive", text.archive],
+    search && ["curves", text.curves],
+    experiment === "folding" && ["folds", text.pictures],
+    experiment === "neuroevolution" && ["species", text.species],
+    experiment === "neuroevolution" && ["network", text.network],
     ["log", text.log],
     ["spec", text.spec],
     ["files", text.files],
-  ];
+  ].filter((section) => section !== false);
   return (
     <nav class="sections" aria-label={text.sections}>
       {sections.map(([id, name]) => (
@@ -182,13 +155,8 @@ function SectionLinks({ run }: { run: Run }) {
   );
 }
 
-/** By gradients, from step to step. */
+/** True for experiments that improve by gradient steps. */
 const learns = (run: Run) => ["folding", "refinement"].includes(run.experiment);
-
-function useTitle(run: Run | undefined): string {
-  const experiments = useExperiments().value ?? [];
-  return run ? titleOf(run, experiments) : text.run;
-}
 
 function Banners({ run }: { run: Run }) {
   return (
@@ -208,17 +176,16 @@ function Banners({ run }: { run: Run }) {
   );
 }
 
-const searchFacts = (run: Run): Figure[] => [
-  [text.evaluations, count(run.evaluations)],
-  [text.evaluationsPerSecond, number(run.evaluations_per_second)],
-];
-
 function RunFacts({ run }: { run: Run }) {
   const time = timeOf(run);
+  const work: Figure[] = [
+    [text.evaluations, count(run.evaluations)],
+    [text.evaluationsPerSecond, number(run.evaluations_per_second)],
+  ];
   const facts: Figure[] = [
     [generationsOf(run), `${count(run.generation)} / ${count(run.generations)}`],
     [time.label, time.text],
-    ...(hasArchive(run) ? searchFacts(run) : []),
+    ...(hasArchive(run) ? work : []),
     ...figuresOf(run),
   ];
   return (

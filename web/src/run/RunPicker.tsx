@@ -2,8 +2,7 @@
 
 import { useEffect, useRef } from "preact/hooks";
 import type { Run } from "../api/types";
-import { useExperiments } from "../store/fetch";
-import { useRunChoices } from "../store/runPage";
+import { useExperiments, useRunChoices } from "../store/fetch";
 import { moment, short, titleOf } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
 import { text } from "./text";

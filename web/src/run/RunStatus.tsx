@@ -1,6 +1,8 @@
 /** Status, progress, time and commands of a run. */
 
 import type { Run } from "../api/types";
+import { cancelWithUndo, sendCommand } from "../store/commands";
+import { Progress } from "../ui/Page";
 import { DASH, duration } from "../ui/format";
 import { text } from "./text";
 import "./run.css";
@@ -14,23 +16,11 @@ export function StatusBadge({ run }: { run: Run }) {
   return <span class={`badge ${run.status}`}>{status}</span>;
 }
 
-export function RunProgress({ run }: { run: Run }) {
-  const share = Math.round(1000 * run.progress) / 10;
-  return (
-    <div
-      class={`progress ${run.status}`}
-      role="progressbar"
-      aria-label={text.progress}
-      aria-valuenow={share}
-      aria-valuemin={0}
-      aria-valuemax={100}
-    >
-      <div style={{ width: `${share}%` }} />
-    </div>
-  );
-}
+export const RunProgress = ({ run }: { run: Run }) => (
+  <Progress label={text.progress} share={run.progress} kind={run.status} />
+);
 
-/** Generations before the rate is shown; the first ones include compilation. */
+/** Generations before the time left is shown; the first ones include compilation. */
 const MIN_GENERATIONS = 3;
 
 /** The time left of a run, or its duration. */
@@ -44,29 +34,31 @@ export function timeOf(run: Run): { label: string; text: string } {
   return { label: text.took, text: duration(seconds) };
 }
 
-interface CommandHandlers {
-  pause: (run: Run) => void;
-  resume: (run: Run) => void;
-  cancel: (run: Run) => void;
+interface CommandProps {
+  run: Run;
+  /** The name of the run in notes, and in labels of buttons. */
+  title: string;
+  name: string;
 }
 
 /** Buttons for the commands that the status allows. */
-export function CommandButtons({ run, on, name }: { run: Run; on: CommandHandlers; name: string }) {
-  const alive = ["queued", "running", "paused"].includes(run.status);
-  if (!alive || run.requested_state === "cancelled") return null;
+export function CommandButtons({ run, title, name }: CommandProps) {
+  const { id, status, requested_state } = run;
+  const alive = ["queued", "running", "paused"].includes(status);
+  if (!alive || requested_state === "cancelled") return null;
   return (
     <span class="actions">
-      {run.status === "paused" && (
-        <button onClick={() => on.resume(run)} aria-label={text.resumeRun(name)}>
+      {status === "paused" && (
+        <button onClick={() => void sendCommand(id, "resume")} aria-label={text.resumeRun(name)}>
           {text.resume}
         </button>
       )}
-      {run.status !== "paused" && run.requested_state !== "paused" && (
-        <button onClick={() => on.pause(run)} aria-label={text.pauseRun(name)}>
+      {status !== "paused" && requested_state !== "paused" && (
+        <button onClick={() => void sendCommand(id, "pause")} aria-label={text.pauseRun(name)}>
           {text.pause}
         </button>
       )}
-      <button class="danger" onClick={() => on.cancel(run)} aria-label={text.cancelRun(name)}>
+      <button class="danger" onClick={() => cancelWithUndo(id, title)} aria-label={text.cancelRun(name)}>
         {text.cancel}
       </button>
     </span>

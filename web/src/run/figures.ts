@@ -1,71 +1,66 @@
 /** Key figures of a run. */
 
 import type { Run } from "../api/types";
-import { bytes, count, number, percent } from "../ui/format";
+import { DASH, bytes, count, number, percent } from "../ui/format";
 import { text } from "./text";
 
 export type Figure = [name: string, value: string];
 
-const told = (run: Run, name: string) => {
+type Write = (value: number | null | undefined, digits?: number) => string;
+
+/** The scores of an archive, with their titles and formats. */
+export const SCORES: [name: "qd_score" | "coverage" | "best", title: string, write: Write][] = [
+  ["qd_score", text.qdScore, number],
+  ["coverage", text.coverage, percent],
+  ["best", text.bestFitness, number],
+];
+
+const summaryOf = (run: Run, name: string) => {
   const value = run.summary?.[name];
   return typeof value === "number" ? value : null;
 };
 
 /** The figures on the page of a run. */
 export function figuresOf(run: Run): Figure[] {
+  const value = (name: string) => summaryOf(run, name);
+  const memory = value("peak_memory_bytes");
   switch (run.experiment) {
     case "gaits":
       return [
-        [text.points, count(told(run, "points") ?? run.evaluations)],
-        [text.withWarnings, count(told(run, "warned") ?? 0)],
-        [text.failed, count(told(run, "failed") ?? run.diverged)],
+        [text.points, count(value("points") ?? run.evaluations)],
+        [text.withWarnings, count(value("warned") ?? 0)],
+        [text.failed, count(value("failed") ?? run.diverged)],
       ];
     case "folding":
-      return [[text.meanLoss, number(told(run, "loss"))]];
+      return [[text.meanLoss, number(value("loss"))]];
     case "refinement":
       return [
-        [text.fitnessBefore, number(told(run, "before"))],
-        [text.fitness, number(told(run, "fitness"))],
+        [text.fitnessBefore, number(value("before"))],
+        [text.fitness, number(value("fitness"))],
       ];
     case "scaling":
       return [
-        [text.exponent, number(told(run, "exponent"))],
-        [text.allPairsExponent, number(told(run, "exponent_all_pairs"))],
-        [text.peakMemory, bytesOf(told(run, "peak_memory_bytes"))],
+        [text.exponent, number(value("exponent"))],
+        [text.allPairsExponent, number(value("exponent_all_pairs"))],
+        [text.peakMemory, memory === null ? DASH : bytes(memory)],
       ];
     default:
       return [
-        [text.qdScore, number(run.qd_score)],
-        [text.coverage, percent(run.coverage)],
-        [text.bestFitness, number(run.best)],
+        ...SCORES.map(([name, title, write]): Figure => [title, write(run[name])]),
         [text.diverged, count(run.diverged)],
       ];
   }
 }
 
+/** Positions of the figure that lists show; the first one for other experiments. */
+const KEYS: Record<string, number> = { refinement: 1, neuroevolution: 2 };
+
 /** The figure of a run in a list. */
 export function keyFigureOf(run: Run): Figure {
-  const figures = Object.fromEntries(figuresOf(run));
-  switch (run.experiment) {
-    case "gaits":
-      return [text.points.toLowerCase(), figures[text.points]!];
-    case "scaling":
-      // The exponent is of many nodes only, which small measurements do not have.
-      if (told(run, "exponent") === null) return [text.peakMemory.toLowerCase(), figures[text.peakMemory]!];
-      return [text.exponent.toLowerCase(), figures[text.exponent]!];
-    case "folding":
-      return [text.meanLoss.toLowerCase(), figures[text.meanLoss]!];
-    case "refinement":
-      return [text.fitness.toLowerCase(), figures[text.fitness]!];
-    case "neuroevolution":
-      return [text.bestFitness.toLowerCase(), figures[text.bestFitness]!];
-    default:
-      return [text.qdScore, figures[text.qdScore]!];
-  }
-}
-
-function bytesOf(value: number | null): string {
-  return value === null ? number(value) : bytes(value);
+  // Small measurements have no exponent: the list shows their memory.
+  const small = run.experiment === "scaling" && summaryOf(run, "exponent") === null;
+  const [name, value] = figuresOf(run)[small ? 2 : (KEYS[run.experiment] ?? 0)]!;
+  return [name === text.qdScore ? name : name.toLowerCase(), value];
 }
 
 const GENERATIONS: Record<string, string> = {

@@ -1,10 +1,12 @@
 /** Texts of the page of a run. */
 
+import type { Run } from "../api/types";
+
 export const text = {
   archive: "Archive",
   loadingArchive: "Loading archive …",
   files: "Files",
-  filesAbout: (archive: boolean, created: string, attempt: number, version: string, device: string | null) =>
+  filesAbout: (archive: boolean, created: string, { attempt, version, device }: Run) =>
     `${archive ? "The archive files hold" : "results.h5 holds"} the last checkpoint. Created ${created}, attempt ${attempt}, version ${version}${device ? `, on ${device}` : ""}.`,
   deleteRun: (title: string) => `Delete ${title}`,
   delete: "Delete",
@@ -19,9 +21,7 @@ export const text = {
   inBin: (moment: string | null) =>
     `This run is in the bin${moment ? ` and will be deleted for good on ${moment}` : ""}.`,
   restore: "Restore",
-  logAll: "all entries",
-  logWarnings: "warnings and errors",
-  logErrors: "errors only",
+  levels: { info: "all entries", warning: "warnings and errors", error: "errors only" },
   log: "Log",
   entries: (count: string, earlier: boolean) => `${earlier ? "last " : ""}${count} entries`,
   showEarlier: "Show earlier entries",
@@ -31,8 +31,7 @@ export const text = {
   loadingLog: "Loading log …",
   logOrder: "Log entries, newest first",
   logEmpty: "The log is empty.",
-  noErrors: "No errors.",
-  noWarnings: "No warnings and no errors.",
+  noEntries: { info: "No entries.", warning: "No warnings and no errors.", error: "No errors." },
   attempt: (attempt: number) => `attempt ${attempt}`,
   error: "Error",
   warning: "Warning",
@@ -56,19 +55,8 @@ export const text = {
   nameOf: (title: string) => `Name of ${title}`,
   renameRun: (title: string) => `Rename ${title}`,
   rename: "Rename",
-  runsTagged: (tag: string) => `Show runs tagged ${tag}`,
-  removeTag: (tag: string, name: string) => `Remove the tag ${tag} from ${name}`,
-  newTag: (name: string) => `New tag of ${name}`,
-  addTag: (name: string) => `Add a tag to ${name}`,
-  tag: "+ tag",
-  noteOn: (name: string) => `Note on ${name}`,
-  editNote: (name: string, note: string) => `Edit the note on ${name}: ${note}`,
-  addNote: (name: string) => `Add a note to ${name}`,
-  note: "+ note",
-  pageTitle: (title: string) => `${title} · Microcosmos`,
   noSuchRun: "Run not found",
   loadingRun: "Loading run …",
-  breadcrumbs: "Breadcrumbs",
   runs: "Runs",
   sweep: "Sweep",
   fork: "Start a new run from the creatures of this run",

@@ -2,7 +2,7 @@
 
 import { useState } from "preact/hooks";
 import type { Experiment, RunQuery } from "../api/types";
-import { useDebounced } from "../store/throttle";
+import { useDebounced } from "../store/timing";
 import { Select } from "../ui/Select";
 import { words } from "../ui/format";
 import { STATES } from "../run/RunStatus";

@@ -2,18 +2,16 @@
 
 import type { Experiment, Run } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { restore } from "../store/lifecycle";
 import { useStore } from "../store/store";
-import { addTag, removeNote, removeTag, editRun } from "../store/edit";
-import { setQuery } from "../store/router";
+import { editRun, restore } from "../store/commands";
 import { forceFreeShare } from "../ui/coupling";
 import { DASH, moment, number, short, titleOf } from "../ui/format";
 import { NotForceFree } from "../ui/NotForceFree";
 import { keyFigureOf } from "../run/figures";
 import { CommandButtons, StatusBadge, RunProgress, timeOf } from "../run/RunStatus";
-import { NameField, NoteField, TagList } from "../run/RunLabels";
+import { NameField } from "../run/NameField";
 import { Sparkline } from "../charts/Sparkline";
-import { commandsFor } from "../run/runCommands";
+import { NoteField, TagList } from "./RunLabels";
 import { text } from "./text";
 
 interface Props {
@@ -41,7 +39,10 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
       <th scope="row">
         <RowTitle {...{ run, title, name, fixed }} />
         <RowNotes run={run} />
-        <RowLabels {...{ run, name, fixed, knownTags }} />
+        <span class="labels">
+          <TagList {...{ run, name, fixed }} known={knownTags} />
+          <NoteField {...{ run, name, fixed }} />
+        </span>
       </th>
       <td data-label={text.state}>
         <StatusBadge run={run} />
@@ -73,7 +74,7 @@ interface PartProps {
   title: string;
   /** The title with the run's id. */
   name: string;
-  /** Whether we may not change the run. */
+  /** True if the run cannot be changed. */
   fixed: boolean;
 }
 
@@ -95,7 +96,7 @@ function RowTitle({ run, title, name, fixed }: PartProps) {
   );
 }
 
-/** Why the run waits, is compiling, failed or will be purged. */
+/** Notes on a run that waits, compiles, failed or will be purged. */
 function RowNotes({ run }: { run: Run }) {
   return (
     <>
@@ -110,25 +111,6 @@ function RowNotes({ run }: { run: Run }) {
   );
 }
 
-function RowLabels({ run, name, fixed, knownTags }: Omit<PartProps, "title"> & { knownTags: string }) {
-  return (
-    <span class="labels">
-      <TagList
-        {...{ run, name, fixed }}
-        known={knownTags}
-        onPick={(tag) => setQuery({ tag })}
-        onAdd={(tag) => addTag(run, tag)}
-        onRemove={(tag) => removeTag(run, tag)}
-      />
-      <NoteField
-        {...{ run, name, fixed }}
-        onNote={(note) => void editRun(run.id, { note })}
-        onRemove={() => removeNote(run)}
-      />
-    </span>
-  );
-}
-
 function RowActions({ run, title, name }: Omit<PartProps, "fixed">) {
   const mayCreate = useRefusal() === null;
   const mayChange = useRefusal(run) === null;
@@ -140,7 +122,7 @@ function RowActions({ run, title, name }: Omit<PartProps, "fixed">) {
             {text.restore}
           </button>
         )}
-        {mayChange && !run.deleted_at && <CommandButtons run={run} on={commandsFor(title)} name={name} />}
+        {mayChange && !run.deleted_at && <CommandButtons {...{ run, title, name }} />}
         {mayCreate && (
           <a class="button" href={`/new?from=${run.id}`} aria-label={text.cloneRun(name)}>
             {text.clone}

@@ -2,20 +2,21 @@
 
 import { useState } from "preact/hooks";
 import { MAX_LINES } from "../charts/lineStyle";
-import { messageOf } from "../api/problem";
 import type { Experiment, RunQuery } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
 import { moreRuns, useRunList, useTags } from "../store/runList";
 import { useStore } from "../store/store";
 import { useSweeps } from "../store/sweeps";
-import { showToast } from "../store/toasts";
+import { showFailure } from "../store/toasts";
 import { setQuery } from "../store/router";
+import { wasGuided } from "../archive/guide";
+import { Empty, Page } from "../ui/Page";
+import { Term } from "../ui/Term";
 import { Filters } from "./Filters";
 import { NO_FILTERS, WITHOUT_SWEEP, ariaSort, groupsSweeps, isFiltered, nextSort, queryOf } from "./runQuery";
 import { RunRow } from "./RunRow";
 import { SweepRows } from "./SweepRows";
-import { Welcome } from "./Welcome";
 import { text } from "./text";
 import "./runs.css";
 
@@ -50,17 +51,18 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const swept = together && (sweeps?.items.length ?? 0) > 0;
   const empty = fetched && listed.length === 0 && !swept;
   return (
-    <main>
-      <Header bin={query.deleted ?? false} />
+    <Page
+      title={query.deleted ? text.bin : text.runs}
+      actions={<HeaderLinks bin={query.deleted ?? false} />}
+      error={error}
+      loading={!fetched && listed.length === 0 && text.loadingRuns}
+    >
       <Welcome />
-      {error && <p class="banner wrong">{error}</p>}
-      {!fetched && !error && listed.length === 0 && <p class="quiet loading">{text.loadingRuns}</p>}
       {(listed.length > 0 || swept || isFiltered(query)) && (
         <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
       )}
       {chosen.length > 0 && <CompareBar ids={chosen} onClear={() => setChosen([])} />}
-      {empty && query.deleted && !isFiltered(query) && <p class="quiet">{text.binEmpty}</p>}
-      {empty && (isFiltered(query) ? <NoMatches /> : !query.deleted && <NoRuns />)}
+      {empty && <NothingListed query={query} />}
       {query.sweep && <SweepBanner sweep={query.sweep} />}
       {swept && <SweepRows page={sweeps!} onMore={most < MAX_SWEEPS ? () => setMost(MAX_SWEEPS) : null} />}
       {listed.length > 0 && <Table {...{ query, listed, experiments, chosen }} onChoose={choose} />}
@@ -70,15 +72,14 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
         ))}
       </datalist>
       {next && <LoadMore query={listedQuery} />}
-    </main>
+    </Page>
   );
 }
 
-function Header({ bin }: { bin: boolean }) {
+function HeaderLinks({ bin }: { bin: boolean }) {
   const refusal = useRefusal();
   return (
-    <header class="page-head">
-      <h1>{bin ? text.bin : text.runs}</h1>
+    <>
       <span class="spring" />
       <a class="button" href={bin ? "/" : "/?deleted=true"}>
         {bin ? text.runs : text.bin}
@@ -88,7 +89,7 @@ function Header({ bin }: { bin: boolean }) {
           {text.newRun}
         </a>
       )}
-    </header>
+    </>
   );
 }
 
@@ -110,13 +111,13 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
           </th>
           {COLUMNS.map(({ title, key, falling = false }) => (
             <th key={title} scope="col" aria-sort={key ? ariaSort(query.sort, key) : undefined}>
-              {key ? (
-                <button class="sort" onClick={() => setQuery({ sort: nextSort(query.sort, key, falling) })}>
-                  {title}
-                </button>
-              ) : (
-                title
-              )}
+              <Term name={title}>
+                {key && (
+                  <button class="sort" onClick={() => setQuery({ sort: nextSort(query.sort, key, falling) })}>
+                    {title}
+                  </button>
+                )}
+              </Term>
             </th>
           ))}
           <th scope="col">
@@ -171,25 +172,33 @@ function SweepBanner({ sweep }: { sweep: string }) {
   );
 }
 
-function NoMatches() {
+/** A note in place of the list: an empty bin, no matches, or no runs at all. */
+function NothingListed({ query }: { query: RunQuery }) {
+  if (isFiltered(query)) {
+    return (
+      <Empty title={text.noMatch} hint={text.noMatchHint}>
+        <button onClick={() => setQuery(NO_FILTERS)}>{text.showAllRuns}</button>
+      </Empty>
+    );
+  }
+  if (query.deleted) return <p class="quiet">{text.binEmpty}</p>;
   return (
-    <section class="empty card">
-      <h2>{text.noMatch}</h2>
-      <p>{text.noMatchHint}</p>
-      <button onClick={() => setQuery(NO_FILTERS)}>{text.showAllRuns}</button>
-    </section>
-  );
-}
-
-function NoRuns() {
-  return (
-    <section class="empty card">
-      <h2>{text.noRuns}</h2>
-      <p>{text.noRunsHint}</p>
+    <Empty title={text.noRuns} hint={text.noRunsHint}>
       <a class="button primary" href="/new">
         {text.startFirst}
       </a>
-    </section>
+    </Empty>
+  );
+}
+
+/** An invitation to the tour, shown on the first visit. */
+function Welcome() {
+  const demonstration = useStore((state) => [...state.runs.values()].find((run) => run.demonstration));
+  if (wasGuided() || !demonstration) return null;
+  return (
+    <p class="banner welcome">
+      {text.welcome} <a href={`/runs/${demonstration.id}`}>{text.tour}</a>
+    </p>
   );
 }
 
@@ -197,7 +206,7 @@ function LoadMore({ query }: { query: RunQuery }) {
   const [busy, setBusy] = useState(false);
   const load = async () => {
     setBusy(true);
-    await moreRuns(query).catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
+    await moreRuns(query).catch(showFailure);
     setBusy(false);
   };
   return (

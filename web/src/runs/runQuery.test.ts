@@ -1,10 +1,10 @@
 import { describe, expect, it } from "vitest";
-import { ariaSort, isFiltered, nextSort, queryOf } from "./runQuery";
+import { ariaSort, groupsSweeps, isFiltered, nextSort, queryOf } from "./runQuery";
 
 describe("the list of runs in the address", () => {
   const query = (text: string) => queryOf(new URLSearchParams(text));
 
-  it("asks for what the address says, and passes over what makes no sense", () => {
+  it("asks for the filters of the address, and ignores unknown values", () => {
     expect(query("")).toEqual({});
     expect(query("q=wide &status=running,odd,queued&tag=a&experiment=gaits&sort=-best")).toEqual({
       q: "wide ",
@@ -17,18 +17,20 @@ describe("the list of runs in the address", () => {
     expect([isFiltered(query("sort=best")), isFiltered(query("q=x"))]).toEqual([false, true]);
   });
 
-  it("is sorted by a column, then the other way round, then as usual", () => {
-    expect(["name", "-name", "best"].map((sort) => nextSort(sort, "name", false))).toEqual([
-      "-name",
-      null,
-      "name",
-    ]);
+  it("shows each sweep as one row while the address asks for nothing", () => {
+    expect(groupsSweeps(query(""))).toBe(true);
+    expect(groupsSweeps(query("q=thick"))).toBe(false);
+    const id = "01234567-89ab-cdef-0123-456789abcdef";
+    expect(query(`sweep=${id}`)).toEqual({ sweep: id });
+    expect(query("sweep=x")).toEqual({});
+  });
+
+  it("is sorted by a column, then in reverse, then by default", () => {
+    const next = ["name", "-name", "best"].map((sort) => nextSort(sort, "name", false));
+    expect(next).toEqual(["-name", null, "name"]);
     expect(nextSort(undefined, "qd_score", true)).toBe("-qd_score");
     expect(nextSort("-qd_score", "qd_score", true)).toBe("qd_score");
-    expect(["name", "-name", undefined].map((sort) => ariaSort(sort, "name"))).toEqual([
-      "ascending",
-      "descending",
-      "none",
-    ]);
+    const order = ["name", "-name", undefined].map((sort) => ariaSort(sort, "name"));
+    expect(order).toEqual(["ascending", "descending", "none"]);
   });
 });

@@ -1,10 +1,10 @@
 /** The settings page: the signed-in principal, and for admins all tokens. */
 
 import { signOut } from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Principal } from "../api/types";
 import { usePrincipal } from "../store/principal";
-import { showToast } from "../store/toasts";
+import { showFailure } from "../store/toasts";
+import { Card, Page } from "../ui/Page";
 import { Tokens } from "./Tokens";
 import { day } from "./tokenText";
 import { text } from "./text";
@@ -13,19 +13,14 @@ import "./settings.css";
 export function SettingsPage() {
   const { value, error } = usePrincipal();
   return (
-    <main>
-      <header class="page-head">
-        <h1>{text.settings}</h1>
-      </header>
-      {error && <p class="banner wrong">{error}</p>}
-      {!value && !error && <p class="quiet loading">{text.loading}</p>}
+    <Page title={text.settings} error={error} loading={!value && text.loading}>
       {value && (
         <div class="settings">
           <PrincipalCard principal={value} />
           {value.scope === "admin" && <Tokens own={value.token} />}
         </div>
       )}
-    </main>
+    </Page>
   );
 }
 
@@ -39,22 +34,16 @@ const SCOPE_TEXT = {
 };
 
 function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { principal: Principal }) {
-  const leave = async () => {
-    try {
-      await signOut();
-      location.reload();
-    } catch (error) {
-      showToast({ kind: "wrong", text: messageOf(error) });
-    }
-  };
+  const leave = () => void signOut().then(() => location.reload(), showFailure);
+  const head = (
+    <>
+      <span class="badge">{scope}</span>
+      <span class="spring" />
+      {needed && <button onClick={leave}>{text.signOut}</button>}
+    </>
+  );
   return (
-    <section class="card" aria-labelledby="you-title">
-      <header class="card-head">
-        <h2 id="you-title">{needed ? name : text.thisMachine}</h2>
-        <span class="badge">{scope}</span>
-        <span class="spring" />
-        {needed && <button onClick={leave}>{text.signOut}</button>}
-      </header>
+    <Card id="you" title={needed ? name : text.thisMachine} head={head}>
       <p>
         {SCOPE_TEXT[scope]}
         {expires_at && text.validUntil(day(expires_at))}
@@ -68,6 +57,6 @@ function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { pri
           .
         </p>
       )}
-    </section>
+    </Card>
   );
 }

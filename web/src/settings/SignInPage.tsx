@@ -2,28 +2,19 @@
 
 import { useState } from "preact/hooks";
 import { signIn } from "../api/client";
-import { messageOf } from "../api/problem";
+import { useSubmit } from "../ui/submit";
 import { text } from "./text";
 import "./settings.css";
 
 export function SignInPage() {
   const [token, setToken] = useState("");
-  const [error, setError] = useState<string | null>(null);
-  const [busy, setBusy] = useState(false);
-  const submit = async (event: Event) => {
-    event.preventDefault();
-    setBusy(true);
-    try {
-      await signIn(token.trim());
-      location.reload();
-    } catch (problem) {
-      setError(messageOf(problem));
-      setBusy(false);
-    }
-  };
+  const { busy, error, onSubmit } = useSubmit(async () => {
+    await signIn(token.trim());
+    location.reload();
+  });
   return (
     <main>
-      <form class="card sign-in" onSubmit={submit}>
+      <form class="card sign-in" onSubmit={onSubmit}>
         <h1>{text.signIn}</h1>
         <p class="quiet">{text.signInHint}</p>
         <label>

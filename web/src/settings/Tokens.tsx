@@ -2,13 +2,15 @@
 
 import { useState } from "preact/hooks";
 import { createToken, readTokens, revokeToken } from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Token, CreatedToken, TokenScope } from "../api/types";
 import { useFetched } from "../store/fetch";
-import { showToast } from "../store/toasts";
+import { showFailure, showToast } from "../store/toasts";
 import { ConfirmButton } from "../ui/ConfirmButton";
+import { Card } from "../ui/Page";
 import { Select } from "../ui/Select";
+import { type Column, Table } from "../ui/Table";
 import { copyText } from "../ui/clipboard";
+import { useSubmit } from "../ui/submit";
 import { TERMS, day, endOf, isExpired, tokenStatus } from "./tokenText";
 import { text } from "./text";
 
@@ -18,8 +20,7 @@ export function Tokens({ own }: { own: string | null }) {
   const { value, error } = useFetched(readTokens, [turn]);
   const again = () => setTurn((count) => count + 1);
   return (
-    <section class="card" aria-labelledby="tokens-title">
-      <h2 id="tokens-title">{text.tokens}</h2>
+    <Card id="tokens" title={text.tokens}>
       <NewToken
         onMade={(token) => {
           setMade(token);
@@ -29,8 +30,8 @@ export function Tokens({ own }: { own: string | null }) {
       {made && <Secret made={made} onDone={() => setMade(null)} />}
       {error && <p class="banner wrong">{error}</p>}
       {value?.length === 0 && <p class="quiet">{text.noTokens}</p>}
-      {value && value.length > 0 && <Table tokens={value} own={own} onRevoked={again} />}
-    </section>
+      {value && value.length > 0 && <TokenTable tokens={value} own={own} onRevoked={again} />}
+    </Card>
   );
 }
 
@@ -38,19 +39,12 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
   const [name, setName] = useState("");
   const [scope, setScope] = useState<TokenScope>("write");
   const [days, setDays] = useState("90");
-  const [error, setError] = useState<string | null>(null);
-  const submit = async (event: Event) => {
-    event.preventDefault();
-    try {
-      onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(Number(days)) }));
-      setName("");
-      setError(null);
-    } catch (problem) {
-      setError(messageOf(problem));
-    }
-  };
+  const { busy, error, onSubmit } = useSubmit(async () => {
+    onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(Number(days)) }));
+    setName("");
+  });
   return (
-    <form class="new-token" onSubmit={submit}>
+    <form class="new-token" onSubmit={onSubmit}>
       <label>
         {text.owner}
         <input
@@ -69,7 +63,7 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
         onChange={(name) => setScope(name as TokenScope)}
       />
       <Select title={text.validFor} choices={LIFETIMES} value={days} onChange={setDays} />
-      <button class="primary" disabled={!name.trim()}>
+      <button class="primary" disabled={busy || !name.trim()}>
         {text.create}
       </button>
       {error && (
@@ -114,50 +108,31 @@ interface TableProps {
   onRevoked: () => void;
 }
 
-function Table({ tokens, own, onRevoked }: TableProps) {
+function TokenTable({ tokens, own, onRevoked }: TableProps) {
+  const columns: Column<Token>[] = [
+    { title: text.owner, cell: ({ id, name }) => (id === own ? `${name} ${text.you}` : name) },
+    { title: text.prefix, cell: ({ prefix }) => <code>{prefix}…</code> },
+    { title: text.scope, cell: ({ scope }) => scope },
+    { title: text.created, cell: ({ created_at }) => day(created_at) },
+    { title: text.lastUsed, cell: ({ last_used_at }) => (last_used_at ? day(last_used_at) : text.never) },
+    { title: text.valid, cell: (token) => tokenStatus(token) },
+    {
+      title: text.revoke,
+      unseen: true,
+      cell: (token) =>
+        !isExpired(token) && (
+          <ConfirmButton verb={text.revoke} what={token.name} onConfirm={() => revoke(token, onRevoked)} />
+        ),
+    },
+  ];
   return (
-    <div class="wide-table" tabIndex={0} role="group" aria-label={text.tokens}>
-      <table>
-        <thead>
-          <tr>
-            {text.columns.map((title) => (
-              <th key={title} scope="col">
-                {title}
-              </th>
-            ))}
-            <th scope="col">
-              <span class="unseen">{text.revoke}</span>
-            </th>
-          </tr>
-        </thead>
-        <tbody>
-          {tokens.map((token) => (
-            <tr key={token.id} class={isExpired(token) ? "quiet" : undefined}>
-              <th scope="row">
-                {token.name}
-                {token.id === own && ` ${text.you}`}
-              </th>
-              <td>
-                <code>{token.prefix}…</code>
-              </td>
-              <td>{token.scope}</td>
-              <td>{day(token.created_at)}</td>
-              <td>{token.last_used_at ? day(token.last_used_at) : text.never}</td>
-              <td>{tokenStatus(token)}</td>
-              <td>
-                {!isExpired(token) && (
-                  <ConfirmButton
-                    verb={text.revoke}
-                    what={token.name}
-                    onConfirm={() => revoke(token, onRevoked)}
-                  />
-                )}
-              </td>
-            </tr>
-          ))}
-        </tbody>
-      </table>
-    </div>
+    <Table
+      label={text.tokens}
+      columns={columns}
+      rows={tokens}
+      keyOf={({ id }) => id}
+      rowKind={(token) => (isExpired(token) ? "quiet" : "")}
+    />
   );
 }
 
@@ -167,6 +142,6 @@ async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void>
     showToast({ kind: "note", text: text.revoked(name) });
     onRevoked();
   } catch (error) {
-    showToast({ kind: "wrong", text: messageOf(error) });
+    showFailure(error);
   }
 }

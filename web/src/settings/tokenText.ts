@@ -1,12 +1,12 @@
 /** Status and validity of tokens. */
 
 import type { Token } from "../api/types";
+import { inDays } from "../ui/format";
 import { text } from "./text";
 
 export const day = (iso: string) =>
   new Date(iso).toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" });
 
-/** The status of a token. */
 export function tokenStatus(token: Token, now = Date.now()): string {
   const { revoked_at, expires_at } = token;
   if (expires_at && Date.parse(expires_at) <= now) return text.expired(day(expires_at));
@@ -25,6 +25,5 @@ export const TERMS = [
   [text.forever, 0],
 ] as const;
 
-/** The moment in this number of days; null for no expiry. */
-export const endOf = (days: number, now = Date.now()) =>
-  days > 0 ? new Date(now + days * 86_400_000).toISOString() : null;
+/** When a token for this number of days expires; null for no expiry. */
+export const endOf = (days: number, now = Date.now()) => (days > 0 ? inDays(days, now) : null);

@@ -1,33 +1,21 @@
 /** The commons: listed shares as moving tiles. */
 
-import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import type { Share } from "../api/types";
-import { type Motion, decodeMotion } from "../decode/motion";
+import { decodeMotion } from "../decode/motion";
 import { usePages } from "../store/paging";
-import { poll } from "../store/polling";
+import { usePolled } from "../store/polling";
+import { Empty, Page, useTitle } from "../ui/Page";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { text } from "./text";
 import "./shares.css";
 
 export function CommonsPage() {
   const { items: shares, error, more } = usePages(api.readCommons, ({ slug }) => slug);
-  useEffect(() => {
-    document.title = text.commonsTitle;
-  }, []);
+  useTitle(text.commons);
   return (
-    <main>
-      <header class="page-head">
-        <h1>{text.commons}</h1>
-      </header>
-      {error && <p class="banner wrong">{error}</p>}
-      {!shares && !error && <p class="quiet loading">{text.loading}</p>}
-      {shares?.length === 0 && (
-        <section class="empty card">
-          <h2>{text.nothingListed}</h2>
-          <p>{text.nothingListedHint}</p>
-        </section>
-      )}
+    <Page title={text.commons} error={error} loading={!shares && text.loading}>
+      {shares?.length === 0 && <Empty title={text.nothingListed} hint={text.nothingListedHint} />}
       <ul class="commons">
         {shares?.map((share) => (
           <li key={share.slug}>
@@ -36,20 +24,13 @@ export function CommonsPage() {
         ))}
       </ul>
       {more && <button onClick={more}>{text.showMore}</button>}
-    </main>
+    </Page>
   );
 }
 
 function Tile({ share }: { share: Share }) {
-  const [motion, setMotion] = useState<Motion | null>(null);
-  useEffect(() => {
-    const silent = () => {}; // It stays still; its own page says what is wrong.
-    return poll(async () => decoded(await api.readCover(share)), {
-      value: setMotion,
-      note: silent,
-      error: silent,
-    });
-  }, [share.slug]);
+  // Without a motion the tile stays empty; the page of the share shows the error.
+  const { value: motion } = usePolled(async () => decoded(await api.readCover(share)), [share.slug]);
   return (
     <a class="commons-tile card" href={`/s/${share.slug}`} target="_self">
       <SwimmingBody motion={motion} />

@@ -1,8 +1,8 @@
 /** The public page of a share: a creature, or an archive and its elites. */
 
-import { useEffect } from "preact/hooks";
+import { SHARE_HEADER } from "../api/address";
 import * as api from "../api/client";
-import { archiveUrl } from "../api/urls";
+import { creatureFileUrl } from "../api/urls";
 import type { Share } from "../api/types";
 import { useFetched, useRunDetail } from "../store/fetch";
 import { useStore } from "../store/store";
@@ -10,52 +10,43 @@ import { count, moment, short } from "../ui/format";
 import { NotFound } from "../ui/NotFound";
 import { ArchiveRun } from "../run/ArchiveRun";
 import { CreatureView } from "../creature/CreaturePage";
-import { FileLink } from "../ui/FileLink";
-import { ImportHint } from "./ImportHint";
+import { FilesCard } from "../run/FilesCard";
+import { Card, Page, useTitle } from "../ui/Page";
+import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import "./shares.css";
 
 interface Props {
   slug: string;
-  /** One of the creatures of an archive. */
+  /** A creature of a shared archive. */
   sha: string | null;
   query: URLSearchParams;
 }
 
 export function SharedPage({ slug, sha, query }: Props) {
   const { value: share, error } = useFetched(() => api.readShare(slug), [slug]);
-  useEffect(() => {
-    if (share) document.title = text.pageTitle(share.title);
-  }, [share]);
-  if (!share) {
+  useTitle(share && share.title);
+  if (!share && error) {
     return (
       <main>
-        {error ? (
-          <NotFound what={text.notShared} reason={error} />
-        ) : (
-          <p class="quiet loading">{text.loading}</p>
-        )}
+        <NotFound what={text.notShared} reason={error} />
       </main>
     );
   }
+  if (!share) return <Page loading={text.loading} />;
   const creature = sha ?? share.creature;
   const [title, id] = headingOf(share, creature, sha !== null);
   return (
-    <main>
-      {share.run && sha && (
-        <nav class="crumbs" aria-label={text.breadcrumbs}>
-          <a href={`/s/${slug}`}>{share.title}</a>
-        </nav>
-      )}
+    <Page crumbs={share.run && sha ? [[`/s/${slug}`, share.title]] : undefined}>
       <header class="page-head">
         <h1>
           {title} {id && <code>{id}</code>}
         </h1>
       </header>
       <Terms share={share} />
-      {creature && <SharedCreature key={creature} {...{ share, query }} sha={creature} />}
+      {creature && <SharedCreature key={creature} {...{ share, query }} id={creature} />}
       {share.run && !sha && <SharedArchive {...{ share, query }} id={share.run} />}
-    </main>
+    </Page>
   );
 }
 
@@ -66,7 +57,7 @@ const LICENCE_URLS: Record<string, string> = {
   "CC0-1.0": "https://creativecommons.org/publicdomain/zero/1.0/",
 };
 
-/** Title and id of what is shown; the title of an untitled share contains the id already. */
+/** Title and id of the page; the title of an untitled share contains the id already. */
 export function headingOf({ run, title }: Share, creature: string | null, inside: boolean) {
   const heading = run && inside ? text.creature : title;
   const id = creature && short(creature);
@@ -103,31 +94,41 @@ function Term({ name, children }: { name: string; children: preact.ComponentChil
   );
 }
 
-interface CreatureProps {
-  share: Share;
-  sha: string;
-  query: URLSearchParams;
-}
+type PartProps = Pick<Props, "query"> & { share: Share; id: string };
 
-function SharedCreature({ share, sha, query }: CreatureProps) {
-  const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
+function SharedCreature({ share, id, query }: PartProps) {
+  const { value: creature, error } = useFetched(() => api.readCreature(id), [id]);
   if (error) return <p class="banner wrong">{error}</p>;
   if (!creature) return <p class="quiet loading">{text.loadingCreature}</p>;
   return (
     <>
       <CreatureView {...{ creature, query }} />
-      <ImportHint share={share} sha={sha} />
+      <ImportHint share={share} sha={id} />
     </>
   );
 }
 
-interface ArchiveProps {
-  share: Share;
-  id: string;
-  query: URLSearchParams;
+/** How to import a shared creature into another installation. */
+function ImportHint({ share, sha }: { share: Share; sha: string }) {
+  const file = new URL(creatureFileUrl(sha), share.url).href;
+  const command = `curl -sf -H '${SHARE_HEADER}: ${share.slug}' '${file}' | curl -sf -H 'Content-Type: application/json' --data-binary @- http://127.0.0.1:8000/api/v1/creatures`;
+  const head = (
+    <>
+      <span class="spring" />
+      <button onClick={() => void copyText(command, text.commandCopied)}>{text.copyCommand}</button>
+    </>
+  );
+  return (
+    <Card id="import" kind="import-hint" title={text.importTitle} head={head}>
+      <p>{text.importHint}</p>
+      <pre class="command" tabIndex={0}>
+        {command}
+      </pre>
+    </Card>
+  );
 }
 
-function SharedArchive({ share, id, query }: ArchiveProps) {
+function SharedArchive({ share, id, query }: PartProps) {
   const { error } = useRunDetail(id);
   const run = useStore((state) => state.runs.get(id));
   const detail = useStore((state) => state.details.get(id));
@@ -137,14 +138,7 @@ function SharedArchive({ share, id, query }: ArchiveProps) {
   return (
     <>
       <ArchiveRun {...{ run, detail, query }} />
-      <section class="card" aria-labelledby="files-title">
-        <h2 id="files-title">{text.files}</h2>
-        <p class="links">
-          <FileLink url={archiveUrl(id, "h5")} name="archive.h5" />
-          <FileLink url={archiveUrl(id, "csv")} name="archive.csv" />
-        </p>
-        <p class="quiet">{text.filesAbout(count(share.generation ?? 0), run.version, run.device)}</p>
-      </section>
+      <FilesCard run={run} about={text.filesAbout(count(share.generation ?? 0), run.version, run.device)} />
     </>
   );
 }

@@ -1,13 +1,14 @@
 /** The list of shares, with revoking. */
 
 import * as api from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Share } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { usePages } from "../store/paging";
-import { showToast } from "../store/toasts";
+import { showFailure, showToast } from "../store/toasts";
 import { moment } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
+import { Empty, Page } from "../ui/Page";
+import { type Column, Table } from "../ui/Table";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import "./shares.css";
@@ -16,89 +17,63 @@ export function SharesPage() {
   const refusal = useRefusal();
   const { items: shares, error, more, replace: put } = usePages(api.readShares, ({ slug }) => slug);
   return (
-    <main>
-      <header class="page-head">
-        <h1>{text.shares}</h1>
-      </header>
-      {error && <p class="banner wrong">{error}</p>}
-      {!shares && !error && <p class="quiet loading">{text.loading}</p>}
-      {shares?.length === 0 && (
-        <section class="empty card">
-          <h2>{text.nothingShared}</h2>
-          <p>{refusal ?? text.nothingSharedHint}</p>
-        </section>
-      )}
+    <Page title={text.shares} error={error} loading={!shares && text.loading}>
+      {shares?.length === 0 && <Empty title={text.nothingShared} hint={refusal ?? text.nothingSharedHint} />}
       {shares && shares.length > 0 && (
-        <section class="card scroll" aria-label={text.published} tabIndex={0}>
-          <table class="plain-table shares">
-            <thead>
-              <tr>
-                <th scope="col">{text.title}</th>
-                <th scope="col">{text.content}</th>
-                <th scope="col">{text.licence}</th>
-                <th scope="col">{text.publishedOn}</th>
-                <th scope="col">{text.expires}</th>
-                <th scope="col">{text.visibleTo}</th>
-                <th scope="col">
-                  <span class="unseen">{text.actions}</span>
-                </th>
-              </tr>
-            </thead>
-            <tbody>
-              {shares.map((share) => (
-                <Row key={share.slug} share={share} onChange={put} />
-              ))}
-            </tbody>
-          </table>
+        <section class="card">
+          <Table
+            label={text.published}
+            kind="shares"
+            columns={columnsOf(put)}
+            rows={shares}
+            keyOf={({ slug }) => slug}
+            rowKind={({ state }) => (state === "live" ? "" : "quiet")}
+          />
         </section>
       )}
       {more && <button onClick={more}>{text.showMore}</button>}
-    </main>
+    </Page>
   );
 }
 
-function Row({ share, onChange }: { share: Share; onChange: (share: Share) => void }) {
-  const { slug, title, licence, run, creature, generation, state } = share;
-  const live = state === "live";
+const columnsOf = (onChange: (share: Share) => void): Column<Share>[] => [
+  { title: text.title, cell: (share) => <Title {...share} /> },
+  { title: text.content, cell: (share) => <Content {...share} /> },
+  { title: text.licence, cell: ({ licence }) => licence.slice(0, 40) },
+  { title: text.publishedOn, cell: ({ created_at }) => moment(created_at) },
+  { title: text.expires, cell: ({ expires_at }) => (expires_at ? moment(expires_at) : text.never) },
+  { title: text.visibleTo, cell: ({ state, listed }) => text.viewers(state, listed) },
+  { title: text.actions, unseen: true, cell: (share) => <Actions share={share} onChange={onChange} /> },
+];
+
+function Title({ state, slug, title }: Share) {
+  if (state !== "live") return <>{title}</>;
   return (
-    <tr class={live ? "" : "quiet"}>
-      <th scope="row">
-        {live ? (
-          <a href={`/s/${slug}`} target="_blank">
-            {title}
-          </a>
-        ) : (
-          title
-        )}
-      </th>
-      <td data-label={text.content}>
-        {run ? (
-          <a href={`/runs/${run}`}>{text.archiveOf(generation)}</a>
-        ) : (
-          <a href={`/creatures/${creature}`}>{text.creatureLink}</a>
-        )}
-      </td>
-      <td data-label={text.licence}>{licence.slice(0, 40)}</td>
-      <td data-label={text.publishedOn}>{moment(share.created_at)}</td>
-      <td data-label={text.expires}>{share.expires_at ? moment(share.expires_at) : text.never}</td>
-      <td data-label={text.visibleTo}>
-        {live ? (share.listed ? text.everybody : text.linkHolders) : text.nobody(state)}
-      </td>
-      <td>
-        {live && (
-          <span class="actions">
-            <button
-              class="slim"
-              aria-label={text.copyLinkOf(title)}
-              onClick={() => void copyText(share.url, text.linkCopied)}
-            >
-              {text.copyLink}
-            </button>
-            <ConfirmButton verb={text.revoke} what={title} onConfirm={() => revoke(share, onChange)} />
-          </span>
-        )}
-      </td>
-    </tr>
+    <a href={`/s/${slug}`} target="_blank">
+      {title}
+    </a>
+  );
+}
+
+function Content({ run, creature, generation }: Share) {
+  if (run) return <a href={`/runs/${run}`}>{text.archiveOf(generation)}</a>;
+  return <a href={`/creatures/${creature}`}>{text.creatureLink}</a>;
+}
+
+function Actions({ share, onChange }: { share: Share; onChange: (share: Share) => void }) {
+  const { title, url, state } = share;
+  if (state !== "live") return null;
+  return (
+    <span class="actions">
+      <button
+        class="slim"
+        aria-label={text.copyLinkOf(title)}
+        onClick={() => void copyText(url, text.linkCopied)}
+      >
+        {text.copyLink}
+      </button>
+      <ConfirmButton verb={text.revoke} what={title} onConfirm={() => revoke(share, onChange)} />
+    </span>
   );
 }
 
@@ -107,6 +82,6 @@ async function revoke(share: Share, onChange: (share: Share) => void): Promise<v
     onChange(await api.revoke(share.slug));
     showToast({ kind: "note", text: text.revoked(share.title) });
   } catch (error) {
-    showToast({ kind: "wrong", text: messageOf(error) });
+    showFailure(error);
   }
 }

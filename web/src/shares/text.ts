@@ -1,7 +1,6 @@
 /** Texts of shared pages, the commons and the list of shares. */
 
 export const text = {
-  commonsTitle: "Commons · Microcosmos",
   commons: "Commons",
   loading: "Loading …",
   nothingListed: "Nothing is listed yet",
@@ -14,15 +13,12 @@ export const text = {
   copyCommand: "Copy command",
   importHint:
     "Download the JSON file above and drop it on any page of your Microcosmos, or run this command on its machine. Name, ancestors, licence and credit are imported too, and you can measure the creature again.",
-  pageTitle: (title: string) => `${title} · Microcosmos`,
   notShared: "Not shared",
-  breadcrumbs: "Breadcrumbs",
   credit: "Credit",
   licence: "Licence",
   shared: "Shared",
   until: "Until",
   loadingCreature: "Loading creature …",
-  files: "Files",
   filesAbout: (generation: string, version: string, device: string | null) =>
     `State after generation ${generation}. Computed by version ${version}${device ? ` on ${device}` : ""}.`,
   shares: "Shares",
@@ -38,9 +34,10 @@ export const text = {
   archiveOf: (generation: number | null) => `archive, generation ${generation}`,
   creatureLink: "creature",
   never: "never",
-  everybody: "everyone",
-  linkHolders: "people with the link",
-  nobody: (state: string) => `nobody (${state})`,
+  viewers: (state: string, listed: boolean) => {
+    if (state !== "live") return `nobody (${state})`;
+    return listed ? "everyone" : "people with the link";
+  },
   copyLinkOf: (title: string) => `Copy link of ${title}`,
   linkCopied: "Link copied.",
   copyLink: "Copy link",

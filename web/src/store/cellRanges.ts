@@ -1,4 +1,4 @@
-/** Cells as an address holds them: `3-5,9`. */
+/** Ranges of cells in an address: `3-5,9`. */
 
 export function formatCells(cells: Iterable<number>): string {
   const runs: [first: number, last: number][] = [];
@@ -10,7 +10,7 @@ export function formatCells(cells: Iterable<number>): string {
   return runs.map(([first, last]) => (first === last ? first : `${first}-${last}`)).join();
 }
 
-/** Whether a cell is among those that are written; of nothing else is anything made. */
+/** A test for the cells in a text; malformed ranges are ignored. */
 export function parseCells(text: string): (cell: number) => boolean {
   const runs = text.split(",").flatMap((run): [number, number][] => {
     const [, first, last] = /^(\d+)(?:-(\d+))?$/.exec(run) ?? [];

@@ -1,27 +1,52 @@
-/** Commands for a run. Cancelling is delayed so that it can be undone. */
+/** Commands for a run: steer, extend, edit, delete and restore it. */
 
 import * as api from "../api/client";
-import { messageOf } from "../api/problem";
-import { applyResponse } from "./store";
-import { dismissToast, showToast } from "./toasts";
+import type { Run, RunChange } from "../api/types";
+import { applyResponse, currentState, dispatch } from "./store";
+import { attempt, delayWithUndo, offerUndo } from "./toasts";
 import { text } from "./text";
 
-const UNDO_MS = 4000;
+/** Apply the answer of the server, or show its error; return true on success. */
+const apply = async (request: Promise<Run>) => (await attempt(applyResponse("change", request))) !== null;
 
-export async function sendCommand(id: string, verb: api.RunCommand): Promise<void> {
-  try {
-    await applyResponse("change", api.commandRun(id, verb));
-  } catch (error) {
-    showToast({ kind: "wrong", text: messageOf(error) });
-  }
+export const sendCommand = (id: string, verb: api.RunCommand) => apply(api.commandRun(id, verb));
+
+export const cancelWithUndo = (id: string, title: string) =>
+  delayWithUndo(text.cancelling(title), () => void sendCommand(id, "cancel"));
+
+export const extend = (id: string, generations: number) => apply(api.extendRun(id, generations));
+
+export const restore = (id: string) => apply(api.restoreRun(id));
+
+/** Move a run to the bin. */
+export async function remove(id: string, title: string): Promise<boolean> {
+  const removed = await apply(api.deleteRun(id));
+  if (removed) offerUndo(text.inBin(title), () => void restore(id));
+  return removed;
 }
 
-export function cancelWithUndo(id: string, title: string): void {
-  const timer = setTimeout(() => void sendCommand(id, "cancel"), UNDO_MS);
-  const undo = () => {
-    clearTimeout(timer);
-    dismissToast(toast);
-  };
-  const action = { label: text.undo, run: undo };
-  const toast = showToast({ kind: "note", text: text.cancelling(title), action });
+/** Change name, tags or note at once; revert the change if the server refuses it. */
+export async function editRun(id: string, change: RunChange): Promise<void> {
+  const before = currentState().runs.get(id);
+  dispatch({ type: "edit", run: id, change });
+  if ((await apply(api.changeRun(id, change))) || !before) return;
+  const { name, tags, note } = before;
+  dispatch({ type: "edit", run: id, change: { name, tags, note } });
+}
+
+export function addTag({ id, tags }: Run, tag: string): void {
+  if (!tags.includes(tag)) void editRun(id, { tags: [...tags, tag] });
+}
+
+export function removeTag({ id, tags }: Run, tag: string): void {
+  void editRun(id, { tags: tags.filter((each) => each !== tag) });
+  offerUndo(text.tagRemoved(tag), () => {
+    const run = currentState().runs.get(id);
+    if (run) addTag(run, tag);
+  });
+}
+
+export function removeNote({ id, note }: Run): void {
+  void editRun(id, { note: null });
+  offerUndo(text.noteRemoved, () => void editRun(id, { note }));
 }

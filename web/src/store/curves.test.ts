@@ -1,12 +1,13 @@
 import { describe, expect, it } from "vitest";
 import type { Values } from "../api/types";
-import { type Action, INITIAL_STATE, type State, epochOf, reduce } from "./reducer";
-import { MAX_POINTS, appendCurves } from "./curves";
-import { withPoint } from "./sparkline";
-import { RUN, GENERATIONS, generation, snapshot, after, open } from "./state.fixture";
+import { type Action, INITIAL_STATE, type State, reduce } from "./reducer";
+import { MAX_POINTS, appendCurves, withPoint } from "./curves";
+import { RUN, generation, snapshot, after, open, opened } from "./state.fixture";
+
+const bare = (state: State): Action => ({ ...(snapshot(state) as object), archive: null }) as Action;
 
 describe("long runs", () => {
-  it("are thinned out instead of growing for ever", () => {
+  it("are thinned out", () => {
     const full = Array.from({ length: MAX_POINTS }, (_, i) => i);
     const rare = full.map((i) => (i === 7 || i === MAX_POINTS - 1 ? i : null));
     const costs = { evaluations: full, seconds: full };
@@ -31,21 +32,19 @@ describe("long runs", () => {
 });
 
 describe("a run without an archive", () => {
-  const bare = (state: State): Action => ({ ...(snapshot(state) as object), archive: null }) as Action;
-
   it("has curves and no elites", () => {
     const detail = after(open, bare).details.get("a")!;
     expect([detail.archive, detail.elites.size]).toEqual([null, 0]);
     expect(detail.curves!.generation).toEqual([1, 2]);
   });
 
-  it("is told of each growth of its table, and others are not", () => {
+  it("counts the changes of its table", () => {
     const event = { run: "a", generation: 3, rows: [], summary: null };
     const state = after({ type: "results", event }, { type: "results", event });
     expect([state.tableVersions.get("a"), state.tableVersions.get("b")]).toEqual([2, undefined]);
   });
 
-  it("has the newest summary that was told, and keeps it where none comes", () => {
+  it("keeps its newest summary", () => {
     const told = (generation: number, summary: Values | null): Action => {
       return { type: "results", event: { run: "a", generation, rows: [], summary } };
     };
@@ -55,43 +54,43 @@ describe("a run without an archive", () => {
   });
 });
 
-describe("curves of runs that are looked at beside others", () => {
-  const watch = (more: 1 | -1): Action => ({ type: "watch", run: "a", more });
-  const curves = (state: State): Action => ({
-    type: "curves",
-    run: "a",
-    epoch: epochOf(state, "a"),
-    generations: GENERATIONS,
-  });
+describe("curves without an archive", () => {
+  const close: Action = { ...open, more: -1 };
   const third: Action = { type: "generation", event: generation(3) };
-  const told = (state: State) => state.watching.get("a")?.curves;
+  const shown = (state: State) => state.details.get("a")?.curves;
 
-  it("grow with every generation, told before or after the snapshot", () => {
-    expect(told(after(watch(1), third, curves))!.generation).toEqual([1, 2, 3]);
-    const later = told(after(watch(1), curves, third))!;
+  it("grow with every generation, before or after the snapshot", () => {
+    expect(shown(after(open, third, bare))!.generation).toEqual([1, 2, 3]);
+    const later = shown(after(open, bare, third))!;
     expect([later.evaluations, later.seconds]).toEqual([
       [16, 32, 48],
       [1, 2, 6],
     ]);
   });
 
-  it("are cut by a rewind, and no snapshot from before it counts", () => {
+  it("are truncated by a rewind, after which older snapshots are ignored", () => {
     const back: Action = { type: "rewind", event: { run: "a", generation: 1 } };
-    const state = after(watch(1), curves, third, back);
-    expect(told(state)!.generation).toEqual([1]);
-    expect(told(reduce(state, curves(INITIAL_STATE)))!.generation).toEqual([1]);
-    expect(told(reduce(state, curves(state)))!.generation).toEqual([1, 2]);
+    const state = after(open, bare, third, back);
+    expect(shown(state)!.generation).toEqual([1]);
+    expect(shown(reduce(state, bare(INITIAL_STATE)))!.generation).toEqual([1]);
+    expect(shown(reduce(state, bare(state)))!.generation).toEqual([1, 2]);
   });
 
-  it("outlive a reset, but not the next snapshot", () => {
-    const state = after(watch(1), curves, third, { type: "reset" });
-    expect(told(state)!.generation).toEqual([1, 2, 3]);
-    expect(told(reduce(state, curves(state)))!.generation).toEqual([1, 2]);
+  it("outlive a reset until the next snapshot", () => {
+    const state = after(open, bare, third, { type: "reset" });
+    expect(shown(state)!.generation).toEqual([1, 2, 3]);
+    expect(shown(reduce(state, bare(state)))!.generation).toEqual([1, 2]);
   });
 
-  it("are forgotten when the last one has looked away", () => {
-    expect(after(watch(1), watch(1), curves, watch(-1)).watching.size).toBe(1);
-    expect(after(watch(1), watch(1), curves, watch(-1), watch(-1)).watching.size).toBe(0);
-    expect(after(curves, third).watching.size).toBe(0);
+  it("are dropped with the last viewer", () => {
+    expect(after(open, open, bare, close).details.size).toBe(1);
+    expect(after(open, open, bare, close, close).details.size).toBe(0);
+    expect(after(bare, third).details.size).toBe(0);
+  });
+
+  it("leave the archive of another snapshot in place", () => {
+    const detail = reduce(opened, bare(opened)).details.get("a")!;
+    expect(detail.archive).not.toBeNull();
+    expect(detail.elites.size).toBe(2);
   });
 });

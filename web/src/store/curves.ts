@@ -1,11 +1,11 @@
-/** A run's history as columns, kept short enough to draw. */
+/** The curves of a run as columns, thinned out if they get long, and its sparkline. */
 
 import type { GenerationEvent, Generations, Values } from "../api/types";
 
 export const MAX_POINTS = 4000;
 const PLOTTED = ["generation", "evaluations", "seconds", "qd_score", "coverage", "best"] as const;
 
-/** What names of counts begin with: of these nothing may be thinned out, they are added up. */
+/** Prefix of names of counts, which are added up when curves are thinned out. */
 export const DIVERGED = "diverged: ";
 
 export type Column = readonly (number | null)[];
@@ -17,7 +17,7 @@ export interface Curves {
   readonly qd_score: Column;
   readonly coverage: Column;
   readonly best: Column;
-  /** Other numbers that generations told, some of them now and then. */
+  /** Other numbers of generations; null where a generation lacks one. */
   readonly summary: NumberColumns;
 }
 
@@ -32,23 +32,23 @@ export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
   const full = curves.generation.length >= MAX_POINTS;
   const kept = full ? columns((name) => curves[name].filter((_, i) => i % 2 === 0)) : curves;
   const next = columns((name) => [...kept[name], event[name]]);
-  const told = mapValues(numbersOf(event.summary), (value): Column => [value]);
-  const summary = concatenate(curves.summary, curves.generation.length, told, 1);
+  const numbers = mapValues(numbersOf(event.summary), (value): Column => [value]);
+  const summary = concatenate(curves.summary, curves.generation.length, numbers, 1);
   return { ...next, summary: full ? thinOut(summary) : summary };
 }
 
-/** A snapshot, and what events told of later generations while it was on its way. */
+/** A snapshot with later events that arrived before it. */
 export function mergeCurves(generations: Generations, known: Curves): Curves {
   const last = generations.generation.at(-1) ?? -1;
   const later = known.generation.map((generation) => generation > last);
-  const news = filterRows(known, (i) => later[i]!);
+  const added = filterRows(known, (i) => later[i]!);
   return {
-    ...columns((name) => [...generations[name], ...news[name]]),
+    ...columns((name) => [...generations[name], ...added[name]]),
     summary: concatenate(
       generations.summary,
       generations.generation.length,
-      news.summary,
-      news.generation.length,
+      added.summary,
+      added.generation.length,
     ),
   };
 }
@@ -62,9 +62,9 @@ function filterRows(curves: Curves, keep: (i: number) => boolean): Curves {
   return { ...columns((name) => kept(curves[name])), summary: mapValues(curves.summary, kept) };
 }
 
-/** Every second value and the last one; what was told between two of them is not lost. */
-function thinOut(told: NumberColumns): NumberColumns {
-  const columns = Object.entries(told).map(([name, column]) => {
+/** Every second value and the last one; each stands for those before it. */
+function thinOut(summary: NumberColumns): NumberColumns {
+  const columns = Object.entries(summary).map(([name, column]) => {
     const last = column.length - 1;
     const kept = [...Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k), last];
     const join = name.startsWith(DIVERGED) ? sumOf : newestOf;
@@ -99,4 +99,25 @@ function mapValues<A, B>(record: { readonly [name: string]: A }, change: (value:
 
 function columns(column: (name: (typeof PLOTTED)[number]) => Column): PlottedColumns {
   return Object.fromEntries(PLOTTED.map((name) => [name, column(name)])) as unknown as PlottedColumns;
+}
+
+const SPARKLINE_POINTS = 32;
+
+/** Evenly spaced points of a sparkline after one more generation. */
+export function withPoint(
+  values: readonly number[],
+  before: number,
+  value: number | null,
+  generation: number,
+): number[] {
+  if (value === null) return [...values];
+  if (values.length < SPARKLINE_POINTS) return [...values, value];
+  const step = (before - 1) / (values.length - 1);
+  return Array.from({ length: SPARKLINE_POINTS }, (_, k) => {
+    const place = (k * (generation - 1)) / (SPARKLINE_POINTS - 1);
+    const i = Math.min(values.length - 1, Math.floor(place / step));
+    const [from, to] = [values[i]!, values[i + 1] ?? value];
+    const span = i === values.length - 1 ? generation - before : step;
+    return from + ((to - from) * (place - i * step)) / span;
+  });
 }

@@ -1,25 +1,21 @@
-/** The opened part of a run: its picture, and the news that its next snapshot may lack. */
+/** The archive and curves of a run that is shown, and events that its next snapshot may lack. */
 
 import type { Archive, ElitesEvent, GenerationEvent, Generations } from "../api/types";
 import { type Curves, NO_CURVES, appendCurves, cutCurves, mergeCurves } from "./curves";
 import { type Elites, truncateElites, mergeElites, withElites } from "./elites";
 
 export interface Detail {
-  /** Null until the first snapshot is there, and where a run has no archive. */
+  /** Null before the first snapshot with an archive. */
   archive: Archive | null;
   elites: Elites;
+  /** Null before the first snapshot. */
   curves: Curves | null;
-  /** What events told since the run was opened or the page reset: it outlives a snapshot. */
-  recent: Recent;
+  /** Events since the run was opened or the store was reset. */
+  recent: { readonly elites: Elites; readonly curves: Curves };
   watchers: number;
 }
 
-interface Recent {
-  readonly elites: Elites;
-  readonly curves: Curves;
-}
-
-const NO_RECENT: Recent = { elites: new Map(), curves: NO_CURVES };
+const NO_RECENT = { elites: new Map(), curves: NO_CURVES };
 
 export const EMPTY_DETAIL: Detail = {
   archive: null,
@@ -39,9 +35,11 @@ export function withGenerationEvent(detail: Detail, event: GenerationEvent): Det
   return { ...detail, curves: detail.curves && appendCurves(detail.curves, event), recent };
 }
 
+/** `archive` is null if the run has none or only its curves were fetched. */
 export function withSnapshot(detail: Detail, archive: Archive | null, generations: Generations): Detail {
-  const elites = archive ? mergeElites(archive, detail.recent.elites) : detail.elites;
-  return { ...detail, archive, elites, curves: mergeCurves(generations, detail.recent.curves) };
+  const curves = mergeCurves(generations, detail.recent.curves);
+  if (!archive) return { ...detail, curves };
+  return { ...detail, archive, elites: mergeElites(archive, detail.recent.elites), curves };
 }
 
 export function truncate(detail: Detail, generation: number): Detail {
@@ -57,7 +55,5 @@ export function truncate(detail: Detail, generation: number): Detail {
   };
 }
 
-/** The old picture until the next snapshot, of which nothing outlives that. */
-export function withoutRecent(detail: Detail): Detail {
-  return { ...detail, recent: NO_RECENT };
-}
+/** Old data stays visible until the next snapshot, which replaces it. */
+export const withoutRecent = (detail: Detail): Detail => ({ ...detail, recent: NO_RECENT });

@@ -1,33 +1,33 @@
-/** The spec that is being written, kept while the tab lives. */
+/** The draft of a spec, kept until the tab is closed. */
 
 import type { Spec } from "../api/types";
 import { formatCells } from "./cellRanges";
 
-/** What a spec was begun from. */
+/** The origin of a draft. */
 export interface Base {
   kind: "preset" | "run" | "creature" | "pasted";
-  /** Of a preset `experiment/name`; a run's id, a creature's hash, a file's name. */
+  /** `experiment/name` of a preset, id of a run, hash of a creature, or name of a file. */
   name: string;
   spec: Spec;
-  /** Whether it came as a file, so that this server need not know the name. */
+  /** True for a file, whose name this server may not know. */
   foreign?: boolean;
-  /** Which creatures the run begins from, in place of random ones. */
+  /** The initial creatures, in place of random ones. */
   fork?: ForkSource;
 }
 
 export interface ForkSource {
-  /** Whose creatures they are; null where no run is known. */
+  /** The run of the creatures; null if unknown. */
   run: string | null;
-  /** The only one; null for elites of the run. */
+  /** A single creature; null for elites of the run. */
   creature: string | null;
-  /** Whose elites they are; null for those of all. */
+  /** The cells of the elites; null for all cells. */
   cells: number[] | null;
-  /** The generation after which they lived there; null: as they are. */
+  /** The generation of the elites; null for the newest. */
   at: number | null;
   creatures: number;
 }
 
-/** What the address says of it: a word with a name, and of a fork which creatures. */
+/** The parameters of an address that name the origin of a draft. */
 export type Address = (readonly [word: string, value: string])[];
 
 export interface Draft {
@@ -38,11 +38,11 @@ export interface Draft {
 const KEY = "microcosmos:draft";
 const QUERIES = { preset: "preset", run: "from", creature: "creature", pasted: null };
 
-/** How the address names what a spec was begun from; null where it cannot. */
+/** The address of an origin; null if it has none. */
 export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Address | null {
   if (fork) return addressOfFork(fork);
-  const word = QUERIES[kind];
-  return word && !foreign ? [[word, name]] : null;
+  const parameter = QUERIES[kind];
+  return parameter && !foreign ? [[parameter, name]] : null;
 }
 
 function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
@@ -54,7 +54,7 @@ function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
   });
 }
 
-/** The address of a fork: which of a run's creatures it begins from. */
+/** The address of a fork of a run. */
 export function forkAddress(
   run: string,
   which: { [name in (typeof FORK_PARAMETERS)[number]]?: string | null },
@@ -71,7 +71,7 @@ export function saveDraft(draft: Draft): void {
   try {
     sessionStorage.setItem(KEY, JSON.stringify(draft));
   } catch {
-    // Full, or forbidden: the draft then lives as long as the page.
+    // Storage is full or forbidden: the draft lives as long as the page.
   }
 }
 
@@ -79,7 +79,7 @@ export function discardDraft(): void {
   sessionStorage.removeItem(KEY);
 }
 
-/** The draft, where it was begun from what the address names, or the address names nothing. */
+/** The stored draft, if its origin is the wanted one or none is wanted. */
 export function loadDraft(wanted: Address | null): Draft | null {
   const draft = storedDraft();
   if (!draft || !wanted) return draft;

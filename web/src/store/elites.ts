@@ -1,28 +1,29 @@
-/** The elite in each cell, from snapshots and changes. */
+/** The elite in each cell, from snapshots, events and the history. */
 
-import type { Archive, ArchiveColumns } from "../api/types";
+import type { Archive, ArchiveColumns, History } from "../api/types";
 
 export interface Elite {
   fitness: number;
   descriptors: number[];
   generation: number;
   creature: string;
-  /** The generation that told of it. */
+  /** The generation whose event reported it. */
   seenAt: number;
 }
 
 export type Elites = ReadonlyMap<number, Elite>;
 
-/** The elites after an event: columns of changed cells, and the generation it tells of. */
-export function withElites(elites: Elites, { generation, ...columns }: CellColumns): Elites {
+/** The elites after an event with changed cells. */
+export function withElites(
+  elites: Elites,
+  { generation, ...columns }: ArchiveColumns & { generation: number },
+): Elites {
   const next = new Map(elites);
   columns.cell.forEach((cell, i) => next.set(cell, eliteAt(columns, i, generation)));
   return next;
 }
 
-type CellColumns = ArchiveColumns & { generation: number };
-
-/** A snapshot, and what events told of later generations while it was on its way. */
+/** A snapshot with later events that arrived before it. */
 export function mergeElites(archive: Archive, known: Elites): Elites {
   const next = new Map<number, Elite>();
   archive.cell.forEach((cell, i) => {
@@ -38,12 +39,28 @@ export function truncateElites(elites: Elites, generation: number): Elites {
   return new Map([...elites].filter(([, elite]) => elite.seenAt <= generation));
 }
 
-export function eliteAt(columns: ArchiveColumns, i: number, told: number): Elite {
+/** A function from a generation to its elites; it is fastest if generations increase. */
+export function walkThrough(history: History): (generation: number) => Elites {
+  const { elite_generation: entered } = history;
+  let elites: Elites = new Map();
+  let [next, shown] = [0, 0];
+  return (generation) => {
+    const later: Map<number, Elite> = generation < shown ? new Map() : new Map(elites);
+    if (generation < shown) next = 0;
+    for (; next < entered.length && entered[next]! <= generation; next++) {
+      later.set(history.cell[next]!, eliteAt(history, next, entered[next]!));
+    }
+    [elites, shown] = [later, generation];
+    return elites;
+  };
+}
+
+function eliteAt(columns: ArchiveColumns, i: number, seenAt: number): Elite {
   return {
     fitness: columns.fitness[i]!,
     descriptors: columns.descriptors[i]!,
     generation: columns.elite_generation[i]!,
     creature: columns.creature[i]!,
-    seenAt: told,
+    seenAt,
   };
 }

@@ -1,29 +1,33 @@
-/** What components fetch: once when they appear, and again when the store asks for it. */
+/** Hooks that fetch data when a component appears and when the store asks for it again. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Archive, Experiment, History, Results, Run } from "../api/types";
+import type { Archive, Experiment, History, Results, Run, SpeciesHistory } from "../api/types";
 import type { Curves } from "./curves";
 import type { Elites } from "./elites";
-import { applyResponse, currentState, dispatch, useStore } from "./store";
-import { retain } from "./retain";
-import { useThrottled } from "./throttle";
-import { poll } from "./polling";
+import { usePolled } from "./polling";
 import { epochOf } from "./reducer";
+import { applyResponse, currentState, dispatch, retain, useEach, useStore } from "./store";
+import { useThrottled, useTick } from "./timing";
 
-/** Whether a run searches for elites; others measure, and their result is a table. */
+/** True if a run searches for elites; others produce a table of results. */
 export const hasArchive = ({ spec }: Run) => "search" in spec;
 
-/** Points of a curve that a snapshot carries; a screen shows no more. */
+/** Points per curve, as many as a screen resolves. */
 const POINTS = 1000;
+/** Runs to choose from for comparison. */
+const MAX_CHOICES = 100;
+/** Intervals of updates without events, and of data that grows with the generations. */
+const REFRESH_MS = 3000;
+export const SLOW_MS = 4000;
 
 export interface Loaded<T> {
   value: T | null;
   error: string | null;
 }
 
-/** The answer to a request that is made again whenever one of `inputs` changes. */
+/** The answer to a request that is repeated when one of `inputs` changes. */
 export function useFetched<T>(fetch: () => Promise<T>, inputs: unknown[]): Loaded<T> {
   const [loaded, setLoaded] = useState<Loaded<T>>({ value: null, error: null });
   useEffect(() => {
@@ -38,9 +42,11 @@ export function useFetched<T>(fetch: () => Promise<T>, inputs: unknown[]): Loade
   return loaded;
 }
 
+const useEpoch = (id: string) => useStore((state) => epochOf(state, id));
+
 let experiments: Promise<Experiment[]> | null = null;
 
-/** Experiments do not change while a server runs: fetched once a tab, unless that failed. */
+/** Experiments do not change while a server runs: they are fetched once per tab. */
 export function useExperiments(): Loaded<Experiment[]> {
   return useFetched(() => {
     experiments ??= api.readExperiments();
@@ -49,60 +55,50 @@ export function useExperiments(): Loaded<Experiment[]> {
   }, []);
 }
 
-/** Keeps one run, its archive and its curves fetched, after every rewind and reset anew. */
+/** Keep a run, its archive and its curves in the store. */
 export function useRunDetail(id: string): Loaded<true> {
-  const epoch = useStore((state) => epochOf(state, id));
+  const epoch = useEpoch(id);
   const binned = useStore((state) => Boolean(state.runs.get(id)?.deleted_at));
-  useEffect(() => retain("open", [id]), [id]);
-  return useFetched(async () => {
-    const run = await applyResponse("response", api.readRun(id));
-    if (run.deleted_at) return true as const;
-    const [archive, generations] = await Promise.all([
-      hasArchive(run) ? api.readArchive(id) : null,
-      api.readGenerations(id, POINTS),
-    ]);
-    dispatch({ type: "snapshot", run: id, epoch, archive, generations });
-    return true as const;
-  }, [id, epoch, binned]);
+  useEffect(() => retain([id]), [id]);
+  return useFetched(() => readDetail(id, true), [id, epoch, binned]);
 }
 
-/** Curves of several runs by their ids, fetched and alive while somebody looks at them. */
+/** Keep the curves of several runs in the store. */
 export function useCurvesOf(ids: string[]): Loaded<ReadonlyMap<string, Curves>> {
-  const asked = ids.join();
+  const joined = ids.join();
   const epochs = useStore((state) => ids.map((id) => epochOf(state, id)).join());
-  useEffect(() => retain("watch", ids), [asked]);
-  const { value, error } = useFetched(() => Promise.all(ids.map(readCurves)), [asked, epochs]);
-  const watching = useStore((state) => state.watching);
-  const known = ids.flatMap((id): [string, Curves][] => {
-    const curves = watching.get(id)?.curves;
-    return curves ? [[id, curves]] : [];
-  });
+  useEffect(() => retain(ids), [joined]);
+  const read = () => Promise.all(ids.map((id) => readDetail(id, false)));
+  const { value, error } = useFetched(read, [joined, epochs]);
+  const curves = useEach(ids, ({ details }, id) => details.get(id)?.curves);
+  const known = ids.flatMap((id, i): [string, Curves][] => (curves[i] ? [[id, curves[i]]] : []));
   return { value: value || known.length > 0 ? new Map(known) : null, error };
 }
 
-/** The run itself comes along: whoever shows its curves names it. */
-async function readCurves(id: string): Promise<true> {
+/** The archive of a run in the bin is not read. */
+async function readDetail(id: string, withArchive: boolean): Promise<true> {
   const epoch = epochOf(currentState(), id);
-  const run = applyResponse("response", api.readRun(id));
-  const [generations] = await Promise.all([api.readGenerations(id, POINTS), run]);
-  dispatch({ type: "curves", run: id, epoch, generations });
+  const run = await applyResponse("response", api.readRun(id));
+  if (withArchive && run.deleted_at) return true;
+  const [archive, generations] = await Promise.all([
+    withArchive && hasArchive(run) ? api.readArchive(id) : null,
+    api.readGenerations(id, POINTS),
+  ]);
+  dispatch({ type: "snapshot", run: id, epoch, archive, generations });
   return true;
 }
 
-/**
- * What was recorded of the elites under some names: by name, then by creature. Of an archive that
- * changes, only what is new is asked for; who has left stays known.
- */
+/** Recorded measures of elites by name and creature; later requests fetch new elites only. */
 export function useMeasures(id: string, names: string[], elites: Elites): Measures {
-  const epoch = useStore((state) => epochOf(state, id));
-  const asked = names.join(",");
-  const present = useThrottled(asked ? elites : null);
-  const of = `${id} ${epoch} ${asked}`;
+  const epoch = useEpoch(id);
+  const joined = names.join(",");
+  const present = useThrottled(joined ? elites : null);
+  const of = `${id} ${epoch} ${joined}`;
   const known = useRef<{ of: string; after?: number; measures: Measures }>({ of, measures: NO_MEASURES });
   const { value } = useFetched(async () => {
-    if (!asked) return NO_MEASURES;
+    if (!joined) return NO_MEASURES;
     const { after, measures } = known.current.of === of ? known.current : { measures: NO_MEASURES };
-    const archive = await api.readArchive(id, asked.split(","), { after });
+    const archive = await api.readArchive(id, joined.split(","), { after });
     known.current = { of, after: archive.generation, measures: mergeMeasures(measures, measuresOf(archive)) };
     return known.current.measures;
   }, [of, present]);
@@ -134,20 +130,17 @@ interface Past {
   measures: Measures;
 }
 
-/**
- * Every elite that ever entered, once a generation of the past is wanted; anew when one is
- * wanted that the run had not come to.
- */
+/** The history of an archive, if a past generation is wanted; read again for a newer one. */
 export function useHistory(id: string, names: string[], at: number | null): Loaded<Past | null> {
-  const epoch = useStore((state) => epochOf(state, id));
+  const epoch = useEpoch(id);
   const [turn, setTurn] = useState(0);
-  const asked = names.join(",");
+  const joined = names.join(",");
   const wanted = at !== null;
   const loaded = useFetched(async () => {
     if (!wanted) return null;
-    const history = await api.readHistory(id, asked ? asked.split(",") : []);
+    const history = await api.readHistory(id, joined ? joined.split(",") : []);
     return { history, measures: measuresOf(history) };
-  }, [id, epoch, asked, wanted, turn]);
+  }, [id, epoch, joined, wanted, turn]);
   const outgrown = wanted && loaded.value !== null && at > loaded.value.history.generation;
   useEffect(() => {
     if (outgrown) setTurn((count) => count + 1);
@@ -155,21 +148,45 @@ export function useHistory(id: string, names: string[], at: number | null): Load
   return loaded;
 }
 
-/** Where the cells of a CVT are; asked for until the first checkpoint tells. */
-export function useCentroids(id: string, wanted: boolean): number[][] | null {
-  const [centroids, setCentroids] = useState<number[][] | null>(null);
-  useEffect(() => {
-    setCentroids(null);
-    if (!wanted) return;
-    const silent = () => {}; // Meanwhile the map shows even bins.
-    return poll(() => api.readCentroids(id), { value: setCentroids, note: silent, error: silent });
-  }, [id, wanted]);
-  return centroids;
+/** Centroids of the cells of a CVT; null before the first checkpoint, when the map shows even bins. */
+export const useCentroids = (id: string, wanted: boolean) =>
+  usePolled(wanted ? () => api.readCentroids(id) : null, [id, wanted]).value;
+
+/** The results table of a run, updated by events. */
+export function useResults(id: string): Loaded<Results> {
+  const version = useStore((state) => state.tableVersions.get(id));
+  return useFetched(() => api.readResults(id), [id, useEpoch(id), version]);
 }
 
-/** Keeps the table of a run fetched: anew after every row, rewind and reset. */
-export function useResults(id: string): Loaded<Results> {
-  const epoch = useStore((state) => epochOf(state, id));
-  const told = useStore((state) => state.tableVersions.get(id));
-  return useFetched(() => api.readResults(id), [id, epoch, told]);
+/** The newest other runs. */
+export function useRunChoices(id: string): Loaded<Run[]> {
+  return useFetched(async () => {
+    const { items } = await api.readRuns({ limit: MAX_CHOICES });
+    return items.filter((run) => run.id !== id);
+  }, [id]);
+}
+
+export function useSpecies({ id, status, generation }: Run): Loaded<SpeciesHistory> {
+  const slow = useThrottled(generation, SLOW_MS);
+  return useFetched(() => api.readSpecies(id), [id, useEpoch(id), status, slow]);
+}
+
+/** Workers and the queue, updated by the clock and by changes of runs. */
+export function useWorkers() {
+  const tick = useTick(REFRESH_MS);
+  const version = useStore((state) => state.listVersion);
+  const read = async () => {
+    const [workers, queue] = await Promise.all([api.readWorkers(), api.readQueue()]);
+    return { workers, queue };
+  };
+  return useFetched(read, [tick, version]);
+}
+
+/** Update reasons to wait, rates and remaining times, which change without events. */
+export function useRunRefresh(id: string, wanted: boolean): void {
+  const tick = useTick(REFRESH_MS, wanted);
+  useEffect(() => {
+    if (tick === 0) return;
+    applyResponse("response", api.readRun(id)).catch(() => {}); // The next request may succeed.
+  }, [id, tick]);
 }

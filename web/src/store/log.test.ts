@@ -12,33 +12,33 @@ vi.mock("../api/client", () => ({
   },
 }));
 
-const { extendLog: continued } = await import("./log");
+const { extendLog } = await import("./log");
 
 const entries = (from: number, to: number, attempt: number) =>
   Array.from({ length: to - from }, (_, i) => ({ id: from + i, attempt }) as LogEntry);
 
-describe("a journal that is read again", () => {
+describe("a log that is read again", () => {
   beforeEach(() => asked.mockClear());
 
-  it("begins after what can no longer change, and forgets what was dropped since", async () => {
+  it("starts after finished attempts, and drops entries that the server dropped", async () => {
     stored = [...entries(1, 401, 1), ...entries(401, 404, 2)];
-    const known = await continued("a", [], false);
+    const known = await extendLog("a", [], false);
     expect(known).toEqual(stored);
     stored = [...entries(1, 401, 1), ...entries(401, 402, 2), ...entries(404, 405, 2)];
-    expect(await continued("a", known, false)).toEqual(stored);
+    expect(await extendLog("a", known, false)).toEqual(stored);
     expect(asked.mock.calls).toEqual([[undefined], [400]]);
   });
 
-  it("reads on where more has come than the server tells at once", async () => {
+  it("reads all pages of new entries", async () => {
     stored = [...entries(1, 11, 0), ...entries(11, 12, 1)];
-    const known = await continued("a", [], false);
+    const known = await extendLog("a", [], false);
     stored = [...entries(1, 11, 0), ...entries(11, 1400, 1)];
-    expect(await continued("a", known, false)).toEqual(stored);
+    expect(await extendLog("a", known, false)).toEqual(stored);
   });
 
-  it("has the last entries at first, and all of them where they are asked for", async () => {
+  it("has the last page at first, and all entries on request", async () => {
     stored = entries(1, 1201, 3);
-    expect(await continued("a", [], false)).toEqual(stored.slice(-500));
-    expect(await continued("a", [], true)).toEqual(stored);
+    expect(await extendLog("a", [], false)).toEqual(stored.slice(-500));
+    expect(await extendLog("a", [], true)).toEqual(stored);
   });
 });

@@ -1,33 +1,32 @@
-/** The journal of a run: read anew only as far as it may have changed. */
+/** The log of a run; only the part that may have changed is read again. */
 
 import { useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import type { LogEntry, Run } from "../api/types";
-import { type Loaded, useFetched } from "./fetch";
+import { type Loaded, SLOW_MS, useFetched } from "./fetch";
 import { useStore } from "./store";
-import { useThrottled } from "./throttle";
-import { SLOW_MS } from "./runPage";
+import { useThrottled } from "./timing";
 import { epochOf } from "./reducer";
 
-/** As many entries as the server tells at once. */
+/** Entries per answer of the server. */
 const PAGE = 500;
 
 interface LoadedLog extends Loaded<LogEntry[]> {
-  /** Where there may be older entries: reads them all. */
+  /** Read all older entries; null if there are none. */
   earlier: (() => void) | null;
 }
 
-/** Anew whenever the run's standing changes, and now and then while it goes on. */
+/** Read when the state of the run changes, and regularly while it continues. */
 export function useLog({ id, ...run }: Run): LoadedLog {
   const epoch = useStore((state) => epochOf(state, id));
   const { status, requested_state, attempt, warning, error, device } = run;
-  const calm = useThrottled(run.generation, SLOW_MS);
+  const slow = useThrottled(run.generation, SLOW_MS);
   const known = useRef<LogEntry[]>([]);
   const [whole, setWhole] = useState(false);
   const loaded = useFetched(async () => {
     known.current = await extendLog(id, known.current, whole);
     return known.current;
-  }, [id, epoch, status, requested_state, attempt, warning, error, device, calm, whole]);
+  }, [id, epoch, status, requested_state, attempt, warning, error, device, slow, whole]);
   const earlier = () => {
     known.current = [];
     setWhole(true);
@@ -36,9 +35,9 @@ export function useLog({ id, ...run }: Run): LoadedLog {
   return { ...loaded, earlier: more ? earlier : null };
 }
 
-/** What is known, with the newest entries; with nothing known, all of them or the last ones. */
+/** Add the newest entries to known ones; without known ones, read all or the last page. */
 export async function extendLog(id: string, known: readonly LogEntry[], whole: boolean): Promise<LogEntry[]> {
-  // Entries of the attempt at hand are dropped again where newer ones say the same.
+  // Newer entries of the current attempt may replace older ones.
   const kept = known.filter(({ attempt }) => attempt < known.at(-1)!.attempt);
   const after = kept.at(-1)?.id ?? (whole ? 0 : undefined);
   return [...kept, ...(await readFollowing(id, after))];

@@ -1,25 +1,25 @@
-/** Motions of many creatures: a few asked for at a time, those that are seen kept. */
+/** Motions of the visible creatures of a gallery, requested a few at a time. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { type Motion, decodeMotion } from "../decode/motion";
 import { poll } from "./polling";
 
-/** The renderer makes one replay after another: a hovered cell waits behind these, not a wall. */
+/** The renderer works in order; a hovered cell waits for these requests only. */
 const MAX_REQUESTS = 8;
-/** So many that are not seen any more are kept: who scrolls back finds them. */
+/** Cached motions of creatures that are not visible. */
 const MAX_HIDDEN = 100;
-/** A wall that is scrolled asks for nothing until it rests. */
+/** A gallery requests nothing while it is scrolled. */
 const DEBOUNCE_MS = 150;
 
 const cache = new Map<string, Motion>();
 let visible: ReadonlySet<string> = new Set();
-/** What is being asked for, and how to stop asking. */
+/** Functions that stop the requests of creatures. */
 const requests = new Map<string, () => void>();
 let pending: string[] = [];
 const listeners = new Set<() => void>();
 
-/** The motions there are; of these creatures those that lack are asked for in their order. */
+/** The loaded motions; missing ones of these creatures are requested in order. */
 export function useMotions(shas: readonly string[]): ReadonlyMap<string, Motion> {
   const [, redraw] = useState(0);
   useEffect(() => {
@@ -63,7 +63,7 @@ function startRequest(sha: string): void {
       for (const listener of listeners) listener();
     },
     note: () => {},
-    error: done, // It stays still; its own page says what is wrong.
+    error: done, // The tile stays still; the page of the creature shows the error.
   });
   requests.set(sha, end);
 }
@@ -78,14 +78,14 @@ function stop(): void {
   trim();
 }
 
-/** As the newest. */
+/** Add a motion as the newest. */
 function store(sha: string, motion: Motion): void {
   cache.delete(sha);
   cache.set(sha, motion);
   trim();
 }
 
-/** Of those that are not seen the oldest go where there are too many. */
+/** Drop the oldest invisible motions beyond the limit. */
 function trim(): void {
   for (const oldest of cache.keys()) {
     if (cache.size <= visible.size + MAX_HIDDEN) break;

@@ -1,4 +1,4 @@
-/** A list that is read page by page, as far as somebody wants it. */
+/** A list that is read page by page. */
 
 import { useEffect, useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
@@ -10,16 +10,16 @@ interface Page<T> {
 }
 
 export interface Pages<T> {
-  /** Null until the first page is there. */
+  /** Null before the first page. */
   items: T[] | null;
   error: string | null;
-  /** Null where there is no more. */
+  /** Load the next page; null after the last one. */
   more: (() => void) | null;
-  /** Puts something that has changed in the place of what it was. */
+  /** Replace an item that has changed. */
   replace: (changed: T) => void;
 }
 
-/** From its beginning again whenever what was fetched is not to be trusted any more. */
+/** The list is read again after every reset of the store. */
 export function usePages<T>(read: (cursor?: string) => Promise<Page<T>>, key: (item: T) => string): Pages<T> {
   const [page, setPage] = useState<Page<T> | null>(null);
   const [error, setError] = useState<string | null>(null);

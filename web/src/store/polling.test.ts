@@ -4,30 +4,30 @@ import { POLL_MS, poll } from "./polling";
 
 type Answer = string | Error | null;
 
-function heard(answers: Answer[]) {
-  const said: [string, string | null][] = [];
+function polled(answers: Answer[]) {
+  const calls: [string, string | null][] = [];
   const ask = vi.fn(async () => {
     const answer = answers.shift() ?? null;
     if (answer instanceof Error) throw answer;
     return answer;
   });
   const stop = poll<string>(ask, {
-    value: (value) => said.push(["value", value]),
-    note: (note) => said.push(["note", note]),
-    error: (error) => said.push(["error", error]),
+    value: (value) => calls.push(["value", value]),
+    note: (note) => calls.push(["note", note]),
+    error: (error) => calls.push(["error", error]),
   });
-  return { said, ask, stop };
+  return { calls, ask, stop };
 }
 
 beforeEach(() => void vi.useFakeTimers());
 afterEach(() => void vi.useRealTimers());
 
 describe("polling", () => {
-  it("goes on after the server was away or busy, and says so meanwhile", async () => {
+  it("continues while the server is away or busy, and notes it", async () => {
     const busy = new Problem(503, { detail: "Busy." });
-    const { said, ask } = heard([null, new TypeError("failed"), busy, "done"]);
+    const { calls, ask } = polled([null, new TypeError("failed"), busy, "done"]);
     await vi.advanceTimersByTimeAsync(10 * POLL_MS);
-    expect(said).toEqual([
+    expect(calls).toEqual([
       ["note", null],
       ["note", "The server cannot be reached. Check that it is running and try again."],
       ["note", "Busy."],
@@ -37,19 +37,19 @@ describe("polling", () => {
     expect(ask).toHaveBeenCalledTimes(4);
   });
 
-  it("ends with an answer that it failed", async () => {
-    const { said, ask } = heard([new Problem(404, { detail: "No such creature." }), "late"]);
+  it("ends with a permanent failure", async () => {
+    const { calls, ask } = polled([new Problem(404, { detail: "No such creature." }), "late"]);
     await vi.advanceTimersByTimeAsync(10 * POLL_MS);
-    expect(said).toEqual([["error", "No such creature."]]);
+    expect(calls).toEqual([["error", "No such creature."]]);
     expect(ask).toHaveBeenCalledTimes(1);
   });
 
   it("ends when it is stopped", async () => {
-    const { said, ask, stop } = heard([null, null, "done"]);
+    const { calls, ask, stop } = polled([null, null, "done"]);
     await vi.advanceTimersByTimeAsync(POLL_MS);
     stop();
     await vi.advanceTimersByTimeAsync(10 * POLL_MS);
     expect(ask).toHaveBeenCalledTimes(2);
-    expect(said.map(([kind]) => kind)).not.toContain("value");
+    expect(calls.map(([kind]) => kind)).not.toContain("value");
   });
 });

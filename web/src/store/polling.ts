@@ -1,43 +1,68 @@
-/** Asking the server again and again until it has what is being made. */
+/** Poll the server until it has prepared a resource. */
 
+import { useEffect, useState } from "preact/hooks";
 import { messageOf, isTransient } from "../api/problem";
 
 export const POLL_MS = 1000;
 
 interface PollHandlers<T> {
   value: (value: T) => void;
-  /** Why the last try had no answer, though the next may; null once one came. */
+  /** A temporary failure of the last request; null after an answer. */
   note: (text: string | null) => void;
   error: (text: string) => void;
 }
 
-/** Asks until the answer is not null, or a failure that stays; returns what stops it. */
+/** Repeat `ask` until it returns a value or fails permanently; return a function that stops it. */
 export function poll<T>(ask: () => Promise<T | null>, handlers: PollHandlers<T>): () => void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   let wanted = true;
-  const turn = async () => {
-    const outcome = await ask().then(
-      (value) => () => hear(value),
-      (reason) => () => fail(reason),
-    );
-    if (wanted) outcome();
+  const repeat = () => {
+    timer = setTimeout(request, POLL_MS);
   };
-  const again = () => {
-    timer = setTimeout(turn, POLL_MS);
-  };
-  const hear = (value: T | null) => {
+  const answer = (value: T | null) => {
     handlers.note(null);
-    if (value === null) again();
+    if (value === null) repeat();
     else handlers.value(value);
   };
   const fail = (reason: unknown) => {
     if (!isTransient(reason)) return handlers.error(messageOf(reason));
     handlers.note(messageOf(reason));
-    again();
+    repeat();
   };
-  void turn();
+  const request = () =>
+    ask().then(
+      (value) => wanted && answer(value),
+      (reason) => wanted && fail(reason),
+    );
+  void request();
   return () => {
     wanted = false;
     clearTimeout(timer);
   };
+}
+
+interface Polled<T> {
+  value: T | null;
+  /** True once the server has answered. */
+  answered: boolean;
+  note: string | null;
+  error: string | null;
+}
+
+const NOTHING = { value: null, answered: false, note: null, error: null };
+
+/** The value of a resource that is polled; `ask` is null while it is not wanted. */
+export function usePolled<T>(ask: (() => Promise<T | null>) | null, inputs: unknown[]): Polled<T> {
+  const [state, setState] = useState<Polled<T>>(NOTHING);
+  useEffect(() => {
+    setState(NOTHING);
+    if (!ask) return;
+    const change = (part: Partial<Polled<T>>) => setState((old) => ({ ...old, ...part }));
+    return poll(ask, {
+      value: (value) => change({ value }),
+      note: (note) => change(note === null ? { note, answered: true } : { note }),
+      error: (error) => change({ error }),
+    });
+  }, inputs);
+  return state;
 }

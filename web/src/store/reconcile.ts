@@ -1,9 +1,9 @@
-/** How runs stand: what events told goes before an answer to what was asked before them. */
+/** Merge events and answers about runs; an event wins over an answer requested before it. */
 
 import type { Run, RunChange, RunEvent } from "../api/types";
 import type { State } from "./reducer";
 
-/** Something was heard of a run, beside which answers on their way are old. */
+/** Count an event of a run; answers that were requested before it are late. */
 export function noteEvent(state: State, id: string): State {
   const eventCount = state.eventCount + 1;
   return { ...state, eventCount, lastEvent: new Map(state.lastEvent).set(id, eventCount) };
@@ -20,12 +20,12 @@ export function applyEvent(state: State, event: RunEvent): State {
   return { ...next, listVersion, runs: new Map(state.runs).set(run.id, run) };
 }
 
-/** What decides whether a run belongs to a list, or why it waits; its figures come by the second. */
+/** Fields that decide whether a run belongs to a list. */
 const LIST_FIELDS = ["status", "name", "tags", "note", "deleted_at"] as const;
 
 const isDifferent = (one: unknown, other: unknown) => JSON.stringify(one) !== JSON.stringify(other);
 
-/** Answers to what was asked when so many events had been heard. */
+/** Apply answers that were requested after `sent` events. */
 export function applyResponses(state: State, answers: readonly Run[], sent: number): State {
   const [runs, lastEvent] = [new Map(state.runs), new Map(state.lastEvent)];
   const eventsWithoutSpec = new Map(state.eventsWithoutSpec);
@@ -37,24 +37,24 @@ export function applyResponses(state: State, answers: readonly Run[], sent: numb
   return { ...state, runs, lastEvent, eventsWithoutSpec };
 }
 
-/** What a run is never changes: its spec stays the same object. */
+/** The newer state of a run; its spec stays the same object. */
 function newerOf(state: State, answer: Run, sent: number): Run {
   const known = state.runs.get(answer.id);
   const late = sent < Math.max(state.lastEvent.get(answer.id) ?? 0, state.trustedSince);
   if (!late) return { ...answer, spec: known?.spec ?? answer.spec };
   if (!known) return { ...answer, ...state.eventsWithoutSpec.get(answer.id), spec: answer.spec };
-  // Events carry no rates: those of a late response are the newest there are.
+  // Events carry no rates: those of a late answer are the newest.
   const { evaluations_per_second, eta_seconds } = answer;
   return { ...known, evaluations_per_second, eta_seconds };
 }
 
-/** The answer to a change that was asked for here: which runs a list has may be another now. */
+/** Apply the answer to a change, after which lists may have other members. */
 export function applyChange(state: State, answer: Run, sent: number): State {
   const next = noteEvent(applyResponses(state, [answer], sent), answer.id);
   return { ...next, listVersion: state.listVersion + 1 };
 }
 
-/** What the server has yet to hear: lists are asked for when it has. */
+/** Apply an edit before the server has confirmed it. */
 export function applyEdit(state: State, id: string, change: RunChange): State {
   const run = state.runs.get(id);
   if (!run) return state;

@@ -1,4 +1,4 @@
-/** What the page knows of the runs, and how each event of the server changes it. */
+/** The state of the page, and how each action changes it. */
 
 import type {
   Archive,
@@ -14,38 +14,36 @@ import type {
   RunPage,
 } from "../api/types";
 import * as details from "./detail";
-import * as watched from "./watched";
-import { withPoint } from "./sparkline";
+import { withPoint } from "./curves";
 import { applyResponses, applyChange, noteEvent, applyEdit, applyEvent } from "./reconcile";
 
 export type Connection = "connecting" | "live" | "lost";
 
 export interface State {
   connection: Connection;
-  /** Who the server takes us for; null until it says so. */
+  /** The signed-in principal; null until it is loaded. */
   principal: Principal | null;
   runs: ReadonlyMap<string, Run>;
   details: ReadonlyMap<string, details.Detail>;
-  watching: watched.Watching;
-  /** How often the table of a run has grown since the page was opened. */
+  /** Counts changes of the results table of each run. */
   tableVersions: ReadonlyMap<string, number>;
-  /** How often something was heard of a sweep or of one of its runs. */
+  /** Counts events of each sweep and its runs. */
   sweepVersions: ReadonlyMap<string, number>;
-  /** Which runs were asked for; their ids in their order, and where the list goes on. */
-  asked: string;
+  /** The query of the list of runs, the ids in it, and the cursor of its next page. */
+  query: string;
   listed: readonly string[];
   next: string | null;
-  /** How often something was heard of runs, when the last time of each, and of all at once. */
+  /** Counts events; the counts at the last event of each run and at the last reset. */
   eventCount: number;
   lastEvent: ReadonlyMap<string, number>;
   trustedSince: number;
-  /** How runs stand of which it is not known yet what they are. */
+  /** The last event of each run whose spec is unknown. */
   eventsWithoutSpec: ReadonlyMap<string, RunEvent>;
-  /** Raised by news that may change which runs belong to a list, or in which order. */
+  /** Increases if the members or the order of the list may have changed. */
   listVersion: number;
-  /** Raised when what was fetched before is not to be trusted any more. */
+  /** Increases if everything has to be fetched again. */
   epoch: number;
-  /** The same for one run, after a rewind. */
+  /** The same for each run, after a rewind. */
   epochs: ReadonlyMap<string, number>;
 }
 
@@ -66,8 +64,6 @@ export type Action =
       archive: Archive | null;
       generations: Generations;
     }
-  | { type: "watch"; run: string; more: 1 | -1 }
-  | { type: "curves"; run: string; epoch: number; generations: Generations }
   | { type: "generation"; event: GenerationEvent }
   | { type: "elites"; event: ElitesEvent }
   | { type: "results"; event: ResultsEvent }
@@ -76,17 +72,17 @@ export type Action =
   | { type: "purge"; run: string }
   | { type: "reset" };
 
-/** A list from its beginning, asked for when so many runs of it were known. */
+/** The start of a list, requested when `known` of its runs were loaded. */
 interface FirstPage {
-  asked: string;
+  query: string;
   page: RunPage;
   known: number;
   sent: number;
 }
 
-/** What follows in a list after a place in it. */
+/** The part of a list after a cursor. */
 interface NextPage {
-  asked: string;
+  query: string;
   page: RunPage;
   cursor: string | null;
   sent: number;
@@ -97,10 +93,9 @@ export const INITIAL_STATE: State = {
   principal: null,
   runs: new Map(),
   details: new Map(),
-  watching: new Map(),
   tableVersions: new Map(),
   sweepVersions: new Map(),
-  asked: "",
+  query: "",
   listed: [],
   next: null,
   eventCount: 0,
@@ -134,10 +129,6 @@ export function reduce(state: State, action: Action): State {
       return withWatcher(state, action.run, action.more);
     case "snapshot":
       return withSnapshot(state, action);
-    case "watch":
-      return { ...state, watching: watched.changeWatchers(state.watching, action.run, action.more) };
-    case "curves":
-      return withCurves(state, action);
     case "generation":
       return withGeneration(state, action.event);
     case "elites":
@@ -155,7 +146,7 @@ export function reduce(state: State, action: Action): State {
   }
 }
 
-/** A sweep is summed up by the server: it is asked for anew when there is news of it. */
+/** The server summarises a sweep: the page fetches it again when this version changes. */
 function raiseSweepVersion(state: State, sweep?: string | null): State {
   if (!sweep) return state;
   return {
@@ -164,33 +155,30 @@ function raiseSweepVersion(state: State, sweep?: string | null): State {
   };
 }
 
-/** Which fetch of a run's detail still counts: it grows with every reset and rewind. */
+/** The version of a run's detail; it increases with every reset and rewind. */
 export function epochOf(state: State, run: string): number {
   return state.epoch + (state.epochs.get(run) ?? 0);
 }
 
-/** Only the server says which runs a list has: an event alone puts none into it. */
-function listed(state: State, { asked, page, known, sent }: FirstPage): State {
+/** Only an answer of the server changes which runs a list has. */
+function listed(state: State, { query, page, known, sent }: FirstPage): State {
   const next = applyResponses(state, page.items, sent);
-  const withResults = asked === state.asked && state.listed.length > known;
-  // What was loaded meanwhile is not in the answer.
-  if (withResults) return { ...next, listVersion: state.listVersion + 1 };
-  return { ...next, asked, listed: page.items.map((run) => run.id), next: page.next };
+  const extended = query === state.query && state.listed.length > known;
+  // More pages were loaded since the request.
+  if (extended) return { ...next, listVersion: state.listVersion + 1 };
+  return { ...next, query, listed: page.items.map((run) => run.id), next: page.next };
 }
 
-function withMore(state: State, { asked, page, cursor, sent }: NextPage): State {
-  if (asked !== state.asked) return state;
+function withMore(state: State, { query, page, cursor, sent }: NextPage): State {
+  if (query !== state.query) return state;
   const ids = page.items.map((run) => run.id);
   const listed = [...state.listed.filter((id) => !ids.includes(id)), ...ids];
-  // The list may end elsewhere now, so that something between is missing.
+  // If the list ended elsewhere by now, runs may be missing.
   const listVersion = state.listVersion + Number(cursor !== state.next);
   return { ...applyResponses(state, page.items, sent), listVersion, listed, next: page.next };
 }
 
-/**
- * One more looks at a run, or one less. While somebody does, its events are kept, for its
- * snapshot may be older than they are.
- */
+/** Add or remove a viewer of a run; its events are kept while it has one. */
 function withWatcher(state: State, run: string, more: 1 | -1): State {
   const old = state.details.get(run) ?? details.EMPTY_DETAIL;
   const opened = new Map(state.details).set(run, { ...old, watchers: old.watchers + more });
@@ -204,14 +192,8 @@ function withSnapshot(state: State, action: Action & { type: "snapshot" }): Stat
   return withDetail(state, run, (old) => details.withSnapshot(old, archive, generations));
 }
 
-function withCurves(state: State, action: Action & { type: "curves" }): State {
-  if (action.epoch !== epochOf(state, action.run)) return state;
-  return { ...state, watching: watched.withCurves(state.watching, action.run, action.generations) };
-}
-
 function withGeneration(state: State, event: GenerationEvent): State {
-  const opened = withDetail(state, event.run, (detail) => details.withGenerationEvent(detail, event));
-  const next = { ...opened, watching: watched.withGenerationEvent(opened.watching, event) };
+  const next = withDetail(state, event.run, (detail) => details.withGenerationEvent(detail, event));
   const run = state.runs.get(event.run);
   if (!run || event.generation <= run.generation) return next;
   return {
@@ -228,7 +210,7 @@ function withGenerationFigures(run: Run, event: GenerationEvent): Run {
   return { ...run, ...newer, progress, sparkline };
 }
 
-/** Tables are short: they are fetched anew rather than put together of events. */
+/** Tables are short: they are fetched again rather than built from events. */
 function withResults(state: State, { run: id, generation, summary }: ResultsEvent): State {
   const count = (state.tableVersions.get(id) ?? 0) + 1;
   const next = { ...state, tableVersions: new Map(state.tableVersions).set(id, count) };
@@ -243,13 +225,12 @@ function rewindRun(state: State, event: RewindEvent): State {
   const next = {
     ...(run ? noteEvent(state, run.id) : state),
     epochs: new Map(state.epochs).set(event.run, raised),
-    watching: watched.truncate(state.watching, event.run, event.generation),
   };
   if (run) next.runs = new Map(state.runs).set(run.id, truncateRun(run, event.generation));
   return withDetail(next, event.run, (detail) => details.truncate(detail, event.generation));
 }
 
-/** Gone for good: no list has it, and whoever looks at it asks again and is told so. */
+/** Remove a purged run; its page fetches it again and shows the error. */
 function withoutRun(state: State, id: string): State {
   const sweep = state.runs.get(id)?.sweep;
   const runs = new Map(state.runs);
@@ -263,10 +244,9 @@ function withoutRun(state: State, id: string): State {
   };
 }
 
-/** A rewind may have been missed: what is known is shown on, but not believed. */
+/** Events may have been missed: old data stays visible and is fetched again. */
 function reset(state: State): State {
   const opened = new Map([...state.details].map(([run, detail]) => [run, details.withoutRecent(detail)]));
-  const watching = watched.withoutRecent(state.watching);
   const eventCount = state.eventCount + 1;
   return {
     ...state,
@@ -274,12 +254,11 @@ function reset(state: State): State {
     trustedSince: eventCount,
     eventsWithoutSpec: new Map(),
     details: opened,
-    watching,
     epoch: state.epoch + 1,
   };
 }
 
-/** A run that goes on from an earlier generation; its figures follow with the next one. */
+/** A run that continues from an earlier generation; its other figures follow with the next event. */
 function truncateRun(run: Run, generation: number): Run {
   if (run.generation <= generation) return run;
   const kept = Math.ceil((run.sparkline.length * generation) / run.generation);
@@ -287,7 +266,7 @@ function truncateRun(run: Run, generation: number): Run {
   return { ...run, generation, progress, sparkline: run.sparkline.slice(0, kept) };
 }
 
-/** Changes a detail that is open; events of runs that nobody looks at are not kept. */
+/** Change the detail of a run that is shown; others have none. */
 function withDetail(state: State, run: string, change: (detail: details.Detail) => details.Detail): State {
   const detail = state.details.get(run);
   if (!detail) return state;

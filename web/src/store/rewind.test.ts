@@ -5,7 +5,7 @@ import { RUN, generation, elites, snapshot, after, open, opened, creatures } fro
 const close: Action = { ...open, more: -1 };
 
 describe("a snapshot", () => {
-  it("keeps what events told of later generations while it was on its way", () => {
+  it("keeps later events that arrived before it", () => {
     const later = reduce(reduce(opened, elites(3, 5, "cc")), elites(2, 0, "old"));
     const next = reduce(later, snapshot(later));
     expect(creatures(next)).toEqual([
@@ -14,7 +14,7 @@ describe("a snapshot", () => {
     ]);
   });
 
-  it("that comes first keeps what events told since the run was opened", () => {
+  it("that comes first keeps the events since the run was opened", () => {
     const told: Action = { type: "generation", event: generation(3) };
     const waiting = after({ type: "run", run: RUN }, open, elites(3, 5, "cc"), told);
     expect(waiting.details.get("a")).toMatchObject({ archive: null, curves: null });
@@ -26,7 +26,7 @@ describe("a snapshot", () => {
     expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
   });
 
-  it("stays until the last one has closed the run, and is not taken after that", () => {
+  it("stays until the last viewer leaves, and is ignored after that", () => {
     const twice = reduce(opened, open);
     expect(creatures(twice)).toEqual(creatures(opened));
     const once = reduce(twice, close);
@@ -36,7 +36,7 @@ describe("a snapshot", () => {
     expect([elites(3, 5, "cc"), snapshot(closed)].reduce(reduce, closed).details.size).toBe(0);
   });
 
-  it("asked for before a reset is not taken", () => {
+  it("that was requested before a reset is ignored", () => {
     const late = snapshot(INITIAL_STATE);
     expect(after(open, { type: "reset" }, late).details.get("a")!.archive).toBeNull();
   });
@@ -51,20 +51,20 @@ describe("a rewind", () => {
     expect(next.details.get("a")!.curves!.generation).toEqual([1]);
   });
 
-  it("lets the run's own figures begin again from there", () => {
+  it("resets the figures of the run", () => {
     const back = reduce(opened, rewind);
     expect(back.runs.get("a")).toMatchObject({ generation: 1, progress: 0.1, sparkline: [1] });
     const next = reduce(back, { type: "generation", event: generation(2) });
     expect(next.runs.get("a")).toMatchObject({ generation: 2, evaluations: 32 });
   });
 
-  it("asks for that run to be fetched again, and for no other", () => {
+  it("raises the epoch of that run only", () => {
     const next = reduce(opened, rewind);
     expect(epochOf(next, "a")).toBe(epochOf(opened, "a") + 1);
     expect(epochOf(next, "b")).toBe(epochOf(opened, "b"));
   });
 
-  it("makes a snapshot that was asked for before it worthless", () => {
+  it("invalidates snapshots that were requested before it", () => {
     const late = snapshot(opened);
     const next = reduce(reduce(opened, rewind), late);
     expect(creatures(next)).toEqual([[0, "aa"]]);
@@ -72,14 +72,14 @@ describe("a rewind", () => {
 });
 
 describe("a reset", () => {
-  it("asks for everything to be fetched again and forgets nothing meanwhile", () => {
+  it("raises all epochs and keeps old data", () => {
     const next = reduce(opened, { type: "reset" });
     expect(epochOf(next, "a")).toBe(epochOf(opened, "a") + 1);
     expect(epochOf(next, "b")).toBe(epochOf(opened, "b") + 1);
     expect(creatures(next)).toEqual(creatures(opened));
   });
 
-  it("lets nothing older outlive the next snapshot, but what came after it", () => {
+  it("keeps only later events after the next snapshot", () => {
     const lost = [elites(7, 9, "lost"), { type: "generation", event: generation(7) }] as Action[];
     const before = lost.reduce(reduce, opened);
     const shown = reduce(before, { type: "reset" });

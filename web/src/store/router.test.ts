@@ -13,7 +13,7 @@ describe("an address", () => {
     ["/creatures/%", { page: "unknown" }],
     ["/runs", { page: "unknown" }],
     ["/elsewhere", { page: "unknown" }],
-  ])("%s leads to its page", (path, route) => {
+  ])("%s has its route", (path, route) => {
     expect(routeOf(path)).toEqual(route);
   });
 });

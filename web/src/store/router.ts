@@ -1,4 +1,4 @@
-/** Real paths, the history, and queries that hold the view. */
+/** Routes, navigation, and the view in the query of the address. */
 
 import { useEffect, useState } from "preact/hooks";
 
@@ -36,7 +36,7 @@ export function routeOf(path: string): Route {
   return { page: "unknown" };
 }
 
-/** A share itself, or a creature in it. */
+/** A share, or a creature in it. */
 function sharedRoute(slug: string, [kind, sha, ...more]: string[]): Route {
   if (kind === undefined) return { page: "share", slug, sha: null };
   const one = kind === "creatures" && sha !== undefined && more.length === 0;
@@ -50,7 +50,7 @@ export const isUuid = (id: string) => UUID.test(id);
 /** False for text that can name no run, sweep or creature. */
 export const isId = (id: string) => isUuid(id) || /^[0-9a-f]{64}$/.test(id);
 
-/** Null where there is no text, or its escapes are of none. */
+/** Null for a missing part or malformed escapes. */
 function decodePart(part: string | undefined): string | null {
   try {
     return part === undefined ? null : decodeURIComponent(part);
@@ -67,7 +67,7 @@ export function navigate(to: string, replace = false): void {
   window.dispatchEvent(new Event(NAVIGATED));
 }
 
-/** Changes the view that the address holds; null takes a word out. */
+/** Change parameters of the address; null removes one. */
 export function setQuery(changes: Record<string, string | null>): void {
   const query = new URLSearchParams(location.search);
   for (const [key, value] of Object.entries(changes)) {
@@ -95,7 +95,7 @@ export function useLocation(): PageLocation {
   return { route: routeOf(pathname), query: searchParams };
 }
 
-/** Plain clicks on links within the page do not load it anew. */
+/** Clicks on links within the application do not reload the page. */
 function followLink(event: MouseEvent): void {
   if (event.defaultPrevented || event.button !== 0) return;
   if (event.metaKey || event.ctrlKey || event.shiftKey || event.altKey) return;

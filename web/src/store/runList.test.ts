@@ -11,11 +11,10 @@ vi.mock("../api/client", () => ({
   },
 }));
 
-const { readUpTo: readAsFar } = await import("./runList");
-const { currentState: current, dispatch } = await import("./store");
-const { RETAIN_MS: KEPT_MS, retain: look } = await import("./retain");
+const { readUpTo } = await import("./runList");
+const { RETAIN_MS, currentState, dispatch, retain } = await import("./store");
 
-describe("a list that is asked for again", () => {
+describe("a list that is read again", () => {
   it.each([
     [0, 30],
     [90, 90],
@@ -24,13 +23,13 @@ describe("a list that is asked for again", () => {
     [500, 500],
     [700, 500],
   ])("with %i runs known has %i of them, each once and in order", async (known, expected) => {
-    const { items, next } = await readAsFar({ sort: "name" }, known);
+    const { items, next } = await readUpTo({ sort: "name" }, known);
     expect(items).toEqual(RUNS.slice(0, expected));
     expect(next).toBe(expected < 500 ? String(expected) : null);
   });
 });
 
-describe("looking at runs", () => {
+describe("the details of runs", () => {
   beforeEach(() => void vi.useFakeTimers());
   afterEach(() => void vi.useRealTimers());
   const generations = {
@@ -42,28 +41,28 @@ describe("looking at runs", () => {
     best: [1],
     summary: {},
   } as unknown as Generations;
-  const watched = () => [...current().watching.keys()];
+  const retained = () => [...currentState().details.keys()];
 
-  it("keeps the curves of those that are still looked at when one is left out", () => {
-    const leave = look("watch", ["a", "b"]);
-    dispatch({ type: "curves", run: "a", epoch: 0, generations });
+  it("stay for runs that are still shown", () => {
+    const leave = retain(["a", "b"]);
+    dispatch({ type: "snapshot", run: "a", epoch: 0, archive: null, generations });
     leave();
-    const end = look("watch", ["a"]);
-    expect(current().watching.get("a")!.curves!.generation).toEqual([1]);
-    vi.advanceTimersByTime(KEPT_MS);
-    expect(watched()).toEqual(["a"]);
-    expect(current().watching.get("a")!.curves!.generation).toEqual([1]);
+    const end = retain(["a"]);
+    expect(currentState().details.get("a")!.curves!.generation).toEqual([1]);
+    vi.advanceTimersByTime(RETAIN_MS);
+    expect(retained()).toEqual(["a"]);
+    expect(currentState().details.get("a")!.curves!.generation).toEqual([1]);
     end();
-    vi.advanceTimersByTime(KEPT_MS);
-    expect(watched()).toEqual([]);
+    vi.advanceTimersByTime(RETAIN_MS);
+    expect(retained()).toEqual([]);
   });
 
-  it("keeps a run's page for the way back, and not for ever", () => {
-    const leave = look("open", ["a"]);
+  it("stay for a minute after the page was left", () => {
+    const leave = retain(["a"]);
     leave();
-    vi.advanceTimersByTime(KEPT_MS - 1);
-    expect(current().details.size).toBe(1);
+    vi.advanceTimersByTime(RETAIN_MS - 1);
+    expect(currentState().details.size).toBe(1);
     vi.advanceTimersByTime(1);
-    expect(current().details.size).toBe(0);
+    expect(currentState().details.size).toBe(0);
   });
 });

@@ -1,4 +1,4 @@
-/** The one store of a tab. */
+/** The store of a tab. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
@@ -16,15 +16,15 @@ export function dispatch(action: Action): void {
   for (const listener of listeners) listener();
 }
 
-/** Puts in the run that was asked for, or what came of a change to it. */
-export async function applyResponse(type: "response" | "change", asked: Promise<Run>): Promise<Run> {
+/** Store the answer to a read or to a change of a run. */
+export async function applyResponse(type: "response" | "change", request: Promise<Run>): Promise<Run> {
   const sent = state.eventCount;
-  const run = await asked;
+  const run = await request;
   dispatch({ type, run, sent });
   return run;
 }
 
-/** A part of the store; the component is drawn again when that part changes. */
+/** A part of the store; the component is redrawn when that part changes. */
 export function useStore<T>(select: (state: State) => T): T {
   const [, redraw] = useState(0);
   const selected = select(state);
@@ -37,19 +37,33 @@ export function useStore<T>(select: (state: State) => T): T {
       redraw((count) => count + 1);
     };
     listeners.add(listener);
-    listener(); // What changed between drawing and listening.
+    listener(); // The store may have changed since the component was drawn.
     return () => void listeners.delete(listener);
   });
   return selected;
 }
 
-/** Some runs, as far as they are known; the component is drawn again when one of them changes. */
-export function useRuns(ids: readonly string[]): readonly (Run | undefined)[] {
-  const last = useRef<readonly (Run | undefined)[]>([]);
-  return useStore(({ runs }) => {
-    const next = ids.map((id) => runs.get(id));
-    const same = next.length === last.current.length && next.every((run, i) => run === last.current[i]);
+/** A part of the store for each id; the component is redrawn when one of them changes. */
+export function useEach<T>(ids: readonly string[], select: (state: State, id: string) => T): readonly T[] {
+  const last = useRef<readonly T[]>([]);
+  return useStore((state) => {
+    const next = ids.map((id) => select(state, id));
+    const same = next.length === last.current.length && next.every((value, i) => value === last.current[i]);
     if (!same) last.current = next;
     return last.current;
   });
+}
+
+/** Some runs, undefined if not loaded. */
+export const useRuns = (ids: readonly string[]) => useEach(ids, ({ runs }, id) => runs.get(id));
+
+/** Runs that nobody looks at any more stay in the store for this long. */
+export const RETAIN_MS = 60_000;
+
+/** Keep the details of runs until the returned function is called, and a little longer. */
+export function retain(runs: readonly string[]): () => void {
+  for (const run of runs) dispatch({ type: "open", run, more: 1 });
+  return () => {
+    setTimeout(() => runs.forEach((run) => dispatch({ type: "open", run, more: -1 })), RETAIN_MS);
+  };
 }

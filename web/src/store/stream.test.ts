@@ -49,13 +49,13 @@ afterEach(() => {
 const open = () => Source.made.filter(({ readyState }) => readyState !== Source.CLOSED).length;
 
 describe("the stream", () => {
-  it("tells of a run that is gone for good", () => {
+  it("reports a run that was purged", () => {
     const data = JSON.stringify({ run: "a" });
     Source.made[0]!.dispatchEvent(Object.assign(new Event("purge"), { data }));
     expect(live.currentState().epochs.get("a")).toBe(1);
   });
 
-  it("is closed in a tab that stays hidden, and what was missed is fetched anew", () => {
+  it("is closed in a tab that stays hidden, and everything is fetched again after that", () => {
     const { epoch } = live.currentState();
     page.turn("hidden");
     vi.advanceTimersByTime(60_000);
@@ -66,7 +66,7 @@ describe("the stream", () => {
     expect(live.currentState()).toMatchObject({ connection: "live", epoch: epoch + 1 });
   });
 
-  it("outlives a short look elsewhere", () => {
+  it("stays open in a tab that is hidden for a short time", () => {
     page.turn("hidden");
     vi.advanceTimersByTime(2000);
     page.turn("visible");
@@ -74,7 +74,7 @@ describe("the stream", () => {
     expect([Source.made.length, open()]).toEqual([1, 1]);
   });
 
-  it("resumes by itself without a reset, and is opened anew once it gave up", () => {
+  it("resumes without a reset, and is opened again after it gave up", () => {
     const { epoch } = live.currentState();
     Source.made[0]!.onerror();
     Source.made[0]!.onopen();
@@ -85,7 +85,7 @@ describe("the stream", () => {
     expect([Source.made.length, open()]).toEqual([2, 1]);
   });
 
-  it("that gave up is not opened anew by a hidden tab for ever", () => {
+  it("is not opened again in a hidden tab after it gave up", () => {
     page.turn("hidden");
     vi.advanceTimersByTime(9000);
     Source.made[0]!.close();

@@ -1,4 +1,4 @@
-/** The one stream of events that feeds a tab's store, while somebody looks at the tab. */
+/** The stream of events that updates the store while the tab is visible. */
 
 import { EVENTS_URL } from "../api/client";
 import { loadPrincipal } from "./principal";
@@ -7,7 +7,7 @@ import type { Action } from "./reducer";
 
 const RECONNECT_MS = 2000;
 const CONNECT_TIMEOUT_MS = 500;
-/** A browser has six connections to a host for all its tabs: hidden ones give theirs back. */
+/** A browser has six connections to a host for all tabs; hidden tabs close theirs. */
 const CLOSE_HIDDEN_MS = 10_000;
 
 type Timer = ReturnType<typeof setTimeout>;
@@ -16,10 +16,7 @@ let source: EventSource | null = null;
 let reconnecting: Timer | undefined;
 let closing: Timer | undefined;
 
-/**
- * Settled when the stream is open, has failed or takes long: what is fetched before it is open
- * has to be fetched again, so that the page had better wait.
- */
+/** Open the stream; resolves when it is open, has failed or takes long. Data fetched earlier would be fetched twice. */
 export function connect(): Promise<unknown> {
   document.addEventListener("visibilitychange", followVisibility);
   const opened = open();
@@ -36,10 +33,7 @@ function followVisibility(): void {
   else if (!source) open();
 }
 
-/**
- * EventSource reconnects by itself with Last-Event-ID; where it gave up, was closed, or is
- * the first, nobody knows what was missed, and everything is fetched again.
- */
+/** EventSource reconnects by itself and misses nothing; after a new one, everything is fetched again. */
 function open(): EventSource {
   const opened = new EventSource(EVENTS_URL);
   source = opened;
@@ -53,16 +47,15 @@ function open(): EventSource {
     dispatch({ type: "connection", connection: "lost" });
     if (opened.readyState !== EventSource.CLOSED) return;
     reconnecting = setTimeout(open, RECONNECT_MS);
-    void loadPrincipal(); // A stream does not tell that a token was revoked.
+    void loadPrincipal(); // The stream does not report that a token was revoked.
   };
   listen(opened, "run", (run) => ({ type: "run", run }) as Action);
-  listen(opened, "generation", (event) => ({ type: "generation", event }) as Action);
-  listen(opened, "elites", (event) => ({ type: "elites", event }) as Action);
-  listen(opened, "results", (event) => ({ type: "results", event }) as Action);
-  listen(opened, "rewind", (event) => ({ type: "rewind", event }) as Action);
-  listen(opened, "sweep", (data) => ({ type: "sweep", ...(data as object) }) as Action);
-  listen(opened, "purge", (data) => ({ type: "purge", ...(data as object) }) as Action);
-  listen(opened, "reset", () => ({ type: "reset" }));
+  for (const type of ["generation", "elites", "results", "rewind"]) {
+    listen(opened, type, (event) => ({ type, event }) as Action);
+  }
+  for (const type of ["sweep", "purge", "reset"]) {
+    listen(opened, type, (data) => ({ type, ...(data as object) }) as Action);
+  }
   return opened;
 }
 

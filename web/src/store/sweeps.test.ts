@@ -2,8 +2,8 @@ import { describe, expect, it } from "vitest";
 import type { Run } from "../api/types";
 import { INITIAL_STATE, reduce } from "./reducer";
 
-describe("what is heard of a sweep", () => {
-  it("raises its news, and those of lists where it began or was steered", () => {
+describe("events of a sweep", () => {
+  it("raise its version, and that of lists if it was created or steered", () => {
     const run = { id: "r", sweep: "s", spec: {}, status: "running" } as unknown as Run;
     const once = reduce(INITIAL_STATE, { type: "run", run });
     expect(once.sweepVersions.get("s")).toBe(1);

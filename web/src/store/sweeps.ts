@@ -1,22 +1,20 @@
 /** Sweeps: reading them when they change, and commands for all of their runs. */
 
 import * as api from "../api/client";
-import { messageOf } from "../api/problem";
 import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
 import { useStore } from "./store";
-import { useThrottled } from "./throttle";
-import { dismissToast, showToast } from "./toasts";
+import { useThrottled } from "./timing";
+import { attempt, delayWithUndo, showToast, offerUndo } from "./toasts";
 import { text } from "./text";
 
-/** More points than a screen can show apart would only be slower. */
+/** Points per curve, as many as a screen resolves. */
 const POINTS = 300;
-const UNDO_MS = 4000;
 
 /** The newest sweeps. */
 export function useSweeps(limit: number, wanted: boolean): Loaded<SweepPage | null> {
-  const heard = useStore((state) => (wanted ? `${state.epoch} ${totalOf(state.sweepVersions)}` : ""));
-  const news = useThrottled(heard);
+  const version = useStore((state) => (wanted ? `${state.epoch} ${totalOf(state.sweepVersions)}` : ""));
+  const news = useThrottled(version);
   return useFetched(async () => (wanted ? await api.readSweeps(limit) : null), [news, limit, wanted]);
 }
 
@@ -43,21 +41,11 @@ export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
   }, [id, news, each]);
 }
 
-const DONE: Record<api.RunCommand, string> = {
+const OUTCOMES: Record<api.RunCommand, string> = {
   pause: text.pausing,
   resume: text.queued,
   cancel: text.cancellingRuns,
 };
-
-/** Await a request; show the error if it fails. */
-async function attempt<T>(answered: Promise<T>): Promise<T | null> {
-  try {
-    return await answered;
-  } catch (error) {
-    showToast({ kind: "wrong", text: messageOf(error) });
-    return null;
-  }
-}
 
 /** Count the runs that changed and those that did not. */
 const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
@@ -66,32 +54,18 @@ const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
 /** Send a command to every run. */
 export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {
   const answer = await attempt(api.commandSweep(id, verb));
-  if (answer) showToast({ kind: "note", text: outcome(answer, DONE[verb]) });
+  if (answer) showToast({ kind: "note", text: outcome(answer, OUTCOMES[verb]) });
 }
 
 export const renameSweep = (id: string, name: string | null) => attempt(api.renameSweep(id, name));
 
 export const restoreSweep = (id: string) => attempt(api.restoreSweep(id));
 
-/** Move all runs to the bin; the note and the page can undo it. */
+/** Move all runs to the bin. */
 export async function removeSweep(id: string): Promise<void> {
   const answer = await attempt(api.deleteSweep(id));
-  if (!answer) return;
-  const back = () => {
-    dismissToast(toast);
-    void restoreSweep(id);
-  };
-  const note = outcome(answer, text.deleted);
-  const toast = showToast({ kind: "note", text: note, action: { label: text.undo, run: back } });
+  if (answer) offerUndo(outcome(answer, text.deleted), () => void restoreSweep(id));
 }
 
-/** Cancel all runs after a delay in which it can be undone. */
-export function cancelSweepWithUndo(id: string, title: string): void {
-  const timer = setTimeout(() => void sendSweepCommand(id, "cancel"), UNDO_MS);
-  const undo = () => {
-    clearTimeout(timer);
-    dismissToast(toast);
-  };
-  const action = { label: text.undo, run: undo };
-  const toast = showToast({ kind: "note", text: text.cancellingSweep(title), action });
-}
+export const cancelSweepWithUndo = (id: string, title: string) =>
+  delayWithUndo(text.cancellingSweep(title), () => void sendSweepCommand(id, "cancel"));

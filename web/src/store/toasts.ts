@@ -1,6 +1,8 @@
-/** Short notes at the edge of the page, some with a way back. */
+/** Short notes at the edge of the page, some with an undo button. */
 
 import { useEffect, useState } from "preact/hooks";
+import { messageOf } from "../api/problem";
+import { text } from "./text";
 
 export interface Toast {
   id: number;
@@ -24,7 +26,7 @@ export function dismissToast(id: number): void {
   change(toasts.filter((toast) => toast.id !== id));
 }
 
-/** Shows a note for a while; answers the id under which it can be dismissed. */
+/** Show a note for a while; return the id that dismisses it. */
 export function showToast(toast: Omit<Toast, "id">): number {
   const id = ++count;
   change([...toasts, { ...toast, id }]);
@@ -32,7 +34,40 @@ export function showToast(toast: Omit<Toast, "id">): number {
   return id;
 }
 
-/** The newest way back by Ctrl+Z, which a note at the end of the page would be too short for. */
+/** Show what went wrong. */
+export function showFailure(error: unknown): void {
+  showToast({ kind: "wrong", text: messageOf(error) });
+}
+
+/** Await a request; after an error, show it and return null. */
+export async function attempt<T>(request: Promise<T>): Promise<T | null> {
+  try {
+    return await request;
+  } catch (error) {
+    showFailure(error);
+    return null;
+  }
+}
+
+/** Show a note with an undo button; return the id of the note. */
+export function offerUndo(note: string, undo: () => void): number {
+  const run = () => {
+    dismissToast(toast);
+    undo();
+  };
+  const toast = showToast({ kind: "note", text: note, action: { label: text.undo, run } });
+  return toast;
+}
+
+const UNDO_MS = 4000;
+
+/** Do something after a delay in which it can be undone. */
+export function delayWithUndo(note: string, act: () => void): void {
+  const timer = setTimeout(act, UNDO_MS);
+  offerUndo(note, () => clearTimeout(timer));
+}
+
+/** Ctrl+Z presses the newest undo button, which the Tab key reaches too late. */
 export function undoLatest(event: KeyboardEvent): void {
   const field = (event.target as Element).closest("input:not([type=checkbox]), textarea, select");
   if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || field) return;

@@ -1,8 +1,11 @@
-/** The cases of a sweep as a legend, their final values, and every run. */
+/** The cases of a sweep as a legend, their figures, and every run. */
 
 import type { Member, Spread } from "../api/types";
-import { count, number, percent, words } from "../ui/format";
+import { DASH, count, number, words } from "../ui/format";
 import { LineKey } from "../charts/lineStyle";
+import { SCORES } from "../run/figures";
+import { Card } from "../ui/Page";
+import { type Column, Table } from "../ui/Table";
 import { type ShownCase, memberName } from "./bands";
 import { text } from "./text";
 
@@ -12,18 +15,21 @@ interface LegendProps {
   onChoose: (places: number[]) => void;
 }
 
-/** One legend for all plots; a case that is not chosen is not drawn. */
+/** One legend for all plots, which draw only the selected cases. */
 export function Cases({ cases, chosen, onChoose }: LegendProps) {
   const turn = (place: number) =>
     onChoose(chosen.includes(place) ? chosen.filter((one) => one !== place) : [...chosen, place]);
   return (
     <ul class="compare-legend sweep-legend" aria-label={text.cases}>
-      {cases.map(({ place, name }) => (
-        <li key={place}>
+      {cases.map((shown) => (
+        <li key={shown.place}>
           <label class="compact">
-            <input type="checkbox" checked={chosen.includes(place)} onChange={() => turn(place)} />
-            <LineKey index={place} />
-            {name}
+            <input
+              type="checkbox"
+              checked={chosen.includes(shown.place)}
+              onChange={() => turn(shown.place)}
+            />
+            <CaseName shown={shown} />
           </label>
         </li>
       ))}
@@ -31,150 +37,104 @@ export function Cases({ cases, chosen, onChoose }: LegendProps) {
   );
 }
 
-const TITLES: Record<string, [title: string, write: (value: number | null) => string]> = {
-  qd_score: [text.qdScore, number],
-  coverage: [text.coverage, percent],
-  best: [text.bestFitness, number],
-  evaluations: [text.evaluations, (value) => (value === null ? "–" : count(value))],
-};
-
-const titleOf = (name: string) => TITLES[name]?.[0] ?? words(name);
-const writerOf = (name: string) => TITLES[name]?.[1] ?? number;
-
-const figuresOf = (cases: ShownCase[]) => [
-  ...new Set(cases.flatMap(({ summary }) => Object.keys(summary.finals))),
-];
-
-/** Figures at the common generation: the median of each case, and its quartiles. */
-export function Finals({ cases, generation }: { cases: ShownCase[]; generation: number | null }) {
-  const figures = figuresOf(cases);
+function CaseName({ shown: { place, name } }: { shown: ShownCase }) {
   return (
-    <section class="card" aria-labelledby="finals">
-      <div class="card-head">
-        <h2 id="finals">{text.figures}</h2>
-        <span class="quiet small">{text.figuresAbout(generation)}</span>
-      </div>
-      <div class="wide-table" tabIndex={0} role="region" aria-label={text.figuresOfCases}>
-        <table>
-          <thead>
-            <tr>
-              <th scope="col">{text.case}</th>
-              <th scope="col">{text.runs}</th>
-              {figures.map((name) => (
-                <th key={name} scope="col">
-                  {titleOf(name)}
-                </th>
-              ))}
-            </tr>
-          </thead>
-          <tbody>
-            {cases.map(({ summary, place, name }) => (
-              <tr key={place}>
-                <th scope="row">
-                  <LineKey index={place} /> {name}
-                </th>
-                <td>{doneOf(summary.members)}</td>
-                {figures.map((figure) => (
-                  <td key={figure}>
-                    <Figure spread={summary.finals[figure]} write={writerOf(figure)} />
-                  </td>
-                ))}
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      </div>
-    </section>
+    <>
+      <LineKey index={place} /> {name}
+    </>
   );
 }
 
-/** How many of a case's runs are finished. */
-function doneOf(members: ShownCase["summary"]["members"]): string {
+type Write = (value: number | null) => string;
+
+const KNOWN: [name: string, title: string, write: Write][] = [
+  ...SCORES,
+  ["evaluations", text.evaluations, count],
+];
+
+/** The figures of any case, with their titles and formats. */
+function figuresOf(cases: ShownCase[]) {
+  const names = new Set(cases.flatMap(({ summary }) => Object.keys(summary.finals)));
+  return [...names].map((name) => {
+    const [, title, write] = KNOWN.find(([known]) => known === name) ?? [name, words(name), number];
+    return { name, title, write };
+  });
+}
+
+/** Figures at the common generation: the median of each case, and its quartiles. */
+export function Finals({ cases, generation }: { cases: ShownCase[]; generation: number | null }) {
+  const columns: Column<ShownCase>[] = [
+    { title: text.case, cell: (shown) => <CaseName shown={shown} /> },
+    { title: text.runs, cell: ({ summary }) => doneOf(summary.members) },
+    ...figuresOf(cases).map(({ name, title, write }) => ({
+      title,
+      cell: ({ summary }: ShownCase) => <Figure spread={summary.finals[name]} write={write} />,
+    })),
+  ];
+  const head = <span class="quiet small">{text.figuresAbout(generation)}</span>;
+  return (
+    <Card id="finals" title={text.figures} head={head}>
+      <Table label={text.figuresOfCases} columns={columns} rows={cases} keyOf={({ place }) => place} />
+    </Card>
+  );
+}
+
+/** The number of finished runs of a case. */
+function doneOf(members: Member[]): string {
   const done = members.filter(({ status }) => status === "finished").length;
   return done === members.length ? count(done) : text.finished(done, members.length);
 }
 
-interface SpreadProps {
-  spread: Spread | undefined;
-  write: (value: number | null) => string;
-}
-
-function Figure({ spread, write }: SpreadProps) {
-  if (!spread || spread.median === null) return <>–</>;
+function Figure({ spread, write }: { spread: Spread | undefined; write: Write }) {
+  if (!spread || spread.median === null) return <>{DASH}</>;
   const { median, low, high, min, max } = spread;
-  const one = min === max;
   return (
-    <span title={`from ${write(min)} to ${write(max)}`}>
+    <span title={text.extremes(write(min), write(max))}>
       <b>{write(median)}</b>
-      {!one && <span class="quiet small spread">{text.range(write(low), write(high))}</span>}
+      {min !== max && <span class="quiet small spread">{text.range(write(low), write(high))}</span>}
     </span>
   );
 }
 
-/** Every run with its own figures. */
-export function Members({ cases }: { cases: ShownCase[] }) {
-  const figures = figuresOf(cases);
-  const several = cases.length > 1;
-  return (
-    <section class="card" aria-labelledby="members">
-      <h2 id="members">{text.runs}</h2>
-      <div class="wide-table sweep-members" tabIndex={0} role="region" aria-label={text.everyRun}>
-        <table>
-          <thead>
-            <tr>
-              <th scope="col">{text.run}</th>
-              {several && <th scope="col">{text.case}</th>}
-              <th scope="col">{text.state}</th>
-              <th scope="col">{text.generations}</th>
-              {figures.map((name) => (
-                <th key={name} scope="col">
-                  {titleOf(name)}
-                </th>
-              ))}
-            </tr>
-          </thead>
-          <tbody>
-            {cases.flatMap((shown) =>
-              shown.summary.members.map((member, i) => (
-                <MemberRow key={member.run} {...{ shown, member, i, figures, several }} />
-              )),
-            )}
-          </tbody>
-        </table>
-      </div>
-    </section>
-  );
-}
-
-interface MemberProps {
+/** A run of a case. */
+interface Row {
   shown: ShownCase;
   member: Member;
   /** The member's index within its case. */
   i: number;
-  figures: string[];
-  several: boolean;
 }
 
-function MemberRow({ shown: { summary, place, name }, member, i, figures, several }: MemberProps) {
+/** Every run with its own figures. */
+export function Members({ cases }: { cases: ShownCase[] }) {
+  const rows = cases.flatMap((shown) =>
+    shown.summary.members.map((member, i): Row => ({ shown, member, i })),
+  );
+  const caseColumn: Column<Row> = { title: text.case, cell: ({ shown }) => <CaseName shown={shown} /> };
+  const columns: Column<Row>[] = [
+    { title: text.run, cell: ({ member }) => <a href={`/runs/${member.run}`}>{memberName(member)}</a> },
+    ...(cases.length > 1 ? [caseColumn] : []),
+    {
+      title: text.state,
+      cell: ({ member: { status } }) => <span class={`badge ${status}`}>{status}</span>,
+    },
+    {
+      title: text.generations,
+      cell: ({ member }) => `${count(member.generation)} / ${count(member.generations)}`,
+    },
+    ...figuresOf(cases).map(({ name, title, write }) => ({
+      title,
+      cell: ({ shown, i }: Row) => write(shown.summary.finals[name]?.values[i] ?? null),
+    })),
+  ];
   return (
-    <tr>
-      <th scope="row">
-        <a href={`/runs/${member.run}`}>{memberName(member)}</a>
-      </th>
-      {several && (
-        <td>
-          <LineKey index={place} /> {name}
-        </td>
-      )}
-      <td>
-        <span class={`badge ${member.status}`}>{member.status}</span>
-      </td>
-      <td>
-        {count(member.generation)} / {count(member.generations)}
-      </td>
-      {figures.map((figure) => (
-        <td key={figure}>{writerOf(figure)(summary.finals[figure]?.values[i] ?? null)}</td>
-      ))}
-    </tr>
+    <Card id="members" title={text.runs}>
+      <Table
+        label={text.everyRun}
+        kind="sweep-members"
+        columns={columns}
+        rows={rows}
+        keyOf={({ member }) => member.run}
+      />
+    </Card>
   );
 }

@@ -1,6 +1,5 @@
 /** The page of a sweep: summary, curves and all runs. */
 
-import { useEffect } from "preact/hooks";
 import type { CaseSummary, Sweep } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
@@ -18,9 +17,10 @@ import { Curves } from "../charts/curves/Curves";
 import { type ShownCase, bandsOf, caseName } from "./bands";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "./SweepStatus";
 import { moment } from "../ui/format";
+import { Card, Page, useTitle } from "../ui/Page";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { NotFound } from "../ui/NotFound";
-import { NameField } from "../run/RunLabels";
+import { NameField } from "../run/NameField";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, Check } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
@@ -35,26 +35,20 @@ export function SweepPage({ id, query }: Props) {
   const each = query.get("each") === "1";
   const { value, error } = useSweep(id, each);
   const title = value ? sweepTitle(value.sweep) : text.sweep;
-  useEffect(() => {
-    document.title = text.pageTitle(title);
-  }, [title]);
+  useTitle(title);
   return (
-    <main>
-      <nav class="crumbs" aria-label={text.breadcrumbs}>
-        <a href="/">{text.runs}</a>
-      </nav>
-      {error && value && <p class="banner wrong">{error}</p>}
+    <Page crumbs={[["/", text.runs]]} error={value && error} loading={!value && !error && text.loadingSweep}>
       {error && !value && <NotFound what={text.noSuchSweep} reason={error} id={id} />}
-      {!value && !error && <p class="quiet loading">{text.loadingSweep}</p>}
       {value && <LoadedSweep {...{ value, query, each }} />}
-    </main>
+    </Page>
   );
 }
 
 function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSearchParams; each: boolean }) {
   const { sweep, summary, curves } = value;
   const chosen = chosenOf(query, summary.cases.length);
-  const shown = chosen.map((place) => shownOf(summary.cases[place]!, place));
+  const cases = summary.cases.map(shownOf);
+  const shown = chosen.map((place) => cases[place]!);
   const choose = (places: number[]) => setQuery({ cases: places.length > 0 ? places.join() : "-" });
   return (
     <>
@@ -63,21 +57,20 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
         <SweepProgress sweep={sweep} />
         <SweepStates sweep={sweep} />
       </section>
-      <section class="card sweep-curves" aria-labelledby="bands">
-        <div class="card-head">
-          <h2 id="bands">{text.curves}</h2>
-          <span class="quiet small">{text.curvesAbout}</span>
-        </div>
+      <Card
+        id="curves"
+        kind="sweep-curves"
+        title={text.curves}
+        head={<span class="quiet small">{text.curvesAbout}</span>}
+      >
         <CurveBar log={query.get("log") === "1"}>
           <Check title={text.eachRun} name="each" on={each} />
         </CurveBar>
-        {summary.cases.length > 1 && (
-          <Cases cases={summary.cases.map(shownOf)} chosen={chosen} onChoose={choose} />
-        )}
+        {cases.length > 1 && <Cases cases={cases} chosen={chosen} onChoose={choose} />}
         <CaseCurves {...{ shown, query }} curves={each ? curves : null} />
-      </section>
-      <Finals cases={summary.cases.map(shownOf)} generation={summary.generation} />
-      <Members cases={summary.cases.map(shownOf)} />
+      </Card>
+      <Finals cases={cases} generation={summary.generation} />
+      <Members cases={cases} />
     </>
   );
 }
@@ -99,15 +92,13 @@ function chosenOf(query: URLSearchParams, count: number): number[] {
   return all.filter((place) => named.includes(place));
 }
 
-function CaseCurves({
-  shown,
-  query,
-  curves,
-}: {
+interface CurvesProps {
   shown: ShownCase[];
   query: URLSearchParams;
   curves: SweepDetail["curves"];
-}) {
+}
+
+function CaseCurves({ shown, query, curves }: CurvesProps) {
   const log = query.get("log") === "1";
   const plots = bandsOf(shown, curves);
   if (shown.length === 0) return <p class="quiet">{text.chooseCase}</p>;
@@ -141,7 +132,7 @@ function Head({ sweep }: { sweep: Sweep }) {
   );
 }
 
-/** Only what the state of any run allows. */
+/** Buttons for the commands that the state of any run allows. */
 function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
   const { id, status_counts, total } = sweep;
   const refusal = useRefusal(sweep);

@@ -2,13 +2,14 @@
 
 import type { Sweep } from "../api/types";
 import { short } from "../ui/format";
+import { Progress } from "../ui/Page";
 import { STATES } from "../run/RunStatus";
 import { text } from "./text";
 import "./sweeps.css";
 
 export const sweepTitle = ({ name, id }: Sweep) => name ?? text.sweepTitle(short(id));
 
-/** Number of runs and how it comes about: “6 runs: 3 seeds × 2 viscosity”. */
+/** The number of runs with its factors: “6 runs: 3 seeds × 2 values of world.viscosity”. */
 export function sizeOf({ seeds, grid, cases, total }: Sweep): string {
   const fields = Object.entries(grid).map(([path, values]) => text.valuesOf(values.length, path));
   const each = seeds.length > 0 ? [text.seeds(seeds.length)] : [];
@@ -18,20 +19,8 @@ export function sizeOf({ seeds, grid, cases, total }: Sweep): string {
 }
 
 export function SweepProgress({ sweep }: { sweep: Sweep }) {
-  const share = Math.round(1000 * sweep.progress) / 10;
-  const alive = Boolean(sweep.status_counts.running);
-  return (
-    <div
-      class={`progress ${alive ? "running" : ""}`}
-      role="progressbar"
-      aria-label={text.progress}
-      aria-valuenow={share}
-      aria-valuemin={0}
-      aria-valuemax={100}
-    >
-      <div style={{ width: `${share}%` }} />
-    </div>
-  );
+  const kind = sweep.status_counts.running ? "running" : "";
+  return <Progress label={text.progress} share={sweep.progress} kind={kind} />;
 }
 
 /** How many runs are in each state. */

@@ -1,29 +1,25 @@
-/** A sweep's curves: of each case the median, the quartiles around it, its runs behind. */
+/** Curves of a sweep: the median and quartiles of each case, in front of its runs. */
 
 import type { CaseSummary, CaseValues, Json, Member, SweepCurves } from "../api/types";
 import type { Band, Plot, Series } from "../charts/curves/plots";
-import { number, percent, short } from "../ui/format";
+import { number, short } from "../ui/format";
+import { SCORES } from "../run/figures";
 import { text } from "./text";
 
-type Figure = "qd_score" | "coverage" | "best";
-const FIGURES: [figure: Figure, title: string, write: Plot["write"]][] = [
-  ["qd_score", text.qdScore, number],
-  ["coverage", text.coverage, percent],
-  ["best", text.bestFitness, number],
-];
+type Score = (typeof SCORES)[0][0];
 
 export interface ShownCase {
   summary: CaseSummary;
-  /** Its place among all cases. */
+  /** Index among all cases. */
   place: number;
   name: string;
   colour: string;
   dash: number[] | undefined;
 }
 
-/** Figures that none of the runs has are not plotted. */
+/** One plot for each score that any run has. */
 export function bandsOf(cases: readonly ShownCase[], curves: SweepCurves | null): Plot[] {
-  return FIGURES.flatMap(([figure, title, write]) => {
+  return SCORES.flatMap(([figure, title, write]) => {
     const series: Series[] = [];
     const bands: Band[] = [];
     for (const shown of cases) {
@@ -31,13 +27,13 @@ export function bandsOf(cases: readonly ShownCase[], curves: SweepCurves | null)
       bands.push({ high: series.length, low: series.length + 1, colour: shown.colour });
       series.push(...bandOf(shown, figure));
     }
-    const told = series.some(({ y }) => y.some((value) => value !== null));
-    return told ? [{ title, write, series, bands }] : [];
+    const known = series.some(({ y }) => y.some((value) => value !== null));
+    return known ? [{ title, write, series, bands }] : [];
   });
 }
 
 /** Upper edge, lower edge, median. */
-function bandOf({ summary, name, colour, dash }: ShownCase, figure: Figure): Series[] {
+function bandOf({ summary, name, colour, dash }: ShownCase, figure: Score): Series[] {
   const { high, low, median } = summary[figure];
   const common = { colour, x: summary.generation, other: true };
   return [
@@ -47,7 +43,7 @@ function bandOf({ summary, name, colour, dash }: ShownCase, figure: Figure): Ser
   ];
 }
 
-function linesOf({ summary, colour }: ShownCase, figure: Figure, curves: SweepCurves | null): Series[] {
+function linesOf({ summary, colour }: ShownCase, figure: Score, curves: SweepCurves | null): Series[] {
   const mine = new Set(summary.members.map(({ run }) => run));
   const lines = curves?.runs.filter(({ run }) => mine.has(run)) ?? [];
   return lines.map((line) => ({
@@ -75,7 +71,5 @@ export function valueText(value: Json): string {
   return written.length > 40 ? `${written.slice(0, 39)}…` : written;
 }
 
-/** A run among the others of its case. */
-export function memberName({ seed, run }: Member): string {
-  return seed === null ? short(run) : text.seed(seed);
-}
+/** The name of a run within its case. */
+export const memberName = ({ seed, run }: Member) => (seed === null ? short(run) : text.seed(seed));

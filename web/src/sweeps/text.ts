@@ -2,9 +2,6 @@
 
 export const text = {
   cases: "Cases",
-  qdScore: "QD score",
-  coverage: "Coverage",
-  bestFitness: "Best fitness",
   evaluations: "Evaluations",
   figures: "Figures",
   figuresAbout: (generation: number | null) =>
@@ -19,10 +16,9 @@ export const text = {
   run: "Run",
   state: "State",
   generations: "Generations",
+  extremes: (min: string, max: string) => `from ${min} to ${max}`,
   range: (low: string, high: string) => `${low} to ${high}`,
   sweep: "Sweep",
-  pageTitle: (title: string) => `${title} · Microcosmos`,
-  breadcrumbs: "Breadcrumbs",
   noSuchSweep: "Sweep not found",
   loadingSweep: "Loading sweep …",
   status: "Status of the sweep",

@@ -1,15 +1,14 @@
 /** A download link that shows an error if the file does not exist. */
 
 import { checkFile, save } from "../api/files";
-import { messageOf } from "../api/problem";
-import { showToast } from "../store/toasts";
+import { showFailure } from "../store/toasts";
 
 export function FileLink({ url, name, title }: { url: string; name: string; title?: string }) {
   const download = (event: MouseEvent) => {
     event.preventDefault();
     checkFile(url)
       .then(() => save(url))
-      .catch((error) => showToast({ kind: "wrong", text: messageOf(error) }));
+      .catch(showFailure);
   };
   return (
     <a class="button" href={url} title={title} onClick={download}>

@@ -1,5 +1,6 @@
 /** A page for something that does not exist on the server. */
 
+import type { ComponentChildren } from "preact";
 import { isId } from "../store/router";
 import { text } from "./text";
 
@@ -10,13 +11,15 @@ interface Props {
   reason: string;
   /** The id in the address; a malformed one is named instead of the server's message. */
   id?: string;
+  children?: ComponentChildren;
 }
 
-export function NotFound({ what, reason, id }: Props) {
+export function NotFound({ what, reason, id, children }: Props) {
   return (
     <section class="empty card">
       <h1>{what}</h1>
       <p role="alert">{reasonOf(reason, id)}</p>
+      {children}
     </section>
   );
 }

@@ -1,4 +1,4 @@
-/** A choice between named options: a list, or a row of buttons. */
+/** Inputs for choices: a list, a row of buttons, a checkbox. */
 
 type Option<T extends string = string> = readonly (readonly [name: T, title: string])[];
 
@@ -30,6 +30,21 @@ export const Options = ({ of }: { of: Option }) => (
     ))}
   </>
 );
+
+interface CheckProps {
+  title: string;
+  on: boolean;
+  onChange: (on: boolean) => void;
+}
+
+export function Check({ title, on, onChange }: CheckProps) {
+  return (
+    <label class="compact">
+      <input type="checkbox" checked={on} onChange={(event) => onChange(event.currentTarget.checked)} />
+      {title}
+    </label>
+  );
+}
 
 interface SegmentsProps<T extends string> {
   label: string;

@@ -1,7 +1,6 @@
 /** Copy text to the clipboard, with a note on success or failure. */
 
-import { messageOf } from "../api/problem";
-import { showToast } from "../store/toasts";
+import { showFailure, showToast } from "../store/toasts";
 import { text } from "./text";
 
 export async function copyText(content: string, note: string): Promise<void> {
@@ -9,7 +8,7 @@ export async function copyText(content: string, note: string): Promise<void> {
     await writeClipboard(content);
     showToast({ kind: "note", text: note });
   } catch (error) {
-    showToast({ kind: "wrong", text: messageOf(error) });
+    showFailure(error);
   }
 }
 

@@ -9,7 +9,7 @@ export function useDisclosure<First extends HTMLElement>() {
   const wasOpen = useRef(false);
   useEffect(() => {
     if (open) first.current?.focus();
-    else if (wasOpen.current) button.current?.focus();
+    else if (wasOpen.current && document.activeElement === document.body) button.current?.focus();
     wasOpen.current = open;
   }, [open]);
   return { open, setOpen, button, first };

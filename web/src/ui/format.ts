@@ -28,8 +28,8 @@ export function scientific(value: number, digits = 1): string {
   return plain === "1" ? `10${power}` : `${plain} × 10${power}`;
 }
 
-export function count(value: number): string {
-  return Math.round(value).toLocaleString("en");
+export function count(value: number | null | undefined): string {
+  return value == null ? DASH : Math.round(value).toLocaleString("en");
 }
 
 export function bytes(value: number): string {
@@ -56,6 +56,8 @@ export function moment(iso: string): string {
   const options = { dateStyle: "medium", timeStyle: "short" } as const;
   return new Date(iso).toLocaleString(undefined, options);
 }
+
+export const inDays = (days: number, now: number) => new Date(now + days * 86_400_000).toISOString();
 
 export function short(id: string): string {
   return id.slice(0, 8);

@@ -1,6 +1,8 @@
 /** Texts of the shared components. */
 
 export const text = {
+  pageTitle: (title: string) => `${title} · Microcosmos`,
+  breadcrumbs: "Breadcrumbs",
   confirm: (verb: string, what: string) => `${verb} now: ${what}`,
   confirmShort: (verb: string) => `${verb} now`,
   keep: "Keep",

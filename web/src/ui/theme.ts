@@ -1,10 +1,12 @@
-/** Light or dark, as the system has it; canvases ask, everything else is CSS. */
+/** The colour scheme of the system, for canvases; everything else is CSS. */
 
 import { useEffect, useState } from "preact/hooks";
 
 const query = () => window.matchMedia("(prefers-color-scheme: dark)");
 
-export function useTheme(): "light" | "dark" {
+export type Theme = "light" | "dark";
+
+export function useTheme(): Theme {
   const [dark, setDark] = useState(() => query().matches);
   useEffect(() => {
     const media = query();

@@ -2,7 +2,8 @@
 
 import type { Queue, Worker } from "../api/types";
 import { useStore } from "../store/store";
-import { useWorkers } from "../store/refresh";
+import { useWorkers } from "../store/fetch";
+import { Card, Empty, Page, Progress } from "../ui/Page";
 import { bytes, count, duration, labelOf, number, percent, short } from "../ui/format";
 import { text } from "./text";
 import "./workers.css";
@@ -10,12 +11,7 @@ import "./workers.css";
 export function WorkersPage() {
   const { value, error } = useWorkers();
   return (
-    <main>
-      <header class="page-head">
-        <h1>{text.workers}</h1>
-      </header>
-      {error && <p class="banner wrong">{error}</p>}
-      {!value && !error && <p class="quiet loading">{text.loading}</p>}
+    <Page title={text.workers} error={error} loading={!value && text.loading}>
       {value?.workers.length === 0 && <NoWorkers />}
       {value && value.workers.length > 0 && (
         <ul class="workers" aria-label={text.workers}>
@@ -27,21 +23,23 @@ export function WorkersPage() {
         </ul>
       )}
       {value && <QueueCard queue={value.queue} />}
-    </main>
+    </Page>
   );
 }
 
 function NoWorkers() {
   return (
-    <section class="empty card">
-      <h2>{text.noWorkers}</h2>
-      <p>
-        {text.noWorkersHint}
-        <code>make run</code>
-        {text.orBeside}
-        <code>python -m worker.supervisor</code>.
-      </p>
-    </section>
+    <Empty
+      title={text.noWorkers}
+      hint={
+        <>
+          {text.noWorkersHint}
+          <code>make run</code>
+          {text.orBeside}
+          <code>python -m worker.supervisor</code>.
+        </>
+      }
+    />
   );
 }
 
@@ -129,23 +127,11 @@ function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
     return <p class="quiet">{status === "busy" ? text.preparing : text.waiting}</p>;
   }
   const run = { ...current_run, ...(live && { generation: live.generation, progress: live.progress }) };
-  const share = Math.round(1000 * run.progress) / 10;
   const attempt = run.attempt > 1 ? text.attempt(run.attempt) : "";
   return (
     <div>
-      <a class="run-name" href={`/runs/${run.id}`}>
-        {labelOf(run)} <code>{short(run.id)}</code>
-      </a>
-      <div
-        class="progress running"
-        role="progressbar"
-        aria-label={text.progressOf(labelOf(run), short(run.id))}
-        aria-valuemin={0}
-        aria-valuemax={100}
-        aria-valuenow={share}
-      >
-        <div style={{ width: `${share}%` }} />
-      </div>
+      <RunLink run={run} />
+      <Progress label={text.progressOf(labelOf(run), short(run.id))} share={run.progress} kind="running" />
       <span class="quiet small">
         {text.generation(count(run.generation), count(run.generations))}
         {attempt}
@@ -154,18 +140,23 @@ function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
   );
 }
 
+function RunLink({ run }: { run: Parameters<typeof labelOf>[0] & { id: string } }) {
+  return (
+    <a class="run-name" href={`/runs/${run.id}`}>
+      {labelOf(run)} <code>{short(run.id)}</code>
+    </a>
+  );
+}
+
 function QueueCard({ queue: { total, items } }: { queue: Queue }) {
   return (
-    <section class="card queue" aria-labelledby="queue-title">
-      <h2 id="queue-title">{text.queue}</h2>
+    <Card id="queue" kind="queue" title={text.queue}>
       {total === 0 && <p class="quiet">{text.queueEmpty}</p>}
       {total > 0 && (
         <ol>
           {items.map((run) => (
             <li key={run.id}>
-              <a class="run-name" href={`/runs/${run.id}`}>
-                {labelOf(run)} <code>{short(run.id)}</code>
-              </a>
+              <RunLink run={run} />
               <span class="quiet small">
                 {run.memory_bytes !== null && `${bytes(run.memory_bytes)}, `}
                 {text.waitingFor(duration(secondsSince(run.queued_at)))}
@@ -176,6 +167,6 @@ function QueueCard({ queue: { total, items } }: { queue: Queue }) {
         </ol>
       )}
       {total > items.length && <p class="quiet small">{text.more(count(total - items.length))}</p>}
-    </section>
+    </Card>
   );
 }

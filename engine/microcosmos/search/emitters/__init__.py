@@ -1,14 +1,23 @@
-"""Emitters: where children come from."""
+"""Emitters: sources of children."""
 
 from . import population
 from .cma_mae import CmaMae
 from .cma_mega import CmaMega
-from .elites import newcomers
-from .emitter import NO_PARENT, OPERATORS, Children, Divided, Emitter, Outcome, emit, tell
+from .elites import Random, newcomers
+from .emitter import (
+    NO_PARENT,
+    OPERATORS,
+    Children,
+    Divided,
+    Emitter,
+    Learner,
+    Outcome,
+    emit,
+    outcome,
+    tell,
+)
 from .lamarckian import Lamarckian
-from .learner import Learner, Slopes
 from .neat import Neat
-from .random import Random
 from .vectors import IsoLine
 
 __all__ = [
@@ -25,9 +34,9 @@ __all__ = [
     "Neat",
     "Outcome",
     "Random",
-    "Slopes",
     "emit",
     "newcomers",
+    "outcome",
     "population",
     "tell",
 ]

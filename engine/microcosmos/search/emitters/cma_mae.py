@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
+from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ...genomes import Vector
 from ...neat import Counters
@@ -21,19 +21,19 @@ from .emitter import Children, Keys, Outcome
 
 
 class Climb(eqx.Module):
-    """What the emitter knows."""
+    """The state of the emitter."""
 
     distribution: es.Distribution
     z: Float[Array, "slot gene"]
-    """What the present children were drawn by."""
+    """The normal numbers behind the present children."""
     thresholds: Float[Array, "cell"]
     restart: Bool[Array, ""]
-    """Whether to begin anew at some elite."""
+    """Whether to begin anew at an elite."""
 
 
 @dataclass(frozen=True)
 class CmaMae:
-    """One strategy whose children fill the emitter's slots."""
+    """One strategy whose children fill the emitter's slots; genes are cut at −1 and 1."""
 
     slots: int
     newcomer: Newcomer
@@ -43,7 +43,6 @@ class CmaMae:
     threshold: float
 
     def init(self, *, key: PRNGKeyArray) -> Climb:
-        """In the middle of all genes, or at an elite if there is one already."""
         mean = jnp.zeros_like(self.newcomer(key=key).values)
         return Climb(
             distribution=es.start(mean, self.step),
@@ -53,15 +52,8 @@ class CmaMae:
         )
 
     def emit(
-        self,
-        state: Climb,
-        archive: Elites,
-        counters: Counters,
-        generation: Int[Array, ""],
-        *,
-        keys: Keys,
+        self, state: Climb, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, Climb, Counters]:
-        """Drawn from the distribution; genes are cut at −1 and 1."""
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
         genotypes = archive.genotypes
         assert isinstance(genotypes, Vector)
@@ -74,7 +66,6 @@ class CmaMae:
         return children, state, counters
 
     def tell(self, state: Climb, outcome: Outcome) -> Climb:
-        """Rank by the height above thresholds, adapt, and let the thresholds follow."""
         here = state.thresholds[jnp.minimum(outcome.cell, self.cells - 1)]
         height = jnp.where(outcome.sound, outcome.fitness - here, -jnp.inf)
         order = jnp.argsort(-height, stable=True)

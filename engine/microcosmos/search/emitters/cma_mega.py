@@ -10,50 +10,49 @@ from dataclasses import dataclass, replace
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
+from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ...genomes import Genotype, Vector
 from ...neat import Counters
+from ..gradients import Slopes, unit
 from ..insertion import Elites
 from . import matrix_adaptation as es
 from .elites import Newcomer, draw, either, newcomers, orphans
 from .emitter import Children, Keys, Outcome
-from .learner import Slopes, unit
 
 
 class Ascent(eqx.Module):
-    """What the emitter knows."""
+    """The state of the emitter."""
 
     theta: Float[Array, "gene"]
     slopes: Float[Array, "output gene"]
-    """At θ, of length 1."""
+    """Slopes at θ, of length 1."""
     distribution: es.Distribution
-    """Of weights on the slopes."""
+    """The distribution of weights on the slopes."""
     z: Float[Array, "slot output"]
-    """What the present weights were drawn by."""
+    """The normal numbers behind the present weights."""
     weights: Float[Array, "slot output"]
     due: Bool[Array, ""]
-    """Whether the present children are its own: the first ones are newcomers."""
+    """Whether the present children are its own; the first ones are newcomers."""
     restart: Bool[Array, ""]
-    """Whether to begin anew at some elite."""
+    """Whether to begin anew at an elite."""
 
 
 @dataclass(frozen=True)
 class CmaMega:
-    """One θ whose children fill the emitter's slots."""
+    """One θ whose children fill the emitter's slots; genes are cut at −1 and 1."""
 
     slots: int
     newcomer: Newcomer
     outputs: int
-    """Fitness and descriptors."""
+    """Number of slopes: fitness and descriptors."""
     step: float = 0.5
     """Initial standard deviation of the weights."""
     rate: float = 1.0
-    """How far θ follows its best children."""
+    """Step of θ towards its best children."""
     lessons: int = 1
 
     def init(self, *, key: PRNGKeyArray) -> Ascent:
-        """In the middle of all genes; the first elites are newcomers."""
         theta = jnp.zeros_like(self.newcomer(key=key).values)
         none = jnp.zeros((self.slots, self.outputs), theta.dtype)
         return Ascent(
@@ -67,13 +66,7 @@ class CmaMega:
         )
 
     def emit(
-        self,
-        state: Ascent,
-        archive: Elites,
-        counters: Counters,
-        generation: Int[Array, ""],
-        *,
-        keys: Keys,
+        self, state: Ascent, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, Ascent, Counters]:
         """θ for every slot until slopes are known; newcomers while the archive is empty."""
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
@@ -97,13 +90,11 @@ class CmaMega:
         return children, state, counters
 
     def asks(self, state: Ascent, children: Children) -> Genotype:
-        """Of θ alone."""
         return Vector(state.theta[None])
 
     def learn(
         self, state: Ascent, children: Children, slopes: Slopes
     ) -> tuple[Children, Ascent]:
-        """Children along the slopes; genes are cut at −1 and 1."""
         assert isinstance(children.genotypes, Vector)
         rows = jnp.where(slopes.sound[0], unit(slopes.rows[0]), 0.0)
         values = jnp.clip(state.theta[None] + state.weights @ rows, -1.0, 1.0)

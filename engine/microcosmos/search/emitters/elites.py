@@ -1,6 +1,7 @@
-"""Drawing parents from an archive."""
+"""Children of elites and of nobody, and random search as a baseline."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -8,8 +9,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Int, PRNGKeyArray
 
 from ...genomes import Genotype
+from ...neat import Counters
 from ..insertion import Elites
-from .emitter import NO_PARENT, OPERATORS, Children, Keys
+from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
 
 Newcomer = Callable[..., Any]
 """`newcomer(key=...)` makes a random genotype."""
@@ -34,19 +36,38 @@ def newcomers(newcomer: Newcomer, keys: Keys) -> Children:
 
 
 def orphans(genotypes: Genotype, slots: int, name: str) -> Children:
-    """What an operator has made of no parent that could be named."""
+    """Children of an operator without known parents."""
     parents = jnp.full((slots, 2), NO_PARENT, jnp.int32)
     return Children(genotypes, parents, jnp.full(slots, OPERATORS.index(name), jnp.int32))
 
 
 def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) -> Children:
-    """What an operator has made of one or two parents, given as cells."""
+    """Children of an operator and one or two parents, given as cells."""
     first, second = (*parents, jnp.full_like(parents[0], NO_PARENT))[:2]
     pairs = jnp.stack([first, second], 1).astype(jnp.int32)
     return Children(genotypes, pairs, jnp.full(len(first), OPERATORS.index(name), jnp.int32))
 
 
 def either(archive: Elites, varied: Children, fresh: Children) -> Children:
-    """What was varied, or newcomers where nobody lives in the archive."""
+    """The varied children, or newcomers if the archive is empty."""
     any_elite = jnp.any(archive.occupied)
     return jax.tree.map(lambda one, other: jnp.where(any_elite, one, other), varied, fresh)
+
+
+@dataclass(frozen=True)
+class Random:
+    """New random genotypes in every generation."""
+
+    slots: int
+    newcomer: Newcomer
+
+    def init(self, *, key: PRNGKeyArray) -> None:
+        return None
+
+    def emit(
+        self, state: None, archive: Elites, counters: Counters, *, keys: Keys
+    ) -> tuple[Children, None, Counters]:
+        return newcomers(self.newcomer, keys), None, counters
+
+    def tell(self, state: None, outcome: Outcome) -> None:
+        return None

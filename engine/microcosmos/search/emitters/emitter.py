@@ -1,4 +1,4 @@
-"""What an emitter is: a source of children that learns what became of them."""
+"""Emitters: sources of children, which learn the outcome of their evaluation."""
 
 from typing import Protocol, runtime_checkable
 
@@ -10,7 +10,8 @@ from jaxtyping import Array, Bool, Float, Int, Key, PRNGKeyArray, PyTree
 
 from ...genomes import Genotype
 from ...neat import Counters
-from ..insertion import Elites
+from ..gradients import Slopes
+from ..insertion import Elites, Inserted
 
 OPERATORS = (
     "random",
@@ -26,15 +27,14 @@ OPERATORS = (
     "cma-mega",
     "fork",
 )
-"""How a child arose, by operator code."""
+"""Names of the operators that make children, by operator code."""
 
 NO_PARENT = -1
 
 Keys = Key[Array, "slot"]
-"""A key for each slot."""
 
 Kept = PyTree[Array | np.ndarray]
-"""An emitter's state."""
+"""The state of an emitter."""
 
 
 class Children(eqx.Module):
@@ -50,24 +50,33 @@ class Children(eqx.Module):
 
 
 class Outcome(eqx.Module):
-    """What became of children."""
+    """Evaluated children, and their insertion; see `Inserted` for its last four fields."""
 
     genotypes: Genotype
     fitness: Float[Array, "slot"]
     measures: Float[Array, "slot measure"]
     sound: Bool[Array, "slot"]
-    """Whether the evaluation counts."""
+    """Whether the evaluation is feasible."""
     cell: Int[Array, "slot"]
     entered: Bool[Array, "slot"]
     fresh: Bool[Array, "slot"]
-    """Whether the cell was empty before."""
     improvement: Float[Array, "slot"]
-    """Fitness above the elite that the cell had before; above 0 where it had none."""
+
+
+def outcome(candidates: Elites, inserted: Inserted) -> Outcome:
+    """The outcome of candidates for the archive."""
+    return Outcome(
+        genotypes=candidates.genotypes,
+        fitness=candidates.fitness,
+        measures=candidates.measures,
+        sound=candidates.occupied,
+        **vars(inserted),
+    )
 
 
 @runtime_checkable
 class Divided(Protocol):
-    """What an emitter keeps, where that is a population divided into species."""
+    """The state of an emitter with a population that is divided into species."""
 
     def sizes(self) -> dict[int, int]:
         """Members of each species of the last children, by its number."""
@@ -84,23 +93,35 @@ class Emitter(Protocol):
         ...
 
     def init(self, *, key: PRNGKeyArray) -> Kept:
-        """Before the first generation."""
+        """The state before the first generation."""
         ...
 
     def emit(
-        self,
-        state: Kept,
-        archive: Elites,
-        counters: Counters,
-        generation: Int[Array, ""],
-        *,
-        keys: Keys,
+        self, state: Kept, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, Kept, Counters]:
         """Children, with a key for each slot; new genes are numbered by `counters`."""
         ...
 
     def tell(self, state: Kept, outcome: Outcome) -> Kept:
         """The state once its children are measured and inserted."""
+        ...
+
+
+@runtime_checkable
+class Learner(Emitter, Protocol):
+    """An emitter that changes its children, `lessons` times, by derivatives it asks for."""
+
+    @property
+    def lessons(self) -> int:
+        """Lessons in a generation."""
+        ...
+
+    def asks(self, state: Kept, children: Children) -> Genotype:
+        """Genotypes, their number first, whose derivatives are wanted."""
+        ...
+
+    def learn(self, state: Kept, children: Children, slopes: Slopes) -> tuple[Children, Kept]:
+        """The children and the state after a lesson."""
         ...
 
 
@@ -113,33 +134,31 @@ def emit(
     *,
     key: PRNGKeyArray,
 ) -> tuple[Children, tuple[Kept, ...], Counters]:
-    """The children of all emitters, one after another, and what the emitters keep of them.
+    """The children of all emitters, one after another, and the emitters' new states.
 
-    Every slot has a key of its own, derived from the seed, the generation and the slot.
+    Every slot has its own key, derived from the seed, the generation and the slot.
     """
     batch = sum(emitter.slots for emitter in emitters)
     turn = jax.random.fold_in(key, generation)
     keys = jax.vmap(lambda slot: jax.random.fold_in(turn, slot))(jnp.arange(batch))
-    taught_offspring, kept, first = [], [], 0
+    found, kept, first = [], [], 0
     for emitter, state in zip(emitters, states, strict=True):
-        own = keys[first : first + emitter.slots]
-        offspring, state, counters = emitter.emit(
-            state, archive, counters, generation, keys=own
-        )
-        taught_offspring.append(offspring)
+        chosen = keys[first : first + emitter.slots]
+        offspring, state, counters = emitter.emit(state, archive, counters, keys=chosen)
+        found.append(offspring)
         kept.append(state)
         first += emitter.slots
-    children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *taught_offspring)
+    children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
     return children, tuple(kept), counters
 
 
 def tell(
     emitters: tuple[Emitter, ...], states: tuple[Kept, ...], outcome: Outcome
 ) -> tuple[Kept, ...]:
-    """Each emitter's state once it has seen what became of its own children."""
-    told, first = [], 0
+    """The state of each emitter after the outcome of its own children."""
+    after, first = [], 0
     for emitter, state in zip(emitters, states, strict=True):
         rows = slice(first, first + emitter.slots)
-        told.append(emitter.tell(state, jax.tree.map(lambda x, rows=rows: x[rows], outcome)))
+        after.append(emitter.tell(state, jax.tree.map(lambda x, rows=rows: x[rows], outcome)))
         first += emitter.slots
-    return tuple(told)
+    return tuple(after)

@@ -19,7 +19,7 @@ SMALLEST, LARGEST = 1e-10, 1e4
 
 
 class Distribution(eqx.Module):
-    """What children are drawn from."""
+    """A normal distribution of children."""
 
     mean: Float[Array, "gene"]
     sigma: Float[Array, ""]
@@ -29,14 +29,14 @@ class Distribution(eqx.Module):
 
 @dataclass(frozen=True)
 class Strategy:
-    """Weights and rates for so many genes and children."""
+    """Weights and rates for a number of genes and children."""
 
     genes: int
     children: int
 
     @property
     def weights(self) -> np.ndarray:
-        """Of the better half of the children, the best first; they sum to 1."""
+        """Weights of the better half of the children, the best first; they sum to 1."""
         half = max(1, self.children // 2)
         raw = log((self.children + 1) / 2) - np.log(np.arange(1, half + 1))
         raw = np.maximum(raw, 0.0)
@@ -44,7 +44,7 @@ class Strategy:
 
     @property
     def mu_eff(self) -> float:
-        """How many children count, as far as variance goes."""
+        """The effective number of children, by variance."""
         return float(1 / np.sum(self.weights**2))
 
     @property
@@ -67,13 +67,13 @@ class Strategy:
 
     @property
     def expected_length(self) -> float:
-        """Of a vector drawn from N(0, I)."""
+        """The expected length of a vector drawn from N(0, I)."""
         n = self.genes
         return sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n**2))
 
 
 def start(mean: Float[Array, "gene"], sigma: float) -> Distribution:
-    """Equal in all directions."""
+    """The distribution around a mean, equal in all directions."""
     genes = mean.shape[0]
     eye = jnp.eye(genes, dtype=mean.dtype)
     return Distribution(mean, jnp.asarray(sigma, mean.dtype), eye, jnp.zeros_like(mean))
@@ -82,14 +82,14 @@ def start(mean: Float[Array, "gene"], sigma: float) -> Distribution:
 def restarted(
     restart: Bool[Array, ""], anew: Distribution, before: Distribution
 ) -> Distribution:
-    """The new distribution where a search is to begin anew, or the one before."""
+    """The new distribution on a restart, else the one before."""
     return jax.tree.map(lambda one, other: jnp.where(restart, one, other), anew, before)
 
 
 def draw(
     distribution: Distribution, *, keys: Key[Array, "child"]
 ) -> tuple[Float[Array, "child gene"], Float[Array, "child gene"]]:
-    """Children, and the z that each was drawn by."""
+    """Children, and the z of each."""
     mean, m = distribution.mean, distribution.m
     z = jax.vmap(lambda key: jax.random.normal(key, mean.shape, mean.dtype))(keys)
     return mean[None] + distribution.sigma * (z @ m.T), z
@@ -101,7 +101,7 @@ def update(
     order: Int[Array, "child"],
     strategy: Strategy,
 ) -> Distribution:
-    """The distribution after its children were ranked; `order` has the best first."""
+    """The distribution after its children are ranked; `order` has the best first."""
     w = jnp.asarray(strategy.weights, z.dtype)
     best = z[order[: len(w)]]
     d = best @ distribution.m.T
@@ -121,7 +121,7 @@ def update(
 
 
 def spent(distribution: Distribution) -> Bool[Array, ""]:
-    """Whether nothing can come of it: converged, run away, or not finite."""
+    """Whether the distribution has converged, run away, or is not finite."""
     deviations = distribution.sigma * jnp.sqrt(jnp.sum(distribution.m**2, 1))
     finite = jnp.all(jnp.isfinite(distribution.m)) & jnp.all(jnp.isfinite(distribution.mean))
     useful = (jnp.max(deviations) > SMALLEST) & (jnp.max(deviations) < LARGEST)

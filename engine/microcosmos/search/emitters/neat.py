@@ -15,7 +15,7 @@ from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
 
 @dataclass(frozen=True)
 class Neat:
-    """Mutated elites, some of them crossed with another one first."""
+    """Mutated elites, each equally likely, some of them crossed with another one first."""
 
     slots: int
     newcomer: Newcomer
@@ -25,19 +25,11 @@ class Neat:
     """Probability that a child has two parents."""
 
     def init(self, *, key: PRNGKeyArray) -> None:
-        """Nothing is kept: numbers of genes are counted for all emitters together."""
+        return None  # Numbers of genes are counted for all emitters together.
 
     def emit(
-        self,
-        state: None,
-        archive: Elites,
-        counters: neat.Counters,
-        generation: Int[Array, ""],
-        *,
-        keys: Keys,
+        self, state: None, archive: Elites, counters: neat.Counters, *, keys: Keys
     ) -> tuple[Children, None, neat.Counters]:
-        """Children of elites drawn with equal probability; newcomers where there are none."""
-
         def child(key):
             select_key, mutate_key = jax.random.split(key)
             cell = draw(archive, key=select_key)
@@ -58,7 +50,7 @@ class Neat:
         return either(archive, varied, newcomers(self.newcomer, keys)), None, counters
 
     def tell(self, state: None, outcome: Outcome) -> None:
-        """Nothing is learnt but what the archive holds."""
+        return None
 
     def _crossed(self, archive: Elites, cell: Int[Array, ""], *, key: PRNGKeyArray):
         whether, which, cross_key = jax.random.split(jax.random.fold_in(key, 1), 3)

@@ -1,4 +1,4 @@
-"""A NEAT population of its own: parents are its networks, the archive only looks on."""
+"""NEAT with its own population: parents are its networks, the archive only records."""
 
 from dataclasses import dataclass, replace
 
@@ -17,20 +17,19 @@ from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
 AROSE = np.array(
     [OPERATORS.index(name) for name in ("copy", "neat", "crossover", "crossover")], np.int32
 )
-"""Our operator codes by NEAT's."""
+"""Our operator code for each of NEAT's."""
 
 
 class Population(eqx.Module):
-    """The networks of a generation, their fitness once they have one, and their species."""
+    """The networks of a generation, their fitness once measured, and their species."""
 
     networks: CPPN
     fitness: Float[Array, "slot"]
     species: neat.Species
     age: Int[Array, ""]
-    """Generations that were emitted."""
+    """Generations emitted so far."""
 
     def sizes(self) -> dict[int, int]:
-        """Members of each living species, by its number."""
         alive = np.asarray(self.species.alive)
         rows = (np.asarray(self.species.number), np.asarray(self.species.members))
         return dict(zip(*(row[alive].tolist() for row in rows), strict=True))
@@ -47,7 +46,6 @@ class Neat:
     outputs: int
 
     def init(self, *, key: PRNGKeyArray) -> Population:
-        """Newcomers, which the first generation consists of."""
         keys = jax.random.split(key, self.slots)
         networks = jax.vmap(lambda own: self.newcomer(key=own))(keys)
         return Population(
@@ -58,20 +56,14 @@ class Neat:
         )
 
     def founded(self, state: Population, networks: CPPN) -> Population:
-        """With other networks in the place of the first newcomers."""
+        """The state with given networks in place of the first newcomers."""
         count = networks.weight.shape[0]
         networks = jax.tree.map(lambda a, b: a.at[:count].set(b), state.networks, networks)
         species = neat.first_species(networks, self.settings)
         return replace(state, networks=networks, species=species)
 
     def emit(
-        self,
-        state: Population,
-        archive: Elites,
-        counters: neat.Counters,
-        generation: Int[Array, ""],
-        *,
-        keys: Keys,
+        self, state: Population, archive: Elites, counters: neat.Counters, *, keys: Keys
     ) -> tuple[Children, Population, neat.Counters]:
         """The newcomers first, then the children of the generation before."""
         cells = archive.occupied.shape[0]
@@ -98,5 +90,4 @@ class Neat:
         return children, grown, counters
 
     def tell(self, state: Population, outcome: Outcome) -> Population:
-        """Fitness decides who has children; what diverged has none."""
         return replace(state, fitness=jnp.where(outcome.sound, outcome.fitness, -jnp.inf))

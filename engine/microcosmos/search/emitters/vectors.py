@@ -1,4 +1,4 @@
-"""Variation of vectors of numbers: isotropic steps, and steps along the line between elites."""
+"""Variation of vectors: isotropic steps, and steps along the line between elites."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,8 @@ from .emitter import Children, Keys, Outcome
 class IsoLine:
     """x + σ₁ N(0, I) + σ₂ (y − x) N(0, 1): Vassiliades and Mouret, GECCO 2018, eq. 3.
 
-    Genes stay within −1 and 1. Without a line it is a Gaussian mutation.
+    Parents are elites, each equally likely. Genes stay within −1 and 1. Without a line it is
+    a Gaussian mutation.
     """
 
     slots: int
@@ -26,18 +27,11 @@ class IsoLine:
     line: float = 0.0
 
     def init(self, *, key: PRNGKeyArray) -> None:
-        """Nothing is kept."""
+        return None
 
     def emit(
-        self,
-        state: None,
-        archive: Elites,
-        counters: Counters,
-        generation: Int[Array, ""],
-        *,
-        keys: Keys,
+        self, state: None, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, None, Counters]:
-        """Children of elites drawn with equal probability; newcomers where there are none."""
         values, *cells = jax.vmap(lambda key: self._child(archive, key=key))(keys)
         parents = cells if self.line else cells[:1]
         name = "iso+line" if self.line else "gaussian"
@@ -45,7 +39,7 @@ class IsoLine:
         return either(archive, varied, newcomers(self.newcomer, keys)), None, counters
 
     def tell(self, state: None, outcome: Outcome) -> None:
-        """Nothing is learnt but what the archive holds."""
+        return None
 
     def _child(
         self, archive: Elites, *, key: PRNGKeyArray

@@ -6,7 +6,7 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray, PyTree
+from jaxtyping import Array, Bool, Float, PRNGKeyArray, PyTree
 
 from ...genomes import CPPN, Vector
 from ...neat import Counters
@@ -58,13 +58,7 @@ class QdaxEmitter:
         return Told(state, genes, fitness, place, none, jnp.zeros((), bool))
 
     def emit(
-        self,
-        state: Told,
-        archive: Elites,
-        counters: Counters,
-        generation: Int[Array, ""],
-        *,
-        keys: Keys,
+        self, state: Told, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, Told, Counters]:
         """Newcomers while the archive is empty, then what the emitter makes."""
         with jax.numpy_rank_promotion("allow"):
@@ -170,9 +164,7 @@ class NeatEmitter:
         if not jnp.issubdtype(key.dtype, jax.dtypes.prng_key):
             key = jax.random.wrap_key_data(key)
         keys = jax.random.split(key, self.batch_size)
-        children, _, _ = self.emitter.emit(
-            None, archive, emitter_state, jnp.asarray(0), keys=keys
-        )
+        children, _, _ = self.emitter.emit(None, archive, emitter_state, keys=keys)
         assert isinstance(children.genotypes, CPPN)
         return children.genotypes, {}
 

@@ -16,8 +16,8 @@ from jaxtyping import Array, Float, Int
 
 from ...genomes import Genotype, Vector
 from ..cells import Axis, Cells, Grid, places
-from ..emitters.learner import Slopes, unit
 from ..evaluation import Evaluation
+from ..gradients import Slopes, unit
 from ..insertion import Elites
 
 EXTRA_SCORES = ("measures", "generation", "slot")

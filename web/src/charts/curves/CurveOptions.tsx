@@ -2,7 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { setQuery } from "../../store/router";
-import { Select } from "../../ui/Select";
+import { Check as Toggle, Select } from "../../ui/Select";
 import { AXES, type CurveView, OVER, WINDOWS } from "./look";
 import { text } from "./text";
 import "./curves.css";
@@ -43,14 +43,5 @@ export function CurveBar({ log, children }: { log: boolean; children: ComponentC
 
 /** Something that is so or not: `1` under its name in the address. */
 export function Check({ title, name, on }: { title: string; name: string; on: boolean }) {
-  return (
-    <label class="compact">
-      <input
-        type="checkbox"
-        checked={on}
-        onChange={(event) => setQuery({ [name]: event.currentTarget.checked ? "1" : null })}
-      />
-      {title}
-    </label>
-  );
+  return <Toggle title={title} on={on} onChange={(checked) => setQuery({ [name]: checked ? "1" : null })} />;
 }

@@ -1,19 +1,11 @@
 /** One field of a spec: name, control, help and errors. */
 
 import type { Json } from "../../api/types";
-import { number } from "../../ui/format";
+import { count, number } from "../../ui/format";
+import { Term } from "../../ui/Term";
 import { valueAt } from "./document";
-import type { Leaf, NumberField } from "./fields";
-import {
-  ChoiceInput,
-  FlagInput,
-  ListInput,
-  NestedInput,
-  NumberInput,
-  SeveralInput,
-  TextInput,
-  rangeText,
-} from "./inputs";
+import type { Leaf, NumberField, Range } from "./fields";
+import { Input } from "./inputs";
 import { text } from "./text";
 
 export interface FormState {
@@ -24,46 +16,77 @@ export interface FormState {
   changed: ReadonlySet<string>;
   messages: ReadonlyMap<string, string[]>;
   change: (path: string, value: Json) => void;
-  /** Parts that are shown closed. */
+  /** Paths of collapsed sections. */
   closed: ReadonlySet<string>;
   close: (path: string, closed: boolean) => void;
 }
 
-/** Values that need more room than a number. */
+/** Kinds of values that need more room than a number. */
 const WIDE = ["list", "several", "nested"];
 
 export function Entry({ field, state }: { field: Leaf; state: FormState }) {
-  const value = valueAt(state.document, field.path);
-  const messages = state.messages.get(field.path) ?? [];
-  const common = {
-    id: `field-${field.path}`,
-    value,
-    invalid: messages.length > 0,
-    onChange: (next: Json) => state.change(field.path, next),
-  };
-  const unit = field.kind === "number" ? unitOf(field, state.document) : "";
+  const { path, kind, title, help } = field;
+  const value = valueAt(state.document, path);
+  const messages = state.messages.get(path) ?? [];
+  const unit = kind === "number" ? unitOf(field, state.document) : "";
+  const id = `field-${path}`;
   return (
-    <div class={`entry ${WIDE.includes(field.kind) ? "wide" : ""}`}>
-      <span class="entry-name">
-        <label id={`${common.id}-label`} for={field.kind === "several" ? undefined : common.id}>
-          {field.title}
-        </label>
-        <Reset path={field.path} state={state} />
-      </span>
-      {field.kind === "number" && <NumberInput {...common} field={field} unit={unit} />}
-      {field.kind === "choice" && <ChoiceInput {...common} field={field} />}
-      {field.kind === "list" && <ListInput {...common} />}
-      {field.kind === "several" && <SeveralInput {...common} field={field} />}
-      {field.kind === "nested" && <NestedInput {...common} />}
-      {field.kind === "flag" && <FlagInput {...common} />}
-      {field.kind === "text" && <TextInput {...common} />}
-      <div id={`${common.id}-about`} class="about">
+    <div class={`entry ${WIDE.includes(kind) ? "wide" : ""}`}>
+      <EntryName {...{ path, title, state }} target={kind === "several" ? undefined : id} />
+      <Input
+        {...{ field, value, unit, id }}
+        aria-invalid={messages.length > 0}
+        aria-describedby={`${id}-about`}
+        onChange={(next) => state.change(path, next)}
+      />
+      <div id={`${id}-about`} class="about">
         <p class="help">
-          {field.help} {aboutPlugin(field, value)} <span class="range">{rangeOf(field, unit)}</span>
+          {help} {aboutPlugin(field, value)} <span class="range">{rangeOf(field, unit)}</span>
         </p>
-        <Sentences messages={messages} />
+        <Messages messages={messages} />
       </div>
     </div>
+  );
+}
+
+interface NameProps {
+  /** Path of the value that the button resets. */
+  path: string;
+  title: string;
+  state: FormState;
+  /** Id of the control that the name labels. */
+  target?: string;
+}
+
+/** The name of a field, and a button that resets a changed value. */
+export function EntryName({ path, title, state, target }: NameProps) {
+  const Label = target ? "label" : "span";
+  return (
+    <span class="entry-name">
+      <Label id={`field-${path}-label`} for={target}>
+        <Term name={title} />
+      </Label>
+      {state.changed.has(path) && <Reset path={path} state={state} />}
+    </span>
+  );
+}
+
+/** The longest value that the reset button names. */
+const LONGEST = 12;
+
+function Reset({ path, state }: { path: string; state: FormState }) {
+  const value = valueAt(state.original, path);
+  const shown = typeof value === "number" ? number(value, 6) : String(value ?? text.auto);
+  const short = typeof value !== "object" && shown.length <= LONGEST;
+  return (
+    <button
+      type="button"
+      class="reset"
+      aria-describedby={`field-${path}-label`}
+      onClick={() => state.change(path, value)}
+    >
+      {short ? text.resetTo(shown) : text.undoChange}
+    </button>
   );
 }
 
@@ -89,43 +112,29 @@ function rangeOf(field: Leaf, unit: string): string {
   const { low = 0, high = 0 } = field.range;
   if (Math.max(Math.abs(low), Math.abs(high)) >= 1e9) return "";
   const range = rangeText(field.range);
-  return range && `${range.charAt(0).toUpperCase()}${range.slice(1)} ${unit}`.trimEnd();
+  return range && capital(`${range} ${unit}`.trimEnd());
 }
 
-/** The longest value that the reset button names. */
-const NAMED = 12;
-
-/** A button that resets a changed value. */
-export function Reset({ path, state }: { path: string; state: FormState }) {
-  if (!state.changed.has(path)) return null;
-  const value = valueAt(state.original, path);
-  const shown = typeof value === "number" ? number(value, 6) : String(value ?? text.auto);
-  const short = typeof value !== "object" && shown.length <= NAMED;
-  return (
-    <button
-      type="button"
-      class="reset"
-      aria-describedby={`field-${path}-label`}
-      onClick={() => state.change(path, value)}
-    >
-      {short ? text.resetTo(shown) : text.undoChange}
-    </button>
-  );
+/** `16 to 2,048`, `more than 0`, or nothing. */
+export function rangeText({ low, lowOpen, high, highOpen }: Range): string {
+  const limit = (value: number) => (Number.isInteger(value) ? count(value) : number(value, 6));
+  if (low !== undefined && high !== undefined && !lowOpen && !highOpen) {
+    return text.range(limit(low), limit(high));
+  }
+  const parts = [
+    low === undefined ? "" : text.low(lowOpen, limit(low)),
+    high === undefined ? "" : text.high(highOpen, limit(high)),
+  ];
+  return parts.filter(Boolean).join(", ");
 }
 
-export function Messages({ path, messages }: { path: string; messages: FormState["messages"] }) {
-  return <Sentences messages={messages.get(path) ?? []} />;
-}
+const capital = (sentence: string) => sentence.charAt(0).toUpperCase() + sentence.slice(1);
 
-function Sentences({ messages }: { messages: readonly string[] }) {
-  return messages.map((message) => (
-    <p key={message} class="wrong-text" role="alert">
-      {sentence(message)}
+/** Errors, each once. */
+export function Messages({ messages = [] }: { messages?: readonly (string | null)[] }) {
+  return [...new Set(messages.filter((message) => message !== null))].map((message) => (
+    <p key={message} class="wrong-text small" role="alert">
+      {capital(message.replaceAll("`", ""))}
     </p>
   ));
-}
-
-function sentence(message: string): string {
-  const plain = message.replaceAll("`", "");
-  return plain.charAt(0).toUpperCase() + plain.slice(1);
 }

@@ -2,11 +2,13 @@
 
 import type { ComponentChildren } from "preact";
 import type { Json } from "../../api/types";
+import { Term } from "../../ui/Term";
+import { Options } from "../../ui/Select";
 import { words } from "../../ui/format";
 import { countWithin } from "./changes";
 import { isOff, isThere, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
-import { Entry, type FormState, Messages, Reset } from "./Entry";
+import { Entry, EntryName, type FormState, Messages } from "./Entry";
 import { text } from "./text";
 
 interface Props {
@@ -14,7 +16,7 @@ interface Props {
   state: FormState;
 }
 
-/** Sections of a form; values that lie in none come first, together. */
+/** Sections of a form; the first one holds the values outside all others. */
 export function partsOf(form: Section): (Section | Union)[] {
   const whole = (field: Field) => field.kind === "section" || field.kind === "union";
   const loose = form.fields.filter((field) => !whole(field));
@@ -61,19 +63,23 @@ interface PartProps {
   children?: ComponentChildren;
 }
 
-/** A section, one that can be switched off, or one of several. */
+/** A section that may be switched off, or one of several kinds. */
 function Part({ part, state, kind, open = true, children }: PartProps) {
   const off = part.kind === "section" && isOff(part, state.document);
   const section = part.kind === "union" ? partOf(part, state.document) : part;
   const switchable = part.kind === "section" && part.fresh !== undefined;
   return (
     <fieldset class={kind} aria-label={part.title}>
-      {!switchable && <legend>{part.title}</legend>}
+      {!switchable && (
+        <legend>
+          <Term name={part.title} />
+        </legend>
+      )}
       {switchable && <Switch {...{ part, off, state }} />}
       {part.help && <p class="help">{part.help}</p>}
       <div hidden={!open} id={kind === "inside" ? `inside-${part.path || "general"}` : undefined}>
         {part.kind === "union" && <Kinds union={part} state={state} />}
-        <Messages path={part.path} messages={state.messages} />
+        <Messages messages={state.messages.get(part.path)} />
         {section && !off && <Fields section={section} state={state} />}
         {children}
       </div>
@@ -81,19 +87,15 @@ function Part({ part, state, kind, open = true, children }: PartProps) {
   );
 }
 
-/** Turns a section on with its defaults, or with what the preset has there. */
+/** A switch for a section; its first values are those of the preset, or defaults. */
 function Switch({ part, off, state }: { part: Section; off: boolean; state: FormState }) {
   const fresh = valueAt(state.original, part.path) ?? part.fresh!;
+  const id = `field-${part.path}`;
   return (
     <div class="entry heading">
-      <span class="entry-name">
-        <label id={`field-${part.path}-label`} for={`field-${part.path}`}>
-          {part.title}
-        </label>
-        <Reset path={part.path} state={state} />
-      </span>
+      <EntryName path={part.path} title={part.title} state={state} target={id} />
       <input
-        id={`field-${part.path}`}
+        id={id}
         type="checkbox"
         class="switch"
         checked={!off}
@@ -103,12 +105,12 @@ function Switch({ part, off, state }: { part: Section; off: boolean; state: Form
   );
 }
 
-/** Which of several parts; another one begins with its defaults. */
+/** The choice between several parts; a newly chosen one has its defaults. */
 function Kinds({ union, state }: { union: Union; state: FormState }) {
   const path = `${union.path}.${union.tag}`;
   const value = valueAt(state.document, path);
   const original = valueAt(state.original, union.path);
-  // Parts of other fields differ as a whole; of the same, by their word.
+  // Parts with other fields are reset as a whole, parts with the same fields by their name.
   const at = state.changed.has(path) ? path : union.path;
   const choose = (name: string) => {
     const before = valueAt(state.original, path) === name;
@@ -116,23 +118,14 @@ function Kinds({ union, state }: { union: Union; state: FormState }) {
   };
   return (
     <div class="entry">
-      <span class="entry-name">
-        <label id={`field-${at}-label`} for={`field-${path}`}>
-          {words(union.tag)}
-        </label>
-        <Reset path={at} state={state} />
-      </span>
+      <EntryName path={at} title={words(union.tag)} state={state} target={`field-${path}`} />
       <select
         id={`field-${path}`}
         value={String(value)}
         aria-describedby={`field-${path}-about`}
         onChange={(event) => choose(event.currentTarget.value)}
       >
-        {[...union.parts.keys()].map((name) => (
-          <option key={name} value={name}>
-            {name}
-          </option>
-        ))}
+        <Options of={[...union.parts.keys()].map((name) => [name, name])} />
       </select>
       <p id={`field-${path}-about`} class="help about">
         {union.parts.get(String(value))?.help}
@@ -161,11 +154,10 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
   const remove = (i: number) => state.change(rows.path, items.toSpliced(i, 1));
   return (
     <div class="form-rows" role="group" aria-label={rows.title}>
-      <p class="rows-title entry-name">
-        <span id={`field-${rows.path}-label`}>{rows.title}</span>
-        <Reset path={rows.path} state={state} />
-      </p>
-      <Messages path={rows.path} messages={state.messages} />
+      <div class="rows-title">
+        <EntryName path={rows.path} title={rows.title} state={state} />
+      </div>
+      <Messages messages={state.messages.get(rows.path)} />
       {rows.help && <p class="help">{rows.help}</p>}
       {items.map((_, i) => (
         <Part key={`${i} of ${items.length}`} part={rows.row(i)} state={state} kind="form-row">

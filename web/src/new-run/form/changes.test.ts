@@ -2,7 +2,7 @@ import { describe, expect, inject, it } from "vitest";
 import type { Spec } from "../../api/types";
 import { countWithin, changedPaths, equalPreset } from "./changes";
 import { type NumberField, type Section, formOf } from "./fields";
-import { rangeText } from "./inputs";
+import { rangeText } from "./Entry";
 
 const EXPERIMENTS = inject("experiments");
 

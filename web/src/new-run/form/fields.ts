@@ -4,10 +4,10 @@ import type { Json, Schema, Spec } from "../../api/types";
 import { words } from "../../ui/format";
 import { type Range, defaultOf, join, notNull, rangeOf, resolve, text } from "./schema";
 
-export type { Range } from "./schema";
+export type { Range };
 
 interface Common {
-  /** Where the value is in the spec: `world.viscosity`, `archive.descriptors.0.low`. */
+  /** Path of the value in the spec: `world.viscosity`, `archive.descriptors.0.low`. */
   path: string;
   title: string;
   help: string;
@@ -26,17 +26,17 @@ export interface PluginOption {
 export interface Section extends Common {
   kind: "section";
   fields: Field[];
-  /** Names of fields that follow from the others where they are left out. */
+  /** Names of fields whose missing values follow from other fields. */
   following: string[];
   /** The settings of each plug-in of a choice when it is chosen. */
   settings?: { path: string; fresh: Record<string, Json> };
-  /** What it begins with when it is switched on; not there where it cannot be switched off. */
+  /** Its first value when it is switched on; undefined if it cannot be switched off. */
   fresh?: Json;
-  /** Whether people seldom change what is in it. */
+  /** True if its values are seldom changed. */
   seldom?: boolean;
 }
 
-/** One of several parts, told apart by the word at `tag`. */
+/** One of several parts; the value at `tag` names it. */
 export interface Union extends Common {
   kind: "union";
   tag: string;
@@ -56,7 +56,7 @@ export interface NumberField extends Common {
   whole: boolean;
   nullable: boolean;
   unit: string;
-  /** Where the unit depends on another value: that value's path, and the units. */
+  /** The value that decides the unit, by its path, and the unit for each value. */
   unitBy?: { path: string; units: Record<string, string> };
   range: Range;
 }
@@ -68,7 +68,7 @@ export interface Choice extends Common {
   plugins?: Record<string, PluginOption>;
 }
 
-/** Several numbers in a row. */
+/** A list of numbers. */
 export interface List extends Common {
   kind: "list";
   item: NumberField;
@@ -76,31 +76,23 @@ export interface List extends Common {
   most: number;
 }
 
-/** Some of a few words. */
+/** A selection of several options. */
 export interface Several extends Common {
   kind: "several";
   options: Json[];
   least: number;
 }
 
-/** Lists within a list, which are written as JSON. */
-interface Nested extends Common {
-  kind: "nested";
-}
-
-interface Flag extends Common {
-  kind: "flag";
-}
-
-interface TextField extends Common {
-  kind: "text";
+/** `nested` is a list of lists, which is typed as JSON. */
+interface Plain extends Common {
+  kind: "nested" | "flag" | "text";
 }
 
 interface Constant extends Common {
   kind: "constant";
 }
 
-export type Leaf = NumberField | Choice | List | Several | Nested | Flag | TextField;
+export type Leaf = NumberField | Choice | List | Several | Plain;
 export type Field = Section | Union | Rows | Constant | Leaf;
 
 export function formOf(schema: Schema): Section {
@@ -113,8 +105,9 @@ function sectionOf(schema: Schema, root: Schema, common: Common): Section {
   const fields = Object.entries(properties).flatMap(([key, property]) => {
     const path = join(common.path, key);
     if (property.parts) return settingsOf(property, root, common.path, path);
-    // A part that has a unit has it for all that is in it.
-    const field = fieldOf({ ...unitIn(schema), ...property }, root, key, path, following.includes(key));
+    // The unit of a part is that of all fields in it.
+    const unit: Schema = schema.unit === undefined ? {} : { unit: schema.unit };
+    const field = fieldOf({ ...unit, ...property }, root, key, path, following.includes(key));
     return property.inline === true ? (field as Section).fields : [field];
   });
   const seldom = schema.seldom === true && { seldom: true };
@@ -140,9 +133,7 @@ function freshSettings(schema: Schema, path: string): Pick<Section, "settings"> 
   return { settings: { path: join(path, String(plugin.settings_of)), fresh } };
 }
 
-const unitIn = ({ unit }: Schema): Schema => (unit === undefined ? {} : { unit });
-
-/** What may be left out and has no default of its own takes it from the other fields. */
+/** Names of optional fields without a default. */
 function followingOf(schema: Schema, root: Schema): string[] {
   const needed = (schema.required ?? []) as string[];
   const properties = Object.entries((schema.properties ?? {}) as Record<string, Schema>);
@@ -164,7 +155,7 @@ function fieldOf(property: Schema, root: Schema, key: string, path: string, foll
   }
   switch (inner.type) {
     case "object": {
-      const section = sectionOf({ ...inner, ...unitIn(schema) }, root, common);
+      const section = sectionOf({ ...inner, unit: schema.unit ?? inner.unit! }, root, common);
       if (inner === schema) return section;
       return { ...section, fresh: schema.default ?? defaultOf(inner, root) };
     }
@@ -174,32 +165,24 @@ function fieldOf(property: Schema, root: Schema, key: string, path: string, foll
       return { ...common, kind: "flag" };
     case "integer":
     case "number":
-      return numberOf(
-        { ...inner, ...unitsBy(schema) },
-        {
-          ...common,
-          nullable,
-          unit: text(schema.unit ?? inner.unit),
-        },
-      );
+      return numberOf({ ...inner, ...schema }, inner.type, { ...common, nullable });
     default:
       return { ...common, kind: "text" };
   }
 }
 
-const unitsBy = ({ unit_of = null, units = null }: Schema): Schema =>
-  unit_of === null ? {} : { unit_of, units };
-
-function numberOf(schema: Schema, known: Common & { nullable: boolean; unit: string }): NumberField {
-  const whole = schema.type === "integer";
-  return { ...known, kind: "number", whole, range: rangeOf(schema), ...unitByOf(schema, known.path) };
-}
-
-/** The unit follows from a value beside it. */
-function unitByOf({ unit_of, units }: Schema, path: string): Pick<NumberField, "unitBy"> {
-  if (typeof unit_of !== "string") return {};
-  const beside = path.split(".").slice(0, -1).join(".");
-  return { unitBy: { path: join(beside, unit_of), units: units as Record<string, string> } };
+function numberOf(schema: Schema, type: Json, common: Common & { nullable: boolean }): NumberField {
+  const { unit, unit_of, units } = schema;
+  const around = common.path.split(".").slice(0, -1).join(".");
+  const unitBy = { path: join(around, String(unit_of)), units: units as Record<string, string> };
+  return {
+    ...common,
+    kind: "number",
+    whole: type === "integer",
+    unit: text(unit),
+    ...(typeof unit_of === "string" && { unitBy }),
+    range: rangeOf(schema),
+  };
 }
 
 function arrayOf(schema: Schema, root: Schema, common: Common): Field {
@@ -207,13 +190,17 @@ function arrayOf(schema: Schema, root: Schema, common: Common): Field {
   const [least, most] = [Number(schema.minItems ?? 0), Number(schema.maxItems ?? Infinity)];
   if (Array.isArray(item.enum)) return { ...common, kind: "several", options: item.enum, least };
   if (item.type === "array") return { ...common, kind: "nested" };
-  if (Array.isArray(item.oneOf)) return rowsOf(schema, root, common);
   if (item.type !== "integer" && item.type !== "number") return rowsOf(schema, root, common);
-  const number = numberOf(item, { ...common, nullable: false, unit: text(item.unit) });
-  return { ...common, kind: "list", item: number, least, most };
+  return {
+    ...common,
+    kind: "list",
+    item: numberOf(item, item.type, { ...common, nullable: false }),
+    least,
+    most,
+  };
 }
 
-/** The word that a part is known by is its constant, or any of several. */
+/** The names of a part are the constant or the options of its tag. */
 function unionOf(schema: Schema, root: Schema, common: Common): Union {
   const parts = (schema.oneOf as Schema[]).map((part) => resolve(part, root));
   const tag = tagOf(parts);
@@ -228,6 +215,7 @@ function unionOf(schema: Schema, root: Schema, common: Common): Union {
   return { ...common, kind: "union", tag, parts: new Map(named) };
 }
 
+/** The field that names each of several parts. */
 export function tagOf(parts: Schema[]): string {
   const [first, ...rest] = parts.map((part) => (part.properties ?? {}) as Record<string, Schema>);
   const fixed = (part: Record<string, Schema>, key: string) =>
@@ -235,7 +223,7 @@ export function tagOf(parts: Schema[]): string {
   const found = Object.keys(first ?? {}).find(
     (key) => "const" in first![key]! && rest.every((part) => fixed(part, key)),
   );
-  if (found === undefined) throw new Error("a union of parts needs a word to tell them apart");
+  if (found === undefined) throw new Error("A union needs a field with a constant in each of its parts.");
   return found;
 }
 

@@ -1,112 +1,57 @@
-/** The controls of a form, one for each kind of value. */
+/** The control of a form field, for each kind of value. */
 
 import { useEffect, useState } from "preact/hooks";
 import type { Json } from "../../api/types";
-import { count, number } from "../../ui/format";
+import { Options } from "../../ui/Select";
 import { typed, typedJson, typedList } from "./document";
-import type { Choice, NumberField, Range, Several } from "./fields";
+import type { Choice, Leaf, Several } from "./fields";
 import { text } from "./text";
 
-interface Common {
-  id: string;
+interface Props<Kind extends Leaf = Leaf> {
+  field: Kind;
   value: Json;
-  invalid: boolean;
-  onChange: (value: Json) => void;
-}
-
-interface NumberProps extends Common {
-  field: NumberField;
   unit: string;
+  onChange: (value: Json) => void;
+  id: string;
+  "aria-invalid": boolean;
+  "aria-describedby": string;
 }
 
-export function NumberInput({ id, value, invalid, onChange, field, unit }: NumberProps) {
-  const [shown, setShown] = useState(() => written(value));
-  // Typing "1e" or "0." must not be rewritten; a preset's value must.
-  useEffect(() => {
-    setShown((now) => (Object.is(typed(now), value) ? now : written(value)));
-  }, [value]);
+export function Input(props: Props) {
+  const { field, value, unit: _, onChange, ...attributes } = props;
+  if (field.kind === "choice") return <ChoiceInput {...props} field={field} />;
+  if (field.kind === "several") return <SeveralInput {...props} field={field} />;
+  if (field.kind !== "flag") return <WrittenInput {...props} />;
   return (
-    <span class="number">
-      <input
-        id={id}
-        inputMode={field.whole ? "numeric" : "decimal"}
-        autoComplete="off"
-        spellcheck={false}
-        value={shown}
-        placeholder={field.nullable ? text.auto : ""}
-        aria-invalid={invalid}
-        aria-describedby={`${id}-about`}
-        onInput={(event) => {
-          setShown(event.currentTarget.value);
-          onChange(typed(event.currentTarget.value));
-        }}
-      />
-      {unit && <span class="unit">{unit}</span>}
-    </span>
-  );
-}
-
-export function ChoiceInput({ id, value, invalid, onChange, field }: Common & { field: Choice }) {
-  return (
-    <select
-      id={id}
-      value={JSON.stringify(value)}
-      aria-invalid={invalid}
-      aria-describedby={`${id}-about`}
-      onChange={(event) => onChange(JSON.parse(event.currentTarget.value))}
-    >
-      {field.nullable && <option value="null">{text.auto}</option>}
-      {field.options.map((option) => (
-        <option key={String(option)} value={JSON.stringify(option)}>
-          {field.plugins?.[String(option)]?.title ?? String(option).replaceAll("_", " ")}
-        </option>
-      ))}
-    </select>
-  );
-}
-
-/** Several numbers, written in a row. */
-export function ListInput({ id, value, invalid, onChange }: Common) {
-  const write = (items: Json) => (Array.isArray(items) ? items.join(", ") : "");
-  return <Written {...{ id, value, invalid, onChange }} write={write} read={typedList} />;
-}
-
-/** Lists within a list, written as JSON. */
-export function NestedInput({ id, value, invalid, onChange }: Common) {
-  const write = (items: Json) => (typeof items === "string" ? items : JSON.stringify(items));
-  return <Written {...{ id, value, invalid, onChange }} write={write} read={typedJson} />;
-}
-
-interface WrittenProps extends Common {
-  write: (value: Json) => string;
-  read: (text: string) => Json;
-}
-
-/** A text that stands for a value; what is being typed is not rewritten, a preset's is. */
-function Written({ id, value, invalid, onChange, write, read }: WrittenProps) {
-  const [text, setText] = useState(() => write(value));
-  const same = (a: Json, b: Json) => JSON.stringify(a) === JSON.stringify(b);
-  useEffect(() => {
-    setText((now) => (same(read(now), value) ? now : write(value)));
-  }, [value]);
-  return (
-    <textarea
-      id={id}
-      rows={2}
-      spellcheck={false}
-      value={text}
-      aria-invalid={invalid}
-      aria-describedby={`${id}-about`}
-      onInput={(event) => {
-        setText(event.currentTarget.value);
-        onChange(read(event.currentTarget.value));
-      }}
+    <input
+      {...attributes}
+      type="checkbox"
+      class="switch"
+      checked={value === true}
+      onChange={(event) => onChange(event.currentTarget.checked)}
     />
   );
 }
 
-/** A box for each of a few words; the order stays that of the schema. */
-export function SeveralInput({ id, value, invalid, onChange, field }: Common & { field: Several }) {
+const words = (option: Json) => String(option).replaceAll("_", " ");
+
+function ChoiceInput({ field, value, unit: _, onChange, ...attributes }: Props<Choice>) {
+  const options = field.options.map(
+    (option) => [JSON.stringify(option), field.plugins?.[String(option)]?.title ?? words(option)] as const,
+  );
+  return (
+    <select
+      {...attributes}
+      value={JSON.stringify(value)}
+      onChange={(event) => onChange(JSON.parse(event.currentTarget.value))}
+    >
+      <Options of={field.nullable ? [["null", text.auto], ...options] : options} />
+    </select>
+  );
+}
+
+/** A check box for each option; the selected ones stay in the order of the schema. */
+function SeveralInput({ field, value, onChange, id, "aria-invalid": invalid }: Props<Several>) {
   const chosen = Array.isArray(value) ? value : [];
   const turn = (option: Json, on: boolean) =>
     onChange(field.options.filter((each) => (each === option ? on : chosen.includes(each))));
@@ -120,53 +65,57 @@ export function SeveralInput({ id, value, invalid, onChange, field }: Common & {
             aria-invalid={invalid}
             onChange={(event) => turn(option, event.currentTarget.checked)}
           />
-          {String(option).replaceAll("_", " ")}
+          {words(option)}
         </label>
       ))}
     </div>
   );
 }
 
-export function FlagInput({ id, value, invalid, onChange }: Common) {
+interface Format {
+  write: (value: Json) => string;
+  read: (text: string) => Json;
+}
+
+const TEXT: Format = { write: (value) => (typeof value === "string" ? value : ""), read: (text) => text };
+
+/** How values of a kind are written in a text field, and read from it. */
+const FORMATS: Partial<Record<Leaf["kind"], Format>> = {
+  number: { write: (value) => (value === null ? "" : String(value)), read: typed },
+  list: { write: (items) => (Array.isArray(items) ? items.join(", ") : ""), read: typedList },
+  nested: {
+    write: (items) => (typeof items === "string" ? items : JSON.stringify(items)),
+    read: typedJson,
+  },
+};
+
+const same = (a: Json, b: Json) => JSON.stringify(a) === JSON.stringify(b);
+
+function WrittenInput({ field, value, unit, onChange, ...attributes }: Props) {
+  const { write, read } = FORMATS[field.kind] ?? TEXT;
+  const [shown, setShown] = useState(() => write(value));
+  // Typing "1e" or "0." must not be rewritten; a preset's value must.
+  useEffect(() => setShown((now) => (same(read(now), value) ? now : write(value))), [value]);
+  const control = {
+    ...attributes,
+    value: shown,
+    spellcheck: false,
+    onInput: ({ currentTarget }: { currentTarget: HTMLInputElement | HTMLTextAreaElement }) => {
+      setShown(currentTarget.value);
+      onChange(read(currentTarget.value));
+    },
+  };
+  if (field.kind === "list" || field.kind === "nested") return <textarea {...control} rows={2} />;
+  if (field.kind !== "number") return <input {...control} />;
   return (
-    <input
-      id={id}
-      type="checkbox"
-      class="switch"
-      checked={value === true}
-      aria-invalid={invalid}
-      aria-describedby={`${id}-about`}
-      onChange={(event) => onChange(event.currentTarget.checked)}
-    />
+    <span class="number">
+      <input
+        {...control}
+        inputMode={field.whole ? "numeric" : "decimal"}
+        autoComplete="off"
+        placeholder={field.nullable ? text.auto : ""}
+      />
+      {unit && <span class="unit">{unit}</span>}
+    </span>
   );
 }
-
-export function TextInput({ id, value, invalid, onChange }: Common) {
-  return (
-    <input
-      id={id}
-      value={typeof value === "string" ? value : ""}
-      aria-invalid={invalid}
-      aria-describedby={`${id}-about`}
-      onInput={(event) => onChange(event.currentTarget.value)}
-    />
-  );
-}
-
-function written(value: Json): string {
-  return value === null ? "" : String(value);
-}
-
-/** `16 to 2,048`, `more than 0`, or nothing. */
-export function rangeText({ low, lowOpen, high, highOpen }: Range): string {
-  const parts = [
-    low === undefined ? "" : text.low(lowOpen, limit(low)),
-    high === undefined ? "" : text.high(highOpen, limit(high)),
-  ];
-  if (low !== undefined && high !== undefined && !lowOpen && !highOpen) {
-    return text.range(limit(low), limit(high));
-  }
-  return parts.filter(Boolean).join(", ");
-}
-
-const limit = (value: number) => (Number.isInteger(value) ? count(value) : number(value, 6));

@@ -1,4 +1,4 @@
-/** A sweep of gaits: how far each swimmer comes at each viscosity, in each form. */
+/** Results of gaits: the displacement of each swimmer at each viscosity, for each coupling. */
 
 import { useMemo, useState } from "preact/hooks";
 import type { ResultRow } from "../../api/types";
@@ -7,6 +7,7 @@ import { formOf } from "../../ui/coupling";
 import { NotForceFree } from "../../ui/NotForceFree";
 import { Plot, type Point } from "../../charts/plot/Plot";
 import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
+import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
 import { MarkReplay, useLastMark } from "./MarkReplay";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
@@ -26,12 +27,12 @@ export function GaitsRun({ run, query }: ResultsProps) {
   const settled = useLastMark(near);
   return (
     <>
-      <section class="card plot-card" aria-labelledby="sweep-title">
-        <div class="card-head">
-          <h2 id="sweep-title">{text.title}</h2>
-          <span class="spring" />
-          {forms.length > 1 && <Forms forms={forms} chosen={asked} />}
-        </div>
+      <Card
+        id="displacement"
+        kind="plot-card"
+        title={text.title}
+        head={forms.length > 1 && <Forms forms={forms} chosen={asked} />}
+      >
         {missing ? (
           <p class="quiet waiting">{missing}</p>
         ) : (
@@ -45,7 +46,7 @@ export function GaitsRun({ run, query }: ResultsProps) {
           </div>
         )}
         {rows.length > 0 && <Key rows={rows} />}
-      </section>
+      </Card>
       {rows.length > 0 && <TableCard run={run} query={query} rows={rows} />}
     </>
   );
@@ -54,12 +55,15 @@ export function GaitsRun({ run, query }: ResultsProps) {
 function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
   const choices = forms.map((form): [string, string] => [form, formOf(form).title]);
   return (
-    <Segments
-      label={text.form}
-      choices={[...choices, [REPLAYS, text.sideBySide]]}
-      value={chosen}
-      onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
-    />
+    <>
+      <span class="spring" />
+      <Segments
+        label={text.form}
+        choices={[...choices, [REPLAYS, text.sideBySide]]}
+        value={chosen}
+        onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
+      />
+    </>
   );
 }
 
@@ -71,10 +75,10 @@ interface SweepProps extends ResultsProps {
 
 function Sweep({ run, form, all, onNear }: SweepProps) {
   const rows = useMemo(() => all.filter((row) => row.form === form), [all, form]);
-  // Marks stay the same while one of them is pointed at.
+  // The marks must stay the same objects while the pointer is on one of them.
   const lines = useMemo(() => sweepLines(run.spec, rows, hrefOf(run)), [run.id, run.spec, rows]);
   const { title, about, free } = formOf(form);
-  // Bodies that push themselves go many times as far: the others would lie along the axis.
+  // Bodies that push themselves go many times as far, so they do not share an axis with the others.
   const peers = all.filter((row) => formOf(String(row.form)).free === free);
   return (
     <div class="sweep">
@@ -93,7 +97,7 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
   );
 }
 
-/** What the marks say, as far as there are such. */
+/** The meaning of the kinds of marks that are shown. */
 function Key({ rows }: { rows: ResultRow[] }) {
   const doubtful = rows.some((row) => row.status === "ok" && (row.limited || row.warnings));
   const failed = rows.some((row) => row.status !== "ok");

@@ -1,7 +1,7 @@
 /** The replay of the mark that is pointed at, beside its plot. */
 
 import { useState } from "preact/hooks";
-import { useDebounced } from "../../store/throttle";
+import { useDebounced } from "../../store/timing";
 import type { Point } from "../../charts/plot/Plot";
 import { ReplayLoop } from "../../replay/Loop";
 import { RecordingStatus, useReplays } from "../../replay/recordings";

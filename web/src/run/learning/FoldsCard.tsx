@@ -1,4 +1,4 @@
-/** Filaments over the pictures that they fold into; while they learn, the pictures alone. */
+/** Filaments over their target pictures; the pictures alone until the run has finished. */
 
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import * as api from "../../api/client";
@@ -7,6 +7,7 @@ import { useFetched } from "../../store/fetch";
 import { useStore } from "../../store/store";
 import { setQuery } from "../../store/router";
 import { number, short } from "../../ui/format";
+import { Card } from "../../ui/Page";
 import { FoldPlayer } from "./FoldPlayer";
 import { pictureOf } from "./fold";
 import { RecordingStatus, useReplays } from "../../replay/recordings";
@@ -25,13 +26,12 @@ export function FoldsCard({ run, query, rows }: Props) {
   const chosen = targets?.find(({ name }) => name === query.get("picture")) ?? targets?.[0];
   const row = rows.find(({ picture }) => picture === chosen?.name);
   return (
-    <section class="card folds" id="folds" aria-labelledby="folds-title" tabIndex={-1}>
-      <h2 id="folds-title">{rows.length > 0 ? text.filaments : text.pictures}</h2>
+    <Card id="folds" kind="folds" title={rows.length > 0 ? text.filaments : text.pictures}>
       {error && <p class="wrong-text small">{error}</p>}
       {targets && <Pictures {...{ run, targets, rows, chosen: chosen!.name }} />}
       {row?.creature && <Fold key={row.creature} {...{ run, row }} target={chosen!} />}
       {targets && rows.length === 0 && <p class="quiet small">{text.noFilaments}</p>}
-    </section>
+    </Card>
   );
 }
 

@@ -1,10 +1,11 @@
-/** A run that learns by gradients: its course, and the creatures it has come to. */
+/** A run that learns by gradients: its curve, and its creatures before and after. */
 
 import { useMemo } from "preact/hooks";
 import type { ResultRow, Run } from "../../api/types";
 import { useStore } from "../../store/store";
 import { number, short } from "../../ui/format";
 import { Plot } from "../../charts/plot/Plot";
+import { Card } from "../../ui/Page";
 import { ReplayPlayer } from "../../replay/ReplayPlayer";
 import { courseOf } from "./learning";
 import { FoldsCard } from "./FoldsCard";
@@ -19,14 +20,13 @@ export function LearningRun({ run, query }: ResultsProps) {
   const rows = results?.rows ?? [];
   return (
     <>
-      <section class="card plot-card" aria-labelledby="course-title">
-        <h2 id="course-title">{course?.title ?? text.progress}</h2>
+      <Card id="course" kind="plot-card" title={course?.title ?? text.progress}>
         {course && course.lines.length > 0 ? (
           <Plot {...course} />
         ) : (
           <p class="quiet waiting">{text.firstStep}</p>
         )}
-      </section>
+      </Card>
       {run.experiment === "folding" && <FoldsCard {...{ run, query, rows }} />}
       {run.experiment === "refinement" && run.status === "finished" && rows.length > 1 && (
         <Improvement run={run} before={rows[0]!} after={rows[rows.length - 1]!} />
@@ -44,30 +44,26 @@ interface Ends {
 
 function Improvement({ run, before, after }: Ends) {
   return (
-    <section class="card films" aria-labelledby="films-title">
-      <h2 id="films-title">{text.beforeAndAfter}</h2>
+    <Card id="films" kind="films" title={text.beforeAndAfter}>
       {before.creature === after.creature ? (
         <p class="quiet">{text.unchanged}</p>
       ) : (
         <SideBySide {...{ run, before, after }} />
       )}
-    </section>
+    </Card>
   );
 }
 
 function SideBySide({ run, before, after }: Ends) {
   const rendering = useReplays([before.creature!, after.creature!]);
   const [first, last] = rendering.replays ?? [];
-  const films = useMemo(
-    () =>
-      first && last
-        ? [
-            { replay: first, name: <Name {...{ run, row: before }} title={text.before} /> },
-            { replay: last, name: <Name {...{ run, row: after }} title={text.after} /> },
-          ]
-        : [],
-    [run.id, first, last],
-  );
+  const films = useMemo(() => {
+    if (!first || !last) return [];
+    return [
+      { replay: first, name: <Name {...{ run, row: before }} title={text.before} /> },
+      { replay: last, name: <Name {...{ run, row: after }} title={text.after} /> },
+    ];
+  }, [run.id, first, last]);
   return (
     <>
       <RecordingStatus {...rendering} what={text.recordingBoth} />

@@ -1,13 +1,13 @@
-/** A population that evolves networks: its species over time, and the best network so far. */
+/** Cards of neuroevolution: the species over time, and the best network so far. */
 
 import { useMemo } from "preact/hooks";
 import * as api from "../../api/client";
 import type { Genes, Genome, Run } from "../../api/types";
 import { networkOf } from "../../decode/network";
 import type { Elites } from "../../store/elites";
-import { useFetched } from "../../store/fetch";
-import { useSpecies } from "../../store/runPage";
+import { useFetched, useSpecies } from "../../store/fetch";
 import { number, short } from "../../ui/format";
+import { Card } from "../../ui/Page";
 import { NetworkGraph } from "../../creature/NetworkGraph";
 import { SpeciesPlot } from "./SpeciesPlot";
 import { text } from "./text";
@@ -26,14 +26,13 @@ function SpeciesCard({ run }: { run: Run }) {
   const { value, error } = useSpecies(run);
   const some = value !== null && value.generation.length > 0;
   return (
-    <section class="card" id="species" aria-labelledby="species-title" tabIndex={-1}>
-      <h2 id="species-title">{text.species}</h2>
+    <Card id="species" title={text.species}>
       {error && <p class="wrong-text small">{error}</p>}
       {some && <SpeciesPlot history={value} />}
       {value && !some && (
         <p class="quiet waiting">{run.generation === 0 ? text.noSpeciesYet : text.noSpecies}</p>
       )}
-    </section>
+    </Card>
   );
 }
 
@@ -47,24 +46,21 @@ function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
   const { value, error } = useFetched(async () => (sha ? await api.readCreature(sha) : null), [sha]);
   const genome = value?.identity.genome;
   const network = useMemo(() => (genome && isNetwork(genome) ? networkOf(genome) : null), [genome]);
+  const head = best && (
+    <span class="quiet">
+      {text.bestOf(number(best.fitness, 4), best.generation)}{" "}
+      <a href={`/creatures/${best.creature}?run=${run.id}`}>
+        <code>{short(best.creature)}</code>
+      </a>
+    </span>
+  );
   return (
-    <section class="card" id="network" aria-labelledby="best-title" tabIndex={-1}>
-      <div class="card-head wraps">
-        <h2 id="best-title">{text.bestNetwork}</h2>
-        {best && (
-          <span class="quiet">
-            {text.bestOf(number(best.fitness, 4), best.generation)}{" "}
-            <a href={`/creatures/${best.creature}?run=${run.id}`}>
-              <code>{short(best.creature)}</code>
-            </a>
-          </span>
-        )}
-      </div>
+    <Card id="network" title={text.bestNetwork} head={head}>
       {error && <p class="wrong-text small">{error}</p>}
       {!best && <p class="quiet waiting">{text.noBest}</p>}
       {network && <NetworkGraph network={network} />}
       {genome && !network && <p class="quiet">{text.noNetwork}</p>}
-    </section>
+    </Card>
   );
 }
 

@@ -1,6 +1,7 @@
-/** A measurement of wall time: parts, memory and exponents against the number of nodes. */
+/** Results of a scaling run: wall time and memory against the number of nodes. */
 
 import { bytes, number } from "../../ui/format";
+import { Card } from "../../ui/Page";
 import { Plot } from "../../charts/plot/Plot";
 import { logAxis, memoryLines, nodesAxis, timeLines } from "./scaling";
 import { type ResultsProps, TableCard, useTable } from "../results/resultsPage";
@@ -22,19 +23,17 @@ export function ScalingRun({ run, query }: ResultsProps) {
   return (
     <>
       <div class="run-columns scaling">
-        <section class="card plot-card" aria-labelledby="time-title">
-          <h2 id="time-title">{text.wallTime}</h2>
+        <Card id="time" kind="plot-card" title={text.wallTime}>
           <Plot
             title={text.wallTimePlot}
             x={x}
             y={logAxis(text.seconds, times, (value) => number(value, 2))}
             lines={times}
           />
-        </section>
-        <section class="card plot-card" aria-labelledby="memory-title">
-          <h2 id="memory-title">{text.memory}</h2>
+        </Card>
+        <Card id="memory" kind="plot-card" title={text.memory}>
           <Plot title={text.memoryPlot} x={x} y={logAxis(text.memory, memory, bytes)} lines={memory} />
-        </section>
+        </Card>
       </div>
       <TableCard run={run} query={query} rows={rows} />
     </>

@@ -1,0 +1,294 @@
+"""An attempt at a run: what a worker reads and writes while it computes."""
+
+import logging
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import case, func
+from sqlalchemy.orm import Session
+
+from microcosmos.archive.report import Report
+
+from ..core.database import clock
+from ..creatures import initial
+from ..runs import log
+from ..runs.announce import announce
+from ..runs.lifecycle import change, hand_back, release
+from ..services.services import Services
+from ..storage.artifacts import checkpoint_path
+from ..tables import (
+    CANCELLED,
+    FAILED,
+    FINISHED,
+    OVERRIDE_NEEDED,
+    PAUSED,
+    RUNNING,
+    Generation,
+    Run,
+)
+from . import recording
+from .checkpoints import fall_back, newest_sound, point_at
+from .retry import retried
+
+logger = logging.getLogger(__name__)
+
+ANNOUNCE_SECONDS = 1.0
+"""Least time between two events that describe the whole run."""
+CHECK_SECONDS = 1.0
+"""Least time between two reads of the requested state."""
+
+
+class ClaimLost(Exception):
+    """The run has ended, or another attempt has claimed it."""
+
+
+@dataclass
+class Attempt:
+    """Each write proves in its own transaction that the attempt is current, or `ClaimLost`."""
+
+    services: Services
+    run_id: UUID
+    number: int
+    spec: dict[str, Any]
+    generation: int
+    """Generation of the last checkpoint; 0 without one."""
+    seconds: float
+    """Wall time of the recorded generations."""
+    other_device: bool = False
+    """The run may continue on another kind of device than the one that started it."""
+    stop_requested: Callable[[], bool] = lambda: False
+    """Tells whether the worker has to stop."""
+    patience: float = 0.0
+    """Seconds that a write waits for a database that is away."""
+    requested_state: str | None = None
+    """`paused` or `cancelled`, if a person has requested it."""
+    checked_at: float = field(default_factory=time.monotonic)
+    announced_at: float = 0.0
+
+    def __post_init__(self) -> None:
+        # The first generation is saved at once: its file says where the cells of a CVT are.
+        self.saved_at = time.monotonic() if self.generation else -math.inf
+
+    def use(self, device: str) -> None:
+        """Record the kind of device that computes."""
+        self._update(f"Computing on {device}.", device=device)
+
+    @retried
+    def initial(self) -> list[dict[str, Any]]:
+        """Return the files of the initial creatures."""
+        names = self.spec.get("search", {}).get("initial", [])
+        with self.services.sessions.read() as session:
+            return initial.files(session, names)
+
+    @retried
+    def restore(self) -> bytes | None:
+        """Return the content of the newest sound checkpoint; None before the first one.
+
+        Older checkpoints stand in for damaged ones, and what was recorded after them is
+        deleted. Raise `CheckpointUnavailable`, and delete nothing, if a file is missing or all
+        are damaged: then the store may be the wrong one, and a person has to decide. Call it
+        before anything is recorded.
+        """
+        data, sound, damaged = newest_sound(self.services, self.run_id)
+        if sound and damaged:
+            text = (
+                f"The checkpoint of generation {self.generation} is damaged; "
+                f"the run resumes from generation {sound.generation}."
+            )
+            with self._current(warning=text) as (session, run):
+                fall_back(session, run, sound, damaged)
+                log.note(session, run, text, "warning")
+            logger.warning("run %s: %s (%s)", self.run_id, text, ", ".join(damaged))
+            self.generation, self.seconds = run.checkpoint_generation, run.seconds
+            self.publish_rewind()
+            announce(self.services, self.run_id)
+        return data
+
+    def publish_rewind(self) -> None:
+        place = {"run": str(self.run_id), "generation": self.generation}
+        self.services.events.publish("rewind", self.run_id, place)
+
+    def interrupted(self) -> bool:
+        """Tell whether to stop now; experiments ask between blocks."""
+        now = time.monotonic()
+        if self.requested_state is None and now - self.checked_at >= CHECK_SECONDS:
+            self.checked_at = now
+            self.check()
+        return self.requested_state is not None or self.stop_requested()
+
+    @retried
+    def check(self) -> None:
+        """Read the requested state."""
+        with self._current() as (_, run):
+            self.requested_state = run.requested_state
+
+    @retried
+    def record(self, report: Report, seconds: float) -> None:
+        """Record a generation that took so many seconds."""
+        total = self.seconds + seconds
+        rows = recording.rows_of(report, total)
+        with self._current(**rows.run) as (session, run):
+            # After an outage an earlier try may have been committed.
+            if session.get(Generation, (self.run_id, report.generation)) is None:
+                recording.write(session, self.run_id, rows)
+            self.requested_state = run.requested_state
+        self.seconds = total
+        for kind, data in recording.events(self.run_id, rows):
+            self.services.events.publish(kind, self.run_id, data)
+        if time.monotonic() - self.announced_at >= ANNOUNCE_SECONDS:
+            self.announced_at = time.monotonic()
+            announce(self.services, self.run_id, without=["spec"])
+
+    def checkpoint_due(self) -> bool:
+        return time.monotonic() - self.saved_at >= self.services.settings.checkpoint_interval
+
+    def checkpoint(self, generation: int, data: bytes) -> bool:
+        """Save a recorded generation. If that fails, warn on the run and return False."""
+        self.saved_at = time.monotonic()
+        try:
+            self.save(generation, data)
+        except OSError as error:
+            logger.warning("No checkpoint of generation %s: %s", generation, error)
+            self.warn(
+                f"The checkpoint of generation {generation} could not be written ({error}). "
+                f"The one of generation {self.generation} stays; the worker will try again."
+            )
+            return False
+        return True
+
+    @retried
+    def save(self, generation: int, data: bytes) -> None:
+        """Write the file of a recorded generation and make it the newest checkpoint.
+
+        Raise `OSError` if it cannot be written; the previous one stays.
+        """
+        path = checkpoint_path(self.run_id, generation, data)
+        stored = self.services.artifacts.write(path, data)
+        with self._current() as (session, run):
+            if generation > run.generation:
+                raise ValueError(
+                    "`generation` of a checkpoint must be recorded, that is at most "
+                    f"{run.generation}; got {generation}"
+                )
+            superfluous = point_at(session, self.run_id, generation, stored)
+            if generation > run.checkpoint_generation:
+                run.checkpoint_generation = generation
+                run.attempts_without_checkpoint = 0
+                run.warning = None
+            log.note_checkpoint(session, run, generation, stored.size)
+        self.generation = generation
+        for path in superfluous:
+            try:
+                self.services.artifacts.delete(path)
+            except OSError as error:  # The new checkpoint is valid all the same.
+                logger.warning("a superfluous file stays: %s", error)
+
+    def end(self, done: bool, generation: int, save: Callable[[], bytes]) -> None:
+        """Checkpoint the last whole generation and end the attempt.
+
+        If the last checkpoint cannot be written, the run pauses: resuming it computes again
+        what was not saved.
+        """
+        saved = generation == self.generation or self.checkpoint(generation, save())
+        if done and saved:
+            self.finish()
+        elif self.requested_state == CANCELLED:
+            self.cancel()
+        elif done or self.requested_state == PAUSED:
+            self.pause()
+        else:
+            self.requeue()
+
+    def warn(self, text: str) -> None:
+        """Show a warning on the run; the next checkpoint clears it."""
+        self._update(text, "warning", log.UNSAVED, warning=text)
+
+    def finish(self) -> None:
+        self._update(None, **_ended(FINISHED), error=None)
+
+    def cancel(self) -> None:
+        self._update(None, **_ended(CANCELLED))
+
+    def refuse(self, text: str) -> None:
+        """Fail at once: every other attempt would fail, too."""
+        self._update(text, "error", **_ended(FAILED), error=text)
+
+    def pause(self) -> None:
+        self._update(f"Stopped after generation {self.generation}.", **_paused())
+
+    def wait_for_override(self, reason: str) -> None:
+        """Pause until a person allows this kind of device, where bits may differ."""
+        text = f"{reason} To go on here, resume the run; its archive will say so."
+        self._update(
+            text, "warning", **_paused(), warning=text, device_override=OVERRIDE_NEEDED
+        )
+
+    def set_aside(self, reason: str) -> None:
+        """Pause until a person brings the plug-in or file that this worker lacks."""
+        text = f"{reason.rstrip('.')}. Then resume the run."
+        self._update(text, "warning", **_paused(), warning=text)
+
+    @retried
+    def requeue(self) -> None:
+        """Return the run to the queue, as on SIGTERM: this is not a failed attempt."""
+        with self._current() as (session, _):
+            hand_back(session, self.run_id)
+        announce(self.services, self.run_id)
+
+    def fail(self, error: str) -> None:
+        """Keep the traceback and requeue the run, unless this was the last attempt."""
+        with self.services.sessions.write.begin() as session:
+            if not release(session, self.run_id, Run.attempt == self.number, error=error):
+                raise ClaimLost(f"run {self.run_id}, attempt {self.number}")
+        announce(self.services, self.run_id)
+
+    @retried
+    def _update(
+        self,
+        text: str | None,
+        level: log.Level = "info",
+        kind: str | None = None,
+        **values: Any,
+    ) -> None:
+        """Change the run and log why, and its status if the attempt ends."""
+        with self._current(**values) as (session, run):
+            if text is not None:
+                log.note(session, run, text, level, kind)
+            if run.status != RUNNING:
+                log.note_status(session, run)
+        announce(self.services, self.run_id)
+
+    @contextmanager
+    def _current(self, **values: Any) -> Iterator[tuple[Session, Run]]:
+        """Begin a transaction, lock and change the run if the attempt is the current one."""
+        with self.services.sessions.write.begin() as session:
+            mine = (Run.status == RUNNING, Run.attempt == self.number)
+            run = change(session, self.run_id, *mine, **(values or {"attempt": self.number}))
+            if run is None:
+                raise ClaimLost(f"run {self.run_id}, attempt {self.number}")
+            yield session, run
+
+
+def _ended(status: str) -> dict[str, Any]:
+    return {
+        "status": status,
+        "finished_at": clock(),
+        "requested_state": None,
+        "requested_at": None,
+    }
+
+
+def _paused() -> dict[str, Any]:
+    """Paused, unless a person has requested to cancel meanwhile."""
+    return {
+        "status": func.coalesce(Run.requested_state, PAUSED),
+        "finished_at": case((Run.requested_state == CANCELLED, clock()), else_=None),
+        "worker": None,
+        "requested_state": None,
+        "requested_at": None,
+    }

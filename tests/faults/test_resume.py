@@ -1,0 +1,223 @@
+"""Interrupted runs end with the same archive, byte for byte."""
+
+import io
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+from contextlib import ExitStack, suppress
+
+import h5py
+import pytest
+from drive import (
+    REDIS,
+    RENDERER,
+    interrupt,
+    kill_job,
+    kill_supervisor,
+    pause_and_resume,
+    stop_worker,
+    wait_until,
+)
+from grown_up import Missing, services
+
+from microcosmos.archive import file
+
+FEW = [kill_job, pause_and_resume]
+MANY = [kill_job, stop_worker, kill_job, pause_and_resume, kill_supervisor, kill_job]
+LATEST = 9
+"""Faults come before this generation, so that the run is not over."""
+
+
+@pytest.mark.parametrize("faults", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
+def test_a_run_that_is_killed_stopped_and_paused_ends_with_the_same_archive(
+    place, spec, undisturbed, faults
+):
+    moments = sorted(random.choices(range(LATEST), k=len(faults)))
+    run = place.submit(spec)
+    interrupt(place, run, faults, moments)
+    assert place.wait(run, "finished")["attempt"] == 1 + len(faults)
+    assert place.archive(run) == undisturbed.archive, f"interrupted at {moments}"
+    assert place.told(run) == undisturbed.told
+
+
+@pytest.mark.long
+def test_a_run_goes_on_while_redis_is_killed_and_started_again(place, spec, undisturbed):
+    run = place.submit(spec)
+    attempt = place.reach(run, 1)
+    place.signal(REDIS, signal.SIGKILL)
+    assert place.wait(run, "finished")["attempt"] == attempt
+    assert place.archive(run) == undisturbed.archive
+    place.wait(place.submit(spec), "finished")
+
+
+@pytest.mark.long
+def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(place, spec, undisturbed):
+    run = place.submit(spec)
+    attempt = place.reach(run, 2)
+    owner = place.owner(run)
+    with place.frozen([owner, *owner.children(recursive=True)]):
+        successor = place.reach(run, 0, after=attempt)
+    assert place.wait(run, "finished")["attempt"] == successor == attempt + 1
+    assert place.archive(run) == undisturbed.archive
+    assert place.told(run) == undisturbed.told
+    wait_until(lambda: not owner.children(), 10, "the woken job has ended")
+    assert owner.is_running()
+
+
+@pytest.mark.long
+def test_ctrl_c_leaves_no_process_and_the_next_start_goes_on(place, spec, undisturbed):
+    run = place.submit(spec)
+    place.reach(run, 3)
+    assert place.end(signal.SIGINT) == 0
+    assert not list(place.processes())
+    place.start()
+    place.wait(run, "finished")
+    assert place.archive(run) == undisturbed.archive
+    assert place.told(run) == undisturbed.told
+
+
+SWEEP = {
+    "experiment": "gaits",
+    "swimmers": ["worm", "tadpole", "ray"],
+    "forms": ["ours"],
+    "viscosities": [0.1, 1.0],
+    "period": 40,
+    "cycles": 1,
+}
+
+
+@pytest.fixture
+def result(place):
+    """All that people get of a run: its table, as JSON and CSV, and its file."""
+
+    def read(run):
+        whole = place.http.get(f"/api/v1/runs/{run}/results").raise_for_status().json()
+        table = place.http.get(f"/api/v1/runs/{run}/results.csv").raise_for_status().text
+        return whole, table, place.archive(run)
+
+    return read
+
+
+@pytest.mark.long
+def test_a_sweep_that_is_killed_and_paused_ends_with_the_same_table(place, result):
+    undisturbed, disturbed = place.submit(SWEEP), place.submit(SWEEP)
+    interrupt(place, disturbed, [kill_job, pause_and_resume], [0, 1])
+    place.wait(disturbed, "finished", seconds=300)
+    place.wait(undisturbed, "finished", seconds=300)
+    whole, table, file = result(undisturbed)
+    assert [row["swimmer"] for row in whole["rows"][::2]] == SWEEP["swimmers"]
+    assert result(disturbed) == (whole, table, file)
+
+
+@pytest.fixture
+def elsewhere():
+    """The settings of an installation on this machine's PostgreSQL and Redis."""
+    with ExitStack() as stack:
+        try:
+            settings = stack.enter_context(services())
+        except Missing as missing:
+            pytest.skip(str(missing))
+        yield settings
+
+
+@pytest.mark.long
+def test_postgresql_and_a_redis_server_give_the_same_bytes(
+    elsewhere, installation, spec, undisturbed
+):
+    """`undisturbed` is of SQLite and the embedded Redis."""
+    place = installation(**elsewhere)
+    place.start()
+    assert "the one that MICROCOSMOS_REDIS_URL names" in place.output.read_text()
+    assert not place.named(REDIS)
+    assert not list(place.folder.glob("*.sqlite"))
+    run = place.submit(spec)
+    interrupt(place, run, [kill_job, kill_supervisor, stop_worker], [1, 4, 7])
+    assert place.wait(run, "finished")["attempt"] == 4
+    assert place.archive(run) == undisturbed.archive
+    assert place.told(run) == undisturbed.told
+
+
+@pytest.mark.long
+def test_a_run_changes_device_only_when_resumed_by_a_person(installation, spec):
+    place = installation()
+    place.start()
+    run = place.submit(spec)
+    place.reach(run, 3)
+    place.end()
+    place.environment["XLA_FLAGS"] = "--xla_cpu_enable_fast_math=false"  # Another kind.
+    place.start()
+    waiting = place.wait(run, "paused")
+    assert "To go on here, resume the run" in waiting["warning"]
+    place.ask(run, "resume")
+    place.wait(run, "finished")
+    _, attributes = file.load(place.archive(run))
+    first, second = json.loads(attributes["device"])
+    assert first != second
+    assert second.endswith("--xla_cpu_enable_fast_math=false")
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A folder on a file system of its own, of four megabytes."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", str(folder)]
+    if os.geteuid() or subprocess.run(mount, check=False, capture_output=True).returncode:
+        pytest.skip("mounting a small disk needs root")
+    yield folder
+    subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+def fill(folder):
+    """Leave not a byte; the file that takes it."""
+    ballast = folder / "ballast"
+    with suppress(OSError), ballast.open("wb", 0) as file:
+        while True:
+            file.write(bytes(4096))
+    assert not shutil.disk_usage(folder).free
+    return ballast
+
+
+@pytest.mark.long
+def test_a_full_disk_leaves_the_last_checkpoint_and_the_run_says_so(
+    small_disk, installation, spec, undisturbed
+):
+    place = installation(MICROCOSMOS_ARTIFACTS_URL=str(small_disk))
+    place.start()
+    run = place.submit(spec)
+    place.reach(run, 3)
+    ballast = fill(small_disk)
+    paused = place.wait(run, "paused")
+    assert "No space left on device" in paused["warning"]
+    with h5py.File(io.BytesIO(place.archive(run))) as archive:
+        assert 0 < archive["loop/generation"][()] < spec["search"]["generations"]
+    ballast.unlink()
+    place.ask(run, "resume")
+    assert place.wait(run, "finished")["warning"] is None
+    assert place.archive(run) == undisturbed.archive
+    assert place.told(run) == undisturbed.told
+
+
+@pytest.mark.long
+def test_a_replay_is_made_though_its_renderer_is_killed(place, undisturbed):
+    creature = undisturbed.told["archive"]["creature"][0]
+    address = f"/api/v1/creatures/{creature}/replay"
+    assert place.http.get(address).status_code == 202
+    place.signal(RENDERER, signal.SIGKILL)
+
+    def there():
+        answer = place.http.get(address)
+        assert answer.status_code in (200, 202), answer.text
+        return answer.content if answer.status_code == 200 else None
+
+    replay = wait_until(there, 120, "the replay is there")
+    size = int.from_bytes(replay[:4], "little")
+    header = json.loads(replay[4 : 4 + size])
+    assert header["creature"] == creature
+    floats = 2 * header["nodes"] + len(header["joints"]) + len(header["edges"])
+    cells = header["size"][0] * header["size"][1]
+    planes = 3 * header["frames"] + header["energy"]["frames"]
+    assert len(replay) == 4 + size + 4 * header["frames"] * floats + planes * cells

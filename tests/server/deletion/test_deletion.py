@@ -1,0 +1,258 @@
+"""The bin and the purge: deleted runs come back whole or leave nothing."""
+
+from pathlib import Path
+
+import pytest
+from answers import detail
+from deletion import another, delete_for_good, files, finish, let_time_pass, rows
+from sqlalchemy import select
+
+from microcosmos.archive import creature
+from server.attempts.claim import claim
+from server.deletion import bin, purge
+from server.maintenance.reconcile import reconcile
+from server.renderings.storage import save
+from server.storage.artifacts import rendering_path
+from server.tables import (
+    AUDIT,
+    REPLAY,
+    Artifact,
+    Creature,
+    Elite,
+    GarbageCreature,
+    GarbageFile,
+    Parent,
+    Run,
+)
+
+pytestmark = pytest.mark.postgresql
+
+
+def test_a_deleted_run_is_hidden_and_restored_unchanged(api, services, run_id, report):
+    finish(services, run_id, report(1, {0: 1.0}))
+    api.patch(f"runs/{run_id}", json={"tags": ["mine"]})
+    before = api.get(f"runs/{run_id}").json()
+    deleted = api.delete(f"runs/{run_id}")
+    assert deleted.status_code == 200
+    assert deleted.json()["deleted_at"]
+    assert deleted.json()["purge_at"] > deleted.json()["deleted_at"]
+    assert api.get("runs").json()["items"] == api.get("tags").json() == []
+    assert [r["id"] for r in api.get("runs?deleted=true").json()["items"]] == [str(run_id)]
+    assert api.get(f"runs/{run_id}").json() == deleted.json()
+    for path in ("archive", "archive.h5", "generations", "log"):
+        answer = api.get(f"runs/{run_id}/{path}")
+        assert answer.status_code == 404, path
+    answer = api.get(f"runs/{run_id}/archive")
+    assert "is in the bin until" in answer.json()["detail"]
+    for action in ("resume", "cancel", "extend"):
+        sent = {"json": {"generations": 1}} if action == "extend" else {}
+        assert api.post(f"runs/{run_id}/{action}", **sent).status_code == 404
+    assert api.post(f"runs/{run_id}/restore").json() == before
+    assert api.get("runs?deleted=true").json()["items"] == []
+    assert api.get(f"runs/{run_id}/archive").json()["cell"] == [0]
+
+
+def test_queued_and_running_runs_are_not_deleted(api, services, run_id):
+    attempt = None
+    for standing in ("queued", "running"):
+        assert f"cancel it first; it is {standing}" in detail(api.delete(f"runs/{run_id}"), 409)
+        attempt = attempt or claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/pause")
+    attempt.pause()
+    assert api.delete(f"runs/{run_id}").json()["status"] == "paused"
+    assert api.delete(f"runs/{run_id}").status_code == 404
+
+
+def test_only_runs_in_the_bin_are_restored_in_time(api, services, run_id):
+    api.post(f"runs/{run_id}/cancel")
+    assert "it is cancelled" in detail(api.post(f"runs/{run_id}/restore"), 409)
+    api.delete(f"runs/{run_id}")
+    let_time_pass(services, run_id)
+    answer = api.post(f"runs/{run_id}/restore")
+    assert answer.status_code == 409
+    assert api.get(f"runs/{run_id}").json()["deleted_at"]
+
+
+def test_the_bin_keeps_runs_for_a_day(api, services, run_id, report):
+    finish(services, run_id, report(1, {0: 1.0}))
+    api.delete(f"runs/{run_id}")
+    before = rows(services), files(services)
+    reconcile(services)
+    assert (rows(services), files(services)) == before
+    with services.sessions.read() as session:
+        run = session.get_one(Run, run_id)
+    assert (run.purge_at - run.deleted_at).total_seconds() == 86_400
+
+
+def test_a_purge_is_published(api, services, run_id):
+    api.post(f"runs/{run_id}/cancel")
+    delete_for_good(api, services, run_id)
+    told = [f[b"event"] for _, f in services.redis.xrange(services.events.stream)]
+    assert told[-2:] == [b"run", b"purge"]
+
+
+@pytest.fixture
+def child(identity):
+    """A report whose one elite is a creature with parents."""
+
+    def make(report, number, parents):
+        found = identity(number)
+        elite = report.elites[0]
+        elite.creature = creature.name(found)
+        elite.identity = creature.canonical(found)
+        elite.provenance = {**elite.provenance, "parents": parents}
+        return report
+
+    return make
+
+
+def test_a_purge_leaves_no_row_or_file(api, services, spec, report, run_id):
+    other = another(services, spec, 7)
+    finish(services, other, report(1, {3: 1.0}))
+    before = rows(services), files(services)
+    doomed = another(services, spec, 8, key="a key")
+    attempt = claim(services, doomed, "worker")
+    attempt.record(report(1, {0: 1.0, 1: 2.0}), 1.0)
+    attempt.save(1, b"one")
+    attempt.record(report(2, {2: 1.0}), 1.0)
+    again = claim(services, doomed, "worker")  # What was rewound counts as the run's too.
+    again.record(report(2, {0: 3.0}), 1.0)
+    again.save(2, b"two")
+    again.finish()
+    named = set(api.get(f"runs/{doomed}/archive/history").json()["creature"])
+    for name in named:
+        save(services, name, REPLAY, name.encode())
+    stray = Path(services.settings.artifacts) / f"runs/{doomed}/stray.part"
+    stray.write_bytes(b"of a process that was killed")
+    during = rows(services)
+    assert during["creatures"] == before[0]["creatures"] + 4
+    assert during["artifacts"] == before[0]["artifacts"] + 2 + len(named)
+    delete_for_good(api, services, doomed)
+    assert (rows(services), files(services)) == before
+    assert not stray.parent.exists()
+    assert api.get(f"runs/{doomed}").status_code == 404
+    assert api.get(f"creatures/{next(iter(named))}").status_code == 404
+
+
+def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, child, run_id):
+    """Shared with another run, brought by somebody, begun from, or an ancestor of one such."""
+    doomed, other = another(services, spec, 1), another(services, spec, 2)
+    shared, brought, parent, grandparent, alone = (
+        creature.name(identity(number)) for number in (1000, 1001, 1002, 1003, 1004)
+    )
+    finish(
+        services,
+        doomed,
+        child(report(1, {3: 1.0}), 1003, []),
+        child(report(2, {2: 1.0}), 1002, [grandparent]),
+        child(report(3, {0: 1.0}), 1000, []),
+        child(report(4, {1: 1.0}), 1001, []),
+        child(report(5, {4: 1.0}), 1004, [parent]),
+    )
+    finish(services, other, report(1, {0: 1.0}), child(report(2, {5: 1.0}), 2000, [parent]))
+    assert creature.name(identity(1000)) == shared
+    document = creature.document(identity(1001), None, None)
+    assert api.post("creatures", json=document).status_code == 200
+    for name in (shared, parent, alone):
+        save(services, name, REPLAY, b"replay")
+    kept = {name: api.get(f"creatures/{name}").json() for name in (shared, brought, parent)}
+    delete_for_good(api, services, doomed)
+    assert {name: api.get(f"creatures/{name}").json() for name in kept} == kept
+    assert api.get(f"creatures/{grandparent}").status_code == 200
+    assert api.get(f"creatures/{alone}").status_code == 404
+    left = files(services)
+    assert rendering_path(shared, REPLAY) in left
+    assert rendering_path(parent, REPLAY) in left
+    assert rendering_path(alone, REPLAY) not in left
+    delete_for_good(api, services, other)
+    assert [name for name in kept if api.get(f"creatures/{name}").status_code == 200] == [
+        brought
+    ], "what stayed for the sake of another goes with that"
+    assert api.get(f"creatures/{grandparent}").status_code == 404
+
+
+def test_a_purge_may_be_killed_anywhere(api, services, spec, report, run_id, monkeypatch):
+    """After every single transaction; what was begun is not to be restored."""
+    monkeypatch.setattr(purge, "AT_ONCE", 2)
+    monkeypatch.setattr("server.deletion.garbage.AT_ONCE", 2)
+    before = rows(services), files(services)
+    doomed = another(services, spec, 3)
+    finish(services, doomed, *(report(g, {0: g, 1: g, 2: g}) for g in range(1, 4)))
+    api.delete(f"runs/{doomed}")
+    let_time_pass(services, doomed)
+    passes = 0
+    while (rows(services), files(services)) != before:
+        purge.purge(services, steps=1)
+        assert api.post(f"runs/{doomed}/restore").status_code in (404, 409)
+        passes += 1
+        assert passes < 100
+    assert passes > 8
+
+
+def test_a_file_that_cannot_be_removed_is_removed_later(
+    api, services, run_id, report, monkeypatch
+):
+    finish(services, run_id, report(1, {0: 1.0}))
+    whole = services.artifacts.delete_folder
+
+    def refuse(path):
+        raise PermissionError(path)
+
+    monkeypatch.setattr(services.artifacts, "delete_folder", refuse)
+    delete_for_good(api, services, run_id)
+    assert len(files(services)) == rows(services)["garbage_files"] == 1
+    monkeypatch.setattr(services.artifacts, "delete_folder", whole)
+    reconcile(services)
+    assert files(services) == []
+    assert rows(services)["garbage_files"] == 0
+
+
+def test_a_rendering_that_was_made_again_stays(services, run_id, report, identity):
+    finish(services, run_id, report(1, {0: 1.0}), files=False)
+    name = creature.name(identity(1000))
+    save(services, name, AUDIT, b"audit")
+    with services.sessions.write.begin() as session:
+        session.add(GarbageFile(path=rendering_path(name, AUDIT)))
+    reconcile(services)
+    assert files(services) == [rendering_path(name, AUDIT)]
+    assert rows(services)["garbage_files"] == 0
+
+
+def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
+    services, run_id, report, api
+):
+    """Both prove in their own transaction that the time is over, or is not."""
+    finish(services, run_id, report(1, {0: 1.0}))
+    api.delete(f"runs/{run_id}")
+    assert not purge.take_apart(services)
+    let_time_pass(services, run_id)
+    with services.sessions.write.begin() as session:
+        run = session.get_one(Run, run_id)
+        with pytest.raises(Exception, match="to restore a run"):
+            bin.restore(session, run)
+    assert purge.take_apart(services)
+
+
+def test_a_creature_that_comes_into_use_during_a_purge_stays(
+    services, run_id, spec, report, api
+):
+    """Another run writes the same creature between the purge of one and the collection."""
+    other = another(services, spec, 4)
+    finish(services, run_id, report(1, {0: 1.0}))
+    api.delete(f"runs/{run_id}")
+    let_time_pass(services, run_id)
+    while purge.take_apart(services):
+        pass
+    assert rows(services)["garbage_creatures"] == 1
+    claim(services, other, "worker").record(report(1, {0: 1.0}), 1.0)
+    reconcile(services)
+    with services.sessions.read() as session:
+        used = session.scalars(select(Elite.creature)).all()
+        kept = session.scalars(select(Creature.sha256)).all()
+        assert session.scalars(select(GarbageCreature.creature)).all() == []
+        assert (
+            session.scalars(select(Artifact.path).where(Artifact.creature.in_(kept))).all()
+            == []
+        )
+        assert session.scalars(select(Parent.child)).all() == kept
+    assert used == kept

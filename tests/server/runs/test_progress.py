@@ -1,0 +1,203 @@
+"""Progress of runs: steering, curves, species and the targets of a folding."""
+
+import base64
+import json
+from concurrent.futures import ThreadPoolExecutor
+from uuid import uuid4
+
+import pytest
+from answers import detail
+
+from microcosmos.spec import EXPERIMENTS, targets
+from server.attempts.claim import claim
+from server.runs.submission import submit
+
+
+def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, run_id, flush):
+    assert api.post(f"runs/{run_id}/pause").json()["status"] == "paused"
+    assert claim(services, run_id, "worker") is None
+    flush()
+    assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
+    assert services.jobs.runs.get_job_ids() == [str(run_id)]
+    cancelled = api.post(f"runs/{run_id}/cancel").json()
+    assert cancelled["status"] == "cancelled"
+    assert cancelled["finished_at"]
+    assert claim(services, run_id, "worker") is None
+
+
+def test_a_worker_carries_out_a_requested_state(api, services, run_id, report):
+    attempt = claim(services, run_id, "worker")
+    paused = api.post(f"runs/{run_id}/pause").json()
+    assert (paused["status"], paused["requested_state"]) == ("running", "paused")
+    attempt.record(report(1), 1.0)
+    assert attempt.requested_state == "paused"
+    attempt.pause()
+    run = api.get(f"runs/{run_id}").json()
+    assert (run["status"], run["requested_state"]) == ("paused", None)
+    api.post(f"runs/{run_id}/resume")
+    attempt = claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/cancel")
+    attempt.check()
+    assert attempt.requested_state == "cancelled"
+    attempt.cancel()
+    assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"
+
+
+def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run_id):
+    claim(services, run_id, "worker")
+    api.post(f"runs/{run_id}/pause")
+    assert api.post(f"runs/{run_id}/cancel").json()["requested_state"] == "cancelled"
+    assert api.post(f"runs/{run_id}/pause").status_code == 409
+
+
+def test_forbidden_actions_are_conflicts_with_a_reason(api, services, run_id):
+    answer = api.post(f"runs/{run_id}/resume")
+    assert detail(answer, 409) == "to resume a run it must be paused; it is queued"
+    claim(services, run_id, "worker").finish()
+    for action in ("pause", "resume", "cancel"):
+        assert "it is finished" in detail(api.post(f"runs/{run_id}/{action}"), 409)
+
+
+def test_progress_is_what_was_recorded(api, run_id, attempt, record):
+    attempt.use("a device")
+    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
+        record(generation, seconds=seconds)
+    run = api.get(f"runs/{run_id}").json()
+    assert run["generation"] == 3
+    assert run["progress"] == 3 / run["generations"]
+    assert run["evaluations"] == 48
+    assert run["evaluations_per_second"] == 8.0
+    assert run["eta_seconds"] == (run["generations"] - 3) * 16 / 8
+    assert run["sparkline"] == [10, 20, 30]
+    assert run["device"] == "a device"
+
+
+def test_the_final_rate_excludes_the_first_generation(api, run_id, attempt, record):
+    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
+        record(generation, seconds=seconds)
+    attempt.finish()
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 32 / 8
+
+
+def test_the_rate_of_one_generation_includes_compilation(api, run_id, record):
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
+    record(1, seconds=20.0)
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 16 / 20
+
+
+def test_curves_are_columns_of_all_or_some_generations(api, run_id, record):
+    empty = api.get(f"runs/{run_id}/generations").json()
+    assert empty["generation"] == []
+    for generation in range(1, 41):
+        record(generation, seconds=0.5)
+    curves = api.get(f"runs/{run_id}/generations").json()
+    assert curves["generation"] == list(range(1, 41))
+    assert curves["seconds"][-1] == 20.0
+    assert curves["mean"][3] == 2.0
+    some = api.get(f"runs/{run_id}/generations", params={"points": 5}).json()
+    assert some["generation"] == [1, 11, 21, 30, 40]
+
+
+@pytest.mark.postgresql
+def test_concurrent_actions_do_not_block_each_other(api, run_id):
+    with ThreadPoolExecutor(24) as pool:
+        answers = list(pool.map(lambda _: api.post(f"runs/{run_id}/cancel"), range(24)))
+    assert sorted(answer.status_code for answer in answers) == [202] + 23 * [409]
+
+
+def test_an_unknown_run_cannot_be_steered(api):
+    for action in ("pause", "resume", "cancel"):
+        assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
+        assert api.post(f"runs/nonsense/{action}").status_code == 422
+
+
+@pytest.fixture
+def told(record):
+    """Twelve generations, of which every fifth tells a score."""
+    for generation in range(1, 13):
+        summary = {"inserted": generation, "ended": "never", "fine": True}
+        if generation % 5 == 0:
+            summary["corrected"] = 0.5 * generation
+        record(generation, summary=summary)
+
+
+def test_curves_contain_the_numbers_of_summaries(api, run_id, told):
+    curves = api.get(f"runs/{run_id}/generations").json()
+    assert curves["generation"] == list(range(1, 13))
+    assert list(curves["summary"]) == ["inserted", "corrected"]
+    assert curves["summary"]["inserted"] == curves["generation"]
+    known = dict(zip(curves["generation"], curves["summary"]["corrected"], strict=True))
+    assert {g: value for g, value in known.items() if value is not None} == {5: 2.5, 10: 5.0}
+
+
+def test_thinned_curves_keep_occasional_values(api, run_id, told):
+    curves = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()
+    assert curves["generation"] == [1, 7, 12]
+    assert curves["summary"] == {"inserted": [1, 7, 12], "corrected": [None, 2.5, 5.0]}
+
+
+def test_curves_without_summaries_have_no_other_columns(api, run_id, record):
+    record(1)
+    assert api.get(f"runs/{run_id}/generations").json()["summary"] == {}
+
+
+def test_events_of_generations_carry_the_summary(services, run_id, told):
+    entries = services.redis.xrange(services.events.stream)
+    events = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"generation"]
+    assert [event["summary"].get("corrected") for event in events[3:6]] == [None, 2.5, None]
+
+
+def test_a_run_that_ended_early_is_done(api, run_id, attempt, record):
+    record(1, summary={"ended": "fitness after generation 1"})
+    attempt.save(1, b"the archive")
+    attempt.finish()
+    run = api.get(f"runs/{run_id}").json()
+    assert (run["status"], run["progress"], run["generation"]) == ("finished", 1.0, 1)
+
+
+def test_species_are_listed_by_generation(api, run_id, record):
+    record(1, summary={"species": "0:10 3:6"})
+    record(2, summary={"device_seconds": 1.0})
+    record(3, summary={"species": "3:16"})
+    assert api.get(f"runs/{run_id}/species").json() == {
+        "generation": [1, 3],
+        "number": [[0, 3], [3]],
+        "members": [[10, 6], [16]],
+    }
+    thin = api.get(f"runs/{run_id}/species", params={"points": 2}).json()
+    assert thin["generation"] == [1, 3]
+
+
+def test_a_run_without_species_has_none(api, run_id, record):
+    record(1)
+    assert api.get(f"runs/{run_id}/species").json()["generation"] == []
+
+
+def test_thinned_curves_sum_reasons_of_divergence(api, run_id, record):
+    for generation in range(1, 11):
+        told = {"diverged: non-finite": 2, "inserted": generation}
+        told |= {"diverged: supersonic": 1} if generation == 4 else {}
+        record(generation, summary=told)
+    columns = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()["summary"]
+    assert sum(filter(None, columns["diverged: non-finite"])) == 20
+    assert sum(filter(None, columns["diverged: supersonic"])) == 1
+    assert columns["inserted"][-1] == 10
+
+
+@pytest.fixture
+def fold_id(services):
+    presets = {preset.name: preset.spec for preset in EXPERIMENTS["folding"].presets}
+    return submit(services, presets["demo"])[0].id
+
+
+def test_targets_are_scaled_as_the_filaments_see_them(api, fold_id):
+    first, second = api.get(f"runs/{fold_id}/targets").json()
+    assert (first["name"], second["name"]) == ("3", "7")
+    assert (first["width"], first["height"], first["size"]) == (32, 32, 32)
+    ink = targets.decoded(first["pixels"], 32, 32)
+    assert abs(ink - targets.fitted(targets.digit(3), 32)).max() < 1 / 255
+    assert base64.b64decode(first["pixels"]) != base64.b64decode(second["pixels"])
+
+
+def test_a_run_without_targets_has_no_pictures(api, run_id):
+    assert "folds nothing" in detail(api.get(f"runs/{run_id}/targets"), 404)

@@ -1,0 +1,200 @@
+"""The OpenAPI document and docs/operation.md are true."""
+
+import json
+import os
+import re
+import struct
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
+from schemathesis import GenerationMode
+from schemathesis.checks import not_a_server_error
+from schemathesis.core.failures import FailureGroup
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from microcosmos.archive import creature, file
+from microcosmos.spec import EXPERIMENTS, estimate
+from server.app import create_app
+from server.attempts.claim import claim
+from server.auth import tokens
+from server.creatures import storage as creatures
+from server.renderings import storage as renderings
+from server.settings import Settings
+from server.tables import REPLAY
+from worker.device import TAKEN
+from worker.supervisor import PATIENCE
+
+EXAMPLES = int(os.environ.get("EXAMPLES", "4"))
+"""Requests to each operation, right ones and wrong ones; `EXAMPLES=500` looks longer."""
+CHECKS = [
+    not_a_server_error,
+    status_code_conformance,
+    content_type_conformance,
+    response_schema_conformance,
+]
+STREAMS = "/api/v1/events"
+HERE = settings(
+    max_examples=EXAMPLES,
+    deadline=None,
+    database=None,
+    derandomize=True,
+    phases=[Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
+
+
+@pytest.fixture
+def known(
+    services, spec, run_id, sweep_id, report, identity, table, attempt, record
+) -> dict[str, list[str]]:
+    """What paths may name so that there is something to answer: by the parameter."""
+    for generation in (1, 2):
+        record(generation, {generation: 1.0})
+    attempt.save(2, checkpoint(spec))
+    claim(services, sweep_id, "worker").record(table(1, {"number": 1, "speed": 0.5}), 1.0)
+    kept = creature.document(identity(3), None, None)
+    with services.sessions.write.begin() as session:
+        creatures.add(session, kept)
+    renderings.save(services, kept["sha256"], REPLAY, replay())
+    token = tokens.create(services, "somebody", "read").token
+    return {
+        "run_id": [str(run_id), str(sweep_id)],
+        "sha": [kept["sha256"], report(1, {1: 1.0}).elites[0].creature],
+        "token_id": [str(token.id)],
+    }
+
+
+def checkpoint(spec: dict[str, Any]) -> bytes:
+    """The file of an archive with one elite."""
+    archive = {
+        "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
+        "measures": np.array([[0.01, 1.0]]),
+        "fitness": np.array([2.5]),
+        "generation": np.array([2]),
+        "creature": np.zeros((1, 32), np.uint8),
+        "cell": np.array([1]),
+    }
+    measures = json.dumps(["bending_effort", "stretching_effort"])
+    told = {"format": file.FORMAT, "spec": json.dumps(spec), "measures": measures}
+    return file.dump({"archive": archive}, told)
+
+
+def replay() -> bytes:
+    """A recording of two nodes in one frame."""
+    header = {
+        "frames": 1,
+        "every": 5,
+        "steps": 0,
+        "nodes": 2,
+        "edges": [[0, 1]],
+        "size": [8, 4],
+    }
+    told = json.dumps(header).encode()
+    return struct.pack("<I", len(told)) + told + bytes(16)
+
+
+@pytest.mark.parametrize("database", ["sqlite"])
+def test_no_request_breaks_the_server_or_its_document(serve, services, known):
+    schema = schemathesis.openapi.from_dict(create_app(services).openapi())
+    wrong: list[str] = []
+    reached: set[str] = set()
+    with serve() as address:
+        for found in schema.exclude(path=STREAMS).get_all_operations():
+            wrong += broken(found.ok(), address, known, reached)
+    assert wrong == []
+    assert len(reached) > 30  # Most were answered with what they are there for.
+
+
+def broken(
+    operation: Any, address: str, known: dict[str, list[str]], reached: set[str]
+) -> list[str]:
+    """What the answers of an operation were that they should not have been."""
+    wrong: list[str] = []
+    modes = [operation.as_strategy(generation_mode=mode) for mode in GenerationMode]
+
+    @seed(1)
+    @HERE
+    @given(case=st.one_of(modes), draw=st.data())
+    def ask(case: Any, draw: Any) -> None:
+        for name in (case.path_parameters or {}).keys() & known.keys():
+            if draw.draw(st.integers(0, 3)):
+                case.path_parameters[name] = draw.draw(st.sampled_from(known[name]))
+        answer = case.call(base_url=address, timeout=20)
+        if answer.status_code < 300:
+            reached.add(operation.label)
+        try:
+            case.validate_response(answer, checks=CHECKS)
+        except FailureGroup as group:
+            wrong.extend(
+                f"{case.method} {case.formatted_path}: {one}" for one in group.exceptions
+            )
+
+    ask()
+    return wrong[:3]
+
+
+TEXT = (Path(__file__).parents[2] / "docs" / "operation.md").read_text()
+ELSEWHERE = {"database_url", "redis_url", "artifacts_url", "token", "max_bytes", "data"}
+ELSEWHERE |= {"public_url", "modules"}
+"""Whose defaults are said in words."""
+
+
+def rows(heading):
+    """The cells of the tables under a heading."""
+    part = TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    lines = [line for line in part.splitlines() if line.startswith("| `")]
+    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
+
+
+def names(field, info):
+    return set(getattr(info.validation_alias, "choices", ())) or {
+        f"MICROCOSMOS_{field.upper()}"
+    }
+
+
+def test_every_setting_is_there_with_its_default_and_no_other():
+    told = {name: row[1] for row in rows("Settings") for name in re.findall(r"`(\w+)`", row[0])}
+    fields = Settings.model_fields
+    known = {name: field for field, info in fields.items() for name in names(field, info)}
+    assert told.keys() == known.keys()
+    for name, field in known.items():
+        if field not in ELSEWHERE:
+            default = fields[field].default
+            default = str(default).lower() if isinstance(default, bool) else default
+            shown = f"{default:g}" if isinstance(default, float) else str(default)
+            assert told[name].strip("`") == shown, name
+
+
+def test_every_metric_is_there_and_no_other(address):
+    found = httpx.get(f"{address}/metrics", verify=False).text
+    there = set(re.findall(r"^# TYPE (\w+)", found, re.MULTILINE))
+    told = {
+        n for row in rows("Health and figures") for n in re.findall(r"microcosmos_\w+", row[0])
+    }
+    assert told == there
+
+
+@pytest.mark.parametrize("row", rows("Size"), ids=lambda row: row[0])
+def test_documented_sizes_match_the_estimates(row):
+    experiment, name = re.match(r"`(.*)/(.*)`", row[0]).groups()
+    presets = {preset.name: preset.spec for preset in EXPERIMENTS[experiment].presets}
+    found = estimate(presets[name])
+    assert row[1] == f"{found.evaluations:,}"
+    assert row[2] == f"{found.memory_bytes / 2**20:.0f} MiB"
+    assert float(row[3]) == pytest.approx(found.cell_steps, rel=0.05)
+
+
+def test_documented_times_and_shares_match_the_code():
+    assert f"{PATIENCE:g} s" in TEXT
+    assert f"{TAKEN:g} divided by their number" in TEXT
+    assert f"have {TAKEN / 2:g} of its memory" in TEXT

@@ -1,0 +1,38 @@
+/** A card that runs a check of a creature: its verdict, a button, its progress and its result. */
+
+import type { ComponentChildren } from "preact";
+import { text } from "./text";
+
+interface Props {
+  name: string;
+  title: string;
+  /** Class and text of a badge. */
+  verdict: readonly [kind: string, word: string] | null;
+  button: string | null;
+  onStart: () => void;
+  /** Text while the check runs; null if it does not run. */
+  running: string | null;
+  note: string | null;
+  error: string | null;
+  children: ComponentChildren;
+}
+
+export function CheckCard({ name, title, verdict, button, onStart, running, note, error, children }: Props) {
+  return (
+    <section class={`card ${name}`} aria-labelledby={`${name}-title`}>
+      <div class="card-head">
+        <h2 id={`${name}-title`}>{title}</h2>
+        {verdict && <span class={`badge ${verdict[0]}`}>{verdict[1]}</span>}
+        <span class="spring" />
+        {button && <button onClick={onStart}>{button}</button>}
+      </div>
+      {running && !error && (
+        <p class="quiet" role="status">
+          {note ? text.retrying(note) : running}
+        </p>
+      )}
+      {error && <p class="banner wrong">{error}</p>}
+      {children}
+    </section>
+  );
+}

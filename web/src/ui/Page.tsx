@@ -1,0 +1,119 @@
+/** Parts of every page: its frame, cards, notes where there is nothing to show, progress bars. */
+
+import type { ComponentChildren } from "preact";
+import { useEffect } from "preact/hooks";
+import { text } from "./text";
+
+interface PageProps {
+  /** The heading; pages with a header of their own leave it out. */
+  title?: string;
+  /** Beside the heading. */
+  actions?: ComponentChildren;
+  /** Links to the pages above this one. */
+  crumbs?: (readonly [href: string, name: string])[];
+  error?: string | null;
+  /** Shown instead of content until there is some. */
+  loading?: string | false;
+  children?: ComponentChildren;
+}
+
+export function Page({ title, actions, crumbs, error, loading, children }: PageProps) {
+  return (
+    <main>
+      {crumbs && (
+        <nav class="crumbs" aria-label={text.breadcrumbs}>
+          {crumbs.map(([href, name]) => (
+            <a key={href} href={href}>
+              {name}
+            </a>
+          ))}
+        </nav>
+      )}
+      {title && (
+        <header class="page-head">
+          <h1>{title}</h1>
+          {actions}
+        </header>
+      )}
+      {error && <p class="banner wrong">{error}</p>}
+      {loading && !error && <p class="quiet loading">{loading}</p>}
+      {children}
+    </main>
+  );
+}
+
+/** Name the browser's tab after the page; null keeps the name. */
+export function useTitle(title: string | null): void {
+  useEffect(() => {
+    if (title) document.title = text.pageTitle(title);
+  }, [title]);
+}
+
+interface CardProps {
+  /** Id of the section; links lead to it. */
+  id: string;
+  title: ComponentChildren;
+  /** CSS classes. */
+  kind?: string;
+  /** Beside the title. */
+  head?: ComponentChildren;
+  children?: ComponentChildren;
+}
+
+export function Card({ id, title, kind = "", head, children }: CardProps) {
+  const heading = <h2 id={`${id}-title`}>{title}</h2>;
+  return (
+    <section class={`card ${kind}`} id={id} aria-labelledby={`${id}-title`} tabIndex={-1}>
+      {head ? (
+        <div class="card-head">
+          {heading}
+          {head}
+        </div>
+      ) : (
+        heading
+      )}
+      {children}
+    </section>
+  );
+}
+
+interface EmptyProps {
+  title: string;
+  hint: ComponentChildren;
+  children?: ComponentChildren;
+}
+
+/** A note in place of a list without entries. */
+export function Empty({ title, hint, children }: EmptyProps) {
+  return (
+    <section class="empty card">
+      <h2>{title}</h2>
+      <p>{hint}</p>
+      {children}
+    </section>
+  );
+}
+
+interface ProgressProps {
+  label: string;
+  /** From 0 to 1. */
+  share: number;
+  /** CSS class: the state of what progresses. */
+  kind: string;
+}
+
+export function Progress({ label, share, kind }: ProgressProps) {
+  const percentage = Math.round(1000 * share) / 10;
+  return (
+    <div
+      class={`progress ${kind}`}
+      role="progressbar"
+      aria-label={label}
+      aria-valuenow={percentage}
+      aria-valuemin={0}
+      aria-valuemax={100}
+    >
+      <div style={{ width: `${percentage}%` }} />
+    </div>
+  );
+}

@@ -1,0 +1,31 @@
+"""Set-up of a worker's processes: logging, and the request to stop."""
+
+import logging
+import signal
+from collections.abc import Callable
+from types import FrameType
+
+# A lock, as in an Event, could be held by the very code that the signal interrupts.
+_stop_requested = False
+
+
+def stop_requested() -> bool:
+    return _stop_requested
+
+
+def listen(then: Callable[[], None] = lambda: None, *, interrupt: bool = False) -> None:
+    """Note SIGTERM as a request to stop. Note SIGINT if `interrupt`, else ignore it."""
+
+    def note(signum: int, frame: FrameType | None) -> None:
+        global _stop_requested
+        _stop_requested = True
+        then()
+
+    signal.signal(signal.SIGTERM, note)
+    signal.signal(signal.SIGINT, note if interrupt else signal.SIG_IGN)
+
+
+def log_to_stderr() -> None:
+    """Log with times, without JAX's search for devices."""
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s: %(message)s")
+    logging.getLogger("jax").setLevel(logging.WARNING)
