@@ -103,7 +103,7 @@ def _requested(measures: str, recorded: Sequence[Measure]) -> list[str]:
     names = list(dict.fromkeys(filter(None, measures.split(","))))
     existing = [measure.name for measure in recorded]
     if wrong := [name for name in names if name not in existing]:
-        raise invalid_field("measures", f"names among {', '.join(existing)}", wrong)
+        raise invalid_field("measures", f"names among {', '.join(existing)}", ", ".join(wrong))
     return names
 
 

@@ -9,7 +9,7 @@ from . import tokens
 from .principal import ENVIRONMENT, LOCAL, Principal
 from .ratelimit import RateLimit
 
-TOKEN_NEEDED = "Send a token as `Authorization: Bearer`, or sign in at /settings."
+TOKEN_NEEDED = "A token is needed: send it as `Authorization: Bearer`, or sign in at /settings."
 
 
 @dataclass(frozen=True)

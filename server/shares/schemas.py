@@ -43,7 +43,7 @@ class ShareCreate(Wire):
     def check_subject(self) -> Self:
         if (self.creature is None) == (self.run is None):
             got = "none" if self.run is None else "both"
-            raise ValueError(f"`creature` or `run` needs a value, but only one; got {got}")
+            raise ValueError(f"`creature` must be set, or `run`, but only one; got {got}")
         if self.creature and self.generation is not None:
             raise ValueError(
                 f"`generation` needs a `run`; got {self.generation} with a creature"

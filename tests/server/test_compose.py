@@ -26,7 +26,7 @@ from sqlalchemy.exc import OperationalError
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from server.local.redis_embedded import find_binary, free_port
-from server.main import GRACE
+from server.main import SHUTDOWN_SECONDS
 from server.maintenance.healthcheck import ASK_AFTER, KILL_AFTER, PARTS
 from server.settings import Settings
 from server.tables.migrations import __main__ as migrate
@@ -188,7 +188,7 @@ def test_containers_have_longer_to_stop_than_their_programs(ours):
     for name, one in ours.items():
         if "worker.supervisor" in one["command"]:
             assert seconds(one["stop_grace_period"]) >= PATIENCE + 15, name
-    assert seconds(ours["server"]["stop_grace_period"]) > GRACE
+    assert seconds(ours["server"]["stop_grace_period"]) > SHUTDOWN_SECONDS
 
 
 def test_only_the_server_has_a_port_on_loopback(services):

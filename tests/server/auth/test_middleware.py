@@ -12,7 +12,7 @@ from sqlalchemy.exc import OperationalError
 from server.auth import authenticate, tokens
 from server.auth.cookies import COOKIE
 from server.auth.ratelimit import ADDRESSES, BURST, INTERVAL, RateLimit, network_of
-from server.settings import SHORTEST, Settings
+from server.settings import MIN_TOKEN_LENGTH, Settings
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.0.2.1", "::"])
@@ -23,7 +23,7 @@ def test_a_server_for_others_needs_a_token(host):
 def test_loopback_needs_a_token_only_when_configured():
     assert not Settings(host="127.0.0.1", token=None).needs_token
     assert Settings(host="127.0.0.1", token=None, auth="required").needs_token
-    assert Settings(host="127.0.0.1", token=SecretStr("s" * SHORTEST)).needs_token
+    assert Settings(host="127.0.0.1", token=SecretStr("s" * MIN_TOKEN_LENGTH)).needs_token
     assert not Settings(host="127.0.0.1", token=SecretStr("")).needs_token
 
 

@@ -67,7 +67,7 @@ def test_a_revoked_token_is_refused_at_once_by_name(required, client, admin, ser
 def test_an_expired_token_is_refused_and_its_name_is_free(required, client, services):
     soon = datetime.now(UTC) + timedelta(hours=1)
     made = tokens.create(services, "carol", "read", soon)
-    with pytest.raises(ProblemError, match="named 'carol' is there already"):
+    with pytest.raises(ProblemError, match="name 'carol' is taken"):
         tokens.create(services, "carol", "read")
     expire(services, made.token.id)
     answer = client(required, made.secret).get("/runs")

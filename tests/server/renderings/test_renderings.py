@@ -101,7 +101,7 @@ def test_a_failure_is_reported_by_the_first_line_of_its_error(api, services, kno
     raised = "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)"
     services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
     detail = api.get(f"creatures/{known}/audit").json()["detail"]
-    assert "OperationalError: database is locked. It can" in detail
+    assert "OperationalError: database is locked. Try again" in detail
 
 
 def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):

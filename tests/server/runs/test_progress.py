@@ -200,4 +200,4 @@ def test_targets_are_scaled_as_the_filaments_see_them(api, fold_id):
 
 
 def test_a_run_without_targets_has_no_pictures(api, run_id):
-    assert "folds nothing" in detail(api.get(f"runs/{run_id}/targets"), 404)
+    assert "has no pictures" in detail(api.get(f"runs/{run_id}/targets"), 404)

@@ -158,7 +158,7 @@ def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, have, mine
     with services.sessions.read() as session:
         known = KnownPlugins(services, session)
         pinned = run["spec"]["body"]["plugin"]["source"]
-        (able,) = known.having(pinned)
+        (able,) = known.workers_with(pinned)
     names = {"with": A, "other": B}
     for worker in ("without", next(name for name in names if name != able), "nobody"):
         assert claim(services, UUID(run["id"]), worker) is None
