@@ -24,16 +24,8 @@ OLD = {
     *("beginning", "keeping", "following", "most", "KEPT", "AT_ONCE", "DECISIVE"),
 }
 LEFT = {
-    "engine/microcosmos/client/formatting.py:pace",
-    "engine/microcosmos/client/formatting.py:standing",
-    "engine/microcosmos/experiments/state.py:quarantine",
     "engine/microcosmos/neat/offspring.py:standing",
     "engine/microcosmos/neat/rng.py:left",
-    "engine/microcosmos/search/folding.py:pace",
-    "engine/microcosmos/search/measures.py:pace",
-    "engine/microcosmos/search/plugin_measures.py:pace",
-    "engine/microcosmos/search/qdax/emitters.py:Told",
-    "engine/microcosmos/world/model.py:pace",
     "server/auth/bootstrap.py:told",
     "server/creatures/initial.py:DECISIVE",
     "server/deletion/garbage.py:AT_ONCE",

@@ -46,7 +46,7 @@ def measured(uuid: str) -> tuple[int | None, float | None]:
             handle = pynvml.nvmlDeviceGetHandleByUUID(uuid)
             return (
                 _known(lambda: int(pynvml.nvmlDeviceGetMemoryInfo(handle).used)),
-                _known(lambda: pynvml.nvmlDeviceGetUtilizationRates(handle).gpu / 100),
+                _known(lambda: int(pynvml.nvmlDeviceGetUtilizationRates(handle).gpu) / 100),
             )
     except NVMLError:
         return None, None

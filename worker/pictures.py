@@ -2,12 +2,11 @@
 
 import json
 from collections.abc import Callable
+from typing import Any
 
-from microcosmos import audit, viz
 from microcosmos.viz.film import gif, mp4
-from microcosmos.viz.preview import preview
 from microcosmos.viz.replay_file import Replay, read_replay
-from microcosmos.viz.strip import strip
+from microcosmos.viz.strip import preview, strip
 from server.renderings import storage as renderings
 from server.services.services import Services
 from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
@@ -25,12 +24,13 @@ def make(services: Services, creature: str, kind: str) -> bytes:
     if kind in PICTURES:
         return PICTURES[kind](read_replay(_replay(services, creature)))
     file = renderings.creature(services, creature)
-    if kind == AUDIT:
-        return json.dumps(audit.audit(file), allow_nan=False).encode()
-    if kind == MEASUREMENT:
-        return json.dumps(audit.measurement(file), allow_nan=False).encode()
+    if kind in (AUDIT, MEASUREMENT):
+        from microcosmos.audit import audit, measurement  # Loads JAX.
+
+        report = audit if kind == AUDIT else measurement
+        return json.dumps(report(file), allow_nan=False).encode()
     if kind == REPLAY:
-        return viz.record(file)
+        return record(file)
     known = ", ".join((REPLAY, AUDIT, MEASUREMENT, *PICTURES))
     raise ValueError(f"`kind` of a rendering must be one of {known}; got {kind!r}")
 
@@ -39,6 +39,12 @@ def _replay(services: Services, creature: str) -> bytes:
     """The replay that is kept, made first if need be."""
     data = renderings.existing(services, creature, REPLAY)
     if data is None:
-        data = viz.record(renderings.creature(services, creature))
+        data = record(renderings.creature(services, creature))
         renderings.save(services, creature, REPLAY, data)
     return data
+
+
+def record(file: dict[str, Any]) -> bytes:
+    from microcosmos.viz.replay import record  # Loads JAX.
+
+    return record(file)

@@ -16,6 +16,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import loops
 import numpy as np
 from functions import FUNCTIONS, ours, theirs
 
@@ -25,21 +26,21 @@ ROWS, GENES = 1_024, 1_000
 SIDES = (32, 128)
 TURNS = 15
 STAGES = {"early in a search, most enter": 4, "late in a search, few enter": 100}
-"""Batches that went before those that are timed."""
+"""Batches before those that are timed."""
 CENTROIDS = 16_384
 SAMPLES = 50_000
-"""What QDax's examples give its centroids."""
+"""Samples for centroids in QDax's examples."""
 SEEDS = range(5)
 
 
 @dataclass(frozen=True)
 class Peer:
-    """An archive, and how it takes a batch in."""
+    """An archive, and the ways to prepare and insert a batch."""
 
     pack: Callable[[np.ndarray, np.ndarray, np.ndarray], Any]
-    """From genes, fitness and places to what a search has in hand; not timed."""
+    """Prepare genes, fitness and places; not timed."""
     add: Callable[[Any], object]
-    """From that to something to wait for."""
+    """Insert the batch; return a value to wait for."""
 
 
 def main() -> None:
@@ -54,7 +55,7 @@ def main() -> None:
 
 
 def insertion(side: int, stage: str) -> None:
-    """How long it takes to insert a batch of vectors, ours as 1."""
+    """Print the time to insert a batch of vectors, ours as 1."""
     peers = {"ours, donated": _ours(side, donate=True), "ours": _ours(side, donate=False)}
     if installed("qdax"):
         peers |= {"QDax, donated": _qdax(side, donate=True), "QDax": _qdax(side, donate=False)}
@@ -68,18 +69,17 @@ def insertion(side: int, stage: str) -> None:
         places = random.random((ROWS, 2)).astype(np.float32)
         for name, peer in peers.items():
             given = jax.block_until_ready(peer.pack(genes, fitness, places))
-            began = time.perf_counter()
-            jax.block_until_ready(peer.add(given))
+            taken = loops.seconds(peer.add, given)
             if turn >= STAGES[stage]:
-                seconds[name].append(time.perf_counter() - began)
+                seconds[name].append(taken)
     print(
         f"\n{ROWS:,} vectors of {GENES:,} genes into {side * side:,} cells of a grid, {stage}"
     )
-    tell(seconds, "ours, donated")
+    print_times(seconds, "ours, donated")
 
 
-def tell(seconds: dict[str, list[float]], first: str) -> None:
-    """Medians and ratios of them."""
+def print_times(seconds: dict[str, list[float]], first: str) -> None:
+    """Print medians and their ratios."""
     reference = statistics.median(seconds[first])
     for name, taken in seconds.items():
         median, least = statistics.median(taken), min(taken)
@@ -88,7 +88,7 @@ def tell(seconds: dict[str, list[float]], first: str) -> None:
 
 
 def tessellation(count: int) -> None:
-    """How long centroids of a plane take, and how compact their cells are."""
+    """Print the time for centroids of a plane, and how compact their cells are."""
     print(f"\n{count:,} centroids on 2 axes; mean squared distance in areas of a cell")
     began = time.perf_counter()
     found = search.cvt.lloyd(count, 2, seed=0)
@@ -102,7 +102,7 @@ def tessellation(count: int) -> None:
 
 
 def reached() -> None:
-    """QD score of MAP-Elites on plain functions, ours and QDax's, by seeds."""
+    """Print the QD score of MAP-Elites on plain functions, ours and QDax's."""
     print(f"\nQD score above the function's least value: median (range) of {len(SEEDS)} seeds")
     for name in FUNCTIONS:
         told = f"  {name:10s} ours {_range([ours(name, seed) for seed in SEEDS])}"
@@ -112,7 +112,7 @@ def reached() -> None:
 
 
 def installed(package: str) -> bool:
-    """Whether a peer is installed; says so where it is not."""
+    """Whether a peer is installed; print it if not."""
     if importlib.util.find_spec(package):
         return True
     print(f"  ({package} is not installed: make peers)")
@@ -125,14 +125,8 @@ def _ours(side: int, *, donate: bool) -> Peer:
     kept = [search.no_elites(grid.count, 2, genomes.Vector(jnp.zeros(GENES)))]
 
     def pack(genes: np.ndarray, fitness: np.ndarray, places: np.ndarray) -> search.Elites:
-        return search.Elites(
-            occupied=jnp.ones(ROWS, bool),
-            fitness=jnp.asarray(fitness),
-            measures=jnp.asarray(places),
-            generation=jnp.arange(ROWS, dtype=jnp.int32),
-            slot=jnp.arange(ROWS, dtype=jnp.int32),
-            genotypes=genomes.Vector(jnp.asarray(genes)),
-        )
+        vectors, sound = genomes.Vector(jnp.asarray(genes)), jnp.ones(ROWS, bool)
+        return search.candidates(0, vectors, jnp.asarray(fitness), jnp.asarray(places), sound)
 
     def add(rows: search.Elites) -> object:
         kept[0], inserted = insert(kept[0], rows, grid)

@@ -8,18 +8,19 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import loops
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from microcosmos import genomes, neat, search
+from microcosmos import genomes, search
 
 GENES, BINS, BATCH, GENERATIONS, SEEDS = 100, 100, 36, 2_000, (0, 1, 2)
 LIMIT, BEST = 5.12, 0.4 * 5.12
 STEP = 10.0
 """Initial deviation of coefficients and ascent's rate of 1, as in the paper's section 6."""
 
-Function = Callable[[jax.Array], tuple[jax.Array, jax.Array]]
+AXES = tuple(search.Axis(i, 0.0, 1.0, BINS, False) for i in range(2))
 
 
 def _projected(x: jax.Array) -> jax.Array:
@@ -32,7 +33,7 @@ def _projected(x: jax.Array) -> jax.Array:
     return (jnp.stack([jnp.mean(half) for half in jnp.split(clipped, 2)]) / LIMIT + 1) / 2
 
 
-def _scaled(value: Callable[[jax.Array], jax.Array]) -> Function:
+def _scaled(value: Callable[[jax.Array], jax.Array]) -> loops.Function:
     """From 0 in the worst corner to 1 at the optimum, as there."""
     worst = value(jnp.full(GENES, -LIMIT))
     return lambda x: (1 - value(x) / worst, _projected(x))
@@ -48,10 +49,8 @@ def _rastrigin(x: jax.Array) -> jax.Array:
 
 FUNCTIONS = {"sphere": _scaled(_sphere), "Rastrigin": _scaled(_rastrigin)}
 
-Told = tuple[jax.Array, jax.Array, jax.Array]
 
-
-def told(function: Function, x: jax.Array) -> Told:
+def with_slopes(function: loops.Function, x: jax.Array) -> tuple[jax.Array, ...]:
     """Value, place, and rows of derivatives."""
     value, place = function(x)
     by_value, by_place = jax.jacrev(function)(x)
@@ -64,69 +63,35 @@ def score(fitness: np.ndarray) -> tuple[float, float]:
     return 100 * float(np.sum(fitness)) / count, 100 * len(fitness) / count
 
 
-def ours(function: Function, seed: int) -> np.ndarray:
+def ours(function: loops.Function, seed: int) -> np.ndarray:
     """The elites' fitness; our genes run from −1 to 1."""
-    axes = tuple(search.Axis(i, 0.0, 1.0, BINS, False) for i in range(2))
-    cells, key = search.Grid(axes), jax.random.key(seed)
     emitter = search.emitters.CmaMega(BATCH, newcomer, outputs=3, step=STEP / LIMIT)
-
-    def generation(carry: Any, number: jax.Array) -> tuple[Any, None]:
-        archive, state = carry
-        children, (state,), _ = search.emitters.emit(
-            (emitter,), (state,), archive, neat.first_counters(1, 1), number, key=key
-        )
-        asked = emitter.asks(state, children)
-        assert isinstance(asked, genomes.Vector)
-        rows = jax.vmap(lambda genes: told(function, LIMIT * genes)[2])(asked.values)
-        slopes = search.Slopes(rows, jnp.ones(1, bool))
-        children, state = emitter.learn(state, children, slopes)
-        assert isinstance(children.genotypes, genomes.Vector)
-        fitness, places = jax.vmap(function)(LIMIT * children.genotypes.values)
-        found = search.Elites(
-            occupied=jnp.ones(BATCH, bool),
-            fitness=fitness,
-            measures=places,
-            generation=jnp.full(BATCH, number, jnp.int32),
-            slot=jnp.arange(BATCH, dtype=jnp.int32),
-            genotypes=children.genotypes,
-        )
-        archive, inserted = search.insert(archive, found, cells)
-        outcome = search.Outcome(
-            genotypes=found.genotypes,
-            fitness=fitness,
-            measures=places,
-            sound=found.occupied,
-            cell=inserted.cell,
-            entered=inserted.entered,
-            fresh=inserted.fresh,
-            improvement=inserted.improvement,
-        )
-        return (archive, emitter.tell(state, outcome)), None
-
-    nobody = search.no_elites(cells.count, 2, genomes.Vector(jnp.zeros(GENES)))
-    first = (nobody, emitter.init(key=key))
-    run = jax.jit(lambda carry: jax.lax.scan(generation, carry, jnp.arange(GENERATIONS))[0])
-    archive, _ = run(first)
-    return np.asarray(archive.fitness)[np.asarray(archive.occupied)]
+    return loops.ours(
+        emitter,
+        lambda genes: function(LIMIT * genes),
+        search.Grid(AXES),
+        GENES,
+        GENERATIONS,
+        seed,
+        lambda genes: with_slopes(function, LIMIT * genes)[2],
+    )
 
 
 def newcomer(*, key: jax.Array) -> genomes.Vector:
-    """Near the middle."""
+    """Random genes near the middle."""
     return genomes.Vector(0.01 * jax.random.normal(key, (GENES,)))
 
 
-def qdax(function: Function, seed: int) -> np.ndarray:
+def qdax(function: loops.Function, seed: int) -> np.ndarray:
     """The elites' fitness by QDax's emitter in its own loop."""
-    loop: Any = importlib.import_module("qdax.core.map_elites")
     mega: Any = importlib.import_module("qdax.core.emitters.cma_mega_emitter")
 
     def scored(x: jax.Array, key: jax.Array) -> tuple[jax.Array, jax.Array, dict]:
-        value, place, rows = jax.vmap(lambda one: told(function, one))(x)
+        value, place, rows = jax.vmap(lambda one: with_slopes(function, one))(x)
         rows = rows / jnp.maximum(jnp.linalg.norm(rows, axis=2, keepdims=True), 1e-30)
         return value, place, {"normalized_grads": jnp.swapaxes(rows, 1, 2)}
 
-    axes = tuple(search.Axis(i, 0.0, 1.0, BINS, False) for i in range(2))
-    centroids = jnp.asarray(search.Grid(axes).centres)
+    centroids = jnp.asarray(search.Grid(AXES).centres)
     emitter = mega.CMAMEGAEmitter(
         scoring_function=scored,
         batch_size=BATCH,
@@ -135,19 +100,14 @@ def qdax(function: Function, seed: int) -> np.ndarray:
         centroids=centroids,
         sigma_g=STEP,
     )
-    search_of = loop.MAPElites(scored, emitter, lambda repertoire: {})
-    first_key, init_key, key = jax.random.split(jax.random.PRNGKey(seed), 3)
-    first = 0.01 * LIMIT * jax.random.normal(first_key, (BATCH, GENES))
-    repertoire, state, _ = search_of.init(first, centroids, init_key)
-    run = jax.jit(
-        lambda carry: jax.lax.scan(search_of.scan_update, carry, length=GENERATIONS - 1)[0]
-    )
-    repertoire, _, _ = run((repertoire, state, key))
-    fitness = np.asarray(repertoire.fitnesses)[:, 0]
-    return fitness[np.isfinite(fitness)]
+
+    def first(key: jax.Array) -> jax.Array:
+        return 0.01 * LIMIT * jax.random.normal(key, (BATCH, GENES))
+
+    return loops.qdax(scored, emitter, first, centroids, GENERATIONS, seed)
 
 
-def pyribs(function: Function, seed: int) -> np.ndarray:
+def pyribs(function: loops.Function, seed: int) -> np.ndarray:
     """The elites' fitness by pyribs, whose authors' algorithm it is."""
     archives: Any = importlib.import_module("ribs.archives")
     emitters: Any = importlib.import_module("ribs.emitters")
@@ -168,7 +128,7 @@ def pyribs(function: Function, seed: int) -> np.ndarray:
     )
     scheduler = schedulers.Scheduler(archive, [emitter])
     evaluate = jax.jit(jax.vmap(function))
-    slopes = jax.jit(jax.vmap(lambda one: told(function, one)))
+    slopes = jax.jit(jax.vmap(lambda one: with_slopes(function, one)))
     for _ in range(GENERATIONS):
         scheduler.tell_dqd(*(np.array(x) for x in slopes(scheduler.ask_dqd())))
         scheduler.tell(*(np.asarray(x) for x in evaluate(scheduler.ask())))

@@ -1,4 +1,4 @@
-"""What a generation takes besides its rollouts: `make bench` prints it.
+"""Time of a generation besides its rollouts.
 
 The standard search and NEAT alone, as `make acceptance` runs them: children, insertion, what
 emitters learn, names and lineage, against the evaluation of a batch.

@@ -1,4 +1,4 @@
-"""What a gradient costs beside the simulation that it is of: time and memory.
+"""Time and memory of a gradient, relative to its simulation.
 
 Prints a table and asserts nothing. Programs run interleaved in one process; memory is what
 the compiled program holds beside its arguments. `autodiff` differentiates the collision
@@ -6,13 +6,13 @@ automatically, as `fluid/adjoint.py` would otherwise be.
 """
 
 import statistics
-import time
 from collections.abc import Callable
 from functools import partial
 from math import isqrt
 from typing import Any
 
 import jax
+import loops
 from rich.console import Console
 from rich.table import Table
 
@@ -65,9 +65,7 @@ def compare(size: int, nodes: int) -> None:
     seconds: dict[str, list[float]] = {name: [] for name in ways}
     for _ in range(REPEATS):
         for name, program in ways.items():
-            began = time.perf_counter()
-            jax.block_until_ready(program(values))
-            seconds[name].append(time.perf_counter() - began)
+            seconds[name].append(loops.seconds(program, values))
     table = Table(
         "",
         "ms",
@@ -104,11 +102,7 @@ def fold() -> None:
             first,
             collision,
         )
-        seconds = []
-        for _ in range(3):
-            began = time.perf_counter()
-            jax.block_until_ready(program(first))
-            seconds.append(time.perf_counter() - began)
+        seconds = [loops.seconds(program, first) for _ in range(3)]
         memory = program.memory_analysis().temp_size_in_bytes / 2**20
         table.add_row(name, f"{statistics.median(seconds):.2f}", f"{memory:.0f}")
     Console().print(table)

@@ -1,4 +1,4 @@
-"""What a NEAT generation costs beside neat-python's, and how fast networks are evaluated.
+"""Time of a NEAT generation, relative to neat-python's, and of evaluating networks.
 
 Prints tables and asserts nothing. neat-python is compared with where it is installed: `make
 peers`. Both run interleaved in one process; compilation is told and not counted.
@@ -7,10 +7,10 @@ peers`. Both run interleaved in one process; compilation is told and not counted
 import importlib
 import importlib.util
 import statistics
-import time
 from types import ModuleType
 
 import jax
+import loops
 import neat_python
 from populations import INPUTS, OUTPUTS, Ours, grown
 
@@ -34,7 +34,7 @@ def main() -> None:
 
 
 def installed() -> ModuleType | None:
-    """neat-python, or None; says so where it is not installed."""
+    """neat-python, or None if it is not installed."""
     if importlib.util.find_spec("neat"):
         return importlib.import_module("neat")
     print("neat-python is not installed: make peers\n")
@@ -77,11 +77,7 @@ def forward(hidden: int) -> None:
         compiler_options=device.compiler_options(),
     )
     jax.block_until_ready(program(networks))
-    seconds = []
-    for _ in range(11):
-        began = time.perf_counter()
-        jax.block_until_ready(program(networks))
-        seconds.append(time.perf_counter() - began)
+    seconds = [loops.seconds(program, networks) for _ in range(11)]
     rate = FORWARD / statistics.median(seconds)
     print(f"forward, {hidden} hidden nodes: {rate:,.0f} networks × {POINTS} points a second")
 

@@ -1,8 +1,8 @@
-"""What a step of physics costs beside what the machine can do, and which parts dominate.
+"""Time of a step of physics, relative to the machine's bandwidth, and of its parts.
 
 Prints tables and asserts nothing. All programs run interleaved in one process: on a CPU
 each world by itself and one device a core, elsewhere all worlds as one batch, which is how
-`search.evaluation.block_program` does it. The cost of a part is the difference between
+`search.block_program` does it. The cost of a part is the difference between
 programs with and without it.
 """
 
@@ -15,9 +15,11 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import loops
 import numpy as np
 
-from microcosmos import bodies, coupling, device, filaments, fluid, groups, world
+from microcosmos import bodies, coupling, device, filaments, fluid, groups, search, world
+from microcosmos.build import build_rods
 
 WORLDS, SIZE, NODES, STEPS, REPEATS = 64, (64, 64), 32, 100, 15
 VISCOSITY, AMPLITUDE, PERIOD = 0.05, 0.25, 100
@@ -79,7 +81,9 @@ def scene() -> tuple[world.World, world.State, filaments.Rest]:
     body = bodies.chain(NODES, 1.0, stretch=1.0, shear=1.0, bend=1.0)
     limits = world.Limits(jnp.float32(0.1), jnp.float32(0.1))
     alone = groups.one(NODES)
-    box = world.World(jnp.float32(VISCOSITY), rods_of(body), alone, SIZE, limits=limits)
+    box = world.World(
+        jnp.float32(VISCOSITY), build_rods(body, jnp.float32), alone, SIZE, limits=limits
+    )
     middle = jnp.asarray(body.positions - body.positions.mean(0) + np.array(SIZE) / 2)
     start = world.at_rest(box, middle.astype(jnp.float32))
     starts = jax.tree.map(lambda x: jnp.broadcast_to(x, (WORLDS, *x.shape)), start)
@@ -89,21 +93,6 @@ def scene() -> tuple[world.World, world.State, filaments.Rest]:
     wave = AMPLITUDE * time * np.sin(2 * np.pi * (joint - time + phase))
     length = np.ones((WORLDS, STEPS, len(body.edges)))
     return box, starts, filaments.Rest(jnp.float32(wave), jnp.float32(length))
-
-
-def rods_of(body: bodies.Body) -> filaments.Rods:
-    """The graph of a body on the device; `build`, which does this for a spec, needs more."""
-    edge_colours, joint_colours = (
-        tuple(
-            filaments.Pairing(
-                jnp.int32(c.partner), jnp.int32(c.constraint), jnp.float32(c.sign)
-            )
-            for c in colours
-        )
-        for colours in (body.edge_colours, body.joint_colours)
-    )
-    stiffness = (jnp.float32(k) for k in (body.stretch, body.shear, body.bend))
-    return filaments.Rods(jnp.int32(body.edges), edge_colours, joint_colours, *stiffness)
 
 
 def split(starts: world.State, rests: filaments.Rest) -> list[tuple[Any, Any]]:
@@ -123,22 +112,12 @@ def compile_rollout(box: world.World, step: Step) -> Callable:
         state, rest = args
         return jax.lax.scan(lambda s, r: (step(box, s, r), None), state, rest)[0]
 
-    def block(args):
-        mapped = jax.lax.map if jax.default_backend() == "cpu" else _batched
-        return mapped(rollout, args)
-
-    return jax.jit(block, compiler_options=device.compiler_options())
-
-
-def _batched(function: Callable, args: Any) -> Any:
-    return jax.vmap(function)(args)
+    return search.block_program(rollout)
 
 
 def run(program: Program, parts: list[Any]) -> float:
     """Wall seconds of one run on all devices at once."""
-    start = time.perf_counter()
-    jax.block_until_ready([program.compiled(part) for part in parts])
-    return time.perf_counter() - start
+    return loops.seconds(lambda: [program.compiled(part) for part in parts])
 
 
 def fluid_step(box: world.World, state: world.State, rest: filaments.Rest) -> world.State:

@@ -22,7 +22,7 @@ _HOME = {
     "evolve": "build.local",
     "refine": "build.local",
     "prepare": "device",
-    "record": "viz",
+    "record": "viz.replay",
     "show": "viz",
     "audit": "audit",
     "check": "audit",

@@ -4,8 +4,7 @@ import sys
 import time
 from pathlib import Path
 
-from . import pictures
-from .document import document, figure_name
+from .document import document, figure_name, save
 from .rows import Found
 from .suite import SECTIONS, Section
 
@@ -13,13 +12,13 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 def main(sections: tuple[Section, ...] = SECTIONS, docs: Path = DOCS) -> int:
-    """Writes `validation.md` and its figures; 1 if a line fails, else 0."""
+    """Write `validation.md` and its figures; return 1 if a line fails, else 0."""
     found = [(section, measure(section)) for section in sections]
     folder = docs / "pictures"
     folder.mkdir(parents=True, exist_ok=True)
     for _, one in found:
         for plot in one.plots:
-            pictures.save(plot, folder / figure_name(plot.name))
+            save(plot, folder / figure_name(plot.name))
     (docs / "validation.md").write_text(document(found, folder.name), encoding="utf-8")
     missed = [row for _, one in found for row in one.missed]
     for row in missed:
@@ -29,7 +28,7 @@ def main(sections: tuple[Section, ...] = SECTIONS, docs: Path = DOCS) -> int:
 
 
 def measure(section: Section) -> Found:
-    """All of a section's checks, said as they end."""
+    """Run the checks of a section and print their progress."""
     rows, plots = [], []
     for number, check in enumerate(section.checks, 1):
         print(f"{section.title} {number}/{len(section.checks)} ...", end=" ", flush=True)

@@ -1,4 +1,6 @@
-"""A cylinder in a free stream: drag, and the frequency of its wake.
+"""Held cylinders: the drag of an array in slow flow, and drag and wake in a free stream.
+
+Array: Sangani and Acrivos, Int. J. Multiphase Flow 8, 193 (1982), series in the solid share c.
 
 Drag at Reynolds numbers 20 and 40: Dennis and Chang, J. Fluid Mech. 42, 471 (1970), who
 computed it for a cylinder in unbounded fluid. Drag and Strouhal number at 100: Park, Kwon
@@ -16,8 +18,9 @@ import numpy as np
 from microcosmos import coupling, fluid
 
 from . import immersed
-from .rows import Found, Line, Plot, close
+from .rows import Found, Line, Plot, at_most, close, holds
 
+SANGANI = "Sangani and Acrivos 1982"
 DENNIS, PARK = "Dennis and Chang 1970", "Park, Kwon and Choi 1998"
 DRAG = {20: (2.05, DENNIS), 40: (1.52, DENNIS), 100: (1.33, PARK)}
 STROUHAL = {100: (0.165, PARK)}
@@ -57,6 +60,12 @@ def forces(case: Case):
     rates = fluid.rates(jnp.asarray(viscosity, dtype), fluid.capped_magic)
     nodes = immersed.circle(case.diameter / 2, _centre(case), dtype)
     surroundings = fluid.Surroundings(sponge=_sponge(case, dtype))
+    f, given = _held(_start(case, dtype), nodes, rates, surroundings, case.steps)
+    return f, -np.asarray(given, float).T / (0.5 * case.speed**2 * case.thickness)
+
+
+def _held(f, nodes, rates, surroundings, steps: int):
+    """The fluid after `steps` around held nodes, and the momentum given to it in each."""
 
     def step(f, _):
         answer = immersed.step(
@@ -68,12 +77,9 @@ def forces(case: Case):
             projection=coupling.unprojected,
             iterations=5,
         )
-        return answer.populations, -answer.given
+        return answer.populations, answer.given
 
-    f, given = jax.jit(lambda f: jax.lax.scan(step, f, None, length=case.steps))(
-        _start(case, dtype)
-    )
-    return f, np.asarray(given, float).T / (0.5 * case.speed**2 * case.thickness)
+    return jax.jit(lambda f: jax.lax.scan(step, f, None, length=steps))(f)
 
 
 def _centre(case: Case) -> tuple[float, float]:
@@ -139,3 +145,55 @@ def check(cases: tuple[Case, ...] = CASES, share: float = 0.08) -> Found:
 def _strouhal(case: Case, share: float) -> tuple[float, float, str]:
     reference, source = STROUHAL[case.reynolds]
     return reference, share, source
+
+
+def series(share: float) -> float:
+    """Drag over viscosity and mean velocity, for a solid share of up to about 0.2."""
+    c = share
+    return 4 * np.pi / (-0.5 * np.log(c) - 0.738 + c - 0.887 * c**2 + 2.038 * c**3)
+
+
+def array_drag(radius: float, cell: int, steps: int, viscosity: float = 0.5) -> float:
+    """The same of held nodes around one cylinder in a periodic box of `cell` cells.
+
+    A uniform force drives the flow; when it is steady, the cylinder takes up all of it.
+    """
+    dtype, force = jnp.dtype("float32"), 1e-6
+    surroundings = fluid.Surroundings(force=jnp.asarray([force, 0.0], dtype))
+    rates = fluid.rates(jnp.asarray(viscosity, dtype), fluid.fixed_magic)
+    nodes = immersed.circle(radius, (cell / 2 + 0.3, cell / 2 + 0.1), dtype)
+    still = tuple(jnp.zeros((cell, cell), dtype) for _ in range(9))
+    f, given = _held(still, nodes, rates, surroundings, steps)
+    mean_velocity = np.mean(np.asarray(fluid.momentum(f)[0], float)) + force / 2
+    return float(-given[-1, 0] / (viscosity * mean_velocity))
+
+
+def check_array(
+    radii: tuple[float, ...] = (3, 5, 8), cell: int = 64, steps: int = 6000
+) -> Found:
+    """The bar is for the largest radius; below it only has to be worse."""
+    shares = [np.pi * radius**2 / cell**2 for radius in radii]
+    exact = [series(share) for share in shares]
+    here = [array_drag(radius, cell, steps) for radius in radii]
+    errors = [a / b - 1 for a, b in zip(here, exact, strict=True)]
+    bars = [*(0.2 for _ in radii[1:]), 0.1]
+    rows = [
+        at_most(
+            f"drag of a cylinder in an array, R = {radius:g}: relative error",
+            error,
+            bar,
+            SANGANI,
+        )
+        for radius, error, bar in zip(radii, errors, bars, strict=True)
+    ]
+    rows.append(
+        holds("the error falls with the radius", errors == sorted(errors)[::-1], SANGANI)
+    )
+    fine = np.linspace(0.8 * shares[0], 1.2 * shares[-1], 100)
+    lines = (
+        Line("series", fine, [series(share) for share in fine]),
+        Line("here", shares, here, "o"),
+    )
+    return Found(
+        rows, [Plot("array", "solid share", "drag / (viscosity × mean velocity)", lines)]
+    )

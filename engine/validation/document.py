@@ -1,11 +1,13 @@
-"""The document that the checks are written to: text, tables and figures."""
+"""The document of the checks: text, tables and figures."""
 
 import textwrap
 from pathlib import Path
 
 import jax
+import numpy as np
+from matplotlib.figure import Figure
 
-from .rows import Found, Row
+from .rows import Found, Plot, Row
 from .suite import Section
 
 HEAD = """# Validation
@@ -35,7 +37,6 @@ def _section(section: Section, found: Found, pictures: str) -> str:
     lines = [f"## {section.title}\n", textwrap.fill(section.text, 100), ""]
     lines += ["| quantity | reference | here | bar | |", "|---|---|---|---|---|"]
     lines += [_line(row) for row in found.rows]
-    lines += [f"\n{row.quantity}: {row.note}" for row in found.rows if row.note]
     for plot in found.plots:
         path = Path(pictures) / figure_name(plot.name)
         lines.append(f"\n![{section.title}: {plot.y} against {plot.x}]({path.as_posix()})")
@@ -48,3 +49,27 @@ def _line(row: Row) -> str:
         reference = f"{row.reference:.4g} ({row.source})"
     verdict = "pass" if row.passed else "**FAIL**"
     return f"| {row.quantity} | {reference} | {row.here:.4g} | {row.bar} | {verdict} |"
+
+
+def save(plot: Plot, path: Path) -> None:
+    """Write a figure as PNG."""
+    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+    axes = figure.add_subplot(xlabel=plot.x, ylabel=plot.y)
+    if plot.image is not None:
+        reach = float(np.percentile(np.abs(plot.image), 99.5))
+        axes.imshow(
+            plot.image.T, origin="lower", cmap="RdBu_r", vmin=-reach, vmax=reach, aspect="equal"
+        )
+    for line in plot.lines:
+        axes.plot(line.x, line.y, line.style, label=line.name or None)
+    if "x" in plot.logarithmic:
+        places = sorted({float(x) for line in plot.lines for x in line.x})
+        axes.set_xscale("log")
+        axes.set_xticks(places, [f"{x:g}" for x in places])
+        axes.minorticks_off()
+    if "y" in plot.logarithmic:
+        axes.set_yscale("log")
+    if any(line.name for line in plot.lines):
+        axes.legend(frameon=False)
+    # Without `Software` the same figure gives the same bytes.
+    figure.savefig(path, dpi=120, metadata={"Software": None})

@@ -10,8 +10,7 @@ import numpy as np
 from microcosmos import bodies, fields, filaments, world
 
 from . import scenes
-from .precision import precision
-from .rows import Found, at_least, at_most, holds
+from .rows import Found, at_least, at_most, holds, precision
 
 H = 1e-5
 """Step of the differences: larger, their own error shows; smaller, rounding does."""

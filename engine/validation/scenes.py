@@ -1,4 +1,4 @@
-"""Bodies in the middle of a fluid at rest, and what they are asked to do."""
+"""Bodies in the middle of a fluid at rest, and their rest shapes over time."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from microcosmos.bodies import swimmers
 from microcosmos.build import build_rods
 
 LITERAL = world.Form(projection=coupling.unprojected, theta_feedback=0.0, forcing_iterations=1)
-"""The paper's form: nothing keeps a body from pushing itself, or from ignoring the flow."""
+"""The paper's literal form: a body can push itself and ignore the flow."""
 
 
 def immersed(
@@ -35,7 +35,7 @@ def immersed(
 
 
 def limits(viscosity: float, dtype: Any) -> world.Limits:
-    """Those with which random controllers stay finite."""
+    """Limits under which random controllers stay finite."""
     displacement, force = (0.1, 0.1) if viscosity >= 0.003 else (0.05, 0.03)
     return world.Limits(jnp.asarray(displacement, dtype), jnp.asarray(force, dtype))
 
@@ -84,11 +84,11 @@ def recorded(box: world.World, start: world.State, shapes: filaments.Rest) -> np
 
 
 def displacement(positions: np.ndarray) -> np.ndarray:
-    """Of the mean position, from the first to the last."""
+    """Displacement of the mean position, from the first to the last."""
     return positions[-1].mean(0) - positions[0].mean(0)
 
 
 def mean_path(positions: np.ndarray) -> float:
-    """How far a node travels on its way, on average."""
+    """Mean length of the nodes' paths."""
     moves = np.diff(positions, axis=0)
     return float(np.mean(np.sum(np.hypot(moves[..., 0], moves[..., 1]), 0)))

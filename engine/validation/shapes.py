@@ -11,8 +11,7 @@ from microcosmos import bodies, filaments
 from microcosmos.bodies import swimmers
 from microcosmos.build import build_rods
 
-from .precision import precision
-from .rows import Found, at_most
+from .rows import Found, at_most, precision
 
 REST = "rest shape"
 

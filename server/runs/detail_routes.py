@@ -77,7 +77,7 @@ def read_targets(run: RunDep) -> list[Target]:
         raise ProblemError(404, "No pictures", f"A run of `{run.experiment}` has no pictures.")
     spec = parse(run.spec)
     assert isinstance(spec, Folding)
-    longest = min(spec.size, targets.MOST)
+    longest = min(spec.size, targets.MAX_PIXELS)
     fitted = [(one.name, targets.fitted(one.ink, longest)) for one in spec.targets]
     return [
         Target(

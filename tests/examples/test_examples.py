@@ -37,21 +37,18 @@ def example(name, needs="jax"):
     return module
 
 
-def test_their_map_elites_evolves_our_creatures():
-    repertoire = example("qdax_map_elites", "qdax").main(generations=2, batch=4, **TINY)
+@pytest.mark.parametrize("emitter", ["iso+line", "neat"])
+def test_their_map_elites_evolves_our_creatures_and_networks(emitter):
+    module = example("qdax_map_elites", "qdax")
+    repertoire = module.main(emitter, generations=3, batch=4, **TINY)
     assert np.isfinite(repertoire.fitnesses).any()
 
 
 def test_their_cma_mega_climbs_our_slopes():
-    module = example("qdax_cma_mega", "qdax")
+    module = example("qdax_map_elites", "qdax")
     longer = {**TINY, "task": {"steps": 80}}
-    repertoire = module.main(generations=4, batch=8, **longer)
+    repertoire = module.main("cma-mega", generations=4, batch=8, **longer)
     assert np.isfinite(repertoire.fitnesses).sum() > 1
-
-
-def test_their_map_elites_evolves_our_networks():
-    repertoire = example("qdax_neat", "qdax").main(generations=3, batch=4, **TINY)
-    assert np.isfinite(repertoire.fitnesses).any()
 
 
 def test_their_emitters_work_in_our_search(tmp_path):

@@ -2,8 +2,9 @@
 
 `make mutants` tries all, `make mutants NAMES="auth gradient-wrap"` those whose names begin so.
 Each mutant is a file beside this one: the source file, a text that it holds exactly once, the
-replacement, and the tests of `make test` that have to fail. All happens in a copy of the
-repository, so that nothing is left broken.
+replacement, and the tests of `make test` that have to fail: the package's folder, or a file of
+it if the folder takes more than a minute. Without a defect, the tests named must pass. All
+happens in a copy of the repository, so nothing is left broken.
 """
 
 import os
@@ -13,7 +14,7 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -70,45 +71,58 @@ def environment(copy: Path) -> Mapping[str, str]:
     return os.environ | here
 
 
-def caught_by(mutant: Mutant, copy: Path) -> str | None:
-    """The test that fails with the defect in the copy, which is mended afterwards."""
-    file = copy / mutant.file
-    source = file.read_text()
-    file.write_text(mutant.broken(source))
-    if mutant.of_page:
-        command, folder = ["npx", "vitest", "run", "--bail", "1", *mutant.tests], copy / "web"
+def failure(page: bool, tests: Iterable[str], copy: Path) -> str | None:
+    """Run tests of the page or of Python in the copy; return the first that fails, if any."""
+    if page:
+        command, folder = ["npx", "vitest", "run", "--bail", "1", *tests], copy / "web"
     else:
         pytest = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
-        command, folder = [*pytest, "-m", "not long", *mutant.tests], copy
-    try:
-        done = subprocess.run(
-            command, cwd=folder, env=environment(copy), capture_output=True, text=True
-        )
-    finally:
-        file.write_text(source)
-    # Pytest ends with 1 where a test failed; 2 and more mean that it could not run them.
+        command, folder = [*pytest, "-m", "not long", *tests], copy
+    done = subprocess.run(
+        command, cwd=folder, env=environment(copy), capture_output=True, text=True
+    )
+    # Pytest ends with 1 if a test failed; 2 and more mean that it could not run them.
     if done.returncode not in (0, 1):
-        raise RuntimeError(f"{mutant.name}: {' '.join(command)}\n{done.stdout}{done.stderr}")
+        raise RuntimeError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
     lines = (done.stdout + done.stderr).splitlines()
     failed = (line for line in lines if line.lstrip().startswith("FAIL"))
     return next(failed, "an error").strip()[:150] if done.returncode == 1 else None
 
 
+def refuse_failing_tests(chosen: list[Mutant], copy: Path) -> None:
+    """Exit unless the tests that the mutants name pass without a defect."""
+    for page in (False, True):
+        tests = sorted({path for one in chosen if one.of_page == page for path in one.tests})
+        if tests and (failed := failure(page, tests, copy)):
+            sys.exit(f"Tests fail without a defect, so they prove nothing: {failed}")
+
+
+def caught_by(mutant: Mutant, copy: Path) -> str | None:
+    """The test that fails with the defect in the copy, which is restored afterwards."""
+    file = copy / mutant.file
+    source = file.read_text()
+    file.write_text(mutant.broken(source))
+    try:
+        return failure(mutant.of_page, mutant.tests, copy)
+    finally:
+        file.write_text(source)
+
+
 def main(beginnings: list[str]) -> int:
     chosen = [one for one in mutants() if one.name.startswith(tuple(beginnings or [""]))]
-    missed = []
+    missed = 0
     with tempfile.TemporaryDirectory() as folder:
         copy_repository(Path(folder))
+        refuse_failing_tests(chosen, Path(folder))
         for mutant in chosen:
             began = time.monotonic()
             failed = caught_by(mutant, Path(folder))
-            if failed is None:
-                missed.append(mutant.name)
-            word = "caught" if failed else "MISSED"
+            missed += failed is None
             seconds = time.monotonic() - began
+            word = "caught" if failed else "MISSED"
             print(f"{word}  {seconds:4.0f} s  {mutant.name}: {mutant.about}")
             print(f"                {failed or 'all tests pass'}", flush=True)
-    print(f"{len(chosen) - len(missed)} of {len(chosen)} caught")
+    print(f"{len(chosen) - missed} of {len(chosen)} caught")
     return 1 if missed else 0
 
 

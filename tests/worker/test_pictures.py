@@ -2,6 +2,7 @@
 
 import json
 import struct
+import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -79,10 +80,9 @@ def asked(monkeypatch):
         calls.append(("measurement", file["sha256"]))
         return {"exact": True}
 
-    monkeypatch.setattr(pictures, "viz", SimpleNamespace(record=record))
-    monkeypatch.setattr(
-        pictures, "audit", SimpleNamespace(audit=audit, measurement=measurement)
-    )
+    audits = SimpleNamespace(audit=audit, measurement=measurement)
+    monkeypatch.setitem(sys.modules, "microcosmos.viz.replay", SimpleNamespace(record=record))
+    monkeypatch.setitem(sys.modules, "microcosmos.audit", audits)
     return calls
 
 

@@ -118,4 +118,4 @@ def test_a_run_on_the_wrong_worker_is_set_aside_or_refused(settings):
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
     said = json.loads(done.stdout.splitlines()[-1])
     assert "must be of version aaaaaaaaaaaa, got version" in said["aside"]
-    assert "mine.stick must give a body, got int" in said["refused"]
+    assert "mine.stick must return a body, got int" in said["refused"]

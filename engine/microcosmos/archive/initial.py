@@ -85,7 +85,7 @@ def _refuse_other_parts(chosen: Evolution, before: Any, who: str) -> None:
     if isinstance(control, Direct):
         _compare("control.waveform", control.waveform, old.waveform, who)
         _compare("control.terms", control.terms, old.terms, who)
-        _compare("control: free measures", sorted(control.free), sorted(old.free), who)
+        _compare("control: inherited traits", sorted(control.traits), sorted(old.traits), who)
         now, then = shape(chosen.body), shape(before.body)
         for name in ("joints", "edges"):
             needed, found = len(getattr(then, name)), len(getattr(now, name))

@@ -1,4 +1,4 @@
-"""Evaluate a creature again and compare with what its file says was measured."""
+"""Evaluate a creature again and compare with the measurement in its file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,12 +12,13 @@ from ..archive import creature
 from ..build import build_block, build_point, build_stroke_block, measures_of
 from ..device import device_kind
 from ..spec import Gait
+from ..spec.creature import fitness_of
 from ..viz.replay import actuator_of
 
 
 @dataclass(frozen=True)
 class Check:
-    """What the file says and what came out; `exact` where every recorded bit is the same."""
+    """Recorded and repeated measures; `exact` if every recorded bit is the same."""
 
     recorded: dict[str, float]
     repeated: dict[str, float]
@@ -31,11 +32,11 @@ class Check:
 def check(file: Mapping[str, Any]) -> Check:
     """Run the creature through the very program that measured it.
 
-    Raises `creature.CreatureError` for a file that is not sound or holds no measurement.
+    Raises `creature.CreatureError` for a file that is invalid or has no measurement.
     """
     file = creature.parse(file)
     if not file["measured"]:
-        raise creature.CreatureError("measured", "what was measured, to compare with", None)
+        raise creature.CreatureError("measured", "a measurement to compare with", None)
     repeated = _repeat(file)
     return Check(
         recorded=file["measured"]["measures"],
@@ -57,3 +58,40 @@ def _repeat(file: Mapping[str, Any]) -> dict[str, float]:
 
 def _alone(item: Any) -> Any:
     return jax.tree.map(lambda x: np.asarray(x)[None], item)
+
+
+def measurement(file: Mapping[str, Any]) -> dict[str, Any]:
+    """The comparison as a JSON document, described in `docs/formats.md`; raises as `check`."""
+    file = creature.parse(file)
+    found = check(file)
+    fitness = file["measured"]["fitness"]
+    task = creature.Identity.model_validate(file["identity"]).task
+    # Compilers may fuse the sum in fitness: equal measures mean equal fitness.
+    repeated = fitness if found.exact else fitness_of(task, found.repeated)
+    return {
+        "creature": file["sha256"],
+        "exact": found.exact,
+        "device": device_kind(),
+        "recorded_device": file["measured"]["device"],
+        "fitness": _compared("fitness", fitness, repeated),
+        "figures": differing(found.recorded, found.repeated),
+    }
+
+
+def differing(recorded: Mapping[str, float], repeated: Mapping[str, float]) -> list[Any]:
+    """The measures that differ, largest relative difference first."""
+    both = {name: (value, repeated.get(name, np.nan)) for name, value in recorded.items()}
+    wrong = [name for name, (value, other) in both.items() if value != other]
+    wrong.sort(key=lambda name: (-_share(*both[name]), name))
+    return [_compared(name, *both[name]) for name in wrong]
+
+
+def _share(recorded: float, repeated: float) -> float:
+    if not np.isfinite(repeated):
+        return np.inf
+    return abs(repeated - recorded) / max(abs(recorded), 1e-30)
+
+
+def _compared(name: str, recorded: float, repeated: float) -> dict[str, Any]:
+    finite = float(repeated) if np.isfinite(repeated) else None
+    return {"name": name, "recorded": float(recorded), "measured": finite}

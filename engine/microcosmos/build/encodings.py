@@ -65,13 +65,14 @@ def _(control: spec.Weights, controls, body, room):
 
 @_encoding.register
 def _(control: spec.Direct, controls, body, room):
+    reshaped = {"rest_angle", "rest_length"} & set(control.traits)
     return genomes.Direct(
         controls=controls,
         parts=control.parts(body),
-        bounds=control.free,
+        bounds=control.traits,
         basis=BASES[control.waveform],
         terms=control.terms,
-        plan=build_layout(body) if {"rest_angle", "rest_length"} & set(control.free) else None,
+        plan=build_layout(body) if reshaped else None,
         spread=control.spread,
         faintest=control.faintest,
     )
@@ -84,7 +85,7 @@ def _(control: spec.PluginControl, controls, body, room):
 
 @_encoding.register
 def _(control: spec.Grown, controls, body, room):
-    return genomes.Grown(controls, room, control.free, control.min_nodes, build_layout(body))
+    return genomes.Grown(controls, room, control.traits, control.min_nodes, build_layout(body))
 
 
 def build_layout(body: bodies.Body) -> genomes.Plan:

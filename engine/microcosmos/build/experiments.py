@@ -13,8 +13,8 @@ import numpy as np
 from .. import device, neat, search, spec
 from ..archive.initial import counters, genes_of
 from ..experiments import Experiment, reevaluation
-from ..experiments.evolution import Evolution, Programs
-from ..experiments.learning import Lessons
+from ..experiments.evolution import Evolution
+from ..experiments.offspring import Lessons, Programs
 from ..experiments.state import InitialCreatures, Limits, Plan, Reevaluation
 from ..search.emitters.tensorneat import TensorNeat
 from .cells import build_cells

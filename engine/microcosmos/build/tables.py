@@ -2,36 +2,48 @@
 
 import json
 from collections.abc import Callable
-from typing import Any
 
 import jax.numpy as jnp
 
 from .. import bodies, device, filaments, spec, units, world
+from ..archive.report import Row
 from ..bodies.extent import extent
 from ..experiments import gaits, scaling, timing
+from ..experiments.table_file import TableRun
 from ..spec.scaling import SPACING
 from .creatures import build_point, build_stroke_block, frame
 from .scene import build_world
 
 
-def build_gaits(chosen: spec.Gaits) -> gaits.Gaits:
+def build_gaits(chosen: spec.Gaits) -> TableRun:
     """A sweep, its programs compiled when they are first used."""
-    strokes = tuple(_stroke(chosen, form, swimmer) for form, swimmer in chosen.strokes)
-    return gaits.Gaits(_json(chosen), strokes, chosen.block, device.device_kind())
+    strokes, kind = build_strokes(chosen), device.device_kind()
+
+    def rows(number: int, stop: Callable[[], bool]) -> tuple[Row, ...]:
+        return gaits.stroke_rows(strokes[number], stop, block=chosen.block, device=kind)
+
+    return TableRun(_json(chosen), kind, len(strokes), rows, gaits.report)
 
 
-def build_scaling(chosen: spec.Scaling) -> scaling.Scaling:
+def build_strokes(chosen: spec.Gaits) -> tuple[gaits.Stroke, ...]:
+    """The strokes of a sweep, each a generation."""
+    return tuple(_stroke(chosen, form, swimmer) for form, swimmer in chosen.strokes)
+
+
+def build_scaling(chosen: spec.Scaling) -> TableRun:
     """A measurement."""
 
-    def measure(nodes: int, stop: Callable[[], bool]) -> tuple[dict[str, Any], ...]:
+    def rows(number: int, stop: Callable[[], bool]) -> tuple[Row, ...]:
+        nodes = chosen.nodes[number]
         plan = timing.Plan(chosen.steps, chosen.part_steps, device.compiler_options(), stop)
         scene, start = build_crowd(chosen, nodes)
-        rows = [timing.step_row(scene, start, plan)]
+        found = [timing.step_row(scene, start, plan)]
         if nodes <= chosen.all_pairs:
-            rows.append(timing.pairs_row(start.positions, scene.box.size, plan))
-        return tuple(rows)
+            found.append(timing.pairs_row(start.positions, scene.box.size, plan))
+        return tuple(Row(row) for row in found)
 
-    return scaling.Scaling(_json(chosen), chosen.nodes, measure, device.device_kind())
+    kind = device.device_kind()
+    return TableRun(_json(chosen), kind, len(chosen.nodes), rows, scaling.report)
 
 
 def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[timing.Scene, world.State]:

@@ -1,6 +1,6 @@
 """The command line. JAX is loaded only to compute."""
 
-from . import (
+from . import (  # noqa: F401  (Importing a module registers its commands.)
     creature,
     doctor,
     draw,
@@ -12,22 +12,7 @@ from . import (
     refine,
     run,
     sharing,
-    submit,
 )
 from .app import app
 
-__all__ = [
-    "app",
-    "creature",
-    "doctor",
-    "draw",
-    "manage",
-    "modules",
-    "monitor",
-    "network",
-    "pictures",
-    "refine",
-    "run",
-    "sharing",
-    "submit",
-]
+__all__ = ["app"]

@@ -8,15 +8,16 @@ from typing import Annotated, Any
 import typer
 
 from ..archive.atomic import write_whole
-from ..archive.creature import CreatureError, parse
-from ..plugins import Broken, Missing
-from .app import CACHE, app, fail
-from .modules import Modules, load_modules
+from ..archive.creature import parse
+from .app import CreaturePath, app, failing
+from .modules import Modules, prepare_engine
+
+Report = Annotated[Path | None, typer.Option(help="File to write the report to, as JSON.")]
 
 
 @app.command()
 def replay(
-    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    file: CreaturePath,
     check: Annotated[
         bool, typer.Option("--check", help="Evaluate again and compare bit for bit.")
     ] = False,
@@ -24,40 +25,28 @@ def replay(
     module: Modules = None,
 ) -> None:
     """Simulate a creature file again."""
-    load_modules(module)
-    from ..device import prepare
+    prepare_engine(module)
+    from ..viz.replay import record
 
-    prepare(cache=CACHE)
-    try:
+    with failing(file):
+        creature = parse(file.read_bytes())
         if check:
-            _check(file)
+            _check(creature)
         else:
-            _record(file, out or file.with_suffix(".replay"))
-    except (CreatureError, Missing, Broken, OSError) as error:
-        fail(f"{file}: {error}")
+            out = out or file.with_suffix(".replay")
+            write_whole(out, record(creature))
+            print(out)
 
 
 @app.command()
-def audit(
-    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
-    out: Annotated[
-        Path | None, typer.Option(help="File to write the report to, as JSON.")
-    ] = None,
-    module: Modules = None,
-) -> None:
+def audit(file: CreaturePath, out: Report = None, module: Modules = None) -> None:
     """Audit the physics of a creature: does it still swim on a finer lattice?"""
-    load_modules(module)
-    from ..device import prepare
+    prepare_engine(module)
+    from ..audit.physics import audit as examine
 
-    prepare(cache=CACHE)
-    from ..audit.physics import audit as examined
-
-    try:
-        found = examined(parse(file.read_bytes()))
-    except (CreatureError, Missing, Broken, OSError) as error:
-        fail(f"{file}: {error}")
-    if out:
-        write_whole(out, json.dumps(found, indent=1).encode())
+    with failing(file):
+        found = examine(parse(file.read_bytes()))
+        _write(out, found)
     _print_audit(found)
     if not found["verdict"]["survives"]:
         raise typer.Exit(1)
@@ -65,7 +54,7 @@ def audit(
 
 @app.command()
 def gradient(
-    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    file: CreaturePath,
     of: Annotated[str, typer.Option(help="fitness, or a measure.")] = "fitness",
     by: Annotated[
         list[str] | None,
@@ -74,33 +63,30 @@ def gradient(
     starts: Annotated[
         int, typer.Option(min=1, help="Number of other starts to compare with.")
     ] = 8,
-    out: Annotated[
-        Path | None, typer.Option(help="File to write the report to, as JSON.")
-    ] = None,
+    out: Report = None,
     module: Modules = None,
 ) -> None:
     """Measure how far the gradient of a creature's fitness or of a measure can be trusted."""
-    load_modules(module)
-    from ..device import prepare
-
-    prepare(cache=CACHE)
+    prepare_engine(module)
     from ..audit.derivatives import gradient_health
 
-    try:
+    with failing(file):
         parts = tuple(by or ["genes"])
         found = gradient_health(parse(file.read_bytes()), of, parts, starts=starts)
-    except (CreatureError, ValueError, OSError) as error:
-        fail(f"{file}: {error}")
-    if out:
-        write_whole(out, json.dumps(found.document(), indent=1).encode())
+        _write(out, found.document())
     for line in found.lines():
         print(line)
 
 
-def _check(file: Path) -> None:
+def _write(out: Path | None, report: Mapping[str, Any]) -> None:
+    if out:
+        write_whole(out, json.dumps(report, indent=1).encode())
+
+
+def _check(creature: dict[str, Any]) -> None:
     from ..audit.reproducibility import check
 
-    result = check(parse(file.read_bytes()))
+    result = check(creature)
     for name, repeated in result.repeated.items():
         recorded = result.recorded.get(name, float("nan"))
         print(f"{name:>18}  recorded {recorded:.9g}  repeated {repeated:.9g}")
@@ -110,13 +96,6 @@ def _check(file: Path) -> None:
     reason = "" if result.same_device else ": it was measured on another kind of device"
     print(f"Not the same{reason}.")
     raise typer.Exit(1)
-
-
-def _record(file: Path, out: Path) -> None:
-    from ..viz.replay import record
-
-    write_whole(out, record(parse(file.read_bytes())))
-    print(out)
 
 
 def _print_audit(found: Mapping[str, Any]) -> None:

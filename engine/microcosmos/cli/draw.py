@@ -1,5 +1,7 @@
 """The command `figure`: pictures, films, and figures for print."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,9 +12,9 @@ from typer.core import TyperGroup
 from ..archive.creature import parse
 from ..archive.file import HDF5, load
 from ..viz.figures import drawing, experiments
-from ..viz.files import check, export
-from .app import CACHE, app, console, fail
-from .modules import Modules, load_modules
+from ..viz.film import check, export
+from .app import CACHE, app, console, fail, failing, with_options
+from .modules import Modules, load_modules, prepare_engine
 
 DEFAULT = "file"
 """The command that runs if none is named."""
@@ -45,16 +47,27 @@ Axes = Annotated[
         help="One or two measures as a,b; default: the first two axes of the archive."
     ),
 ]
-Width = Annotated[
-    str,
-    typer.Option(help="single (85 mm), double (178 mm), or a width such as 120mm or 3.5in."),
-]
-Dpi = Annotated[int, typer.Option(min=50, max=1200, help="Resolution of a PNG.")]
-Under = Annotated[bool, typer.Option("--caption", help="Draw the caption under the figure.")]
-Tex = Annotated[
-    bool, typer.Option("--latex", help="Write the caption for LaTeX to OUT.caption.tex.")
-]
-Palette = Annotated[str, typer.Option(help="viridis, cividis or magma.")]
+
+
+@contextmanager
+def _printed(
+    width: Annotated[
+        str,
+        typer.Option(
+            help="single (85 mm), double (178 mm), or a width such as 120mm or 3.5in."
+        ),
+    ] = "single",
+    dpi: Annotated[int, typer.Option(min=50, max=1200, help="Resolution of a PNG.")] = 300,
+    caption: Annotated[
+        bool, typer.Option("--caption", help="Draw the caption under the figure.")
+    ] = False,
+    latex: Annotated[
+        bool, typer.Option("--latex", help="Write the caption for LaTeX to OUT.caption.tex.")
+    ] = False,
+    palette: Annotated[str, typer.Option(help="viridis, cividis or magma.")] = "viridis",
+) -> Iterator[drawing.Print]:
+    with failing():
+        yield drawing.Print(width, dpi, caption, latex, palette)
 
 
 @figures.command(DEFAULT)
@@ -71,32 +84,28 @@ def of_file(
     This is meant where no command is named: `figure FILE OUT`.
     """
     load_modules(module)
-    try:
+    with failing(file):
         _draw(file, out)
-    except (ValueError, RuntimeError, ImportError, OSError) as error:
-        fail(f"{file}: {error}")
     print(out)
 
 
 @figures.command()
+@with_options(_printed)
 def archive(
+    how: drawing.Print,
     file: File,
     out: Out = None,
     axes: Axes = None,
     colour: Annotated[str, typer.Option(help="fitness, or a measure.")] = "fitness",
-    width: Width = "single",
-    dpi: Dpi = 300,
-    caption: Under = False,
-    latex: Tex = False,
-    palette: Palette = "viridis",
 ) -> None:
     """Draw the map of an archive: bins, or the cells of a tessellation."""
-    how = drawing.Print(width, dpi, caption, latex, palette)
-    _written(drawing.archive, file, _beside(file, out, "archive"), how, _names(axes), colour)
+    _print(drawing.archive(file, _beside(file, out, "archive"), how, _names(axes), colour))
 
 
 @figures.command()
+@with_options(_printed, omit="palette", width="double")
 def curves(
+    how: drawing.Print,
     files: Annotated[
         list[Path],
         typer.Argument(metavar="FILE... OUT", help="Archive files, then the figure to write."),
@@ -108,10 +117,6 @@ def curves(
         ),
     ] = "best,coverage,qd_score",
     against: Annotated[str, typer.Option(help="evaluations or generations.")] = "evaluations",
-    width: Width = "double",
-    dpi: Dpi = 300,
-    caption: Under = False,
-    latex: Tex = False,
 ) -> None:
     """Draw the curves of runs: the median and a band over the seeds of each spec."""
     *given, out = files
@@ -119,72 +124,54 @@ def curves(
         fail(f"FILE... OUT needs an archive file and a figure to write; got only {out}")
     if missing := [str(file) for file in given if not file.is_file()]:
         fail(f"FILE must exist; not found: {', '.join(missing)}")
-    how = drawing.Print(width, dpi, caption, latex)
-    _written(drawing.progress, given, out, how, _names(shown) or [], against)
+    _print(drawing.progress(given, out, how, _names(shown) or [], against))
 
 
 @figures.command()
+@with_options(_printed, width="double")
 def sheet(
+    how: drawing.Print,
     file: File,
     out: Out = None,
     axes: Axes = None,
     columns: Annotated[int, typer.Option(help="Number of regions along the first axis.")] = 6,
     rows: Annotated[int, typer.Option(help="Number of regions along the second axis.")] = 4,
     moments: Annotated[int, typer.Option(help="Number of moments of each swimmer.")] = 5,
-    width: Width = "double",
-    dpi: Dpi = 300,
-    caption: Under = False,
-    latex: Tex = False,
-    palette: Palette = "viridis",
     module: Modules = None,
 ) -> None:
     """Draw a contact sheet of gaits: the fittest swimmer of each region of the archive."""
-    load_modules(module)
-
-    from ..device import prepare
-
-    prepare(cache=CACHE)
-
-    how = drawing.Print(width, dpi, caption, latex, palette)
+    prepare_engine(module)
     with Progress(console=console, transient=True) as bar:
         task = bar.add_task("simulating elites", total=None)
-        _written(
-            drawing.contact,
-            file,
-            _beside(file, out, "sheet"),
-            how,
-            _names(axes),
-            (columns, rows),
-            moments,
-            lambda done, of: bar.update(task, completed=done, total=of),
+        _print(
+            drawing.contact(
+                file,
+                _beside(file, out, "sheet"),
+                how,
+                _names(axes),
+                (columns, rows),
+                moments,
+                lambda done, of: bar.update(task, completed=done, total=of),
+            )
         )
 
 
 @figures.command()
+@with_options(_printed, width="double")
 def lineage(
+    how: drawing.Print,
     file: File,
     out: Out = None,
     cell: Annotated[
         int | None,
         typer.Option(help="Cell of the elite whose ancestors are drawn; default: the fittest."),
     ] = None,
-    width: Width = "double",
-    dpi: Dpi = 300,
-    caption: Under = False,
-    latex: Tex = False,
-    palette: Palette = "viridis",
 ) -> None:
     """Draw the pedigree of an archive's elites, and the ancestors of one of them."""
-    how = drawing.Print(width, dpi, caption, latex, palette)
-    _written(drawing.tree, file, _beside(file, out, "lineage"), how, cell)
+    _print(drawing.tree(file, _beside(file, out, "lineage"), how, cell))
 
 
-def _written(draw: Any, *given: Any) -> None:
-    """Draw, and print the paths of the written files."""
-    try:
-        written = draw(*given)
-    except (ValueError, ImportError, OSError) as error:
-        fail(str(error))
+def _print(written: list[Path]) -> None:
     for path in written:
         print(path)
 

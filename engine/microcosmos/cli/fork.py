@@ -1,21 +1,18 @@
-"""What a run begins from: creatures in files, as `search.initial` names them."""
+"""Initial creatures in files, which `search.initial` names."""
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from pydantic import ValidationError
 
 from ..archive import creature_h5, initial
-from ..archive.creature import CreatureError, parse
+from ..archive.creature import parse
 from ..archive.file import HDF5, load
-from ..plugins import Broken, Missing
 from ..spec import Evolution, Spec
 from ..spec import parse as parse_spec
 from ..viz.figures.reading import read
-from .app import fail
-from .specs import said
+from .app import fail, failing
 
 CreatureFile = dict[str, Any]
 
@@ -30,10 +27,10 @@ From = Annotated[
 ]
 
 
-def begun(spec: Spec, paths: Sequence[Path]) -> tuple[Spec, list[CreatureFile]]:
-    """The spec that names what it begins from, and the files of those creatures.
+def with_initial(spec: Spec, paths: Sequence[Path]) -> tuple[Spec, list[CreatureFile]]:
+    """Return the spec that names its initial creatures, and their files.
 
-    A spec that names creatures already begins from those; it ends here where one does not fit.
+    A spec that already names creatures keeps them. Fail if one does not fit.
     """
     if not paths:
         return spec, []
@@ -45,17 +42,13 @@ def begun(spec: Spec, paths: Sequence[Path]) -> tuple[Spec, list[CreatureFile]]:
         fail(
             f"--from needs the creatures that `search.initial` names; got none of {lacking[0]}"
         )
-    try:
+    with failing("--from"):
         search = {**spec.search.model_dump(mode="json"), "initial": named}
         chosen = parse_spec({**spec.model_dump(mode="json"), "search": search})
         assert isinstance(chosen, Evolution)
         files = [found[name] for name in named]
         initial.genes_of(chosen, files)
-    except CreatureError as error:
-        fail(f"--from: {error}")
-    except ValidationError as error:
-        fail("\n".join(f"--from: {said(one)}" for one in error.errors()))
-    return chosen, files
+        return chosen, files
 
 
 def refuse_without_files(spec: Spec, files: Sequence[CreatureFile], archive: Path) -> None:
@@ -67,19 +60,15 @@ def refuse_without_files(spec: Spec, files: Sequence[CreatureFile], archive: Pat
 
 def creatures(path: Path) -> list[CreatureFile]:
     """Return the creatures of a creature file or an archive; fail for any other file."""
-    try:
+    with failing(f"--from needs a creature file or an archive; {path}"):
         data = path.read_bytes()
-        return _of_hdf5(data) if data.startswith(HDF5) else [parse(data)]
-    except (ValueError, OSError, Missing, Broken) as error:
-        fail(f"--from needs a creature file or an archive; {path}: {error}")
-
-
-def _of_hdf5(data: bytes) -> list[CreatureFile]:
-    try:
-        load(data)
-    except ValueError:  # It is no run's.
-        return [creature_h5.load(data)]
-    return _elites(data)
+        if not data.startswith(HDF5):
+            return [parse(data)]
+        try:
+            load(data)
+        except ValueError:  # It is not the file of a run.
+            return [creature_h5.load(data)]
+        return _elites(data)
 
 
 def _elites(data: bytes) -> list[CreatureFile]:

@@ -1,39 +1,67 @@
-"""Commands that change runs and sweeps on a server: pause, extend, fork, delete."""
+"""Commands that create and change runs and sweeps on a server."""
 
-from collections.abc import Callable
 from typing import Annotated, Any
 
 import typer
 
+from ..client import Client, Run, Sweep, specs
 from . import overrides
-from .app import app
-from .monitor import ended
-from .remote import RUNS, Id, Ids, Json, Token, Url, about, found, reaching, say, show, title
-from .submit import Name, Set, Watch, tell
-from .sweeps import cases, members, table
+from .app import Set, app
+from .monitor import watch_to_end
+from .remote import RUNS, Id, Ids, Json, describe, find, on_server, say, show, title
 
+Name = Annotated[str | None, typer.Option(help="Name of the run.")]
+Watch = Annotated[bool, typer.Option("--watch", "-w", help="Watch until it ends.")]
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask for confirmation.")]
 
 
 @app.command(rich_help_panel=RUNS)
+@on_server
+def submit(
+    client: Client,
+    spec: Annotated[str, typer.Argument(help="Spec file, or name of a preset.")],
+    seeds: Annotated[
+        int | None, typer.Option(min=1, help="Queue a sweep with this number of seeds.")
+    ] = None,
+    settings: Set = None,
+    sweep: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FIELD=A,B,...",
+            help="Queue a run for each value of a field; several fields make a grid.",
+        ),
+    ] = None,
+    name: Name = None,
+    watch: Watch = False,
+    json: Json = False,
+) -> None:
+    """Queue a run or a sweep, and print its id."""
+    grid = overrides.grid(sweep or [])
+    document = overrides.applied(specs.document(client.connection, spec), settings or [])
+    if seeds is None and not grid:
+        made = client.submit(document, name=name)
+    else:
+        made = client.submit(document, seeds=seeds or 1, grid=grid, name=name)
+    _report(made, watch, json)
+
+
+@app.command(rich_help_panel=RUNS)
+@on_server
 def extend(
+    client: Client,
     id: Id,
     generations: Annotated[int, typer.Argument(min=1, help="Number of generations to add.")],
     watch: Watch = False,
     json: Json = False,
-    url: Url = None,
-    token: Token = None,
 ) -> None:
     """Add generations to a run."""
-    with reaching(url, token) as client:
-        run = client.run(id).extend(generations)
-        tell(run, json)
-        if watch:
-            raise typer.Exit(ended(run))
+    _report(client.run(id).extend(generations), watch, json)
 
 
 @app.command(rich_help_panel=RUNS)
+@on_server
 def fork(
+    client: Client,
     id: Id,
     elite: Annotated[
         list[str] | None,
@@ -60,8 +88,6 @@ def fork(
     name: Name = None,
     watch: Watch = False,
     json: Json = False,
-    url: Url = None,
-    token: Token = None,
 ) -> None:
     """Start a new run from elites of another run."""
     chosen: dict[str, Any] = {
@@ -69,81 +95,73 @@ def fork(
         "cells": _numbers(cells),
         "region": overrides.region(region) if region else None,
     }
-    named = [how for how, what in chosen.items() if what is not None]
-    if len(named) + whole > 1:
+    if whole + sum(what is not None for what in chosen.values()) > 1:
         raise typer.BadParameter("fork takes one of --elite, --cells, --region and --all")
     patch = overrides.patch(settings or [])
-    with reaching(url, token) as client:
-        run = client.run(id).fork(**chosen, generation=generation, spec=patch, name=name)
-        tell(run, json)
-        if watch:
-            raise typer.Exit(ended(run))
+    run = client.run(id).fork(**chosen, generation=generation, spec=patch, name=name)
+    _report(run, watch, json)
 
 
 @app.command(rich_help_panel=RUNS)
-def pause(ids: Ids, url: Url = None, token: Token = None) -> None:
+@on_server
+def pause(client: Client, ids: Ids) -> None:
     """Pause runs or sweeps; `resume` continues them."""
-    _each(ids, url, token, lambda one: one.pause())
+    _each(client, ids, "pause")
 
 
 @app.command(rich_help_panel=RUNS)
-def resume(ids: Ids, url: Url = None, token: Token = None) -> None:
+@on_server
+def resume(client: Client, ids: Ids) -> None:
     """Resume paused runs or sweeps."""
-    _each(ids, url, token, lambda one: one.resume())
+    _each(client, ids, "resume")
 
 
 @app.command(rich_help_panel=RUNS)
-def cancel(ids: Ids, url: Url = None, token: Token = None) -> None:
+@on_server
+def cancel(client: Client, ids: Ids) -> None:
     """Cancel runs or sweeps for good; results so far are kept."""
-    _each(ids, url, token, lambda one: one.cancel())
+    _each(client, ids, "cancel")
 
 
 @app.command(rich_help_panel=RUNS)
-def delete(ids: Ids, yes: Yes = False, url: Url = None, token: Token = None) -> None:
+@on_server
+def delete(client: Client, ids: Ids, yes: Yes = False) -> None:
     """Move runs or sweeps to the bin; `restore` brings them back within a day."""
-    with reaching(url, token) as client:
-        for one in [found(client, id) for id in ids]:
-            if not yes and not typer.confirm(f"{about(one)}. Delete?", err=True):
-                say(f"{title(one)} is not deleted.")
-                continue
-            record = one.delete().record
-            if record.get("total"):  # Of a sweep.
-                say(f"{about(one)}; the other runs have not ended: cancel them first")
-            if record.get("deleted", True):
-                undo = f"microcosmos restore {one.id[:8]}"
-                say(f"{title(one)} is in the bin. To restore it: {undo}")
+    for one in [find(client, id) for id in ids]:
+        if not yes and not typer.confirm(f"{describe(one)}. Delete?", err=True):
+            say(f"{title(one)} is not deleted.")
+            continue
+        record = one.delete().record
+        if record.get("total"):  # Some runs of the sweep remain.
+            say(f"{describe(one)}; the other runs have not ended: cancel them first")
+        if record.get("deleted", True):
+            undo = f"microcosmos restore {one.id[:8]}"
+            say(f"{title(one)} is in the bin. To restore it: {undo}")
 
 
 @app.command(rich_help_panel=RUNS)
-def restore(ids: Ids, url: Url = None, token: Token = None) -> None:
+@on_server
+def restore(client: Client, ids: Ids) -> None:
     """Restore runs or sweeps from the bin."""
-    with reaching(url, token) as client:
-        for one in [found(client, id, deleted=True) for id in ids]:
-            say(f"{title(one.restore())} is restored.")
+    for one in [find(client, id, deleted=True) for id in ids]:
+        say(f"{title(one.restore())} is restored.")
 
 
-@app.command(rich_help_panel=RUNS)
-def sweep(
-    id: Id,
-    runs: Annotated[bool, typer.Option("--runs", help="Print a row for each run.")] = False,
-    json: Json = False,
-    url: Url = None,
-    token: Token = None,
-) -> None:
-    """Print the results of a sweep: median and quartiles of each case."""
-    with reaching(url, token) as client:
-        one = client.sweep(id)
-        rows = members(one) if runs else cases(one)
+def _each(client: Client, ids: list[str], action: str) -> None:
+    for one in [find(client, id) for id in ids]:
+        say(describe(getattr(one, action)()))
+
+
+def _report(made: Run | Sweep, watch: bool, json: bool) -> None:
+    """Print the id for scripts and a hint for people; watch it if asked to."""
     if json:
-        show(rows)
+        show(made.record)
     else:
-        table(rows)
-
-
-def _each(ids: list[str], url: str | None, token: str | None, do: Callable[[Any], Any]) -> None:
-    with reaching(url, token) as client:
-        for one in [found(client, id) for id in ids]:
-            say(about(do(one)))
+        print(made.id, flush=True)
+        what = f"A sweep of {made.total} runs" if isinstance(made, Sweep) else made.status
+        say(f"{what}; to watch it: microcosmos watch {made.id[:8]}")
+    if watch:
+        watch_to_end(made)
 
 
 def _numbers(text: str | None) -> list[int] | None:

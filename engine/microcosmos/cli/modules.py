@@ -1,4 +1,4 @@
-"""Plug-ins for the commands that compute."""
+"""Plug-ins and the device, for the commands that compute."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from .. import plugins
-from .app import app, console, fail
+from .app import CACHE, app, console, failing
 
 Modules = Annotated[
     list[Path] | None,
@@ -20,11 +20,17 @@ def load_modules(files: list[Path] | None) -> None:
     """Load the plug-ins of installed packages and of these files; fail if a file is faulty."""
     for failed in plugins.load_all(()):
         console.print(f"{failed.module} is not loaded: {failed.reason}", style="yellow")
-    for file in files or ():
-        try:
+    with failing("--module"):
+        for file in files or ():
             plugins.load(file)
-        except ValueError as error:
-            fail(f"--module: {error}")
+
+
+def prepare_engine(files: list[Path] | None) -> None:
+    """Load plug-ins and JAX."""
+    load_modules(files)
+    from ..device import prepare
+
+    prepare(cache=CACHE)
 
 
 @app.command("plugins")

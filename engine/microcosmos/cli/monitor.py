@@ -1,4 +1,4 @@
-"""Commands that read runs on a server: list, watch, pull."""
+"""Commands that read runs and sweeps on a server: list, watch, pull, tabulate."""
 
 from itertools import islice
 from pathlib import Path
@@ -7,17 +7,18 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
-from ..client import Run, Sweep, formatting
+from ..client import Client, Run, Sweep
+from ..client.formatting import COLOURS, MEASURES, figure
 from .app import app
-from .remote import RUNS, Id, Json, Token, Url, found, reaching, say, show
-from .tables import shown
+from .remote import RUNS, Id, Json, find, on_server, say, show, show_table
 
-COLOURS = {"finished": "green", "failed": "red", "running": "cyan", "paused": "yellow"}
-COLUMNS = ("id", "name", "experiment", "status", "done", "QD score", "coverage", "best")
+COLUMNS = ("id", "name", "experiment", "status", "done", *MEASURES.values())
 
 
 @app.command(rich_help_panel=RUNS)
+@on_server
 def runs(
+    client: Client,
     status: Annotated[
         list[str] | None,
         typer.Option(
@@ -42,34 +43,33 @@ def runs(
         str, typer.Option(help="created, name, best, qd_score …; with - in front: descending.")
     ] = "-created",
     limit: Annotated[
-        int, typer.Option("--limit", "-n", min=1, help="Number of runs to list at limit.")
+        int, typer.Option("--limit", "-n", min=1, help="Largest number of runs to list.")
     ] = 20,
     json: Json = False,
-    url: Url = None,
-    token: Token = None,
 ) -> None:
     """List runs, newest first."""
-    with reaching(url, token) as client:
-        like = client.runs(
-            status=status or (),
-            experiment=experiment or (),
-            tag=tag,
-            text=search,
-            sweep=client.sweep(sweep) if sweep else None,
-            deleted=deleted,
-            sort=sort,
-        )
-        records = [run.record for run in islice(like, limit + 1)]
+    found = client.runs(
+        status=status or (),
+        experiment=experiment or (),
+        tag=tag,
+        text=search,
+        sweep=client.sweep(sweep) if sweep else None,
+        deleted=deleted,
+        sort=sort,
+    )
+    records = [run.record for run in islice(found, limit + 1)]
     if json:
         show(records[:limit])
         return
-    shown(COLUMNS, map(_row, records[:limit]))
+    show_table(COLUMNS, map(_row, records[:limit]))
     if len(records) > limit:
         say(f"More runs exist: --limit {10 * limit} lists them.")
 
 
 @app.command(rich_help_panel=RUNS)
+@on_server
 def watch(
+    client: Client,
     id: Annotated[
         str | None,
         typer.Argument(
@@ -77,8 +77,6 @@ def watch(
         ),
     ] = None,
     last: Annotated[bool, typer.Option("--last", help="Watch the newest run.")] = False,
-    url: Url = None,
-    token: Token = None,
 ) -> None:
     """Watch a run or a sweep until it ends. Ctrl-C stops watching, not the run.
 
@@ -86,12 +84,13 @@ def watch(
     """
     if (id is None) != last:
         raise typer.BadParameter("watch needs an ID or --last, but not both")
-    with reaching(url, token) as client:
-        raise typer.Exit(ended(client.last() if id is None else found(client, id)))
+    watch_to_end(client.last() if id is None else find(client, id))
 
 
 @app.command(rich_help_panel=RUNS)
+@on_server
 def pull(
+    client: Client,
     id: Id,
     out: Annotated[
         Path | None,
@@ -99,27 +98,70 @@ def pull(
             help="File or folder to write to; default: the current folder.", show_default=False
         ),
     ] = None,
-    url: Url = None,
-    token: Token = None,
 ) -> None:
     """Download the archive file of a run; repeat the command to resume a download."""
-    with reaching(url, token) as client:
-        print(client.run(id).pull(out))
+    print(client.run(id).pull(out))
 
 
-def ended(watched: "Run | Sweep") -> int:
-    """Watch until the end; return the exit status."""
-    end = watched.watch()
-    good = {"finished"} >= ({end} if isinstance(end, str) else {s for s in end if end[s]})
-    return 0 if good else 1
+@app.command(rich_help_panel=RUNS)
+@on_server
+def sweep(
+    client: Client,
+    id: Id,
+    runs: Annotated[bool, typer.Option("--runs", help="Print a row for each run.")] = False,
+    json: Json = False,
+) -> None:
+    """Print the results of a sweep: median and quartiles of each case."""
+    one = client.sweep(id)
+    if runs:
+        rows = [{**row, "run": row["run"][:8]} for row in one.rows()]
+    else:
+        rows = [_case(case) for case in one.summary().cases]
+    if json:
+        show(rows)
+        return
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    show_table(names, ([_cell(row.get(name)) for name in names] for row in rows))
+
+
+def watch_to_end(thing: Run | Sweep) -> None:
+    """Watch until the end; exit with status 0 if all finished, else 1."""
+    end = thing.watch()
+    statuses = {end} if isinstance(end, str) else {status for status in end if end[status]}
+    raise typer.Exit(0 if statuses <= {"finished"} else 1)
 
 
 def _row(record: dict[str, Any]) -> list[Any]:
     status = record["status"]
-    figures = [
-        formatting.figure(name, record[name]) for name in ("qd_score", "coverage", "best")
+    return [
+        record["id"][:8],
+        record["name"],
+        record["experiment"],
+        Text(status, COLOURS.get(status, "default")),
+        f"{100 * record['progress']:.0f} %",
+        *(figure(name, record[name]) for name in MEASURES),
     ]
-    coloured = Text(status, COLOURS.get(status, "default"))
-    done = f"{100 * record['progress']:.0f} %"
-    names = [record["id"][:8], record["name"], record["experiment"]]
-    return [*names, coloured, done, *figures]
+
+
+def _case(case: dict[str, Any]) -> dict[str, Any]:
+    """Return median and quartiles of each measure, at the generation that all runs reached."""
+    measures = {}
+    for name in MEASURES:
+        final = case["finals"].get(name) or {}
+        measures[name] = {part: final.get(part) for part in ("median", "low", "high")}
+    return {
+        **case["values"],
+        "runs": len(case["members"]),
+        "finished": sum(one["status"] == "finished" for one in case["members"]),
+        **measures,
+    }
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, dict):
+        if value.get("median") is None:
+            return "–"
+        return f"{value['median']:.4g} ({value['low']:.4g} to {value['high']:.4g})"
+    if value is None:
+        return "–"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

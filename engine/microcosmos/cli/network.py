@@ -9,16 +9,21 @@ import typer
 from ..archive.atomic import write_whole
 from ..archive.creature import parse
 from ..viz import networks
-from ..viz.networks import Network, load_tensorneat, of_creature
-from .app import app, fail
+from .app import CreaturePath, app, fail, failing
 
 ZIP = b"PK"
 """The first bytes of a TensorNEAT genome."""
+TEXTS = {
+    "svg": networks.svg,
+    "dot": networks.dot,
+    "python": networks.numpy_code,
+    "formula": networks.formula,
+}
 
 
 @app.command()
 def network(
-    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    file: CreaturePath,
     svg: Annotated[bool, typer.Option("--svg", help="Draw a picture.")] = False,
     dot: Annotated[bool, typer.Option("--dot", help="Write a graph for Graphviz.")] = False,
     python: Annotated[
@@ -36,41 +41,24 @@ def network(
     ] = None,
 ) -> None:
     """Write the network of a creature file or of a TensorNEAT genome in one form."""
-    forms = {
-        "svg": svg,
-        "dot": dot,
-        "python": python,
-        "formula": formula,
-        "tensorneat": tensorneat,
-    }
-    chosen = [name for name, wanted in forms.items() if wanted] or ["formula"]
+    forms = (*zip(TEXTS, (svg, dot, python, formula), strict=True), ("tensorneat", tensorneat))
+    chosen = [name for name, wanted in forms if wanted] or ["formula"]
     if len(chosen) > 1:
         fail(f"network takes one form, got --{' --'.join(chosen)}")
-    try:
-        data = _rendered(_read(file), chosen[0])
+    with failing(file):
+        data = _rendered(file.read_bytes(), chosen[0])
         if out is None:
             sys.stdout.buffer.write(data)
         else:
             write_whole(out, data)
             print(out)
-    except (ValueError, OSError) as error:
-        fail(f"{file}: {error}")
 
 
-def _read(file: Path) -> "Network":
-    data = file.read_bytes()
+def _rendered(data: bytes, form: str) -> bytes:
     if data[:2] == ZIP:
-        return load_tensorneat(data)[0]
-    return of_creature(parse(data)["identity"])
-
-
-def _rendered(network: "Network", form: str) -> bytes:
+        network = networks.load_tensorneat(data)[0]
+    else:
+        network = networks.of_creature(parse(data)["identity"])
     if form == "tensorneat":
         return networks.dump_tensorneat(networks.write_tensorneat(network))
-    texts = {
-        "svg": networks.svg,
-        "dot": networks.dot,
-        "python": networks.numpy_code,
-        "formula": networks.formula,
-    }
-    return texts[form](network).encode()
+    return TEXTS[form](network).encode()

@@ -32,13 +32,13 @@ def applied(spec: dict[str, Any], settings: Sequence[str]) -> dict[str, Any]:
         *parents, last = path.split(".")
         place: Any = spec
         for name in parents:
-            place = _within(place, name, path)
-        _put(place, last, value(given), path)
+            place = _part(place, name, path)
+        place[_key(place, last, path)] = value(given)
     return spec
 
 
 def patch(settings: Sequence[str]) -> dict[str, Any]:
-    """The same as what is merged into a spec; lists are replaced whole."""
+    """Return the fields to merge into a spec; lists are replaced whole."""
     for text in settings:
         path, _ = pair(text, "--set")
         if any(name.isdigit() for name in path.split(".")):
@@ -49,18 +49,17 @@ def patch(settings: Sequence[str]) -> dict[str, Any]:
 
 
 def grid(sweeps: Sequence[str]) -> dict[str, list[Any]]:
-    """Values by path: a JSON list, or values with commas between them."""
+    """Return values by path: a JSON list, or values with commas between them."""
     found: dict[str, list[Any]] = {}
     for text in sweeps:
         path, given = pair(text, "--sweep")
         whole = value(given)
-        values = whole if isinstance(whole, list) else [value(v) for v in given.split(",")]
-        found[path] = values
+        found[path] = whole if isinstance(whole, list) else [value(v) for v in given.split(",")]
     return found
 
 
 def region(bounds: Sequence[str]) -> dict[str, list[float]]:
-    """Low and high by axis."""
+    """Return low and high by axis."""
     found = {}
     for text in bounds:
         axis, given = pair(text, "--region")
@@ -74,21 +73,19 @@ def region(bounds: Sequence[str]) -> dict[str, list[float]]:
     return found
 
 
-def _within(place: Any, name: str, path: str) -> Any:
-    if isinstance(place, list):
-        return place[_index(place, name, path)]
-    if place.get(name) is None:
+def _part(place: Any, name: str, path: str) -> Any:
+    """Return an existing part of a spec, or add it."""
+    key = _key(place, name, path)
+    if isinstance(place, dict) and place.get(name) is None:
         place[name] = {}
-    if not isinstance(place[name], dict | list):
+    if isinstance(place, dict) and not isinstance(place[name], dict | list):
         raise typer.BadParameter(f"{path}: {name} has no fields; it is {place[name]!r}")
-    return place[name]
+    return place[key]
 
 
-def _put(place: Any, name: str, given: Any, path: str) -> None:
-    place[_index(place, name, path) if isinstance(place, list) else name] = given
-
-
-def _index(place: list[Any], name: str, path: str) -> int:
+def _key(place: Any, name: str, path: str) -> str | int:
+    if not isinstance(place, list):
+        return name
     if not name.isdigit() or int(name) >= len(place):
         raise typer.BadParameter(
             f"{path}: needs a number from 0 to {len(place) - 1}; got {name}"

@@ -10,7 +10,7 @@ import typer
 from ..archive.atomic import write_whole
 from ..spec import picture as target
 from ..spec import targets
-from .app import app, console, fail
+from .app import app, console, fail, failing
 
 MNIST = "https://ossci-datasets.s3.amazonaws.com/mnist/"
 """PyTorch's mirror of LeCun's files."""
@@ -40,17 +40,14 @@ def picture(
     """Print a picture as JSON, for `targets` of a folding spec."""
     if (file is None) == (text is None):
         fail("picture needs FILE or --text, but not both")
-    try:
-        if text is not None:
-            ink, own = targets.text(text, font), text
-        elif file is not None and number is not None:
-            ink, own = targets.mnist(file, number), f"{file.name} {number}"
+    with failing():
+        if file is None:
+            ink, default = targets.text(text or "", font), text or ""
+        elif number is not None:
+            ink, default = targets.mnist(file, number), f"{file.name} {number}"
         else:
-            assert file is not None
-            ink, own = targets.png(file), file.stem
-        print(target((name or own)[:64], ink).model_dump_json())
-    except (ValueError, ImportError, OSError) as error:
-        fail(str(error))
+            ink, default = targets.png(file), file.stem
+        print(target((name or default)[:64], ink).model_dump_json())
 
 
 @data.command()
@@ -60,14 +57,12 @@ def mnist(
     ),
 ) -> None:
     """Download and verify the test images and labels of MNIST."""
-    try:
+    with failing("FOLDER must be a folder or a new path"):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        fail(f"FOLDER must be a folder or a new path: {error}")
     for file, digest in MNIST_FILES.items():
         path = folder / file
         if path.exists() and _digest(path.read_bytes()) == digest:
-            console.print(f"{path} is there")
+            console.print(f"{path} exists")
             continue
         try:
             answer = httpx.get(MNIST + file, follow_redirects=True, timeout=60)
@@ -77,7 +72,7 @@ def mnist(
         if (found := _digest(answer.content)) != digest:
             fail(f"{file} must have the MD5 digest {digest}, got {found}; nothing is kept")
         write_whole(path, answer.content)
-        console.print(f"{path} is fetched and verified")
+        console.print(f"{path} is downloaded and verified")
 
 
 def _digest(content: bytes) -> str:

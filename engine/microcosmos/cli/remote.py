@@ -2,15 +2,18 @@
 
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.table import Column, Table
+from rich.text import Text
 
 from ..client import Client, NotFound, Refused, Run, ServerError, Sweep
-from .app import console
+from ..client.formatting import counts_as_text, status_of
+from .app import console, with_options
 
 RUNS = "Runs on a server"
 SHARING = "Sharing and access"
@@ -43,7 +46,7 @@ Ids = Annotated[
 
 
 @contextmanager
-def reaching(url: str | None, token: str | None) -> Iterator["Client"]:
+def _connected(url: Url = None, token: Token = None) -> Iterator[Client]:
     """Yield a client; print a failure to standard error and exit with status 1."""
     try:
         with Client(url, token) as client:
@@ -53,6 +56,10 @@ def reaching(url: str | None, token: str | None) -> Iterator["Client"]:
         raise typer.Exit(1) from None
     except KeyboardInterrupt:
         raise typer.Exit(130) from None
+
+
+on_server = with_options(_connected)
+"""Give a command a client, and the options --url and --token."""
 
 
 def say(text: str, style: str | None = None) -> None:
@@ -69,10 +76,26 @@ def stdout() -> Console:
     return Console() if sys.stdout.isatty() else Console(width=WIDE)
 
 
-def found(client: "Client", id: str, deleted: bool = False) -> "Run | Sweep":
-    """The run or the sweep of an id, in the bin where they are `deleted`.
+def show_table(names: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    """Print a table to standard output; brackets in names are no markup.
 
-    Raises `NotFound`, and `Refused` where the id begins one of each.
+    The first column is what people copy: it is never broken.
+    """
+    heads = [Column(_cell(name), no_wrap=not place) for place, name in enumerate(names)]
+    table = Table(*heads, box=None, pad_edge=False)
+    for row in rows:
+        table.add_row(*map(_cell, row))
+    stdout().print(table)
+
+
+def _cell(value: Any) -> Text:
+    return value if isinstance(value, Text) else Text("" if value is None else str(value))
+
+
+def find(client: Client, id: str, deleted: bool = False) -> Run | Sweep:
+    """Return the run or the sweep of an id, from the bin if `deleted`.
+
+    Raise `NotFound`, and `Refused` if it is the beginning of one of each.
     """
     both: list[Run | Sweep] = []
     for look in (client.run, client.sweep):
@@ -88,22 +111,17 @@ def found(client: "Client", id: str, deleted: bool = False) -> "Run | Sweep":
     return both[0]
 
 
-def about(thing: "Run | Sweep") -> str:
+def describe(thing: Run | Sweep) -> str:
     """Name a run or a sweep with its status."""
-    record = thing.record
-    if "cases" in record:
-        counts = record["status_counts"].items()
-        status = ", ".join(f"{count} {name}" for name, count in counts if count)
-    else:
-        requested = record.get("requested_state")
-        status = record["status"] + (f", to be {requested}" if requested else "")
-    return f"{title(thing)}: {status}"
+    if isinstance(thing, Sweep):
+        return f"{title(thing)}: {counts_as_text(thing.status_counts)}"
+    return f"{title(thing)}: {status_of(thing.record)}"
 
 
-def title(thing: "Run | Sweep") -> str:
-    return f"{type(thing).__name__} {named(thing.record)}"
+def title(thing: Run | Sweep) -> str:
+    """Return the kind, the short id and the name of a run or a sweep."""
+    return f"{type(thing).__name__} {thing.id[:8]}{named(thing.record)}"
 
 
-def named(run: Mapping[str, Any]) -> str:
-    """Return the short id and the name of a run."""
-    return run["id"][:8] + (f" “{run['name']}”" if run.get("name") else "")
+def named(record: Mapping[str, Any]) -> str:
+    return f" “{record['name']}”" if record.get("name") else ""

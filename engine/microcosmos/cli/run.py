@@ -1,6 +1,5 @@
 """The command `evolve`: carry out a run without a server."""
 
-import os
 import signal
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,12 +15,12 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from ..doctor.memory import memory_bytes
 from ..spec import Spec, estimate
-from .app import CACHE, app, console, fail
-from .fork import From, begun, refuse_without_files
+from .app import CACHE, OtherDevice, Set, app, console, fail, failing
+from .fork import From, refuse_without_files, with_initial
 from .modules import Modules, load_modules
-from .specs import changed, lasting, presets, read_spec
-from .submit import Set
+from .specs import changed, presets, read_spec, with_generations
 
 
 @app.command()
@@ -37,10 +36,10 @@ def evolve(
         ),
     ] = None,
     settings: Set = None,
-    checkpoint_seconds: Annotated[float, typer.Option(min=0.0)] = 60.0,
-    other_device: Annotated[
-        bool, typer.Option(help="Continue a run that another kind of device started.")
-    ] = False,
+    checkpoint_seconds: Annotated[
+        float, typer.Option(min=0.0, help="Seconds between two checkpoints.")
+    ] = 60.0,
+    other_device: OtherDevice = False,
     begin_from: From = None,
     module: Modules = None,
 ) -> None:
@@ -48,37 +47,33 @@ def evolve(
     load_modules(module)
     chosen = changed(read_spec(spec), settings or [])
     if generations is not None:
-        chosen = lasting(chosen, generations)
-    path = archive or Path(spec.replace("/", "-") if spec in presets() else spec).with_suffix(
-        ".h5"
-    )
-    from ..device import device_kind, prepare
+        chosen = with_generations(chosen, generations)
+    stem = Path(spec.replace("/", "-") if spec in presets() else spec)
+    path = archive or stem.with_suffix(".h5")
+    evaluations = prepare_run(chosen, path)
+    from ..device import device_kind
 
-    evaluations = evaluations_of(chosen, path)
-    prepare(cache=CACHE)
-    chosen, initial = begun(chosen, begin_from or ())
+    chosen, initial = with_initial(chosen, begin_from or ())
     refuse_without_files(chosen, initial, path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
-    if not carry_on(chosen, path, checkpoint_seconds, other_device, initial):
-        console.print(f"Stopped. The same command goes on from {path}.")
-        raise typer.Exit(130)
+    carry_on(chosen, path, checkpoint_seconds, other_device, initial)
     best = path.with_suffix(".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
 
 
-def evaluations_of(spec: Spec, path: Path) -> int:
-    """Make the folder of the file and return the number of evaluations.
+def prepare_run(spec: Spec, path: Path) -> int:
+    """Make the file's folder and start JAX; return the number of evaluations.
 
-    Fails where the folder cannot be made or the memory does not suffice.
+    Fail if the folder cannot be made or the memory does not suffice.
     """
-    try:
+    with failing("--out needs a folder that can be made"):
         path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        fail(f"--out needs a folder that can be made: {error}")
-    need = estimate(spec)
-    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    need, (memory, _) = estimate(spec), memory_bytes()
     if need.memory_bytes > memory:
-        fail(f"the run needs about {need.memory_bytes:,} bytes of memory; {memory:,} are free")
+        fail(f"the run needs about {need.memory_bytes:,} bytes of memory; there are {memory:,}")
+    from ..device import prepare
+
+    prepare(cache=CACHE)
     return need.evaluations
 
 
@@ -88,16 +83,16 @@ def carry_on(
     checkpoint_seconds: float,
     other_device: bool,
     initial: Sequence[Mapping[str, Any]] = (),
-) -> bool:
-    """Carry out the run with a progress bar; the first Ctrl-C asks it to stop."""
+) -> None:
+    """Carry out the run with a progress bar; exit with status 130 if a signal stops it."""
     from .. import experiments
     from ..build import local
 
-    wishes: list[int] = []
+    received: list[int] = []
 
-    def note(received: int, frame: object) -> None:
-        wishes.append(received)
-        signal.signal(received, signal.SIG_DFL)  # The second one ends it at once.
+    def note(number: int, frame: object) -> None:
+        received.append(number)
+        signal.signal(number, signal.SIG_DFL)  # The second signal ends it at once.
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, note)
@@ -108,44 +103,39 @@ def carry_on(
         TimeRemainingColumn(),
         TextColumn("{task.description}"),
     ]
-    with Progress(*columns, console=console) as progress:
+    with failing(archive), Progress(*columns, console=console) as progress:
         bar = progress.add_task("compiling", total=spec.generations)
 
-        def tell(report) -> None:
-            progress.update(bar, completed=report.generation, description=_told(report))
+        def tell(report: Any) -> None:
+            progress.update(bar, completed=report.generation, description=_summary(report))
 
         try:
-            return local.evolve(
+            done = local.evolve(
                 spec,
                 archive,
-                stop=lambda: bool(wishes),
+                stop=lambda: bool(received),
                 tell=tell,
                 checkpoint_seconds=checkpoint_seconds,
                 other_device=other_device,
                 initial=initial,
             )
         except experiments.OtherDevice as error:
-            progress.stop()
-            fail(f"{archive}: {error} To continue here anyway, add --other-device.")
-        except (ValueError, OSError) as error:
-            progress.stop()
-            fail(f"{archive}: {error}")
+            raise ValueError(f"{error} To continue here anyway, add --other-device.") from error
+    if not done:
+        console.print(f"Stopped. The same command goes on from {archive}.")
+        raise typer.Exit(130)
 
 
-def _told(report: Any) -> str:
+def _summary(report: Any) -> str:
     """Summarise a generation in a few words."""
     if report.qd_score is None:
-        return "  ".join(f"{name} {value}" for name, value in _short(report.summary).items())
+        values = (report.summary or {}).items()
+        shown = ((name, value) for name, value in values if value is not None)
+        return "  ".join(
+            f"{name.replace('_', ' ')} {f'{value:.4g}' if isinstance(value, float) else value}"
+            for name, value in shown
+        )
     return (
         f"QD score {report.qd_score:.2f}  coverage {100 * report.coverage:.1f} %  "
         f"best {report.best:.2f}"
     )
-
-
-def _short(summary: Mapping[str, Any] | None) -> dict[str, str]:
-    values = (summary or {}).items()
-    return {
-        name.replace("_", " "): f"{value:.4g}" if isinstance(value, float) else f"{value}"
-        for name, value in values
-        if value is not None
-    }

@@ -1,14 +1,13 @@
 """Commands for imports, shares and tokens."""
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from ..client import Client
 from .app import app
-from .remote import SHARING, Json, Token, Url, reaching, say, show
-from .tables import shown
+from .remote import SHARING, Ids, Json, on_server, say, show, show_table
 
 tokens = typer.Typer(help="Create, list and revoke access tokens.", no_args_is_help=True)
 app.add_typer(tokens, name="tokens", rich_help_panel=SHARING)
@@ -17,19 +16,19 @@ Days = Annotated[float | None, typer.Option(help="Days until it expires; default
 
 
 @app.command("import", rich_help_panel=SHARING)
-def bring(
-    files: Annotated[list[Path], typer.Argument(exists=True, dir_okay=False)],
-    url: Url = None,
-    token: Token = None,
+@on_server
+def import_(
+    client: Client, files: Annotated[list[Path], typer.Argument(exists=True, dir_okay=False)]
 ) -> None:
     """Import creature files into a server, which verifies their hashes."""
-    with reaching(url, token) as client:
-        for file in files:
-            print(client.import_creature(file).sha)
+    for file in files:
+        print(client.import_creature(file).sha)
 
 
 @app.command(rich_help_panel=SHARING)
+@on_server
 def share(
+    client: Client,
     what: Annotated[
         str,
         typer.Argument(metavar="SHA|RUN", help="Name of a creature (SHA-256), or id of a run."),
@@ -44,50 +43,44 @@ def share(
     licence: Annotated[str | None, typer.Option(help="Licence, such as CC-BY-4.0.")] = None,
     listed: Annotated[bool, typer.Option("--listed", help="List it in the commons.")] = False,
     json: Json = False,
-    url: Url = None,
-    token: Token = None,
 ) -> None:
     """Publish a creature or an archive; people without a token can open the link."""
-    said = {"days": days, "title": title, "credit": credit, "licence": licence}
+    options: dict[str, Any] = {"title": title, "credit": credit, "licence": licence}
     if generation is not None:
-        said |= {"generation": generation}
-    with reaching(url, token) as client:
-        made = client.share(what, listed=listed, **said)
-        if json:
-            show(made.record)
-            return
-        print(made.url)
-        say(f"To revoke it: microcosmos unshare {made.slug}")
+        options["generation"] = generation
+    made = client.share(what, listed=listed, days=days, **options)
+    if json:
+        show(made.record)
+        return
+    print(made.url)
+    say(f"To revoke it: microcosmos unshare {made.slug}")
 
 
 @app.command(rich_help_panel=SHARING)
+@on_server
 def unshare(
+    client: Client,
     slugs: Annotated[list[str], typer.Argument(metavar="LINK...", help="Links or slugs.")],
-    url: Url = None,
-    token: Token = None,
 ) -> None:
     """Revoke shares."""
-    with reaching(url, token) as client:
-        for slug in slugs:
-            client.unshare(slug)
-            say(f"{slug} is revoked.")
+    for slug in slugs:
+        client.unshare(slug)
+        say(f"{slug} is revoked.")
 
 
 @app.command(rich_help_panel=SHARING)
-def shares(json: Json = False, url: Url = None, token: Token = None) -> None:
+@on_server
+def shares(client: Client, json: Json = False) -> None:
     """List your shares."""
-    with reaching(url, token) as client:
-        found = client.shares()
-    if json:
-        show([one.record for one in found])
-        return
-    names = ("title", "state", "expires_at")
-    rows = ((one.url, *(one.record.get(name) for name in names)) for one in found)
-    shown(("link", *_titles(names)), rows)
+    found = client.shares()
+    links = [{**one.record, "link": one.url} for one in found]
+    _list([one.record for one in found] if json else links, json, "link title state expires_at")
 
 
 @tokens.command("create")
+@on_server
 def create_token(
+    client: Client,
     name: Annotated[str, typer.Argument(help="Owner or purpose of the token.")],
     scope: Annotated[
         str,
@@ -97,12 +90,9 @@ def create_token(
     ] = "write",
     days: Days = None,
     json: Json = False,
-    url: Url = None,
-    token: Token = None,
 ) -> None:
     """Create a token. Its secret is shown only once."""
-    with reaching(url, token) as client:
-        made = client.create_token(name, scope, days=days)
+    made = client.create_token(name, scope, days=days)
     if json:
         show(made)
         return
@@ -111,33 +101,27 @@ def create_token(
 
 
 @tokens.command("list")
-def list_tokens(json: Json = False, url: Url = None, token: Token = None) -> None:
+@on_server
+def list_tokens(client: Client, json: Json = False) -> None:
     """List all tokens, without their secrets."""
-    with reaching(url, token) as client:
-        found = client.tokens()
-    if json:
-        show(found)
-        return
-    names = ("id", "name", "scope", "expires_at", "revoked_at", "last_used_at")
-    rows = ((one["id"][:8], *(one.get(name) for name in names[1:])) for one in found)
-    shown(_titles(names), rows)
+    _list(client.tokens(), json, "id name scope expires_at revoked_at last_used_at")
 
 
 @tokens.command("revoke")
-def revoke_token(
-    ids: Annotated[
-        list[str],
-        typer.Argument(metavar="ID...", help="Ids; their first characters are enough."),
-    ],
-    url: Url = None,
-    token: Token = None,
-) -> None:
+@on_server
+def revoke_token(client: Client, ids: Ids) -> None:
     """Revoke tokens; they stop working immediately."""
-    with reaching(url, token) as client:
-        for id in ids:
-            client.revoke_token(id)
-            say(f"Token {id} is revoked.")
+    for id in ids:
+        client.revoke_token(id)
+        say(f"Token {id} is revoked.")
 
 
-def _titles(fields: Sequence[str]) -> list[str]:
-    return [name.removesuffix("_at") for name in fields]
+def _list(records: list[dict[str, Any]], json: bool, fields: str) -> None:
+    if json:
+        show(records)
+        return
+    names = fields.split()
+    rows = [[one.get(name) for name in names] for one in records]
+    for row in rows:
+        row[0] = str(row[0])[:8] if names[0] == "id" else row[0]
+    show_table([name.removesuffix("_at") for name in names], rows)

@@ -1,8 +1,8 @@
-"""A server from Python: submit, watch, fetch. No JAX is loaded until something is computed."""
+"""Use a server from Python: submit, watch, download. JAX is loaded only to compute."""
 
 from .archive import Archive
 from .client import Client
-from .columns import Columns
+from .columns import Columns, Table
 from .creature import Creature
 from .errors import (
     Conflict,
@@ -18,7 +18,6 @@ from .run import Run
 from .sharing import Share
 from .streaming import Event
 from .sweep import Summary, Sweep
-from .table import Table
 
 __all__ = [
     "Archive",

@@ -1,4 +1,4 @@
-"""The archive of a run: who is in which cell."""
+"""The archive of a run: the elite of each cell."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 
 from ..archive.export import scaled, unit
-from . import columns, maps
+from . import columns, drawing
 from .connection import Connection
 from .creature import Creature
 
 
 class Archive:
-    """Columns of elites, an entry for each filled cell, as the archive was at a generation."""
+    """Columns with an entry for each filled cell, after a generation."""
 
     def __init__(self, connection: Connection, run: str, document: Mapping[str, Any]):
         self._connection = connection
@@ -23,14 +23,14 @@ class Archive:
         self.cells: int = document["cells"]
         self.axes: list[dict[str, Any]] = document["axes"]
         self.recorded: list[dict[str, Any]] = document["recorded"]
-        """What is known of every elite, with title, unit and the ends of an axis."""
+        """The measures of the elites, with title, unit and the ends of an axis."""
         self.cell = np.array(document["cell"], np.int32)
         self.fitness = np.array(document["fitness"], np.float32)
         shape = (len(self.cell), len(self.axes))
         self.descriptors = np.array(document["descriptors"], np.float32).reshape(shape)
         """(elite, axis), raw values."""
         self.elite_generation = np.array(document["elite_generation"], np.int32)
-        """When each of them arose."""
+        """Generation in which each elite arose."""
         self.creature: list[str] = document["creature"]
         self.measures = {
             name: columns.array(values).astype(np.float32)
@@ -46,23 +46,23 @@ class Archive:
         return f"<Archive of run {self.run[:8]}: {where}{best}>"
 
     def _repr_html_(self) -> str | None:
-        """A map, of a grid of two axes; of others a notebook shows the words."""
+        """Draw a map of a grid of two axes; a notebook shows the `repr` of others."""
         if self.kind != "grid" or len(self.axes) != 2:
             return None
-        return maps.svg(self.axes, self.cell, self.fitness, repr(self)[1:-1])
+        return drawing.archive_map(self.axes, self.cell, self.fitness, repr(self)[1:-1])
 
     @property
     def coverage(self) -> float:
         return len(self) / self.cells
 
     def best(self) -> Creature:
-        """The fittest elite. Raises `ValueError` where the archive is empty."""
+        """Return the fittest elite. Raise `ValueError` if the archive is empty."""
         if not len(self):
             raise ValueError(f"an archive with elites is needed; run {self.run} has none yet")
         return self._nth(int(self.fitness.argmax()))
 
     def elite(self, cell: int | Sequence[int]) -> Creature:
-        """Who is in a cell: its number, or in a grid its bin along each axis."""
+        """Return the elite of a cell: by number, or in a grid by its bin along each axis."""
         number = self._number(cell)
         found = np.flatnonzero(self.cell == number)
         if not len(found):
@@ -70,14 +70,13 @@ class Archive:
         return self._nth(int(found[0]))
 
     def to_pandas(self) -> Any:
-        """A data frame with the columns of `archive.csv`, which are pyribs', but for the genes.
+        """Return a data frame with pyribs' columns, as `archive.csv` has them, without genes.
 
-        Those are in the run's file: `microcosmos.to_pandas(run.pull("run.h5"))`.
+        Genes are in the run's file: `microcosmos.to_pandas(run.pull("run.h5"))`.
         """
         return columns.frame(self.columns())
 
     def columns(self) -> dict[str, Any]:
-        """The columns of the data frame."""
         place = unit if self.kind == "cvt" else scaled
         measures = {
             f"measures_{i}": place(self.descriptors[:, i], axis)

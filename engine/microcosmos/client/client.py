@@ -1,4 +1,4 @@
-"""A Microcosmos server, from Python."""
+"""The client of a Microcosmos server."""
 
 import json
 import os
@@ -16,8 +16,7 @@ from . import specs
 from .connection import Connection
 from .creature import Creature
 from .errors import NotFound
-from .pages import items
-from .prefixes import only
+from .record import find
 from .run import Run
 from .sharing import Share, expiry, publish
 from .streaming import Event, events
@@ -27,10 +26,10 @@ HERE = "http://127.0.0.1:8000"
 
 
 class Client:
-    """Speaks to the server at `url`, else at MICROCOSMOS_URL, else on this machine.
+    """Uses the server at `url`, else at MICROCOSMOS_URL, else on this machine.
 
-    A token is taken from MICROCOSMOS_TOKEN where none is given. Requests that do not get
-    through are made again for up to `patience` seconds, where that can do no harm.
+    The default of `token` is MICROCOSMOS_TOKEN. Requests that fail on their way are repeated
+    for up to `patience` seconds, if that can do no harm.
     """
 
     def __init__(
@@ -97,15 +96,14 @@ class Client:
     ) -> Run | Sweep:
         """Queue a spec, a file with one, or a preset by its name.
 
-        With `seeds` (how many, or which) or a `grid` (values by the dotted path of a field)
-        it is a sweep. The same `key` with the same spec is the same run, however often it is
-        sent.
+        With `seeds` (a number or a list) or a `grid` (values by the dotted path of a field) it
+        is a sweep. The same `key` with the same spec is the same run, however often it is sent.
         """
         document, key = specs.document(self.connection, spec), key or str(uuid4())
         if seeds is None and grid is None:
-            # Named as it is made: what was queued without its name would be submitted again.
-            told = self.connection.send("POST", "runs", document, key=key, name=name)
-            run = Run(self.connection, told)
+            # The name is sent at once: a run that was queued without it would be sent again.
+            record = self.connection.send("POST", "runs", document, key=key, name=name)
+            run = Run(self.connection, record)
             return run.change(name=name) if name and not run.name else run
         many = {
             "spec": document,
@@ -116,7 +114,7 @@ class Client:
         return Sweep(self.connection, self.connection.send("POST", "sweeps", many, key=key))
 
     def estimate(self, spec: Any) -> dict[str, Any]:
-        """Memory, work and time that a run will need, without queueing it."""
+        """Estimate the memory, work and time of a run."""
         document = specs.document(self.connection, spec)
         return self.connection.send("POST", "runs/estimate", document)
 
@@ -131,10 +129,10 @@ class Client:
         deleted: bool = False,
         sort: str = "-created",
     ) -> Iterator[Run]:
-        """All runs like these, newest first, fetched as they are needed."""
+        """Yield the runs that match, newest first; pages are read as they are needed."""
         asked = {
-            "status": several(status),
-            "experiment": several(experiment),
+            "status": [status] if isinstance(status, str) else list(status),
+            "experiment": [experiment] if isinstance(experiment, str) else list(experiment),
             "tag": tag,
             "q": text,
             "sweep": sweep.id if isinstance(sweep, Sweep) else sweep,
@@ -142,107 +140,102 @@ class Client:
             "sort": sort,
             "limit": 200,
         }
-        found = items(self.connection, "runs", **asked)
-        return (Run(self.connection, one) for one in found)
+        return (Run(self.connection, one) for one in self.connection.items("runs", **asked))
 
     def run(self, id: str, *, deleted: bool = False) -> Run:
-        """The run of this id, or whose id alone begins so; `NotFound` where none does."""
-        like = items(self.connection, "runs", q=id, deleted=deleted or None, limit=200)
-        return Run(self.connection, only(self.connection, "runs", id, like))
+        """Return the run whose id begins so. Raise `NotFound`, and `Refused` for several."""
+        found = self.connection.items("runs", q=id, deleted=deleted or None, limit=200)
+        return Run(self.connection, find(self.connection, "runs", id, found))
 
     def last(self) -> Run:
-        """The newest run."""
+        """Return the newest run."""
         found = next(self.runs(), None)
         if found is None:
             raise NotFound(f"{self.url} has no runs yet: submit one first.")
         return found
 
     def sweeps(self) -> Iterator[Sweep]:
-        """All sweeps, newest first."""
-        return (Sweep(self.connection, one) for one in items(self.connection, "sweeps"))
+        """Yield all sweeps, newest first."""
+        return (Sweep(self.connection, one) for one in self.connection.items("sweeps"))
 
     def sweep(self, id: str, *, deleted: bool = False) -> Sweep:
-        """The sweep of this id, or whose id alone begins so; `NotFound` where none does.
+        """Return the sweep whose id begins so, from the bin too if `deleted`.
 
-        With `deleted`, beginnings are looked for among those in the bin too.
+        Raise `NotFound`, and `Refused` for several.
         """
         lists = [None, True] if deleted else [None]
-        like = chain(*(items(self.connection, "sweeps", deleted=one) for one in lists))
-        return Sweep(self.connection, only(self.connection, "sweeps", id, like))
+        found = chain(*(self.connection.items("sweeps", deleted=one) for one in lists))
+        return Sweep(self.connection, find(self.connection, "sweeps", id, found))
 
     def experiments(self) -> list[dict[str, Any]]:
-        """The kinds of run, each with the schema of its spec and presets."""
+        """Return the experiments, each with presets and the schema of its spec."""
         return self.connection.read("experiments")
 
     def creature(self, sha: str) -> Creature:
-        """The creature of this name; `NotFound` where the server does not know it."""
+        """Return the creature of this name. Raise `NotFound` if the server has none."""
         found = Creature(self.connection, sha)
         assert found.file
         return found
 
     def import_creature(self, file: Mapping[str, Any] | str | Path) -> Creature:
-        """Bring a creature file, or where it is, as JSON or HDF5; its hash is verified."""
+        """Import a creature, or its file in JSON or HDF5; the server verifies the hash."""
         document = dict(file) if isinstance(file, Mapping) else creature_file(Path(file))
-        told = self.connection.send("POST", "creatures", document, key=str(uuid4()))
-        return Creature(self.connection, told["creature"])
+        made = self.connection.send("POST", "creatures", document, key=str(uuid4()))
+        return Creature(self.connection, made["creature"])
 
-    def share(self, what: Run | Creature | str, **said: Any) -> Share:
-        """Publish a run's archive or a creature, or what an id or a SHA-256 names.
+    def share(self, what: Run | Creature | str, **options: Any) -> Share:
+        """Publish a run's archive or a creature, given itself, an id or a SHA-256.
 
-        `said`: `title`, `credit`, `licence`, `days`, `listed`.
+        `options`: `title`, `credit`, `licence`, `days`, `listed`.
         """
         if isinstance(what, Run | Creature):
-            return what.share(**said)
+            return what.share(**options)
         if len(what) == 64:
-            return publish(self.connection, {"creature": what}, **said)
-        return self.run(what).share(**said)
+            return publish(self.connection, {"creature": what}, **options)
+        return self.run(what).share(**options)
 
     def shares(self) -> list[Share]:
-        """One's own links."""
-        return [Share(self.connection, one) for one in items(self.connection, "shares")]
+        """Return your own shares."""
+        return [Share(self.connection, one) for one in self.connection.items("shares")]
 
     def unshare(self, slug: str) -> None:
-        """Revoke a link, given its slug or its whole address."""
+        """Revoke a share, given its slug or its whole address."""
         slug = slug.rstrip("/").rpartition("/")[2]
         self.connection.send("DELETE", f"shares/{slug}")
 
     def commons(self) -> list[Share]:
-        """What is listed for everybody."""
-        return [Share(self.connection, one) for one in items(self.connection, "commons")]
+        """Return the shares that are listed for everybody."""
+        return [Share(self.connection, one) for one in self.connection.items("commons")]
 
     def tokens(self) -> list[dict[str, Any]]:
-        return list(items(self.connection, "tokens"))
+        return list(self.connection.items("tokens"))
 
     def create_token(
         self, name: str, scope: str = "read", *, days: float | None = None
     ) -> dict[str, Any]:
-        """A new token; its secret is told this once and never again."""
+        """Create a token; only this answer contains its secret."""
         document = {"name": name, "scope": scope}
         document |= {"expires_at": expiry(days)} if days is not None else {}
         return self.connection.send("POST", "tokens", document)
 
     def revoke_token(self, id: str) -> None:
-        """Of this id, or whose id alone begins so."""
-        like = items(self.connection, "tokens")
-        found = only(self.connection, "tokens", id, like, fetch=False)
+        """Revoke the token whose id begins so."""
+        tokens = self.connection.items("tokens")
+        found = find(self.connection, "tokens", id, tokens, fetch=False)
         self.connection.send("DELETE", f"tokens/{found['id']}")
 
     def workers(self) -> list[dict[str, Any]]:
-        """Those that are alive, with device, memory, load and the run that each is at."""
+        """Return the live workers, with device, memory, load and run of each."""
         return self.connection.read("workers")
 
     def events(self, run: str | Run | None = None) -> Iterator[Event]:
-        """What happens from now on, to all runs or to one; it does not end by itself."""
+        """Yield new events of all runs or of one, without an end."""
         found = events(self.connection, run.id if isinstance(run, Run) else run)
         return (event for event in found if event.kind != "beat")
 
 
-def several(values: str | Sequence[str]) -> list[str]:
-    return [values] if isinstance(values, str) else list(values)
-
-
 def creature_file(path: Path) -> dict[str, Any]:
-    """What is in a file. Raises `ValueError` where it is no creature's."""
+    """Read a creature file. Raise `ValueError` for any other file."""
     data = path.read_bytes()
     try:
         return creature_h5.load(data) if data.startswith(HDF5) else json.loads(data)

@@ -1,10 +1,13 @@
-"""Named columns of numbers, and data frames where pandas is installed."""
+"""Tables of results: columns and rows, as data frames where pandas is installed."""
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from importlib import import_module
 from typing import Any
 
 import numpy as np
+
+from ..archive.file import load
 
 
 class Columns(Mapping[str, np.ndarray]):
@@ -27,12 +30,31 @@ class Columns(Mapping[str, np.ndarray]):
         return f"<{rows} rows of {', '.join(self._columns)}>"
 
     def to_pandas(self) -> Any:
-        """A pandas `DataFrame`; `ImportError` says what to install where there is none."""
+        """Return a pandas `DataFrame`; raise `ImportError` without pandas."""
         return frame(self._columns)
 
 
+class Table:
+    """The result of a run without an archive: `rows` of values, and a `summary`."""
+
+    def __init__(self, document: Mapping[str, Any]):
+        self.rows: list[dict[str, Any]] = document["rows"]
+        self.summary: dict[str, Any] | None = document["summary"]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __repr__(self) -> str:
+        names = list(dict.fromkeys(name for row in self.rows for name in row))
+        return f"<{len(self.rows)} rows of {', '.join(names)}>"
+
+    def to_pandas(self) -> Any:
+        """Return a pandas `DataFrame`; raise `ImportError` without pandas."""
+        return frame(self.rows)
+
+
 def array(values: Any) -> np.ndarray:
-    """Numbers as an array, None among them as NaN; anything else as objects."""
+    """Convert values: numbers with None as NaN, else texts, else objects."""
     if isinstance(values, np.ndarray):
         return values
     kinds = {type(value) for value in values}
@@ -40,20 +62,43 @@ def array(values: Any) -> np.ndarray:
         return np.array([np.nan if value is None else value for value in values], float)
     if kinds == {int}:
         return np.array(values, np.int64)
-    if kinds == {str}:
-        return np.array(values)
+    return np.array(values) if kinds == {str} else _objects(values)
+
+
+def _objects(values: Sequence[Any]) -> np.ndarray:
     found = np.empty(len(values), object)
     found[:] = list(values)
     return found
 
 
 def frame(columns: Mapping[str, Any] | Sequence[Mapping[str, Any]]) -> Any:
-    """A pandas `DataFrame` of columns or of rows."""
-    return pandas().DataFrame(columns if isinstance(columns, Mapping) else list(columns))
-
-
-def pandas() -> Any:
+    """Return a pandas `DataFrame` of columns or of rows."""
     try:
-        return import_module("pandas")
+        pandas = import_module("pandas")
     except ImportError as error:
         raise ImportError("Data frames need pandas: pip install pandas") from error
+    return pandas.DataFrame(columns if isinstance(columns, Mapping) else list(columns))
+
+
+def lineage(data: bytes) -> Columns:
+    """Return every insertion into an archive file, in order: `creature`, its `parents`,
+    `operator`, `generation`, `cell`, `fitness`, and the `descriptors` by name.
+
+    Raise `ValueError` if the file holds no archive.
+    """
+    tree, attributes = load(data)
+    if "lineage" not in tree:
+        raise ValueError("a run that fills an archive is needed for a lineage; got a table")
+    rows = tree["lineage"]
+    operators = json.loads(attributes["operators"])
+    axes = [axis["name"] for axis in json.loads(attributes["spec"])["archive"]["descriptors"]]
+    parents = [
+        [bytes(parent).hex() for parent in row if parent.any()] for row in rows["parents"]
+    ]
+    found = {
+        "creature": [bytes(row).hex() for row in rows["creature"]],
+        "parents": _objects(parents),
+        "operator": [operators[number] for number in rows["operator"]],
+    }
+    found |= {name: rows[name] for name in ("generation", "cell", "fitness")}
+    return Columns(found | {axis: rows["descriptors"][:, i] for i, axis in enumerate(axes)})

@@ -1,5 +1,6 @@
-"""Requests to a server, again where that is safe and may help."""
+"""Requests to a server, repeated where that is safe and may help."""
 
+import json
 import random
 import time
 import weakref
@@ -10,9 +11,10 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import httpx
+import numpy as np
 
 from ..version import VERSION
-from . import errors, jsonable
+from . import errors
 
 API = "/api/v1/"
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -20,14 +22,14 @@ IDEMPOTENT = ("GET", "HEAD", "PUT", "PATCH", "DELETE")
 BUSY = (429, 502, 503, 504)
 LONGEST_PAUSE = 8.0
 FIRST_TRIES = 2
-"""Where nobody has ever answered, more of them would only keep a person waiting."""
+"""If no server has ever answered, more tries would only keep a person waiting."""
 
 
 class Connection:
-    """One server, and whoever speaks to it.
+    """A server, with a token.
 
-    For `patience` seconds, a request is made again that did not arrive, or that can be
-    answered twice without harm.
+    For `patience` seconds, a request is repeated that did not arrive, or that can be answered
+    twice without harm.
     """
 
     def __init__(
@@ -47,14 +49,38 @@ class Connection:
             headers=headers,
             timeout=httpx.Timeout(60.0, connect=5.0),
             transport=transport,
-            # A proxy that the environment names does not know this machine's own addresses.
+            # A proxy that the environment names cannot reach this machine's own addresses.
             trust_env=urlsplit(self.url).hostname not in LOOPBACK,
         )
         weakref.finalize(self, self.http.close)  # People write `Client(url).submit(spec)`.
 
     def read(self, path: str, **params: Any) -> Any:
-        """The JSON that is at a path."""
+        """Return the JSON at a path."""
         return self.json(self.ask("GET", path, params=params))
+
+    def items(self, path: str, **params: Any) -> Iterator[dict[str, Any]]:
+        """Yield all entries of a list; request each page when it is needed."""
+        page = self.read(path, **params)
+        if isinstance(page, list):
+            yield from page
+            return
+        yield from page["items"]
+        while cursor := page.get("next"):
+            page = self.read(path, **params, cursor=cursor)
+            yield from page["items"]
+
+    def rendering(self, path: str, timeout: float = 300.0) -> bytes:
+        """Return a replay, picture or film, once the server has made it."""
+        deadline = time.monotonic() + timeout
+        while (answer := self.ask("GET", path)).status_code == 202:
+            pause = float(answer.headers.get("retry-after", 1))
+            if time.monotonic() + pause > deadline:
+                raise errors.ServerError(
+                    f"{path} was not made within {timeout:.0f} s; is a renderer running? "
+                    "`make run` starts one."
+                )
+            time.sleep(pause)
+        return answer.content
 
     def send(
         self,
@@ -65,11 +91,14 @@ class Connection:
         key: str | None = None,
         **params: Any,
     ) -> Any:
-        """What a change comes to; `key` names it, so that it is made once."""
+        """Make a change and return its result; a `key` ensures that it is made once.
+
+        Raise `ValueError` for NaN and infinities, `TypeError` for what JSON cannot express.
+        """
         body: dict[str, Any] = {}
         if document is not None:
-            kind = {"Content-Type": "application/json"}
-            body = {"headers": kind, "content": jsonable.dumps(document)}
+            content = json.dumps(document, default=_plain, allow_nan=False).encode()
+            body = {"headers": {"Content-Type": "application/json"}, "content": content}
         return self.json(self.ask(method, path, key=key, params=params, **body))
 
     def json(self, answer: httpx.Response) -> Any:
@@ -80,25 +109,16 @@ class Connection:
             raise errors.stranger(answer, self.url, kind) from None
 
     def ask(
-        self,
-        method: str,
-        path: str,
-        *,
-        key: str | None = None,
-        headers: Mapping[str, str] | None = None,
-        **options: Any,
+        self, method: str, path: str, *, key: str | None = None, **options: Any
     ) -> httpx.Response:
-        """An answer that is no error, else `ServerError`."""
-        request = self.request(method, path, key=key, headers=headers, **options)
+        """Return a successful answer, else raise `ServerError`."""
+        request = self.request(method, path, key=key, **options)
         return errors.checked(self._patiently(request, key is not None), self.url)
 
     @contextmanager
-    def stream(
-        self, path: str, *, headers: Mapping[str, str] | None = None, **options: Any
-    ) -> Iterator[httpx.Response]:
-        """An answer whose body is read as it comes."""
-        request = self.request("GET", path, headers=headers, **options)
-        answer = self._patiently(request, stream=True)
+    def stream(self, path: str, **options: Any) -> Iterator[httpx.Response]:
+        """Yield an answer whose body is read as it arrives."""
+        answer = self._patiently(self.request("GET", path, **options), stream=True)
         try:
             yield errors.checked(answer, self.url)
         finally:
@@ -114,7 +134,7 @@ class Connection:
         params: Mapping[str, Any] | None = None,
         **options: Any,
     ) -> httpx.Request:
-        """Below the API, or from the root where the path begins with a slash."""
+        """Build a request below the API, or from the root if the path begins with a slash."""
         headers = dict(headers or {}) | ({"Idempotency-Key": key} if key else {})
         given = {name: value for name, value in (params or {}).items() if value is not None}
         path = path if path.startswith("/") else API + path
@@ -126,13 +146,13 @@ class Connection:
     def _patiently(
         self, request: httpx.Request, named: bool = False, stream: bool = False
     ) -> httpx.Response:
-        twice = named or request.method in IDEMPOTENT
+        repeatable = named or request.method in IDEMPOTENT
         waited, attempt = 0.0, 0
         while True:
             begun = time.monotonic()
             answer, failure = self._once(request, stream)
             waited += time.monotonic() - begun
-            pause = self._pause(answer, failure, twice, attempt)
+            pause = self._pause(answer, failure, repeatable, attempt)
             if pause is None or waited + pause > self.patience:
                 break
             if answer:
@@ -158,33 +178,39 @@ class Connection:
         self,
         answer: httpx.Response | None,
         failure: httpx.TransportError | None,
-        twice: bool,
+        repeatable: bool,
         attempt: int,
     ) -> float | None:
-        """Seconds until it is worth trying again; None where it is not, or could do harm."""
+        """Return seconds until the next try; None if it is useless or could do harm."""
         usual = min(LONGEST_PAUSE, 0.25 * 2**attempt) * random.uniform(0.5, 1.0)
         if answer is not None:
-            again = answer.status_code == 429 or (answer.status_code in BUSY and twice)
-            return (_told(answer) or usual) if again else None
+            busy = answer.status_code == 429 or (answer.status_code in BUSY and repeatable)
+            return (_retry_after(answer) or usual) if busy else None
         if not self.answered and attempt >= FIRST_TRIES:
             return None
         arrived = not isinstance(failure, httpx.ConnectError | httpx.ConnectTimeout)
-        return usual if twice or not arrived else None
+        return usual if repeatable or not arrived else None
 
 
-def _told(answer: httpx.Response) -> float | None:
-    """Seconds that the server asks to wait."""
-    told = answer.headers.get("retry-after", "")
-    if told.isdigit():
-        return float(told)
+def _retry_after(answer: httpx.Response) -> float | None:
+    """Return the seconds that the server asks to wait."""
+    text = answer.headers.get("retry-after", "")
+    if text.isdigit():
+        return float(text)
     try:
-        return max(0.0, parsedate_to_datetime(told).timestamp() - time.time())
+        return max(0.0, parsedate_to_datetime(text).timestamp() - time.time())
     except ValueError:
         return None
 
 
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    raise TypeError(f"JSON cannot express {type(value).__name__}; got {value!r:.80}")
+
+
 def normal(url: str) -> str:
-    """The address of a server as people write it: with a scheme, without a path of the API."""
+    """Complete the address of a server: with a scheme, without the path of the API."""
     whole = url.strip() if "://" in url else f"http://{url.strip()}"
     try:
         parts = urlsplit(whole)

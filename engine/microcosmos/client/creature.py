@@ -1,4 +1,4 @@
-"""A creature on a server: what it is, what was measured, how it moves."""
+"""A creature on a server: its file, lineage, replay and pictures."""
 
 import json
 from functools import cached_property
@@ -9,10 +9,8 @@ import microcosmos
 
 from ..archive.atomic import write_whole
 from .connection import Connection
-from .picture import Picture
-from .replay import Replay
+from .replay import Picture, Replay
 from .sharing import Share, publish
-from .waiting import made
 
 ENDINGS = {
     ".json": "",
@@ -26,11 +24,11 @@ ENDINGS = {
     ".py": "/network.py",
     ".npz": "/network.npz",
 }
-"""What a creature can be saved as, and where that is."""
+"""Paths of the files of a creature, by the ending of a name."""
 
 
 class Creature:
-    """Immutable, named by the SHA-256 of what it is."""
+    """Immutable; its name is the SHA-256 of its identity."""
 
     def __init__(self, connection: Connection, sha: str):
         self._connection, self.sha = connection, sha
@@ -46,7 +44,7 @@ class Creature:
 
     @cached_property
     def file(self) -> dict[str, Any]:
-        """The creature file: identity, hash, what was measured, where it came from."""
+        """The creature file: identity, hash, measured numbers, provenance."""
         return self._connection.read(self._path)
 
     @property
@@ -55,7 +53,7 @@ class Creature:
 
     @property
     def measured(self) -> dict[str, Any] | None:
-        """What was found when it was evaluated: `fitness`, `descriptors`, `measures` …"""
+        """Results of its evaluation: `fitness`, `descriptors`, `measures` …"""
         return self.file["measured"]
 
     @property
@@ -63,31 +61,31 @@ class Creature:
         return self.measured["fitness"] if self.measured else None
 
     def replay(self, timeout: float = 300.0) -> Replay:
-        """Its recorded motion, which plays in a notebook; waits while it is rendered."""
-        return Replay(made(self._connection, f"{self._path}/replay", timeout).content)
+        """Return its recorded motion, which plays in a notebook; wait for the renderer."""
+        return Replay(self._connection.rendering(f"{self._path}/replay", timeout))
 
     def preview(self, timeout: float = 300.0) -> Picture:
-        """Six moments of its motion side by side."""
-        return Picture(made(self._connection, f"{self._path}/strip.png", timeout).content)
+        """Return six moments of its motion side by side."""
+        return Picture(self._connection.rendering(f"{self._path}/strip.png", timeout))
 
     def ancestors(self, depth: int = 3) -> dict[str, Any]:
-        """Parents and theirs, nearest first."""
+        """Return parents, grandparents and so on, nearest first."""
         return self._connection.read(f"{self._path}/ancestors", depth=depth)
 
     def children(self, limit: int = 50) -> dict[str, Any]:
-        """Elites that came from it, the best first."""
+        """Return its offspring among the elites, the best first."""
         return self._connection.read(f"{self._path}/children", limit=limit)
 
     def check(self) -> Any:
         """Evaluate it again on this machine, bit for bit; see `microcosmos.check`."""
         return microcosmos.check(self.file)
 
-    def share(self, **said: Any) -> Share:
+    def share(self, **options: Any) -> Share:
         """Publish it under a link; `title`, `credit`, `licence`, `days`, `listed`."""
-        return publish(self._connection, {"creature": self.sha}, **said)
+        return publish(self._connection, {"creature": self.sha}, **options)
 
     def save(self, path: str | Path, timeout: float = 300.0) -> Path:
-        """The creature file, or what the path's ending asks for, as `.gif` or `.replay`."""
+        """Write the file that the ending names: `.json`, `.h5`, `.replay`, `.gif` …"""
         path = Path(path)
         if path.suffix not in ENDINGS:
             known = ", ".join(ENDINGS)
@@ -95,7 +93,7 @@ class Creature:
         if path.suffix == ".json":
             data = json.dumps(self.file, indent=1).encode()
         else:
-            data = made(self._connection, self._path + ENDINGS[path.suffix], timeout).content
+            data = self._connection.rendering(self._path + ENDINGS[path.suffix], timeout)
         write_whole(path, data)
         return path
 

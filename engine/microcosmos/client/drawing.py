@@ -1,14 +1,24 @@
-"""Curves as text, and as pictures for a notebook."""
+"""Curves as text, and curves and archive maps as SVG."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from html import escape
+from typing import Any
+
+import numpy as np
 
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 """Bits of a Braille sign: by column, then from the top."""
 EMPTY = 0x2800
+SIDE = 320
+"""Pixels of a map."""
+VIRIDIS = np.array(
+    [(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)], float
+)
+"""Even samples of viridis (S. van der Walt and N. Smith, 2015; CC0)."""
 
 
 def braille(values: Sequence[float | None], width: int, height: int) -> list[str]:
-    """A curve in so many signs and lines; what is unknown leaves a gap."""
+    """Draw a curve in Braille signs, so many a line; an unknown value leaves a gap."""
     columns, rows = 2 * width, 4 * height
     signs = [[EMPTY] * width for _ in range(height)]
     before: int | None = None
@@ -25,19 +35,18 @@ def braille(values: Sequence[float | None], width: int, height: int) -> list[str
 
 
 def _places(values: Sequence[float | None], columns: int, rows: int) -> list[int | None]:
-    """The row of each column, counted from below."""
+    """Return the row of each column, counted from below."""
     known = [value for value in values if value is not None]
     if not known:
         return []
-    low, high = min(known), max(known)
-    span = (high - low) or 1.0
+    low, span = min(known), (max(known) - min(known)) or 1.0
     last = len(values) - 1
     taken = [values[round(x * last / (columns - 1))] for x in range(columns)]
     return [None if v is None else round((v - low) / span * (rows - 1)) for v in taken]
 
 
 def polyline(values: Sequence[float | None], width: float, height: float) -> str:
-    """The `points` of an SVG polyline; what is unknown is left out."""
+    """Return the `points` of an SVG polyline, without unknown values."""
     known = [(i, value) for i, value in enumerate(values) if value is not None]
     if not known:
         return ""
@@ -47,3 +56,32 @@ def polyline(values: Sequence[float | None], width: float, height: float) -> str
         f"{i * width / last:.1f},{height - (value - low) / span * height:.1f}"
         for i, value in known
     )
+
+
+def archive_map(
+    axes: Sequence[Mapping[str, Any]], cell: np.ndarray, fitness: np.ndarray, caption: str
+) -> str:
+    """Draw the filled cells of a grid of two axes, the first from left to right."""
+    columns, rows = axes[0]["bins"], axes[1]["bins"]
+    wide, high = SIDE / columns, SIDE / rows
+    squares = "".join(
+        f'<rect x="{number // rows * wide:.2f}" y="{SIDE - (number % rows + 1) * high:.2f}" '
+        f'width="{wide:.2f}" height="{high:.2f}" fill="{colour}"/>'
+        for number, colour in zip(cell.tolist(), colours(fitness), strict=True)
+    )
+    names = f"{escape(axes[0]['name'])} →, {escape(axes[1]['name'])} ↑"
+    return (
+        f'<figure style="margin:4px 0"><svg width="{SIDE}" height="{SIDE}" role="img" '
+        f'aria-label="{escape(caption)}" style="border:1px solid #8888">{squares}</svg>'
+        f"<figcaption>{escape(caption)}<br>{names}</figcaption></figure>"
+    )
+
+
+def colours(fitness: np.ndarray) -> list[str]:
+    """Return a colour for each fitness, from dark for the least to bright for the best."""
+    if not len(fitness):
+        return []
+    low, span = fitness.min(), np.ptp(fitness) or 1.0
+    place = (fitness - low) / span * (len(VIRIDIS) - 1)
+    channels = [np.interp(place, range(len(VIRIDIS)), channel) for channel in VIRIDIS.T]
+    return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in np.rint(channels).astype(int).T]

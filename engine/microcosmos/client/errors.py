@@ -1,4 +1,4 @@
-"""What went wrong with a server, as sentences."""
+"""Errors of a server, as sentences."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,7 +10,7 @@ TOKEN = "Give one with --token, MICROCOSMOS_TOKEN, or Client(url, token)."
 
 
 class ServerError(Exception):
-    """Why something could not be done; `status` is HTTP's, `errors` names fields at fault."""
+    """A failed request, with the HTTP `status` and the `errors` of fields."""
 
     def __init__(
         self,
@@ -23,27 +23,27 @@ class ServerError(Exception):
 
 
 class NoAnswer(ServerError):
-    """Nobody answers at the address."""
+    """No server answers at the address."""
 
 
 class NotMicrocosmos(ServerError):
-    """Something else answers there."""
+    """Another program answers at the address."""
 
 
 class NotFound(ServerError):
-    """There is nothing of this name."""
+    """No such thing exists."""
 
 
 class NotAllowed(ServerError):
-    """A token is needed, or one that may do more."""
+    """The request needs a token, or one with a wider scope."""
 
 
 class Conflict(ServerError):
-    """The state of a thing does not allow what was asked."""
+    """The state of a run does not allow the action."""
 
 
 class Refused(ServerError):
-    """What was sent cannot be done as it is."""
+    """The request is wrong."""
 
 
 KINDS: dict[int, type[ServerError]] = {
@@ -55,7 +55,7 @@ KINDS: dict[int, type[ServerError]] = {
 
 
 def checked(answer: httpx.Response, url: str) -> httpx.Response:
-    """An answer that is a server's of ours and no error, its body read if it is one."""
+    """Return a successful answer of a Microcosmos server, else raise its error."""
     kind = answer.headers.get("content-type", "").partition(";")[0].strip()
     if (answer.is_success or answer.status_code == 304) and kind != "text/html":
         return answer
@@ -66,7 +66,7 @@ def checked(answer: httpx.Response, url: str) -> httpx.Response:
 
 
 def of(answer: httpx.Response) -> ServerError:
-    """The error that a problem stands for."""
+    """Return the error that a problem document describes."""
     try:
         problem = answer.json()
         errors = problem.get("errors") or []
@@ -80,16 +80,16 @@ def of(answer: httpx.Response) -> ServerError:
 
 
 def sentence(detail: str, errors: Sequence[Mapping[str, Any]]) -> str:
-    """What is wrong, with every field that is at fault, as one sentence."""
-    told = detail.strip()
+    """Name the problem and every wrong field in one sentence."""
+    text = detail.strip()
     for error in errors:
-        if str(error["message"]) not in told:
-            told = f"{told.rstrip('.')}; {error['field']}: {error['message']}"
-    return told if told.endswith((".", "!", "?")) else f"{told}."
+        if str(error["message"]) not in text:
+            text = f"{text.rstrip('.')}; {error['field']}: {error['message']}"
+    return text if text.endswith((".", "!", "?")) else f"{text}."
 
 
 def stranger(answer: httpx.Response, url: str, kind: str) -> ServerError:
-    """What an answer tells that no server of ours would give."""
+    """Explain an answer that no Microcosmos server would give."""
     status = f"{answer.status_code} {answer.reason_phrase}".strip()
     if answer.status_code in (502, 503, 504):
         return NoAnswer(
@@ -112,19 +112,14 @@ def stranger(answer: httpx.Response, url: str, kind: str) -> ServerError:
 
 
 def unreachable(error: httpx.TransportError, url: str) -> NoAnswer:
-    """Why no answer came."""
+    """Explain why no answer came."""
     if isinstance(error, httpx.ConnectTimeout | httpx.ReadTimeout | httpx.PoolTimeout):
         return NoAnswer(f"The server at {url} did not answer in time; it may be overloaded.")
     if isinstance(error, httpx.ConnectError):
-        reason = _reason(error)
+        text = str(error)
+        reason = "" if not text or "refused" in text.lower() else f" ({text})"
         return NoAnswer(
             f"No server answers at {url}{reason}: start one with `make run`, or name another "
             "with --url or MICROCOSMOS_URL."
         )
     return NoAnswer(f"The connection to {url} broke off ({error or type(error).__name__}).")
-
-
-def _reason(error: httpx.TransportError) -> str:
-    """What is worth telling beside that nobody listens."""
-    said = str(error)
-    return "" if not said or "refused" in said.lower() else f" ({said})"

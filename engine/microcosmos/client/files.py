@@ -1,47 +1,76 @@
-"""A file fetched whole: taken up where it broke off, verified, and only then put in place."""
+"""Download a file: resumed if it breaks off, verified, and only then put in place."""
 
 import hashlib
 import os
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    DownloadColumn,
+    Progress,
+    TextColumn,
+    TimeRemainingColumn,
+    TransferSpeedColumn,
+)
 
 from .connection import Connection
 from .errors import NotMicrocosmos, Refused, ServerError, unreachable
 
 TRIES = 6
-"""In a row without a byte more."""
+"""Tries in a row that bring no byte."""
 CHUNK = 1 << 16
 DIGEST = re.compile(r'"([0-9a-f]{64})"')
-"""A strong ETag of ours: the file's SHA-256."""
+"""A strong ETag of the server: the file's SHA-256."""
 
 Tell = Callable[[int, int], None]
-"""Told how many bytes are there, and of how many."""
+"""Called with the number of bytes so far, and of the whole file."""
 
 
 def silent(there: int, whole: int) -> None:
-    """Tells nobody."""
+    """Ignore the progress."""
+
+
+@contextmanager
+def progress_bar(name: str, quiet: bool = False) -> Iterator[Tell]:
+    """Draw a progress bar if standard error is a terminal."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield silent
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        DownloadColumn(),
+        TransferSpeedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console) as progress:
+        task = progress.add_task(name, total=None)
+        yield lambda there, whole: progress.update(task, completed=there, total=whole)
 
 
 def fetch(connection: Connection, path: str, to: Path, tell: Tell = silent) -> Path:
-    """Bring what is at a path; what an attempt before has brought is not asked for again.
+    """Download a file; bytes of an earlier attempt are not requested again.
 
-    It lies beside the file until it is whole, under the hash that it will have: where the
-    server has another one by then, it is begun anew. Raises `ServerError` or `OSError`.
+    A part beside the file has the expected hash in its name: if the server has another file by
+    then, the download starts anew. Raise `ServerError` or `OSError`.
     """
     if not to.parent.is_dir():
         raise NotADirectoryError(f"{to.name} needs an existing folder; got {to.parent}")
     there, tries = digest(to) if to.exists() else None, 0
     while True:
-        part = begun(to)
+        part = part_of(to)
         before = size(part)
         try:
             found = _more(connection, path, to, part, there, tell)
         except httpx.TransportError as error:
-            tries = 0 if size(begun(to)) > before else tries + 1
+            tries = 0 if size(part_of(to)) > before else tries + 1
             if tries >= TRIES:
                 raise unreachable(error, connection.url) from error
             time.sleep(min(8.0, 0.25 * 2**tries))
@@ -59,7 +88,7 @@ def _more(
     there: str | None,
     tell: Tell,
 ) -> Path | None:
-    """The part, whole; None where the file is there already."""
+    """Return the completed part; None if the file exists already."""
     headers = {"Accept-Encoding": "identity"}
     headers |= {"If-None-Match": f'"{there}"'} if there else {}
     if part:
@@ -72,22 +101,22 @@ def _more(
     except Refused as error:
         if error.status != 416 or not part:
             raise
-        return part  # Nothing is left to ask for: it broke off after the last byte.
+        return part  # It broke off after the last byte.
 
 
 def _written(answer: httpx.Response, to: Path, part: Path | None, tell: Tell, url: str) -> Path:
-    """The part with what an answer brings, behind what is there or in its place."""
+    """Write an answer behind the part, or in its place."""
     name = DIGEST.fullmatch(answer.headers.get("etag", ""))
     if not name:
         raise NotMicrocosmos(f"{url} sends a file without its hash, as no server of ours does.")
     target = to.with_name(f".{to.name}.{name[1]}.part")
-    goes_on = answer.status_code == 206 and target == part
-    if part and not goes_on:
+    resumed = answer.status_code == 206 and target == part
+    if part and not resumed:
         part.unlink(missing_ok=True)
-    start = size(target) if goes_on else 0
+    start = size(target) if resumed else 0
     whole = start + int(answer.headers.get("content-length", 0))  # Some proxies drop it.
     try:
-        with target.open("ab" if goes_on else "wb") as file:
+        with target.open("ab" if resumed else "wb") as file:
             tell(start, whole)
             for chunk in answer.iter_raw(CHUNK):
                 file.write(chunk)
@@ -95,14 +124,14 @@ def _written(answer: httpx.Response, to: Path, part: Path | None, tell: Tell, ur
                 start += len(chunk)
                 tell(start, max(start, whole))
             os.fsync(file.fileno())
-    except OSError as error:  # Of a full disk, which does not say whose.
+    except OSError as error:  # The error of a full disk has no name.
         error.filename = error.filename or str(target)
         raise
     return target
 
 
 def _place(part: Path, to: Path) -> None:
-    """Rename what is whole and right; what is not is removed."""
+    """Put a verified part in place; delete a damaged one."""
     needed, found = _named(part), digest(part)
     if needed != found:
         part.unlink()
@@ -118,8 +147,8 @@ def _place(part: Path, to: Path) -> None:
         os.close(folder)
 
 
-def begun(to: Path) -> Path | None:
-    """What an attempt before has left of a file."""
+def part_of(to: Path) -> Path | None:
+    """Return the part that an earlier attempt has left."""
     beside = re.compile(rf"\.{re.escape(to.name)}\.[0-9a-f]{{64}}\.part")
     found = (path for path in to.parent.iterdir() if beside.fullmatch(path.name))
     return next(found, None)
@@ -135,5 +164,5 @@ def digest(path: Path) -> str:
 
 
 def _named(part: Path) -> str:
-    """The hash that a part is to have."""
+    """Return the expected hash of a part."""
     return part.name.split(".")[-2]

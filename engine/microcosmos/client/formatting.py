@@ -1,13 +1,21 @@
-"""How numbers, times and runs are told to people."""
+"""Numbers, durations and states of runs as text."""
 
 from collections.abc import Mapping
 from typing import Any
 
-FIGURES = (("QD score", "qd_score"), ("coverage", "coverage"), ("best", "best"))
+MEASURES = {"qd_score": "QD score", "coverage": "coverage", "best": "best"}
+"""Titles of the measures of an archive's quality."""
+COLOURS = {
+    "finished": "green",
+    "failed": "red",
+    "running": "cyan",
+    "cancelled": "yellow",
+    "paused": "yellow",
+}
 
 
-def lasting(seconds: float | None) -> str:
-    """A duration in its two largest units."""
+def duration(seconds: float | None) -> str:
+    """Format a duration in its two largest units."""
     if seconds is None:
         return ""
     whole = max(0, round(seconds))
@@ -20,15 +28,6 @@ def lasting(seconds: float | None) -> str:
     return f"{whole // 86400} d {whole % 86400 // 3600} h"
 
 
-def sized(count: float) -> str:
-    """Bytes in a unit that people read."""
-    for unit in ("B", "kB", "MB", "GB"):
-        if count < 1000:
-            return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"
-        count /= 1000
-    return f"{count:.1f} TB"
-
-
 def figure(name: str, value: float | None) -> str:
     if value is None:
         return "–"
@@ -36,30 +35,45 @@ def figure(name: str, value: float | None) -> str:
 
 
 def figures(record: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """What a run has come to: of an archive its quality, of a table its summary."""
+    """Return the quality of a run's archive, or the summary of its table."""
     if record.get("qd_score") is not None:
-        return [(title, figure(name, record[name])) for title, name in FIGURES]
+        return [(title, figure(name, record[name])) for name, title in MEASURES.items()]
     summary = record.get("summary") or {}
     numbers = ((name, value) for name, value in summary.items() if type(value) in (int, float))
     return [(name.replace("_", " "), f"{value:.4g}") for name, value in list(numbers)[:4]]
 
 
-def titled(record: Mapping[str, Any]) -> str:
-    """What a run is called, and where it is found."""
+def title(record: Mapping[str, Any]) -> str:
+    """Return experiment, name and short id."""
     name = f" “{record['name']}”" if record.get("name") else ""
     return f"{record['experiment']}{name}  {record['id'][:8]}"
 
 
-def standing(record: Mapping[str, Any]) -> str:
-    """How a run is, with whatever keeps it from going on."""
+def status_of(record: Mapping[str, Any]) -> str:
+    """Return the status, and the requested one."""
     requested = record.get("requested_state")
-    status = record["status"] + (f", to be {requested}" if requested else "")
+    return record["status"] + (f", to be {requested}" if requested else "")
+
+
+def status_and_reason(record: Mapping[str, Any]) -> str:
     reason = record.get("waiting_reason") or record.get("error")
-    return status + (f": {reason}" if reason else "")
+    return status_of(record) + (f": {reason}" if reason else "")
 
 
-def pace(record: Mapping[str, Any]) -> str:
-    """How fast it goes and how long it will take."""
-    rate, left = record.get("evaluations_per_second"), record.get("eta_seconds")
-    said = [f"{rate:.3g} evaluations/s"] if rate and record["status"] == "running" else []
-    return "   ".join([*said, *([f"{lasting(left)} left"] if left is not None else [])])
+def counts_as_text(counts: Mapping[str, int]) -> str:
+    """Format the number of runs by status."""
+    return ", ".join(f"{count} {status}" for status, count in counts.items() if count)
+
+
+def done(record: Mapping[str, Any]) -> str:
+    unit = record.get("unit", "generations")
+    return f"{record['generation']}/{record['generations']} {unit}"
+
+
+def speed(record: Mapping[str, Any]) -> str:
+    """Format the rate of a run and its remaining time."""
+    rate, remaining = record.get("evaluations_per_second"), record.get("eta_seconds")
+    parts = [f"{rate:.3g} evaluations/s"] if rate and record["status"] == "running" else []
+    return "   ".join(
+        [*parts, *([f"{duration(remaining)} left"] if remaining is not None else [])]
+    )

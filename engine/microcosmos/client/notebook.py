@@ -1,4 +1,4 @@
-"""A run in a notebook: one display, brought up to date."""
+"""A run in a notebook: one display, which is updated."""
 
 import time
 from html import escape
@@ -6,10 +6,9 @@ from importlib import import_module
 from typing import Any, Self
 
 from . import drawing, formatting
-from .polling import Standing
+from .polling import RunState
 
-OFTEN = 0.5
-"""Seconds between two states of the display."""
+UPDATE_SECONDS = 0.5
 WIDTH, HEIGHT = 200, 60
 COLOURS = {"finished": "#2a8f4e", "failed": "#c0392b", "cancelled": "#b7791f"}
 
@@ -19,24 +18,24 @@ class Notebook:
 
     def __init__(self) -> None:
         self.handle: Any = None
-        self.standing: Standing | None = None
+        self.state: RunState | None = None
         self.at = float("-inf")
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self.standing is not None:
-            self._display(self.standing)
+        if self.state is not None:
+            self._display(self.state)
 
-    def show(self, standing: Standing) -> None:
-        self.standing = standing
-        if time.monotonic() - self.at >= OFTEN:
+    def show(self, state: RunState) -> None:
+        self.state = state
+        if time.monotonic() - self.at >= UPDATE_SECONDS:
             self.at = time.monotonic()
-            self._display(standing)
+            self._display(state)
 
-    def _display(self, standing: Standing) -> None:
-        page = Page(html(standing))
+    def _display(self, state: RunState) -> None:
+        page = Page(html(state))
         if self.handle is None:
             display = import_module("IPython.display").display
             self.handle = display(page, display_id=True)
@@ -54,30 +53,26 @@ class Page:
         return self.text
 
 
-def html(standing: Standing) -> str:
-    record = standing.record
+def html(state: RunState) -> str:
+    record = state.record
     colour = COLOURS.get(record["status"], "#2f7ec0")
-    done = f"{record['generation']}/{record['generations']} {record.get('unit', 'generations')}"
     figures = [
         f"{escape(name)} <b>{escape(value)}</b>" for name, value in formatting.figures(record)
     ]
-    told = " · ".join(filter(None, [done, *figures, formatting.pace(record)]))
-    trouble = " ".join(filter(None, [record.get("warning"), standing.trouble]))
-    return (
-        f"<div><b>{escape(formatting.titled(record))}</b> "
-        f'<span style="color:{colour}">{escape(formatting.standing(record))}</span></div>'
-        f'<progress max="1" value="{record["progress"]:.4f}" style="width:{3 * WIDTH}px">'
-        f"</progress><div>{told}</div>{_curves(standing, colour)}"
-        f'<div style="color:#b7791f">{escape(trouble)}</div>'
+    words = [formatting.done(record), *figures, formatting.speed(record)]
+    problems = " ".join(filter(None, [record.get("warning"), state.problem]))
+    curves = (
+        _curve(title, state.curves.get(name, []), colour)
+        for name, title in formatting.MEASURES.items()
     )
-
-
-def _curves(standing: Standing, colour: str) -> str:
-    pictures = [
-        _curve(title, standing.curves.get(name, []), colour)
-        for title, name in formatting.FIGURES
-    ]
-    return f'<div style="display:flex;gap:12px">{"".join(pictures)}</div>'
+    return (
+        f"<div><b>{escape(formatting.title(record))}</b> "
+        f'<span style="color:{colour}">{escape(formatting.status_and_reason(record))}</span>'
+        f'</div><progress max="1" value="{record["progress"]:.4f}" style="width:{3 * WIDTH}px">'
+        f"</progress><div>{' · '.join(filter(None, words))}</div>"
+        f'<div style="display:flex;gap:12px">{"".join(curves)}</div>'
+        f'<div style="color:#b7791f">{escape(problems)}</div>'
+    )
 
 
 def _curve(title: str, values: list[float | None], colour: str) -> str:

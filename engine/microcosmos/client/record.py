@@ -1,21 +1,23 @@
-"""What runs and sweeps have in common: a record on the server, and what they are told to do."""
+"""The base of runs and sweeps: a record on the server, and actions on it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar, Self
+from uuid import UUID
 
 from .connection import Connection
+from .errors import NotFound, Refused
 
 
 class Record:
-    """As it was when the server was last asked; `refresh` asks again."""
+    """A copy of the server's record; `refresh` reads it again."""
 
     NOUN: ClassVar[str]
-    """What the API calls them."""
+    """Name of the kind in the API."""
 
     def __init__(self, connection: Connection, record: Mapping[str, Any]):
         self._connection = connection
         self.record = dict(record)
-        """All that the server tells of it."""
+        """All fields that the server has."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, type(self)) and other.id == self.id
@@ -44,6 +46,10 @@ class Record:
     def cancel(self) -> Self:
         return self._ask("cancel")
 
+    def restore(self) -> Self:
+        """Bring it back from the bin."""
+        return self._ask("restore")
+
     @property
     def _path(self) -> str:
         return f"{self.NOUN}/{self.id}"
@@ -51,3 +57,35 @@ class Record:
     def _ask(self, action: str, document: Any = None) -> Self:
         self.record = self._connection.send("POST", f"{self._path}/{action}", document)
         return self
+
+
+def find(
+    connection: Connection,
+    noun: str,
+    id: str,
+    candidates: Iterable[dict[str, Any]],
+    fetch: bool = True,
+) -> dict[str, Any]:
+    """Return the only candidate whose id begins so; `fetch` a whole id directly.
+
+    Raise `NotFound`, and `Refused` for several.
+    """
+    id = id.strip().lower()
+    if fetch and (whole := _whole(id)):
+        return connection.read(f"{noun}/{whole}")
+    if not id or set(id) - set("0123456789abcdef-"):
+        raise Refused(f"An id, or the beginning of one, is needed; got {id!r}.")
+    found = [one for one in candidates if one["id"].startswith(id)]
+    if not found:
+        raise NotFound(f"No {noun[:-1]} at {connection.url} has an id that begins with {id}.")
+    if len(found) > 1:
+        among = ", ".join(sorted(one["id"] for one in found[:8]))
+        raise Refused(f"{id} is the beginning of {len(found)} ids: {among}. Write more of it.")
+    return found[0]
+
+
+def _whole(text: str) -> str | None:
+    try:
+        return str(UUID(text))
+    except ValueError:
+        return None

@@ -1,4 +1,4 @@
-"""A replay that plays in a notebook, without the network and after it was saved."""
+"""Replays and pictures for notebooks, which need no network and stay when saved."""
 
 import json
 from base64 import b64encode
@@ -14,12 +14,29 @@ from ..viz import replay_file
 
 PLAYER = Path(__file__).with_name("player.html")
 LIMIT = 1_200_000
-"""Bytes that are embedded at most: notebooks are mailed and kept in version control."""
+"""Largest number of embedded bytes: notebooks are mailed and kept in version control."""
 FLUID = 96
-"""Cells of the fluid along its longer side at most."""
+"""Largest number of cells of the fluid along its longer side."""
 WIDTH = 480
 CONTROLS = 76
 """Pixels below the picture."""
+
+
+class Picture:
+    """A PNG."""
+
+    def __init__(self, data: bytes):
+        self.data = data
+
+    def _repr_png_(self) -> bytes:
+        return self.data
+
+    def __repr__(self) -> str:
+        return f"<a picture of {len(self.data):,} bytes>"
+
+    def save(self, path: str | Path) -> Path:
+        write_whole(Path(path), self.data)
+        return Path(path)
 
 
 class Replay:
@@ -27,7 +44,7 @@ class Replay:
 
     def __init__(self, data: bytes):
         self.data = data
-        """The file, as docs/formats.md has it."""
+        """The file, see docs/formats.md."""
         self.motion = replay_file.read_replay(data)
         """Its arrays: `positions`, `vorticity`, `drive`, `edges` …"""
 
@@ -45,7 +62,7 @@ class Replay:
         return {"text/plain": repr(self), "text/html": self._repr_html_()}
 
     def _repr_html_(self) -> str:
-        """A frame of its own, so that nothing of it meets the notebook's scripts and styles."""
+        """An iframe keeps it apart from the notebook's scripts and styles."""
         width, height = self.motion.size
         shown = round(WIDTH * height / width) + CONTROLS
         return (
@@ -55,7 +72,7 @@ class Replay:
 
     @cached_property
     def html(self) -> str:
-        """The whole page, everything it needs within."""
+        """The whole page; it loads nothing."""
         frames, cells = thinning(self.motion)
         page = PLAYER.read_text("utf-8")
         positions = self.motion.positions[::frames].astype("<f4")
@@ -70,20 +87,20 @@ class Replay:
             "strongest": self.motion.strongest / self.motion.quantum,
             "note": note(self.motion, frames, levels.shape[1:]),
         }
-        # Within a script nothing may look like its end.
+        # A script must not contain its own end tag.
         page = page.replace("@HEADER@", json.dumps(header).replace("<", "\\u003c"))
         page = page.replace("@POSITIONS@", b64encode(positions.tobytes()).decode())
         return page.replace("@LEVELS@", b64encode(levels.tobytes()).decode())
 
     def save(self, path: str | Path) -> Path:
-        """As `.html`, a page that plays by itself, or as the file itself."""
+        """Write `.html`, a page that plays by itself, or the replay file."""
         path = Path(path)
         write_whole(path, self.html.encode() if path.suffix == ".html" else self.data)
         return path
 
 
 def thinning(motion: replay_file.Replay) -> tuple[int, int]:
-    """Every which frame is shown, and of every how many cells a mean, to stay small."""
+    """Return strides of frames and of cells that keep the page small."""
     width, height = motion.size
     cells = -(-max(width, height) // FLUID)
     frame = 8 * motion.positions.shape[1] + (width // cells) * (height // cells)
@@ -92,7 +109,7 @@ def thinning(motion: replay_file.Replay) -> tuple[int, int]:
 
 
 def coarse(levels: np.ndarray, cells: int) -> np.ndarray:
-    """(frame, x, y) means over squares of so many cells."""
+    """Return (frame, x, y) means over squares of so many cells."""
     if cells == 1:
         return levels
     frames, width, height = levels.shape
@@ -102,13 +119,13 @@ def coarse(levels: np.ndarray, cells: int) -> np.ndarray:
 
 
 def note(motion: replay_file.Replay, frames: int, grid: tuple[int, ...]) -> str:
-    """What was left out, in words."""
-    said = []
+    """Say what was left out."""
+    parts = []
     if frames > 1:
-        said.append(f"one frame in {frames}")
+        parts.append(f"one frame in {frames}")
     if grid != motion.size:
         width, height = motion.size
-        said.append(f"the fluid in {grid[0]} × {grid[1]} squares of {width} × {height} cells")
-    if not said:
+        parts.append(f"the fluid in {grid[0]} × {grid[1]} squares of {width} × {height} cells")
+    if not parts:
         return ""
-    return f"To stay small this shows {' and '.join(said)}; save() has all."
+    return f"To stay small this shows {' and '.join(parts)}; save() has all."

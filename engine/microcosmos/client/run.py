@@ -6,20 +6,18 @@ from pathlib import Path
 from typing import Any, Self
 from uuid import uuid4
 
-from . import files, forking, polling, watching
+from . import files, polling
 from .archive import Archive
-from .columns import Columns
+from .columns import Columns, Table, lineage
 from .creature import Creature
 from .errors import NotFound
-from .lineage import entries
-from .progress import bar
 from .record import Record
 from .sharing import Share, publish
-from .table import Table
+from .views import watch
 
 
 class Run(Record):
-    """As it was when the server was last asked; `refresh` asks again."""
+    """A copy of the server's record; `refresh` reads it again."""
 
     NOUN = "runs"
 
@@ -67,7 +65,7 @@ class Run(Record):
 
     @property
     def best(self) -> float | None:
-        """The best fitness; who has it is `archive().best()`."""
+        """The best fitness; `archive().best()` is its creature."""
         return self.record["best"]
 
     @property
@@ -75,18 +73,18 @@ class Run(Record):
         return self.record["error"]
 
     def wait(self, timeout: float | None = None) -> str:
-        """The state in which it has ended; `TimeoutError` after so many seconds."""
+        """Return the status at the end; raise `TimeoutError` after so many seconds."""
         self.record = polling.wait(self._connection, self.id, timeout)
         return self.status
 
     def watch(self) -> str:
-        """Show how it goes until it has ended, and how it ended; Ctrl-C leaves it going."""
-        status = watching.watch(self._connection, self.id)
+        """Show the run until it ends, and return its status; Ctrl-C ends only the watching."""
+        status = watch(polling.follow(self._connection, self.id), f"Run {self.id}")
         self.refresh()
         return status
 
     def extend(self, generations: int) -> Self:
-        """So many generations more."""
+        """Add generations."""
         return self._ask("extend", {"generations": generations})
 
     def fork(
@@ -99,27 +97,42 @@ class Run(Record):
         spec: Mapping[str, Any] | None = None,
         name: str | None = None,
     ) -> "Run":
-        """A new run that begins with elites of this one: some, a region's, or all of them.
+        """Start a new run from elites of this one: from some, from a region's, or from all.
 
-        `region` gives low and high along axes by name; `spec` says what is to differ, and
-        None in it takes a field back to its default.
+        `region` gives low and high along axes by name. `spec` holds the fields that differ;
+        None resets a field to its default.
         """
-        asked = forking.document(creatures, cells, region, generation, spec, name)
+        chosen: dict[str, Any] = {}
+        if creatures is not None:
+            names = [one.sha if isinstance(one, Creature) else one for one in creatures]
+            chosen["creatures"] = names
+        if cells is not None:
+            chosen["cells"] = list(cells)
+        if region is not None:
+            chosen["region"] = {axis: list(ends) for axis, ends in region.items()}
+        if len(chosen) > 1:
+            given = ", ".join(chosen)
+            raise ValueError(f"fork needs one of creatures, cells, region; got {given}")
+        document: dict[str, Any] = {
+            "from": chosen or {"archive": True},
+            "spec": {**(spec or {})},
+        }
+        if generation is not None:
+            document["generation"] = generation
+        if name:
+            document["name"] = name
         path, key = f"{self._path}/fork", str(uuid4())
-        return Run(self._connection, self._connection.send("POST", path, asked, key=key))
+        return Run(self._connection, self._connection.send("POST", path, document, key=key))
 
     def delete(self) -> Self:
-        """Into the bin, from which `restore` takes it back for a day."""
+        """Move it to the bin; `restore` brings it back within a day."""
         try:
             self.record = self._connection.send("DELETE", self._path)
         except NotFound:
-            # It lies there already where the answer to a first request was lost.
+            # It is in the bin already if the answer to a first request was lost.
             if not self.refresh().record.get("deleted_at"):
                 raise
         return self
-
-    def restore(self) -> Self:
-        return self._ask("restore")
 
     def change(
         self,
@@ -128,57 +141,56 @@ class Run(Record):
         tags: Sequence[str] | None = None,
         note: str | None = None,
     ) -> Self:
-        """Say what it is called, its tags or a note; what is left out stays as it is."""
-        said = {"name": name, "tags": None if tags is None else list(tags), "note": note}
-        said = {field: value for field, value in said.items() if value is not None}
-        self.record = self._connection.send("PATCH", self._path, said)
+        """Change its name, tags or note; None leaves them."""
+        given = {"name": name, "tags": None if tags is None else list(tags), "note": note}
+        given = {field: value for field, value in given.items() if value is not None}
+        self.record = self._connection.send("PATCH", self._path, given)
         return self
 
     def curves(self, points: int | None = None) -> Columns:
-        """Columns by generation: `qd_score`, `coverage`, `best` … and what else was told."""
-        told = self._connection.read(f"{self._path}/generations", points=points)
-        summary = told.pop("summary")
-        return Columns(told | summary)
+        """Return columns by generation: `qd_score`, `coverage`, `best`, and the summary's."""
+        found = self._connection.read(f"{self._path}/generations", points=points)
+        summary = found.pop("summary")
+        return Columns(found | summary)
 
     def archive(self, generation: int | None = None) -> Archive:
-        """Who is in which cell, with all that is recorded, now or as of a generation."""
+        """Return the elites with all measures, now or after a generation."""
         path = f"{self._path}/archive"
-        told = self._connection.read(path, generation=generation)
-        names = ",".join(one["name"] for one in told["recorded"])
-        if names:  # Which there are is not known before.
-            at = told["generation"]
-            told = self._connection.read(path, generation=at, measures=names)
-        return Archive(self._connection, self.id, told)
+        found = self._connection.read(path, generation=generation)
+        if names := ",".join(one["name"] for one in found["recorded"]):
+            at = found["generation"]
+            found = self._connection.read(path, generation=at, measures=names)
+        return Archive(self._connection, self.id, found)
 
     def results(self) -> Table:
-        """The table of a run that fills no archive."""
+        """Return the table of a run without an archive."""
         return Table(self._connection.read(f"{self._path}/results"))
 
     def lineage(self) -> Columns:
-        """Every entry into the archive up to the last checkpoint, with its two parents."""
-        return entries(self._connection.ask("GET", f"{self._path}/archive.h5").content)
+        """Return every insertion into the archive up to the last checkpoint, with parents."""
+        return lineage(self._connection.ask("GET", f"{self._path}/archive.h5").content)
 
     def log(self, after: int | None = None, limit: int = 500) -> list[dict[str, Any]]:
-        """What happened to it: the newest entries, or those after one."""
+        """Return the newest log entries, or those after an entry."""
         found = self._connection.read(f"{self._path}/log", after=after, limit=limit)
         return found["entries"]
 
     def pull(self, path: str | Path | None = None, *, quiet: bool = False) -> Path:
-        """Its file, into a folder or under a name; broken off, the next call goes on.
+        """Download its file to a folder or a path; the next call resumes a broken download.
 
-        It is the last checkpoint: of a run that goes on, the file grows old.
+        The file is the last checkpoint, so that of a running run grows old.
         """
         to = Path(path or ".")
         to = to / f"{self.experiment}-{self.id[:8]}.h5" if to.is_dir() else to
-        with bar(to.name, quiet) as tell:
+        with files.progress_bar(to.name, quiet) as tell:
             return files.fetch(self._connection, f"{self._path}/archive.h5", to, tell)
 
-    def share(self, *, generation: int | None = None, **said: Any) -> Share:
+    def share(self, *, generation: int | None = None, **options: Any) -> Share:
         """Publish its archive under a link; `title`, `credit`, `licence`, `days`, `listed`."""
         what = {"run": self.id} | ({} if generation is None else {"generation": generation})
-        return publish(self._connection, what, **said)
+        return publish(self._connection, what, **options)
 
     @cached_property
     def url(self) -> str:
-        """Its page."""
+        """Address of its page."""
         return f"{self._connection.url}/runs/{self.id}"

@@ -1,4 +1,4 @@
-"""Links under which others see a creature or an archive."""
+"""Shares: links under which others see a creature or an archive."""
 
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
@@ -8,12 +8,12 @@ from .connection import Connection
 
 
 class Share:
-    """A link that is published, until it expires or is revoked."""
+    """A published link, valid until it expires or is revoked."""
 
     def __init__(self, connection: Connection, document: Mapping[str, Any]):
         self._connection = connection
         self.record = dict(document)
-        """All that the server tells of it."""
+        """All fields that the server has."""
 
     @property
     def slug(self) -> str:
@@ -21,7 +21,7 @@ class Share:
 
     @property
     def url(self) -> str:
-        """The whole address, whichever way the server writes it."""
+        """The whole address; the server may omit its own."""
         url = str(self.record["url"])
         return url if "://" in url else f"{self._connection.url}/{url.lstrip('/')}"
 
@@ -29,7 +29,6 @@ class Share:
         return f"<Share {self.url}>"
 
     def revoke(self) -> None:
-        """From now on the link leads nowhere."""
         self._connection.send("DELETE", f"shares/{self.slug}")
 
 
@@ -37,24 +36,22 @@ def publish(
     connection: Connection,
     what: Mapping[str, Any],
     *,
-    title: str | None = None,
-    credit: str | None = None,
-    licence: str | None = None,
     days: float | None = None,
     listed: bool = False,
+    **texts: str | None,
 ) -> Share:
-    """Share what a document names; after so many `days` the link expires.
+    """Share a creature or an archive; the link expires after so many `days`.
 
-    Only what is `listed` is found in the commons.
+    `texts` are `title`, `credit` and `licence`. The commons show it if it is `listed`.
     """
-    said = {"title": title, "credit": credit, "licence": licence, "expires_at": expiry(days)}
-    said = {name: value for name, value in said.items() if value is not None}
-    found = connection.send("POST", "shares", {**what, **said, "listed": listed})
+    given = {**texts, "expires_at": expiry(days)}
+    given = {name: value for name, value in given.items() if value is not None}
+    found = connection.send("POST", "shares", {**what, **given, "listed": listed})
     return Share(connection, found)
 
 
 def expiry(days: float | None) -> str | None:
-    """The moment so many days from now."""
+    """Return the time so many days from now."""
     if days is None:
         return None
     if days <= 0:

@@ -1,4 +1,4 @@
-"""What can be submitted: a spec, a file with one, or a preset by its name."""
+"""Specs to submit: an object, a file, or a preset by its name."""
 
 import json
 from collections.abc import Mapping
@@ -9,7 +9,7 @@ from .connection import Connection
 
 
 def document(connection: Connection, spec: Any) -> dict[str, Any]:
-    """The spec as it is sent; the server checks it and knows the presets."""
+    """Return the spec as JSON; the server validates it and knows the presets."""
     if isinstance(spec, Mapping):
         return dict(spec)
     if hasattr(spec, "model_dump"):
@@ -22,7 +22,7 @@ def document(connection: Connection, spec: Any) -> dict[str, Any]:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """The spec in a file. Raises `ValueError` where there is none."""
+    """Return the spec in a file. Raise `ValueError` if there is none."""
     try:
         found = json.loads(path.read_bytes())
     except (ValueError, RecursionError) as error:

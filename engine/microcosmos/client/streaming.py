@@ -1,4 +1,4 @@
-"""The server's stream of events, taken up again where it breaks off."""
+"""The server's stream of events, resumed where it breaks off."""
 
 import json
 import time
@@ -11,15 +11,14 @@ import httpx
 from .connection import Connection
 
 SILENCE = 40.0
-"""Seconds without a byte after which a stream counts as dead; the server says something every
-15."""
+"""Seconds without a byte after which a stream is dead; the server writes each 15 s."""
 
 
 @dataclass(frozen=True)
 class Event:
-    """What happened: `run`, `generation`, `elites`, `results`, `rewind` or `reset`.
+    """Of kind `run`, `generation`, `elites`, `results`, `rewind` or `reset`.
 
-    `beat` says only that the stream lives.
+    A `beat` shows only that the stream is alive.
     """
 
     kind: str
@@ -28,11 +27,11 @@ class Event:
 
 
 def events(connection: Connection, run: str | None = None) -> Iterator[Event]:
-    """What happens from now on, in order, nothing twice; it never ends by itself.
+    """Yield new events in order, without an end.
 
-    After an outage it goes on behind the last event, or with `reset` where the server has
-    forgotten that one. Raises `ServerError` where nobody answers for longer than the
-    connection's patience.
+    After an outage it continues after the last event, or with `reset` if the server has
+    forgotten that one. Raise `ServerError` if no server answers within the connection's
+    patience.
     """
     last: str | None = None
     pause = 0.5
@@ -57,7 +56,7 @@ def _stream(connection: Connection, run: str | None, last: str | None) -> Iterat
 
 
 def parsed(lines: Iterable[str]) -> Iterator[Event]:
-    """Events in the lines of a stream; a comment or a bare id is a `beat`."""
+    """Parse the lines of a stream; a comment or a bare id is a `beat`."""
     fields: dict[str, str] = {}
     for line in lines:
         if not line:

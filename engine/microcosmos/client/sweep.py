@@ -1,20 +1,18 @@
-"""One request for many runs: a grid over fields of a spec, each case with several seeds."""
+"""A sweep on a server: a grid over fields of a spec, each case with several seeds."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any, Self
 
-from . import watching
 from .columns import frame
-from .pages import items
-from .polling import ENDED
+from .formatting import MEASURES, counts_as_text
+from .polling import ENDED, follow_sweep
 from .record import Record
 from .run import Run
-
-MEASURES = ("qd_score", "coverage", "best")
+from .views import watch
 
 
 class Sweep(Record):
-    """As it was when the server was last asked; `refresh` asks again."""
+    """A copy of the server's record; `refresh` reads it again."""
 
     NOUN = "sweeps"
 
@@ -34,7 +32,7 @@ class Sweep(Record):
 
     @property
     def status_counts(self) -> dict[str, int]:
-        """How many runs are in each state."""
+        """Number of runs by status."""
         return self.record["status_counts"]
 
     @property
@@ -42,12 +40,12 @@ class Sweep(Record):
         return all(status in ENDED for status, count in self.status_counts.items() if count)
 
     def runs(self) -> Iterator[Run]:
-        found = items(self._connection, "runs", sweep=self.id, limit=200, sort="created")
+        found = self._connection.items("runs", sweep=self.id, limit=200, sort="created")
         return (Run(self._connection, one) for one in found)
 
     def watch(self) -> dict[str, int]:
-        """Show how its runs go until all have ended; Ctrl-C leaves them going."""
-        watching.watch_sweep(self._connection, self.id)
+        """Show its runs until all have ended; Ctrl-C ends only the watching."""
+        watch(follow_sweep(self._connection, self.id), f"Sweep {self.id}")
         return self.refresh().status_counts
 
     def delete(self) -> Self:
@@ -55,21 +53,17 @@ class Sweep(Record):
         self._connection.send("DELETE", self._path)
         return self.refresh()
 
-    def restore(self) -> Self:
-        """Its runs back from the bin."""
-        return self._ask("restore")
-
     def change(self, *, name: str | None) -> Self:
-        """Say what it is called."""
+        """Change its name."""
         self.record = self._connection.send("PATCH", self._path, {"name": name})
         return self
 
     def summary(self) -> "Summary":
-        """Of each case, median and spread of its runs by generation."""
+        """Return median and spread of the runs of each case, by generation."""
         return Summary(self._connection.read(f"{self._path}/summary")["cases"])
 
     def rows(self) -> list[dict[str, Any]]:
-        """What each run has come to, beside the values that set it apart."""
+        """Return the result of each run, beside the values of its case."""
         values = {str(run): case["values"] for case in self.cases for run in case["runs"]}
         return [
             {
@@ -84,17 +78,17 @@ class Sweep(Record):
         ]
 
     def to_pandas(self) -> Any:
-        """A data frame of `rows`."""
+        """Return a data frame of `rows`."""
         return frame(self.rows())
 
     def _ask(self, action: str, document: Any = None) -> Self:
-        """The answer tells which runs were changed, not how the sweep stands."""
+        """The answer lists the changed runs; read the record again."""
         self._connection.send("POST", f"{self._path}/{action}", document)
         return self.refresh()
 
 
 class Summary:
-    """Of each case, columns by generation, with median and spread over its runs."""
+    """Columns by generation for each case, with median and spread of its runs."""
 
     def __init__(self, cases: list[dict[str, Any]]):
         self.cases = cases
@@ -103,7 +97,7 @@ class Summary:
         return f"<Summary of {len(self.cases)} cases>"
 
     def rows(self) -> list[dict[str, Any]]:
-        """One for each case, generation and measure."""
+        """Return a row for each case, measure and generation."""
         return [
             {
                 **case["values"],
@@ -118,10 +112,5 @@ class Summary:
         ]
 
     def to_pandas(self) -> Any:
-        """A data frame of `rows`: `median`, `low` and `high` (a quarter), `min`, `max`."""
+        """Return a data frame of `rows`: `median`, quartiles `low` and `high`, `min`, `max`."""
         return frame(self.rows())
-
-
-def counts_as_text(standing: Mapping[str, int]) -> str:
-    """How many runs are in which state, in words."""
-    return ", ".join(f"{count} {status}" for status, count in standing.items() if count)

@@ -1,14 +1,15 @@
-"""Where a run is watched: a terminal, a notebook, or a file of plain lines."""
+"""Watch a run in a terminal, in a notebook, or as plain lines."""
 
 import sys
 import time
+from collections.abc import Iterator
 from typing import Any, Protocol, Self
 
 from . import formatting
-from .polling import Standing
+from .polling import RunState
 
-SELDOM = 30.0
-"""Seconds between two plain lines, unless something changes."""
+LINE_SECONDS = 30.0
+"""Time between two plain lines, unless something changes."""
 
 
 class View(Protocol):
@@ -16,11 +17,29 @@ class View(Protocol):
 
     def __exit__(self, *_: object) -> None: ...
 
-    def show(self, standing: Standing) -> None: ...
+    def show(self, state: RunState) -> None: ...
 
 
-def fitting() -> View:
-    """The view for where this runs."""
+def watch(states: Iterator[RunState], what: str, view: View | None = None) -> str:
+    """Show a run or a sweep, such as `Run ID`, until it ends; return its status.
+
+    Ctrl-C ends only the watching; `KeyboardInterrupt` is passed on.
+    """
+    status = ""
+    try:
+        with view or choose() as shown:
+            for state in states:
+                shown.show(state)
+                status = state.record["status"]
+    except KeyboardInterrupt:
+        again = f"microcosmos watch {what.rpartition(' ')[2][:8]}"
+        print(f"{what} goes on without being watched; to watch it again: {again}", flush=True)
+        raise
+    return status
+
+
+def choose() -> View:
+    """Return the view for this environment."""
     if in_notebook():
         from .notebook import Notebook
 
@@ -33,17 +52,17 @@ def fitting() -> View:
 
 
 def in_notebook() -> bool:
-    """Whether a notebook shows what is displayed; IPython is asked only where it is loaded."""
+    """Tell whether a notebook shows the output; IPython is not imported for that."""
     loaded: Any = sys.modules.get("IPython")
     shell = loaded.get_ipython() if loaded else None
     return shell is not None and hasattr(shell, "kernel")
 
 
 class Lines:
-    """A line when the state changes, and every half minute or tenth of the way."""
+    """Prints a line when the status changes, at each tenth of the way, and each half minute."""
 
     def __init__(self) -> None:
-        self.told: tuple[Any, ...] = ()
+        self.shown: tuple[Any, ...] = ()
         self.at = float("-inf")
 
     def __enter__(self) -> Self:
@@ -52,25 +71,24 @@ class Lines:
     def __exit__(self, *_: object) -> None:
         return None
 
-    def show(self, standing: Standing) -> None:
-        record = standing.record
-        place = (record["status"], int(10 * record["progress"]), standing.trouble)
-        if place == self.told and time.monotonic() - self.at < SELDOM:
+    def show(self, state: RunState) -> None:
+        record = state.record
+        now = (record["status"], int(10 * record["progress"]), state.problem)
+        if now == self.shown and time.monotonic() - self.at < LINE_SECONDS:
             return
-        self.told, self.at = place, time.monotonic()
-        print(line(standing), flush=True)
+        self.shown, self.at = now, time.monotonic()
+        print(line(state), flush=True)
 
 
-def line(standing: Standing) -> str:
-    """How a run stands, on one line."""
-    record = standing.record
-    done = f"{record['generation']}/{record['generations']} {record.get('unit', 'generations')}"
-    figures = [f"{name} {value}" for name, value in formatting.figures(record)]
+def line(state: RunState) -> str:
+    """Describe a run on one line."""
+    record = state.record
     parts = [
-        formatting.titled(record),
-        formatting.standing(record),
-        done,
-        *figures,
-        formatting.pace(record),
+        formatting.title(record),
+        formatting.status_and_reason(record),
+        formatting.done(record),
+        *(f"{name} {value}" for name, value in formatting.figures(record)),
+        formatting.speed(record),
+        state.problem,
     ]
-    return "  ".join(filter(None, [*parts, standing.trouble]))
+    return "  ".join(filter(None, parts))

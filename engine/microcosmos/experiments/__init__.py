@@ -11,10 +11,10 @@ __all__ = ["Elite", "Experiment", "OtherDevice", "Report", "Row", "Stopped"]
 
 
 class Experiment(Protocol):
-    """A run, driven by whoever holds it; its state is all that the next generation needs."""
+    """A run as pure functions of a state, which holds all that the next generation needs."""
 
     def init(self) -> Any:
-        """Before the first generation."""
+        """The state before the first generation."""
         ...
 
     def done(self, state: Any) -> bool:
@@ -26,17 +26,23 @@ class Experiment(Protocol):
         ...
 
     def advance(self, state: Any, stop: Callable[[], bool] = ...) -> tuple[Any, Report]:
-        """One generation; raises `Stopped` where `stop()` says so, `state` stays as it was."""
+        """Compute one generation. Raise `Stopped` if `stop()` is true between blocks; `state`
+        stays valid."""
         ...
 
     def save(self, state: Any) -> bytes:
-        """The file from which the run can be taken up again."""
+        """The file from which the run can be resumed."""
         ...
 
     def restore(self, data: bytes, *, other_device: bool = False) -> Any:
-        """The state in a file of the same spec; raises `ValueError` or `OtherDevice`."""
+        """The state in a file of the same spec.
+
+        Raises `ValueError` for another spec or format, and its subclass `OtherDevice` for
+        another kind of device unless `other_device` allows it: from there on bits may differ,
+        and the file says so.
+        """
         ...
 
     def best(self, state: Any) -> dict[str, Any] | None:
-        """The creature file of the best creature, where there is such a thing."""
+        """The creature file of the best creature, if the experiment has one."""
         ...

@@ -37,11 +37,11 @@ __all__ = ["OtherDevice", "restore", "save"]
 Module = TypeVar("Module", bound=eqx.Module)
 
 ROWS = ("fitness", "measures", "generation", "slot")
-"""Columns of elites that are written as they are."""
+"""Columns of elites that are written unchanged."""
 
 
 def save(plan: Plan, state: State) -> bytes:
-    """The whole state as a file; only occupied cells are written."""
+    """The file of a state; only occupied cells are written."""
     state = jax.device_get(state)
     cells = np.flatnonzero(state.elites.occupied)
     elites = jax.tree.map(lambda x: x[cells], state.elites)
@@ -60,8 +60,8 @@ def save(plan: Plan, state: State) -> bytes:
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
         "emitters": {name: state.outcomes[:, :, i] for i, name in enumerate(OUTCOMES)},
         "lineage": _columns(state.lineage),
-        "diverged": _columns(state.quarantine)
-        | {"genotypes": _columns(state.quarantine.genotypes)},
+        "diverged": _columns(state.failures)
+        | {"genotypes": _columns(state.failures.genotypes)},
         "loop": {
             "generation": np.int64(state.generation),
             "evaluations": np.int64(state.evaluations),
@@ -119,7 +119,7 @@ def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
         ended=int(loop["ended"]),
         device_seconds=float(loop.get("device_seconds", 0.0)),
         lineage=Lineage(**tree["lineage"]),
-        quarantine=Diverged(**diverged, genotypes=genotypes),
+        failures=Diverged(**diverged, genotypes=genotypes),
         devices=devices,
         unrepeated=before or None,
         initial=_initial(state, tree.get("initial")),
@@ -142,7 +142,7 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
 
 
 def _centroids(cells: search.Cells) -> dict[str, Any]:
-    """What cells are around, where they are not a grid's."""
+    """Centroids, unless the cells are a grid's."""
     return {"centroids": cells.centroids} if isinstance(cells, search.Voronoi) else {}
 
 
@@ -154,20 +154,20 @@ def _cells_of(plan: Plan, archive: dict[str, Any]) -> search.Cells:
 
 
 def _clock(plan: Plan, state: State) -> dict[str, Any]:
-    """What evaluation took, where that decides when the run ends; else no clock is kept."""
+    """The time of evaluation, only if it limits the run."""
     timed = np.isfinite(plan.limits.device_hours)
     return {"device_seconds": np.float64(state.device_seconds)} if timed else {}
 
 
 def _unrepeated(state: State, cells: np.ndarray) -> dict[str, Any]:
-    """Where elites were evaluated again only because the run ends: what was known before."""
+    """Repeats before a reevaluation that happened only because the run ended."""
     if state.unrepeated is None:
         return {}
     return {"unrepeated": _columns(jax.tree.map(lambda x: x[cells], state.unrepeated))}
 
 
 def _end(plan: Plan, state: State) -> dict[str, Any] | None:
-    """Why and after which generation the run ended, None while it goes on."""
+    """Reason and last generation of a run that has ended, else None."""
     if not state.ended and state.generation < plan.generations:
         return None
     reason = ENDS[state.ended] or "generations"
@@ -175,7 +175,7 @@ def _end(plan: Plan, state: State) -> dict[str, Any] | None:
 
 
 def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Module:
-    """Return the module with the rows of some cells as columns have them.
+    """The module with the rows of some cells replaced.
 
     NumPy places them: JAX would compile each column anew for each number of cells.
     """
@@ -197,7 +197,7 @@ def _initial(state: State, group: file.Tree | None) -> InitialCreatures | None:
 
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
-    """Rows of NumPy arrays."""
+    """Genotypes as rows of NumPy arrays."""
     form = state.elites.genotypes
     return jax.tree.unflatten(jax.tree.structure(form), [columns[name] for name in vars(form)])
 
@@ -207,17 +207,17 @@ def _columns(module: eqx.Module) -> dict[str, Any]:
 
 
 def leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:
-    """Arrays of any tree by the way to them."""
+    """Arrays of a tree by their paths."""
     found = jax.tree_util.tree_leaves_with_path(tree)
-    return {_way(path): np.asarray(leaf) for path, leaf in found}
+    return {_path_of(path): np.asarray(leaf) for path, leaf in found}
 
 
 def filled(tree: PyTree[Array], arrays: dict[str, np.ndarray]) -> PyTree[Array]:
-    """A tree of the same form with the arrays that `leaves` wrote."""
+    """A tree of the same structure with the arrays of `leaves`."""
     return jax.tree_util.tree_map_with_path(
-        lambda path, old: jnp.asarray(arrays[_way(path)], old.dtype), tree
+        lambda path, old: jnp.asarray(arrays[_path_of(path)], old.dtype), tree
     )
 
 
-def _way(path: tuple) -> str:
+def _path_of(path: tuple) -> str:
     return jax.tree_util.keystr(path, simple=True, separator=".")

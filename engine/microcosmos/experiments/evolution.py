@@ -1,7 +1,7 @@
 """Search with an archive: emit, evaluate, insert, tell.
 
 With emitters that draw parents from the archive it is MAP-Elites (Mouret and Clune,
-arXiv:1504.04909, 2015); with a population of its own the archive only looks on.
+arXiv:1504.04909, 2015); with a population of its own the archive only records.
 """
 
 import time
@@ -14,95 +14,91 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import search
-from ..archive.report import Report
+from ..archive.report import Elite, Report
 from ..genomes import Genotype
 from . import archive_file, lineage, reevaluation
-from .offspring import Programs, next_offspring, refuse_lacking
+from .offspring import Offspring, Programs, next_offspring, refuse_lacking
 from .state import CURVES, ENDS, MAX_DIVERGED, Diverged, Plan, State, start
-from .summary import summary
 
 
 @dataclass(frozen=True)
 class Evolution:
-    """A search that fills an archive, driven by whoever holds it."""
+    """A search that fills an archive; an `Experiment`."""
 
     plan: Plan
     programs: Programs
     repeats: reevaluation.Programs | None = None
-    """What evaluates elites again, if they are."""
+    """Programs that reevaluate elites; None: elites are evaluated once."""
 
     def init(self) -> State:
-        """Before the first generation; raises `ValueError` where device_of are lacking."""
+        """Raise `ValueError` if files of initial creatures are missing."""
         refuse_lacking(self.plan)
         return start(self.plan)
 
     def done(self, state: State) -> bool:
-        """Whether all generations are completed, or a limit was reached."""
         return bool(state.ended) or state.generation >= self.plan.generations
 
     def generation(self, state: State) -> int:
-        """Generations completed."""
         return state.generation
 
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
     ) -> tuple[State, Report]:
-        """One generation: emit children, evaluate them by blocks, insert, tell the emitters.
-
-        Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
-        """
-        programs, spent = self.programs, state.device_seconds
-        offspring = next_offspring(self.plan, programs, state, stop)
-        children, taught, began = offspring.children, offspring.taught, offspring.began
+        offspring = next_offspring(self.plan, self.programs, state, stop)
         evaluation = search.evaluate_blocks(
-            programs.evaluate_block, children.genotypes, block=self.plan.block, stop=stop
+            self.programs.evaluate_block,
+            offspring.children.genotypes,
+            block=self.plan.block,
+            stop=stop,
         )
-        seconds = (time.monotonic() - began) * jax.local_device_count()
-        candidates = _candidates(state.generation + 1, children, evaluation)
+        seconds = (time.monotonic() - offspring.began) * jax.local_device_count()
+        after, elites, clipped = self._inserted(state, offspring, evaluation)
+        after = replace(after, device_seconds=state.device_seconds + seconds)
+        after = replace(after, ended=_ended(self.plan, after))
+        corrected = (np.nan, np.nan, np.nan)
+        if self.repeats and reevaluation.due(self.plan, after):
+            after = reevaluation.evaluate(self.plan, self.repeats, after, stop)
+            corrected = reevaluation.figures(self.repeats, after)
+        row = np.array([*_figures(after), clipped, *corrected])
+        after = replace(after, curves=np.concatenate([after.curves, row[None]]))
+        seconds = after.device_seconds - state.device_seconds
+        summary = _summary(self.plan, after, seconds, np.asarray(evaluation.status))
+        return after, _report(after, elites, {**summary, **offspring.taught.summary()})
+
+    def _inserted(
+        self, state: State, offspring: Offspring, evaluation: search.Evaluation
+    ) -> tuple[State, tuple[Elite, ...], int]:
+        """The state with the offspring inserted and recorded, its elites, the clipped ones."""
+        programs, children = self.programs, offspring.children
+        candidates = search.candidates(
+            state.generation + 1,
+            children.genotypes,
+            jnp.asarray(evaluation.fitness),
+            jnp.asarray(evaluation.measures),
+            jnp.asarray(evaluation.status == 0),
+        )
         elites, inserted = programs.insert(state.elites, candidates, state.cells)
-        emitters = offspring.kept(
-            programs.tell(offspring.emitters, _outcome(candidates, inserted))
-        )
+        outcome = search.emitters.outcome(candidates, inserted)
+        emitters = offspring.kept(programs.tell(offspring.emitters, outcome))
         inserted = jax.device_get(inserted)
         clipped = search.clipped(candidates, state.cells)
-        slots = np.flatnonzero(inserted.entered)
-        news = lineage.record(
-            self.plan, state, children, evaluation, inserted.cell[slots], slots, offspring.names
+        simulated = offspring.taught.simulated + len(evaluation.fitness)
+        after, new = lineage.record(
+            self.plan, state, children, evaluation, inserted, offspring.names
         )
-        state = replace(
-            state,
+        after = replace(
+            after,
             generation=state.generation + 1,
-            evaluations=state.evaluations + taught.simulated + len(evaluation.fitness),
+            evaluations=state.evaluations + simulated,
             diverged=state.diverged + int(np.count_nonzero(evaluation.status)),
             elites=elites,
             counters=offspring.counters,
             emitters=emitters,
             repeats=programs.forget(state.repeats, inserted.cell, inserted.entered),
             outcomes=np.concatenate([state.outcomes, self._outcomes(inserted)[None]]),
-            device_seconds=state.device_seconds + seconds,
-            nearest_ancestors=news.nearest_ancestors,
-            creatures=news.creatures,
-            operators=news.operators,
-            device_of=news.device_of,
-            lineage=news.lineage,
-            quarantine=_set_apart(state, children.genotypes, np.asarray(evaluation.status)),
+            failures=_failures(state, children.genotypes, np.asarray(evaluation.status)),
         )
-        state = replace(state, ended=_ended(self.plan, state))
-        corrected = (np.nan, np.nan, np.nan)
-        if self.repeats and reevaluation.due(self.plan, state):
-            state = reevaluation.evaluate(self.plan, self.repeats, state, stop)
-            corrected = reevaluation.figures(self.repeats, state)
-        row = np.array([*_figures(state), clipped, *corrected])
-        state = replace(state, curves=np.concatenate([state.curves, row[None]]))
-        report = _report(state, news.elites)
-        summarised = summary(
-            self.plan,
-            state,
-            dict(zip(CURVES, row.tolist(), strict=True)),
-            state.device_seconds - spent,
-            np.asarray(evaluation.status),
-        )
-        return state, replace(report, summary={**summarised, **taught.summary()})
+        return after, new, clipped
 
     def creature(self, state: State, cell: int) -> dict[str, Any]:
         """The creature file of a cell's elite."""
@@ -117,20 +113,12 @@ class Evolution:
         return self.creature(state, int(np.argmax(fitness)))
 
     def save(self, state: State) -> bytes:
-        """The archive file, from which the run can also be taken up again."""
         return archive_file.save(self.plan, state)
 
     def restore(self, data: bytes, *, other_device: bool = False) -> State:
-        """The state in an archive file of the same spec.
-
-        Raises `ValueError` for another spec or format, and its subclass `OtherDevice` for
-        another kind of device unless `other_device` allows it: from there on bits may
-        differ, and the file says so.
-        """
         return archive_file.restore(self.plan, data, other_device=other_device)
 
     def _outcomes(self, inserted: search.Inserted) -> np.ndarray:
-        """The row of `OUTCOMES` of each emitter."""
         slots = [emitter.slots for emitter in self.plan.emitters]
         ends = np.cumsum(slots)[:-1]
         fresh = np.split(np.asarray(inserted.entered & inserted.fresh), ends)
@@ -140,34 +128,8 @@ class Evolution:
         )
 
 
-def _candidates(
-    generation: int, children: search.Children, evaluation: search.Evaluation
-) -> search.Elites:
-    batch = len(evaluation.fitness)
-    return search.Elites(
-        occupied=jnp.asarray(evaluation.status == 0),
-        fitness=jnp.asarray(evaluation.fitness),
-        measures=jnp.asarray(evaluation.measures),
-        generation=jnp.full(batch, generation, jnp.int32),
-        slot=jnp.arange(batch, dtype=jnp.int32),
-        genotypes=children.genotypes,
-    )
-
-
-def _outcome(candidates: search.Elites, inserted: search.Inserted) -> search.Outcome:
-    return search.Outcome(
-        genotypes=candidates.genotypes,
-        fitness=candidates.fitness,
-        measures=candidates.measures,
-        sound=candidates.occupied,
-        cell=inserted.cell,
-        entered=inserted.entered,
-        fresh=inserted.fresh,
-        improvement=inserted.improvement,
-    )
-
-
-def _set_apart(state: State, genotypes: Genotype, status: np.ndarray) -> Diverged:
+def _failures(state: State, genotypes: Genotype, status: np.ndarray) -> Diverged:
+    """The newest creatures that diverged."""
     failed = np.flatnonzero(status)
     new = Diverged(
         generation=np.full(len(failed), state.generation + 1, np.int32),
@@ -176,12 +138,12 @@ def _set_apart(state: State, genotypes: Genotype, status: np.ndarray) -> Diverge
         genotypes=jax.tree.map(lambda x: np.asarray(x)[failed], genotypes),
     )
     return jax.tree.map(
-        lambda a, b: np.concatenate([a, b])[-MAX_DIVERGED:], state.quarantine, new
+        lambda a, b: np.concatenate([a, b])[-MAX_DIVERGED:], state.failures, new
     )
 
 
 def _ended(plan: Plan, state: State) -> int:
-    """The place in `ENDS` of the limit that the state has reached, 0 where it has none."""
+    """The index in `ENDS` of the limit that the state has reached, 0 if none."""
     limits, elites = plan.limits, state.elites
     best = np.max(np.where(elites.occupied, elites.fitness, -np.inf))
     reached = {
@@ -201,7 +163,7 @@ def _figures(state: State) -> tuple[float, ...]:
     return fitness.sum(), coverage, best, mean, state.evaluations, state.diverged
 
 
-def _report(state: State, elites: tuple) -> Report:
+def _report(state: State, elites: tuple[Elite, ...], summary: dict[str, Any]) -> Report:
     values = dict(zip(CURVES, state.curves[-1].tolist(), strict=True))
     return Report(
         generation=state.generation,
@@ -212,4 +174,40 @@ def _report(state: State, elites: tuple) -> Report:
         evaluations=state.evaluations,
         diverged=state.diverged,
         elites=elites,
+        summary=summary,
     )
+
+
+def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> dict[str, Any]:
+    """Figures of the last generation beside the columns that every search has.
+
+    `seconds` are those of its evaluation, `status` is that of each creature.
+    """
+    values = dict(zip(CURVES, state.curves[-1].tolist(), strict=True))
+    found: dict[str, Any] = {"device_seconds": seconds, "clipped": int(values["clipped"])}
+    for i, name in enumerate(plan.names):
+        _, inserted, improved = state.outcomes[-1, i].tolist()
+        found |= {f"{name}: inserted": inserted, f"{name}: improved": improved}
+    for name in ("corrected_qd_score", "corrected_coverage", "hit_rate"):
+        if np.isfinite(values[name]):
+            found[name] = values[name]
+    found |= _divergences(status) | _species(state)
+    if state.ended:
+        found["ended"] = f"{ENDS[state.ended]} after generation {state.generation}"
+    return found
+
+
+def _divergences(status: np.ndarray) -> dict[str, int]:
+    """The number of infeasible creatures, by reason."""
+    counts = np.bincount(status, minlength=len(search.STATUSES)).tolist()
+    named = zip(search.STATUSES, counts, strict=True)
+    return {f"diverged: {name}": count for name, count in list(named)[1:] if count}
+
+
+def _species(state: State) -> dict[str, str]:
+    """Members of each species, by its number, if an emitter divides its population."""
+    for kept in state.emitters:
+        if isinstance(kept, search.emitters.Divided):
+            pairs = kept.sizes().items()
+            return {"species": " ".join(f"{number}:{members}" for number, members in pairs)}
+    return {}

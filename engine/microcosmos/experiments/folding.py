@@ -1,4 +1,4 @@
-"""Filaments that fold into pictures, each learning its rest shape by gradients."""
+"""Folding: filaments that learn rest shapes of pictures by gradients."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -20,23 +20,23 @@ from .table_file import Table
 
 @dataclass(frozen=True)
 class State:
-    """The folds, and the record of those before."""
+    """The folds, and the losses so far."""
 
     folds: search.folding.Fold
     losses: np.ndarray
-    """(update, fold) the loss before each update."""
+    """(update, fold) loss before each update."""
     table: Table
     """One row a fold, once all updates are done."""
 
 
 @dataclass(frozen=True)
 class Folding:
-    """Folds, driven by whoever holds them: a generation is one update of all."""
+    """Folds, whose generations are updates of all; an `Experiment`."""
 
     spec: str
     """The whole spec as JSON."""
     names: tuple[str, ...]
-    """What the pictures are called."""
+    """Names of the pictures."""
     start: search.folding.Fold
     """Before the first update."""
     program: Callable[[search.folding.Fold], tuple[search.folding.Fold, Any]]
@@ -48,25 +48,18 @@ class Folding:
     device: str
 
     def init(self) -> State:
-        """Before the first update."""
         losses = np.zeros((0, len(self.names)), np.float32)
         return State(self.start, losses, Table(0, (), (self.device,)))
 
     def done(self, state: State) -> bool:
-        """Whether all updates are done."""
         return state.table.generation >= self.updates
 
     def generation(self, state: State) -> int:
-        """Updates that are done."""
         return state.table.generation
 
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
     ) -> tuple[State, Report]:
-        """One update of all folds, by blocks.
-
-        Raises `Stopped` where `stop()` says so between blocks; `state` stays as it was.
-        """
         folds, losses = search.evaluate_blocks(
             self.program, state.folds, block=self.block, stop=stop
         )
@@ -78,7 +71,6 @@ class Folding:
         return state, self._report(state, rows)
 
     def save(self, state: State) -> bytes:
-        """The file, from which the run can also be taken up again."""
         folds = state.folds
         arrays = {
             "curves": {"loss": state.losses},
@@ -92,7 +84,6 @@ class Folding:
         return table_file.save(self.spec, state.table, arrays)
 
     def restore(self, data: bytes, *, other_device: bool = False) -> State:
-        """The state in a file of the same spec; raises `ValueError` or `OtherDevice`."""
         table = table_file.restore(self.spec, self.device, data, other_device=other_device)
         tree, _ = file.load(data)
         try:
@@ -112,7 +103,7 @@ class Folding:
             ) from error
 
     def best(self, state: State) -> dict[str, Any] | None:
-        """The creature file of the fold with the least loss, or None before the last update."""
+        """The fold with the least loss, or None before the last update."""
         if not state.table.rows:
             return None
         row = state.table.rows[int(np.argmin(state.folds.least))]

@@ -1,8 +1,8 @@
-"""Naming the creatures that enter the archive, and writing down where they come from."""
+"""Names and parents of the creatures that enter the archive."""
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import jax
@@ -14,19 +14,7 @@ from ..genomes import Encoding, Genotype, take
 from .state import Lineage, Plan, State
 
 NOBODY = np.zeros(32, np.uint8)
-"""The name of nobody."""
-
-
-@dataclass(frozen=True)
-class News:
-    """What a generation changed in the host's part of the state."""
-
-    elites: tuple[Elite, ...]
-    creatures: np.ndarray
-    operators: np.ndarray
-    device_of: np.ndarray
-    nearest_ancestors: np.ndarray
-    lineage: Lineage
+"""The name that stands for no creature."""
 
 
 def record(
@@ -34,54 +22,77 @@ def record(
     state: State,
     children: search.Children,
     evaluation: search.Evaluation,
-    cells: np.ndarray,
-    slots: np.ndarray,
+    inserted: search.Inserted,
     names: np.ndarray,
-) -> News:
-    """The elites of the slots that entered, and the records with them added.
+) -> tuple[State, tuple[Elite, ...]]:
+    """The state with the new elites recorded, and those elites.
 
-    `names` are those of the creatures that parents are drawn from, by cell.
+    `names` are the creatures that parents are drawn from, by cell.
     """
-    generation = state.generation + 1
-    operator = np.asarray(children.operator)[slots]
+    slots = np.flatnonzero(inserted.entered)
+    cells = np.asarray(inserted.cell)[slots]
     forebears = _forebears(names, state.nearest_ancestors, np.asarray(children.parents))
-    parents = forebears[slots]
-    fitness, measures = np.asarray(evaluation.fitness)[slots], np.asarray(evaluation.measures)
-    measures = measures[slots]
-    elites = tuple(
-        _elite(
-            plan,
-            take(children.genotypes, slot),
-            float(fitness[i]),
-            measures[i],
-            cell=int(cells[i]),
-            generation=generation,
-            operator=int(operator[i]),
-            parents=parents[i],
-            device=plan.device,
-        )
-        for i, slot in enumerate(slots.tolist())
-    )
-    parents[[not elite.parents for elite in elites]] = 0
-    own = [np.frombuffer(bytes.fromhex(elite.creature), np.uint8) for elite in elites]
+    elites = _new_elites(plan, state, children, evaluation, slots, cells, forebears[slots])
+    new = _entries(plan, elites, forebears[slots])
     creatures, operators = state.creatures.copy(), state.operators.copy()
-    device_of = state.device_of.copy()
-    operators[cells], device_of[cells] = operator, len(state.devices) - 1
-    new = Lineage(
-        creature=np.array(own, np.uint8).reshape(-1, 32),
-        parents=parents,
-        operator=operator.astype(np.int32),
-        generation=np.full(len(slots), generation, np.int32),
-        cell=cells.astype(np.int32),
-        fitness=fitness,
-        descriptors=measures[:, [axis.measure for axis in plan.axes]],
-    )
+    device_of, nearest_ancestors = state.device_of.copy(), forebears.copy()
+    operators[cells], device_of[cells] = new.operator, len(state.devices) - 1
     creatures[cells] = new.creature
-    nearest_ancestors = forebears.copy()
     nearest_ancestors[slots] = 0
     nearest_ancestors[slots, 0] = new.creature
     lineage = jax.tree.map(lambda a, b: np.concatenate([a, b]), state.lineage, new)
-    return News(elites, creatures, operators, device_of, nearest_ancestors, lineage)
+    return replace(
+        state,
+        creatures=creatures,
+        operators=operators,
+        device_of=device_of,
+        nearest_ancestors=nearest_ancestors,
+        lineage=lineage,
+    ), elites
+
+
+def _new_elites(
+    plan: Plan,
+    state: State,
+    children: search.Children,
+    evaluation: search.Evaluation,
+    slots: np.ndarray,
+    cells: np.ndarray,
+    parents: np.ndarray,
+) -> tuple[Elite, ...]:
+    operator, fitness = np.asarray(children.operator), np.asarray(evaluation.fitness)
+    measures = np.asarray(evaluation.measures)
+    return tuple(
+        _elite(
+            plan,
+            take(children.genotypes, slot),
+            float(fitness[slot]),
+            measures[slot],
+            cell=int(cell),
+            generation=state.generation + 1,
+            operator=int(operator[slot]),
+            parents=parents[i],
+            device=plan.device,
+        )
+        for i, (slot, cell) in enumerate(zip(slots.tolist(), cells, strict=True))
+    )
+
+
+def _entries(plan: Plan, elites: tuple[Elite, ...], parents: np.ndarray) -> Lineage:
+    """The entries of new elites in the lineage; `parents` are (elite, 2, 32)."""
+    parents[[not elite.parents for elite in elites]] = 0
+    names = [np.frombuffer(bytes.fromhex(elite.creature), np.uint8) for elite in elites]
+    operators = [search.OPERATORS.index(elite.operator) for elite in elites]
+    measured = [elite.descriptors for elite in elites]
+    return Lineage(
+        creature=np.array(names, np.uint8).reshape(-1, 32),
+        parents=parents,
+        operator=np.array(operators, np.int32),
+        generation=np.array([elite.generation for elite in elites], np.int32),
+        cell=np.array([elite.cell for elite in elites], np.int32),
+        fitness=np.array([elite.fitness for elite in elites], np.float32),
+        descriptors=np.array(measured, np.float32).reshape(-1, len(plan.axes)),
+    )
 
 
 def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
@@ -105,8 +116,30 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
 def identity(
     frame: Mapping[str, Any], encoding: Encoding, genotype: Genotype
 ) -> dict[str, Any]:
-    """What a genotype is in the world, body and task of `frame`."""
+    """The identity of a genotype in the world, body and task of `frame`."""
     return {**frame, "genome": {**frame["genome"], **encoding.write(genotype)}}
+
+
+def measurement(
+    fitness: float,
+    measures: Mapping[str, float],
+    descriptors: Iterable[str] = (),
+    *,
+    block: int,
+    device: str,
+    room: tuple[int, int] | None = None,
+    plugins: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """The part `measured` of a creature file."""
+    return {
+        "fitness": fitness,
+        "descriptors": {name: measures[name] for name in descriptors},
+        "measures": measures,
+        "block": block,
+        "room": list(room) if room else None,
+        "device": device,
+        **({"plugins": dict(plugins)} if plugins else {}),
+    }
 
 
 def _forebears(
@@ -114,8 +147,8 @@ def _forebears(
 ) -> np.ndarray:
     """Recorded creatures (slot, 2, 32) that the children of parents (slot, 2) descend from.
 
-    A parent in the archive is recorded itself; one of the last generation may not be: then
-    it is the nearest of its own forebears that is.
+    A parent from the archive is recorded. A parent from the last generation may not be: then
+    its own nearest recorded ancestors take its place.
     """
     nearest = np.concatenate([names, nearest_ancestors[:, 0], NOBODY[None]])
     found = nearest[parents]  # −1, for no parent, finds nobody.
@@ -141,27 +174,26 @@ def _elite(
 ) -> Elite:
     whole = identity(plan.frame, plan.encoding, genotype)
     measures: dict[str, float] = dict(zip(plan.measures, values.tolist(), strict=True))
-    descriptors = {name: measures[name] for name in plan.descriptors}
     creature = naming.name(whole)
     named = tuple(bytes(parent).hex() for parent in parents if parent.any())
-    if search.OPERATORS[operator] == "fork":  # In its own world it is itself, not its child.
+    if search.OPERATORS[operator] == "fork":  # It may be that creature.
         named = tuple(name for name in named if name != creature)
-    measured = {
-        "fitness": fitness,
-        "descriptors": descriptors,
-        "measures": measures,
-        "block": plan.block,
-        "room": list(plan.encoding.room) if plan.encoding.room else None,
-        "device": device,
-        **({"plugins": dict(plan.plugins)} if plan.plugins else {}),
-    }
+    measured = measurement(
+        fitness,
+        measures,
+        plan.descriptors,
+        block=plan.block,
+        room=plan.encoding.room,
+        device=device,
+        plugins=plan.plugins,
+    )
     provenance = naming.provenance(
         search.OPERATORS[operator], generation=generation, parents=named, seed=plan.seed
     )
     return Elite(
         cell=cell,
         fitness=fitness,
-        descriptors=tuple(descriptors.values()),
+        descriptors=tuple(measured["descriptors"].values()),
         measures=measures,
         creature=creature,
         identity=naming.canonical(whole),

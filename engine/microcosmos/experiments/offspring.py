@@ -17,8 +17,47 @@ import numpy as np
 from .. import neat, search
 from ..genomes import Genotype
 from ..search.emitters.population import Population
-from .learning import Lessons, Taught, teach
 from .state import InitialCreatures, Plan, State
+
+
+@dataclass(frozen=True)
+class Lessons:
+    """The compiled parts of one emitter's lessons."""
+
+    number: int
+    """Lessons in a generation."""
+    asks: Callable[..., Genotype]
+    slopes: Callable[[Genotype], search.Slopes]
+    """Slopes of a block of genotypes."""
+    learn: Callable[..., tuple[search.Children, Any]]
+
+
+@dataclass(frozen=True)
+class Taught:
+    """The results of a generation's lessons."""
+
+    simulated: int = 0
+    """Creatures simulated, forwards and backwards."""
+    sound: int = 0
+    """Those whose slopes were finite."""
+    norms: tuple[float, ...] = ()
+    """Lengths of the sound slopes of fitness."""
+
+    def summary(self) -> dict[str, float]:
+        """Figures for the report; none if nothing was taught."""
+        if not self.simulated:
+            return {}
+        found = {"slopes: sound": self.sound / self.simulated}
+        return found | ({"slopes: length": float(np.median(self.norms))} if self.norms else {})
+
+    def with_lesson(self, slopes: search.Slopes) -> "Taught":
+        sound = np.asarray(slopes.sound)
+        norms = np.linalg.norm(np.asarray(slopes.rows)[sound, 0], axis=-1)
+        return Taught(
+            self.simulated + len(sound),
+            self.sound + int(sound.sum()),
+            self.norms + tuple(norms.tolist()),
+        )
 
 
 @dataclass(frozen=True)
@@ -31,34 +70,34 @@ class Programs:
     tell: Callable[[tuple, search.Outcome], tuple]
     forget: Callable[..., search.reevaluation.Repeats]
     lessons: tuple[Lessons | None, ...]
-    """Of each emitter, where its children learn before they live."""
+    """Lessons of each emitter whose children learn before evaluation."""
 
 
 @dataclass(frozen=True)
 class Offspring:
-    """Children that are not evaluated yet."""
+    """Children before their evaluation."""
 
     children: search.Children
     emitters: tuple[Any, ...]
     counters: neat.Counters
     taught: Taught
     began: float
-    """When lessons and evaluation began."""
+    """Start of lessons and evaluation, of the monotonic clock."""
     names: np.ndarray
-    """Of the creatures that parents were drawn from, by cell."""
+    """Names of the creatures that parents were drawn from, by cell."""
     untold: tuple[Any, ...] | None = None
-    """Of each emitter some of whose children were replaced, the state before; else None."""
+    """The earlier state of each emitter some of whose children were replaced; else None."""
 
-    def kept(self, told: tuple[Any, ...]) -> tuple[Any, ...]:
-        """What emitters keep: one that lost children to others must not learn from those."""
+    def kept(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
+        """The states; an emitter must not learn from children that replaced its own."""
         if self.untold is None:
-            return told
-        pairs = zip(told, self.untold, strict=True)
+            return states
+        pairs = zip(states, self.untold, strict=True)
         return tuple(new if before is None else before[0] for new, before in pairs)
 
 
 def refuse_lacking(plan: Plan) -> None:
-    """Raise `ValueError` where the spec names creatures that are not there."""
+    """Raise `ValueError` if the spec names creatures whose files are missing."""
     named = json.loads(plan.spec)["search"].get("initial", [])
     if named and plan.initial is None:
         raise ValueError(
@@ -87,13 +126,12 @@ def _emitted(
     names: np.ndarray,
     stop: Callable[[], bool],
 ) -> Offspring:
-    """What emitters make of an archive."""
     children, emitters, counters = programs.emit(
         state.emitters, elites, state.counters, jnp.asarray(state.generation)
     )
     children, began = jax.device_get(children), time.monotonic()
     slots = tuple(emitter.slots for emitter in plan.emitters)
-    children, emitters, taught = teach(
+    children, emitters, taught = _teach(
         programs.lessons, slots, children, emitters, block=plan.block, stop=stop
     )
     return Offspring(children, emitters, counters, taught, began, names)
@@ -102,7 +140,7 @@ def _emitted(
 def _gathered(
     plan: Plan, state: State, initial: InitialCreatures
 ) -> tuple[search.Elites, np.ndarray]:
-    """An archive that holds what the search begins from, and the names by cell."""
+    """An archive of the initial creatures, and their names by cell."""
     count = min(plan.cell_count, len(initial.creature))
     nobody = search.no_elites(plan.cell_count, len(search.MEASURES), plan.genotype)
     genotypes = jax.tree.map(
@@ -121,7 +159,7 @@ def _replaced(
     initial: InitialCreatures,
     places: np.ndarray,
 ) -> Offspring:
-    """The offspring with creatures of before in its first slots."""
+    """The offspring with initial creatures in its first slots."""
     children, count = offspring.children, len(places)
 
     def put(values: Any, new: Any) -> np.ndarray:
@@ -142,3 +180,34 @@ def _replaced(
         for kept, first in pairs
     )
     return replace(offspring, children=whole, untold=untold)
+
+
+def _teach(
+    lessons: tuple[Lessons | None, ...],
+    slots: tuple[int, ...],
+    children: search.Children,
+    states: tuple[Any, ...],
+    *,
+    block: int,
+    stop: Callable[[], bool],
+) -> tuple[search.Children, tuple[Any, ...], Taught]:
+    """Children and emitters' states after all lessons, given for each emitter."""
+    parts, kept, taught, first = [], [], Taught(), 0
+    for lesson, count, state in zip(lessons, slots, states, strict=True):
+        offspring = jax.tree.map(lambda x, a=first, b=first + count: x[a:b], children)
+        for _ in range(lesson.number if lesson else 0):
+            assert lesson is not None
+            asked = jax.device_get(lesson.asks(state, offspring))
+            number = len(jax.tree.leaves(asked)[0])
+            found = search.evaluate_blocks(
+                lesson.slopes, asked, block=min(block, number), stop=stop
+            )
+            offspring, state = lesson.learn(state, offspring, found)
+            taught = taught.with_lesson(found)
+        parts.append(jax.device_get(offspring))
+        kept.append(state)
+        first += count
+    if not taught.simulated:
+        return children, states, taught
+    whole = jax.tree.map(lambda *rows: np.concatenate(rows), *parts)
+    return whole, tuple(kept), taught

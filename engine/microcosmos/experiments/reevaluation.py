@@ -1,4 +1,4 @@
-"""Evaluating elites again, and what that makes of the archive."""
+"""Reevaluation of elites, and figures of the corrected archive."""
 
 import time
 from collections.abc import Callable
@@ -14,12 +14,12 @@ from ..search.reevaluation import Disturbance, Repeats, disturbance
 from .state import Plan, Reevaluation, State
 
 SAMPLES = 2**30
-"""Numbers from here on stand for samples where keys are derived, below it for slots."""
+"""First number of a sample for deriving keys; smaller ones are slots."""
 
 
 @dataclass(frozen=True)
 class Programs:
-    """The compiled parts of evaluating elites again."""
+    """The compiled parts of reevaluation."""
 
     disturb: Callable[..., Disturbance]
     """From a generation and a sample's number to the conditions in every cell."""
@@ -44,7 +44,7 @@ def disturb(
 
 
 def due(plan: Plan, state: State) -> bool:
-    """Whether elites are evaluated again after the state's generation."""
+    """Whether elites are reevaluated after the state's generation."""
     last = bool(state.ended) or state.generation >= plan.generations
     return plan.reevaluation is not None and (
         last or state.generation % plan.reevaluation.every == 0
@@ -52,13 +52,13 @@ def due(plan: Plan, state: State) -> bool:
 
 
 def early(plan: Plan, state: State) -> bool:
-    """Whether it would not be due yet if the run had more generations."""
+    """Whether reevaluation happens only because this is the last generation."""
     assert plan.reevaluation is not None
     return not state.ended and state.generation % plan.reevaluation.every != 0
 
 
 def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> State:
-    """The state with every elite evaluated again; raises `Stopped` as `advance` does."""
+    """The state with every elite reevaluated; raises `Stopped` as `advance` does."""
     assert plan.reevaluation is not None
     began = time.monotonic()
     done = np.asarray(state.elites.occupied)

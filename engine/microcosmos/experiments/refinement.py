@@ -1,8 +1,8 @@
-"""One creature made fitter by gradients, within its cell of an archive.
+"""Refinement of one creature by gradients, within its cell of an archive.
 
-A step is along the slope of fitness, or along what is left of it once the slopes of all
-descriptors are taken out, so that they stay as they are to first order; trials of several
-lengths are evaluated as in a search, and the best that is in the cell still is the next.
+A step is along the slope of fitness, or along its part that is orthogonal to the slopes of all
+descriptors, which then stay the same to first order. Trials of several lengths are evaluated
+as in a search; the best one in the same cell is the next creature.
 """
 
 from collections.abc import Callable, Mapping
@@ -18,26 +18,50 @@ from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Encoding, Genotype, Vector, take
 from ..search.gradients import genes_of, with_genes
-from . import table_file, trials
-from .lineage import identity
+from . import table_file
+from .lineage import identity, measurement
 from .table_file import Table
-from .trials import SHRINK
+
+SHRINK = 4.0
+"""A trial is so much shorter than the one before."""
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Genes to try, and the distance of each from the present ones."""
+
+    genes: np.ndarray
+    """(trial, gene)."""
+    lengths: np.ndarray
+    """(trial,)."""
+    slope: float | None = None
+    """Length of the slope of fitness; None if the present genes alone are tried."""
+
+    def health(self, before: float, fitness: np.ndarray) -> dict[str, float | None]:
+        """The reliability of the gradient: `agreement` is the gain of the shortest trial along
+        it over the gain that the slope predicts."""
+        if not self.slope:
+            return {"slope": self.slope, "agreement": None}
+        shortest = 2 * ((len(self.lengths) - 1) // 2)
+        predicted = self.lengths[shortest] * self.slope
+        agreement = (float(fitness[shortest]) - before) / predicted
+        return {"slope": self.slope, "agreement": agreement if np.isfinite(agreement) else None}
 
 
 @dataclass(frozen=True)
 class State:
-    """Where the creature stands."""
+    """The present creature."""
 
     genes: np.ndarray
     fitness: float
     length: float
-    """Of the longest trial of the next step."""
+    """Length of the longest trial of the next step."""
     table: Table
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """A refinement, driven by whoever holds it: a generation is one step."""
+    """A refinement, whose generations are steps; an `Experiment`."""
 
     spec: str
     """The whole spec as JSON."""
@@ -56,32 +80,27 @@ class Refinement:
     parent: str
     """The creature's name."""
     provenance: Mapping[str, Any] | None
-    """How it came to be, if that is known."""
+    """Provenance of the creature, if known."""
     device: str
     measures: tuple[str, ...] = search.MEASURES
     plugins: Mapping[str, Any] = field(default_factory=dict)
     """Versions of the plug-ins among the measures."""
 
     def init(self) -> State:
-        """Before the creature is measured."""
         genes = np.asarray(genes_of(take(self.genotype, 0)))
         return State(genes, -np.inf, self.length, Table(0, (), (self.device,)))
 
     def done(self, state: State) -> bool:
-        """Whether all steps are done."""
         return state.table.generation > self.steps
 
     def generation(self, state: State) -> int:
-        """Steps that are done, the measurement of the creature as it is among them."""
+        """Completed steps, including the first measurement of the creature."""
         return state.table.generation
 
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
     ) -> tuple[State, Report]:
-        """Measure the creature, or take one step.
-
-        Raises `Stopped` where `stop()` says so; `state` stays as it was.
-        """
+        """Measure the creature, or take one step."""
         tried, before = self._trials(state, stop), state.fitness
         found = search.evaluate_blocks(
             self.evaluate_block, self._genotypes(tried.genes), block=self.block, stop=stop
@@ -100,7 +119,6 @@ class Refinement:
         return state, self._report(state, row)
 
     def save(self, state: State) -> bytes:
-        """The table's file, from which the run can also be taken up again."""
         arrays = {
             "next": {
                 "genes": state.genes,
@@ -111,7 +129,6 @@ class Refinement:
         return table_file.save(self.spec, state.table, arrays)
 
     def restore(self, data: bytes, *, other_device: bool = False) -> State:
-        """The state in a file of the same spec; raises `ValueError` or `OtherDevice`."""
         table = table_file.restore(self.spec, self.device, data, other_device=other_device)
         try:
             kept = file.load(data)[0]["next"]
@@ -120,27 +137,25 @@ class Refinement:
             raise ValueError(f"a refinement's file must hold {error}, got none") from error
 
     def best(self, state: State) -> dict[str, Any] | None:
-        """The creature file as it stands, or None before it is measured."""
         if not state.table.rows:
             return None
         row = state.table.rows[-1]
         return naming.document(self._identity(state.genes), row.measured, row.provenance)
 
-    def _trials(self, state: State, stop: Callable[[], bool]) -> trials.Trials:
-        """The creature as it is, or steps from it."""
+    def _trials(self, state: State, stop: Callable[[], bool]) -> Trials:
         if not state.table.rows:
-            return trials.start(state.genes)
+            return Trials(state.genes[None], np.zeros(1))
         slopes = search.evaluate_blocks(
             self.slopes, self._genotypes(state.genes[None]), block=1, stop=stop
         )
         rows = np.asarray(slopes.rows[0], np.float64) * bool(slopes.sound[0])
-        found = trials.along(state.genes, rows, state.length, self.block)
+        found = trials_along(state.genes, rows, state.length, self.block)
         if isinstance(self.genotype, Vector):
             return replace(found, genes=np.clip(found.genes, -1.0, 1.0))
         return found
 
     def _best(self, state: State, found: search.Evaluation) -> int | None:
-        """The fittest sound trial in the creature's cell, if it is fitter than before."""
+        """The fittest feasible trial in the creature's cell, if fitter than before."""
         cells = np.asarray(self.cells.of(jnp.asarray(found.measures)))
         home = self._home(state) if state.table.rows else cells[0]
         fitness = np.where((found.status == 0) & (cells == home), found.fitness, -np.inf)
@@ -164,22 +179,21 @@ class Refinement:
         measures: dict[str, float] = dict(
             zip(self.measures, found.measures[best].tolist(), strict=True)
         )
-        descriptors = {name: measures[name] for name in self.names}
         first = not state.table.rows
         values = {
             "step": state.table.generation,
             "fitness": float(found.fitness[best]),
-            **descriptors,
+            **{name: measures[name] for name in self.names},
         }
-        measured = {
-            "fitness": float(found.fitness[best]),
-            "descriptors": descriptors,
-            "measures": measures,
-            "block": self.block,
-            "room": list(self.encoding.room) if self.encoding.room else None,
-            "device": self.device,
-            **({"plugins": dict(self.plugins)} if self.plugins else {}),
-        }
+        measured = measurement(
+            float(found.fitness[best]),
+            measures,
+            self.names,
+            block=self.block,
+            room=self.encoding.room,
+            device=self.device,
+            plugins=self.plugins,
+        )
         refined = naming.provenance(
             "refinement",
             generation=state.table.generation,
@@ -203,8 +217,32 @@ class Refinement:
 
 
 def _unchanged(state: State) -> Row:
-    """Nothing better was found: the creature as it was."""
+    """The row of a step without a better trial."""
     if not state.table.rows:
         raise ValueError("`creature` must be one whose simulation stays finite.")
     last = state.table.rows[-1]
     return replace(last, values={**last.values, "step": state.table.generation})
+
+
+def trials_along(genes: np.ndarray, rows: np.ndarray, length: float, count: int) -> Trials:
+    """Trials by turns along the slope of fitness, the first of `rows`, and along its part that
+    is orthogonal to the other rows, the slopes of descriptors."""
+    fitness, descriptors = rows[0], rows[1:]
+    ways = np.stack([_unit(fitness), _unit(_without(fitness, descriptors))])
+    lengths = length / SHRINK ** np.arange((count + 1) // 2)
+    trials = genes[None, None] + lengths[:, None, None] * ways[None]
+    trials = trials.reshape(-1, len(genes))[:count].astype(genes.dtype)
+    return Trials(trials, np.repeat(lengths, 2)[:count], float(np.linalg.norm(fitness)))
+
+
+def _without(row: np.ndarray, others: np.ndarray) -> np.ndarray:
+    others = others[np.abs(others).sum(1) > 0]
+    if not len(others):
+        return row
+    _, sizes, basis = np.linalg.svd(others, full_matrices=False)
+    basis = basis[sizes > 1e-6 * sizes[0]]
+    return row - basis.T @ (basis @ row)
+
+
+def _unit(row: np.ndarray) -> np.ndarray:
+    return row / max(float(np.linalg.norm(row)), 1e-30)

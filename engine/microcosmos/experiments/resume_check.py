@@ -1,4 +1,4 @@
-"""Whether a file can be gone on from: the same spec, on the same kind of device."""
+"""Check that a run can resume from a file: the same spec, the same kind of device."""
 
 import json
 from collections.abc import Iterator

@@ -1,79 +1,36 @@
 """Wall time against the number of nodes: the Microcosmos paper's figure, part by part."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from .. import search
 from ..archive.report import Report, Row, Value
-from . import table_file
 from .table_file import Table
 
 LINEAR_FROM = 16_000
 """Nodes from which the exponent is fitted: below, fixed costs of a call count."""
 
 FEWEST = 3
-"""Points of a fit; where fewer are that large, the largest ones."""
+"""Least number of points of a fit; smaller ones are added if needed."""
 
 
-@dataclass(frozen=True)
-class Scaling:
-    """A measurement, driven by whoever holds it: a generation is one number of nodes.
-
-    Times are a machine's: they are the one result here that no second run repeats.
-    """
-
-    spec: str
-    nodes: tuple[int, ...]
-    measure: Callable[[int, Callable[[], bool]], tuple[Mapping[str, Value], ...]]
-    """The rows of a number of nodes; asks whether to stop between its programs."""
-    device: str
-
-    def init(self) -> Table:
-        """Before the first generation."""
-        return Table(0, (), (self.device,))
-
-    def done(self, state: Table) -> bool:
-        """Whether all numbers are measured."""
-        return state.generation >= len(self.nodes)
-
-    def generation(self, state: Table) -> int:
-        """Numbers of nodes that are measured."""
-        return state.generation
-
-    def advance(
-        self, state: Table, stop: Callable[[], bool] = search.never
-    ) -> tuple[Table, Report]:
-        """One number of nodes; raises `Stopped` where `stop()` says so."""
-        rows = tuple(Row(row) for row in self.measure(self.nodes[state.generation], stop))
-        state = state.grown(rows)
-        return state, Report(
-            generation=state.generation,
-            evaluations=state.generation,
-            diverged=sum(row.values["status"] != "ok" for row in state.rows),
-            rows=rows,
-            summary=summary([row.values for row in state.rows]),
-        )
-
-    def save(self, state: Table) -> bytes:
-        """The table's file, from which the run can also be taken up again."""
-        return table_file.save(self.spec, state)
-
-    def restore(self, data: bytes, *, other_device: bool = False) -> Table:
-        """The state in a file of the same spec; raises `ValueError` or `OtherDevice`."""
-        return table_file.restore(self.spec, self.device, data, other_device=other_device)
-
-    def best(self, state: Table) -> None:
-        """There is none."""
+def report(state: Table, rows: tuple[Row, ...]) -> Report:
+    """The exponents so far. Times are a machine's: no second run repeats them."""
+    return Report(
+        generation=state.generation,
+        evaluations=state.generation,
+        diverged=sum(row.values["status"] != "ok" for row in state.rows),
+        rows=rows,
+        summary=summary([row.values for row in state.rows]),
+    )
 
 
 def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
     """Exponents of the time that depends on nodes, and the most memory.
 
-    The part that depends on nodes is all but the fluid, whose cells do not change. What did
-    not stay finite does not count.
+    The part that depends on nodes is all but the fluid, whose cells do not change. Rows that
+    did not stay finite are left out.
     """
     sound = [row for row in rows if row["status"] == "ok"]
     ours = [row for row in sound if row["method"] == "microcosmos"]

@@ -1,4 +1,4 @@
-"""What a search is: its plan, which never changes, and its state."""
+"""The plan of a search, which never changes, and its state."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -27,29 +27,27 @@ CURVES = (
     "corrected_coverage",
     "hit_rate",
 )
-"""Columns of the record of generations, in this order; the last three are NaN until elites
-are evaluated again."""
+"""Columns of the curves, in this order; the last three are NaN without reevaluation."""
 
 N_CORRECTED = 3
-"""So many of them."""
+"""Columns of `CURVES` from reevaluation."""
 
 OUTCOMES = ("children", "inserted", "improved")
-"""What becomes of an emitter's children: how many there were, entered an empty cell, and
-replaced an elite."""
+"""Counts of an emitter's children: all, those in new cells, those that replaced an elite."""
 
 ENDS = ("", "evaluations", "fitness", "device_hours")
-"""Why a run ended before its generations were through."""
+"""Reasons for an end before the last generation; the first stands for none."""
 
 BEFORE = 2**32 - 1
-"""Stands for the generation before the first where keys are derived."""
+"""Number of the generation before the first, for deriving keys."""
 
 MAX_DIVERGED = 256
-"""How many diverged creatures are kept, the newest."""
+"""Number of diverged creatures to keep, the newest."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """When a run ends before its generations are through; see `spec.Stop`."""
+    """Limits that end a run before its last generation; see `spec.Stop`."""
 
     evaluations: float = inf
     device_hours: float = inf
@@ -58,17 +56,17 @@ class Limits:
 
 @dataclass(frozen=True)
 class Reevaluation:
-    """When elites are evaluated again, and under which conditions."""
+    """When elites are reevaluated, and under which conditions."""
 
     every: int
     samples: int
     spread: search.reevaluation.Spread
     size: tuple[int, int]
-    """Of the world, in cells."""
+    """Size of the world, in cells."""
 
 
 class InitialCreatures(eqx.Module):
-    """Creatures that a search begins from, in the order of their names."""
+    """Initial creatures, in the order of their names."""
 
     creature: UInt8[np.ndarray, "row 32"]
     genotypes: Genotype
@@ -77,12 +75,12 @@ class InitialCreatures(eqx.Module):
 
 @dataclass(frozen=True)
 class Plan:
-    """The numbers and names of a run, as its spec has them, and where it is computed."""
+    """The numbers and names of a run from its spec, and its device."""
 
     spec: str
     """The whole spec as JSON."""
     frame: Mapping[str, Any]
-    """The identity that all creatures of the run share; only genes are missing."""
+    """The identity that all creatures of the run share, without genes."""
     seed: int
     generations: int
     block: int
@@ -91,40 +89,37 @@ class Plan:
     encoding: Encoding
     emitters: tuple[search.Emitter, ...]
     counters: neat.Counters
-    """Numbers after the genes of newcomers."""
+    """The first numbers that no newcomer's gene has."""
     device: str
     limits: Limits = Limits()
     reevaluation: Reevaluation | None = None
     force_free: bool = True
-    """Whether bodies cannot push themselves; if not, their swimming may be the solver's."""
+    """Whether bodies cannot push themselves; if not, swimming may be an artefact."""
 
     measures: tuple[str, ...] = search.MEASURES
-    """What is recorded of every creature, in this order."""
+    """Names of the measures of every creature, in this order."""
     plugins: Mapping[str, Any] = field(default_factory=dict)
     """Versions of the plug-ins among them."""
     names: tuple[str, ...] = ()
-    """What the emitters are called, each by a name of its own."""
+    """Names of the emitters, each unique."""
     initial: InitialCreatures | None = None
-    """What it begins from; a file of the run has it too."""
+    """Initial creatures; a file of the run also holds them."""
 
     @property
     def axes(self) -> tuple[search.Axis, ...]:
-        """The archive's descriptors."""
         return self.cells.axes
 
     @property
     def cell_count(self) -> int:
-        """Cells of the archive."""
         return self.cells.count
 
     @property
     def batch(self) -> int:
-        """Creatures of a generation."""
         return sum(emitter.slots for emitter in self.emitters)
 
     @property
     def key(self) -> PRNGKeyArray:
-        """What all randomness is derived from."""
+        """The key that all others derive from."""
         return jax.random.key(self.seed, impl="threefry2x32")
 
     @property
@@ -134,11 +129,11 @@ class Plan:
 
 
 class Lineage(eqx.Module):
-    """One row for each entry into the archive, in order: who descends from whom."""
+    """Parents and measures of each entry into the archive, in order."""
 
     creature: UInt8[np.ndarray, "entry 32"]
     parents: UInt8[np.ndarray, "entry 2 32"]
-    """Zeros where there is none."""
+    """Zeros for none."""
     operator: Int[np.ndarray, "entry"]
     generation: Int[np.ndarray, "entry"]
     cell: Int[np.ndarray, "entry"]
@@ -147,7 +142,7 @@ class Lineage(eqx.Module):
 
 
 class Diverged(eqx.Module):
-    """Creatures whose simulation failed, kept apart from the archive."""
+    """Creatures whose simulation diverged."""
 
     generation: Int[np.ndarray, "row"]
     slot: Int[np.ndarray, "row"]
@@ -156,45 +151,45 @@ class Diverged(eqx.Module):
 
 
 class State(eqx.Module):
-    """Everything that the next generation depends on, and the record of those before."""
+    """All that the next generation depends on, and the record of those before."""
 
     generation: int
     """Generations completed."""
     evaluations: int
     diverged: int
     cells: search.Cells
-    """The plan's, or as they were where the run began."""
+    """The plan's, or those of the machine on which the run began."""
     elites: search.Elites
     counters: neat.Counters
     emitters: tuple[PyTree[Array], ...]
-    """What each emitter has learnt."""
+    """State of each emitter."""
     nearest_ancestors: UInt8[np.ndarray, "slot 2 32"]
-    """Of each slot of the last generation, the recorded creatures nearest to it: itself where
-    it entered, else its forebears; zeros where there are none."""
+    """The nearest recorded creatures of each slot of the last generation: itself if it entered,
+    else its ancestors; zeros for none."""
     repeats: search.reevaluation.Repeats
     creatures: UInt8[np.ndarray, "cell 32"]
     """The SHA-256 of each cell's elite."""
     operators: Int[np.ndarray, "cell"]
     device_of: Int[np.ndarray, "cell"]
-    """Which of `devices` measured each cell's elite."""
+    """Index in `devices` of the device that measured each cell's elite."""
     curves: Float[np.ndarray, "generation curve"]
     outcomes: Int[np.ndarray, "generation emitter outcome"]
     ended: int
-    """The place in `ENDS` of why the run ended."""
+    """Index in `ENDS`."""
     device_seconds: float
-    """What evaluation took, all devices added up; never decides anything unless asked to."""
+    """Time of evaluation, summed over devices; used only for the limit on it."""
     lineage: Lineage
-    quarantine: Diverged
+    failures: Diverged
     devices: tuple[str, ...] = eqx.field(static=True)
     """Kinds of device that computed the run, the present one last."""
     unrepeated: search.reevaluation.Repeats | None = None
-    """Where elites were evaluated again only because the run ends: `repeats` before that."""
+    """`repeats` before a reevaluation that happened only because the run ended."""
     initial: InitialCreatures | None = None
-    """The plan's; creatures that it has room for in each generation are evaluated first."""
+    """The plan's; the first generations evaluate them."""
 
 
 def prolonged(state: State) -> State:
-    """The last state of a run as it would be in one of more generations."""
+    """The last state of a run as in a run with more generations."""
     if state.unrepeated is None:
         return state
     curves = state.curves.copy()
@@ -203,7 +198,7 @@ def prolonged(state: State) -> State:
 
 
 def start(plan: Plan) -> State:
-    """Before the first generation."""
+    """The state before the first generation."""
     none, names = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8)
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
     nobody = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
@@ -236,14 +231,14 @@ def start(plan: Plan) -> State:
             fitness=np.zeros(0, np.float32),
             descriptors=descriptors,
         ),
-        quarantine=Diverged(none, none, none, nobody),
+        failures=Diverged(none, none, none, nobody),
         devices=(plan.device,),
         initial=plan.initial,
     )
 
 
 def _founded(plan: Plan, emitter: search.Emitter, kept: PyTree[Array]) -> PyTree[Array]:
-    """What an emitter keeps; a population begins with what the search begins from."""
+    """The state of an emitter; a population starts from the initial creatures."""
     if plan.initial is None or not isinstance(emitter, PopulationEmitter):
         return kept
     networks = jax.tree.map(jnp.asarray, plan.initial.genotypes)

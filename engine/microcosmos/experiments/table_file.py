@@ -1,24 +1,26 @@
-"""The file of a run whose result is a table, which is also its checkpoint.
+"""Runs whose result is a table, and their file, which is also their checkpoint.
 
 The layout is described in `docs/formats.md`. It holds no clock, host, run or attempt, so that
 a computed table (not one of measured times) gives the same bytes every time.
 """
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..archive import file
-from ..archive.report import Row
+from ..archive.report import Report, Row
+from ..search import never
 from ..version import VERSION
 from .resume_check import devices_of
 
 
 @dataclass(frozen=True)
 class Table:
-    """All that such a run has found so far."""
+    """The rows so far: the state of such a run."""
 
     generation: int
     rows: tuple[Row, ...]
@@ -26,14 +28,51 @@ class Table:
     """Kinds of device that computed it, the present one last."""
 
     def grown(self, rows: tuple[Row, ...]) -> "Table":
-        """With the rows of one more generation."""
+        """The table with the rows of one more generation."""
         return replace(self, generation=self.generation + 1, rows=self.rows + rows)
+
+
+@dataclass(frozen=True)
+class TableRun:
+    """An experiment whose generations add rows to a table."""
+
+    spec: str
+    """The whole spec as JSON."""
+    device: str
+    generations: int
+    rows: Callable[[int, Callable[[], bool]], tuple[Row, ...]]
+    """The rows of a generation, counted from 0; raises `Stopped` if asked to stop."""
+    report: Callable[[Table, tuple[Row, ...]], Report]
+    """The report of a table and its newest rows."""
+
+    def init(self) -> Table:
+        return Table(0, (), (self.device,))
+
+    def done(self, state: Table) -> bool:
+        return state.generation >= self.generations
+
+    def generation(self, state: Table) -> int:
+        return state.generation
+
+    def advance(self, state: Table, stop: Callable[[], bool] = never) -> tuple[Table, Report]:
+        rows = self.rows(state.generation, stop)
+        state = state.grown(rows)
+        return state, self.report(state, rows)
+
+    def save(self, state: Table) -> bytes:
+        return save(self.spec, state)
+
+    def restore(self, data: bytes, *, other_device: bool = False) -> Table:
+        return restore(self.spec, self.device, data, other_device=other_device)
+
+    def best(self, state: Table) -> None:
+        return None  # Rows do not compete.
 
 
 def save(spec: str, table: Table, arrays: file.Tree | None = None) -> bytes:
     """Rows as columns, numbers as float64, words as bytes; identities as one JSON text.
 
-    `arrays` are groups of the file beside these.
+    `arrays` are further groups of the file.
     """
     rows = table.rows
     names = list(rows[0].values) if rows else []

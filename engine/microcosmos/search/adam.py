@@ -13,7 +13,7 @@ Slopes = Float[Array, "*block gene"]
 
 
 class Adam(eqx.Module):
-    """What is remembered of the slopes so far."""
+    """Moments of the slopes so far."""
 
     count: Int[Array, "*block"]
     mean: Slopes
@@ -21,7 +21,7 @@ class Adam(eqx.Module):
 
 
 def begin(genes: Float[Array, "gene"]) -> Adam:
-    """Nothing yet."""
+    """The state before the first step."""
     none = jnp.zeros_like(genes)
     return Adam(jnp.zeros((), jnp.int32), none, none)
 
@@ -29,7 +29,7 @@ def begin(genes: Float[Array, "gene"]) -> Adam:
 def descend(
     adam: Adam, slope: Float[Array, "gene"], rate: float | Float[Array, ""]
 ) -> tuple[Float[Array, "gene"], Adam]:
-    """The change of genes that leads down, and what is remembered then."""
+    """The descending change of genes, and the new state."""
     count = adam.count + 1
     mean = BETA_1 * adam.mean + (1 - BETA_1) * slope
     square = BETA_2 * adam.square + (1 - BETA_2) * slope * slope

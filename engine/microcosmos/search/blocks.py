@@ -12,11 +12,10 @@ Found = TypeVar("Found")
 
 
 class Stopped(Exception):
-    """Somebody wished to stop: the unfinished generation is dropped and done again."""
+    """The run was asked to stop; the unfinished generation is dropped and repeated."""
 
 
 def never() -> bool:
-    """No wish to stop."""
     return False
 
 
@@ -29,10 +28,8 @@ def evaluate_blocks(
 ) -> Found:
     """Evaluate networks (or other items) of NumPy arrays, their number first.
 
-    The last block is padded with its first item.
-
-    Each device has one block in flight; `stop` is asked before each, and `Stopped` raised
-    where it says so.
+    The last block is padded with its first item. Each device has one block in flight. Raises
+    `Stopped` if `stop` is true before a block.
     """
     devices = jax.local_devices()
     flying: deque[Found] = deque()

@@ -1,4 +1,4 @@
-"""Which cell of an archive a creature falls into: a grid of bins, or nearest centroids."""
+"""Cells of an archive: a grid of bins, or nearest centroids."""
 
 from collections.abc import Callable
 
@@ -12,7 +12,7 @@ Measures = Float[Array, "row measure"]
 Places = Float[Array, "row axis"]
 
 LISTED = 2**22
-"""How many numbers of candidates may be kept; where there were more, all are looked at."""
+"""Largest number of listed candidates; beyond it every centroid is compared."""
 
 
 class Axis(eqx.Module):
@@ -25,7 +25,7 @@ class Axis(eqx.Module):
     logarithmic: bool = eqx.field(static=True)
 
     def place(self, value: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
-        """From 0 to 1 on the axis' own scale; what lies beyond an end counts there."""
+        """Values from 0 to 1 on the axis' own scale, cut at the ends."""
         low, high = self.low, self.high
         value = jnp.clip(value, low, high)
         if self.logarithmic:
@@ -33,7 +33,7 @@ class Axis(eqx.Module):
         return (value - low) / (high - low)
 
     def bin(self, value: Float[Array, "*batch"]) -> Int[Array, "*batch"]:
-        """Half-open bins; what lies beyond an end counts in the last one there."""
+        """Numbers of half-open bins; values beyond an end are in the last one."""
         place = jnp.floor(self.place(value) * self.bins)
         return jnp.clip(place, 0, self.bins - 1).astype(jnp.int32)
 
@@ -49,7 +49,7 @@ class Grid(eqx.Module):
 
     @property
     def centres(self) -> Float[np.ndarray, "cell axis"]:
-        """The middle of each cell, on the axes' own scales from 0 to 1."""
+        """Centres of the cells, from 0 to 1 on the axes' own scales."""
         ticks = [(np.arange(axis.bins) + 0.5) / axis.bins for axis in self.axes]
         mesh = np.meshgrid(*ticks, indexing="ij")
         return np.stack([x.ravel() for x in mesh], 1).astype(np.float32)
@@ -63,10 +63,10 @@ class Grid(eqx.Module):
 
 
 class Voronoi(eqx.Module):
-    """Each creature belongs to the nearest centroid, of equally near ones to the first.
+    """Cells of the nearest centroid, the first of equally near ones.
 
-    Places are from 0 to 1 on the axes' own scales. Where few centroids can be nearest to a
-    place, only those are looked at: `near` lists them for every box of a coarse grid.
+    Places are from 0 to 1 on the axes' own scales. `near` lists, for every box of a coarse
+    grid, the few centroids that can be nearest; None: all are compared.
     """
 
     axes: tuple[Axis, ...]
@@ -79,7 +79,6 @@ class Voronoi(eqx.Module):
 
     @property
     def centres(self) -> Float[np.ndarray, "cell axis"]:
-        """The centroids."""
         return np.asarray(self.centroids)
 
     def of(self, measures: Measures) -> Int[Array, "row"]:
@@ -101,7 +100,7 @@ Cells = Grid | Voronoi
 
 
 def voronoi(axes: tuple[Axis, ...], centroids: Float[np.ndarray, "cell axis"]) -> Voronoi:
-    """Cells around centroids. Raises `ValueError` where they do not fit the axes."""
+    """Cells around centroids. Raises `ValueError` if they do not fit the axes."""
     centroids = np.asarray(centroids, np.float32)
     if centroids.ndim != 2 or centroids.shape[1] != len(axes) or len(centroids) < 2:
         raise ValueError(
@@ -125,14 +124,14 @@ def sound(measures: Measures, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
 
 
 def boxes(cells: int, axes: int) -> int:
-    """Boxes along each axis of the coarse grid: about one for each centroid."""
+    """Boxes along each axis of the coarse grid, about one a centroid."""
     return max(1, int(cells ** (1 / axes) + 1e-9))
 
 
 def candidates(centroids: np.ndarray) -> np.ndarray | None:
     """The centroids that can be nearest to a place in each box, ascending; the last repeated.
 
-    None where the lists would be too long. From the middle m of a box with half diagonal h, no
+    None if the lists would be too long. From the middle m of a box with half diagonal h, no
     nearest centroid of a place in it is farther than |m − c| + 2 h, c being nearest to m.
     """
     cells, axes = centroids.shape
@@ -152,6 +151,6 @@ def candidates(centroids: np.ndarray) -> np.ndarray | None:
 
 
 def _first_least(place: Places, of_axis: Callable[[int], Array]) -> Int[Array, "row"]:
-    """The first of the candidates at the least distance from each place."""
+    """The index of the nearest candidate to each place, the first of equal ones."""
     squares = [(place[:, i, None] - of_axis(i)) ** 2 for i in range(place.shape[1])]
     return jnp.argmin(sum(squares[1:], squares[0]), 1).astype(jnp.int32)

@@ -1,4 +1,4 @@
-"""Centroidal Voronoi tessellations of the unit cube, kept on disk once they are computed.
+"""Centroidal Voronoi tessellations of the unit cube, cached on disk.
 
 Vassiliades, Chatzilygeroudis and Mouret, IEEE Trans. Evol. Comput. 22, 623 (2018): Lloyd's
 algorithm on uniform samples. Samples and first centroids are low-discrepancy sequences in place
@@ -18,10 +18,10 @@ from scipy.spatial import KDTree
 from ..archive.atomic import write_whole
 
 METHOD = "lloyd/1"
-"""Part of the name on disk; to be counted up where the same numbers give other centroids."""
+"""Part of the name on disk; count it up if the same numbers give other centroids."""
 
 SAMPLES = 10
-"""Samples a centroid, of which there are at least `LEAST`."""
+"""Samples a centroid; at least `LEAST` in all."""
 LEAST = 50_000
 ROUNDS = 10
 
@@ -29,7 +29,7 @@ Points = Float[np.ndarray, "point axis"]
 
 
 def centroids(cells: int, axes: int, seed: int) -> Points:
-    """Float32 centroids, the same for the same numbers; from disk where they are there."""
+    """Float32 centroids, the same for the same numbers; from disk if cached."""
     path = folder() / f"{name(cells, axes, seed)}.npy"
     kept = _kept(path, (cells, axes))
     if kept is not None:
@@ -44,7 +44,7 @@ def centroids(cells: int, axes: int, seed: int) -> Points:
 
 
 def lloyd(cells: int, axes: int, seed: int) -> Points:
-    """Each centroid becomes the mean of the samples nearest to it, again and again."""
+    """Centroids by Lloyd's algorithm: each becomes the mean of its nearest samples."""
     random = np.random.Generator(np.random.PCG64(seed))
     points = spread(cells, axes, random.random(axes))
     samples = spread(max(LEAST, SAMPLES * cells), axes, random.random(axes))
@@ -73,7 +73,7 @@ def spread(count: int, axes: int, shift: Float[np.ndarray, "axis"]) -> Points:
 
 
 def folder() -> Path:
-    """Where centroids are kept: in XDG_CACHE_HOME, else where the platform keeps caches."""
+    """The folder of the cache: in XDG_CACHE_HOME, else the platform's."""
     places = {"darwin": Path.home() / "Library" / "Caches"}
     if os.name == "nt" and "LOCALAPPDATA" in os.environ:
         places["win32"] = Path(os.environ["LOCALAPPDATA"])
@@ -82,13 +82,13 @@ def folder() -> Path:
 
 
 def name(cells: int, axes: int, seed: int) -> str:
-    """The SHA-256 of what determines the centroids."""
-    told = f"{METHOD} {cells} {axes} {seed} {SAMPLES} {LEAST} {ROUNDS}"
-    return hashlib.sha256(told.encode()).hexdigest()
+    """The SHA-256 of all that determines the centroids."""
+    text = f"{METHOD} {cells} {axes} {seed} {SAMPLES} {LEAST} {ROUNDS}"
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _kept(path: Path, shape: tuple[int, int]) -> Points | None:
-    """What is on disk, None where that is nothing or damaged."""
+    """The cached centroids, None if missing or damaged."""
     try:
         found = np.load(path, allow_pickle=False)
     except (OSError, ValueError, EOFError):

@@ -1,4 +1,4 @@
-"""How far a gradient can be trusted: against finite differences, over time, from other starts.
+"""Reliability of a gradient: against finite differences, over time, from other starts.
 
 A simulation that is differentiable can still have useless gradients: limits cut them, chaos
 makes them grow without bound with the horizon (Metz et al., arXiv:2111.05803).
@@ -22,10 +22,10 @@ from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
 from .reevaluation import Disturbance, Spread, disturbance, moved
 
 STEPS = {"float64": (1e-3, 1e-4, 1e-5, 1e-6), "float32": (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)}
-"""Of the finite differences, as shares of the values' length; the best counts."""
+"""Steps of finite differences, as shares of the values' length; the best counts."""
 
 HORIZONS = (1 / 4, 1 / 2)
-"""Shares of the whole time, which counts too."""
+"""Shares of the whole time, besides the whole itself."""
 
 Build = Callable[[Any], tuple[Task, Actuator]]
 """From a precision to the creature in it."""
@@ -33,18 +33,17 @@ Build = Callable[[Any], tuple[Task, Actuator]]
 
 @dataclass(frozen=True)
 class Health:
-    """What was found of the gradient of one measure by some parts."""
+    """The report on the gradient of one measure by some parts."""
 
     of: str
     by: tuple[str, ...]
     value: float
     errors: dict[str, float]
-    """By precision: how far the slope along the gradient is from finite differences, as a share
-    of it."""
+    """Relative error of the slope against finite differences, by precision."""
     norms: dict[int, float]
-    """The gradient's length after so many steps."""
+    """Length of the gradient by number of steps."""
     sign_agreement: float
-    """Share of the gradient, by size, whose sign is the same from other starts."""
+    """Share of the gradient, weighted by size, with the same sign from other starts."""
     cosine: float
     """Mean cosine between gradients from other starts and the creature's own."""
     starts: int
@@ -52,11 +51,11 @@ class Health:
     """Share of node steps at a limit, where gradients are cut."""
 
     def document(self) -> dict[str, Any]:
-        """As JSON."""
+        """The report as JSON."""
         return asdict(self) | {"norms": [[n, norm] for n, norm in self.norms.items()]}
 
     def lines(self) -> list[str]:
-        """As sentences."""
+        """The report as sentences."""
         about = f"{self.of} by {', '.join(self.by)}"
         agrees = [f"{name} {error:.1e}" for name, error in self.errors.items()]
         grows = [f"{norm:.3g} after {steps} steps" for steps, norm in self.norms.items()]
@@ -78,7 +77,7 @@ def gradient_health(
     starts: int = 8,
     seed: int = 0,
 ) -> Health:
-    """The report for a creature, `build(dtype)` being its task and what moves it."""
+    """The report for a creature; `build(dtype)` makes its task and actuator."""
     with jax.enable_x64(True):
         task, actuator = build(jnp.dtype("float64"))
         values = gradients.parts(task, actuator, by)

@@ -1,6 +1,6 @@
-"""A whole population of TensorNEAT's genomes as our networks, without a loop over them.
+"""Conversion of a population of TensorNEAT's genomes to our networks, without a loop.
 
-Row by row it gives what `networks.to_genes` does, which a test compares.
+Each row equals the result of `networks.to_genes`; a test compares them.
 """
 
 from collections.abc import Sequence
@@ -25,19 +25,18 @@ def cppns(
 ) -> tuple[CPPN, Bool[np.ndarray, "genome"]]:
     """Feed-forward genomes as networks, and which of them compute every output.
 
-    In the place of another, whose outputs are NaN there, stands a network without genes but
-    those of inputs and outputs.
+    The others, whose outputs are NaN, become networks of inputs and outputs alone.
     """
     source, target = (_rows(nodes, links[..., end]) for end in (0, 1))
     live = _live(nodes, links, source, target, inputs)
     computes = np.all(live[:, inputs : inputs + outputs], axis=1)
     fixed = np.arange(nodes.shape[1]) < inputs + outputs
     kept = (live & computes[:, None]) | fixed[None]
-    told = ~np.isnan(links[..., 0]) & np.take_along_axis(live, source, 1) & computes[:, None]
+    linked = ~np.isnan(links[..., 0]) & np.take_along_axis(live, source, 1) & computes[:, None]
     network = empty(nodes.shape[1], links.shape[1], (len(nodes),))
     place = _put_nodes(network, nodes, kept, _activation(nodes, activations, fixed))
     ends = (np.take_along_axis(place, end, 1) for end in (source, target))
-    _put_links(network, links, told, *ends)
+    _put_links(network, links, linked, *ends)
     silent = ~computes[:, None] | (np.arange(nodes.shape[1]) < inputs)[None]
     network.bias[silent] = 0
     return network, computes
@@ -57,11 +56,11 @@ def _put_nodes(network: CPPN, nodes: Nodes, kept: Marks, activation: Rows) -> Ro
     return np.argsort(order, axis=1)
 
 
-def _put_links(network: CPPN, links: Links, told: Marks, source: Rows, target: Rows) -> None:
-    """Write the links that are told, numbered in the order of source and target."""
-    keys = [np.where(told, links[..., end], np.inf) for end in (1, 0)]
+def _put_links(network: CPPN, links: Links, linked: Marks, source: Rows, target: Rows) -> None:
+    """Write the chosen links, numbered in the order of source and target."""
+    keys = [np.where(linked, links[..., end], np.inf) for end in (1, 0)]
     order = np.lexsort(keys, axis=1)
-    given = np.take_along_axis(told, order, 1)
+    given = np.take_along_axis(linked, order, 1)
     network.connection_used[:] = given
     network.enabled[:] = given
     network.innovation[:] = np.where(given, np.arange(links.shape[1])[None], 0)
@@ -74,14 +73,14 @@ def _put_links(network: CPPN, links: Links, told: Marks, source: Rows, target: R
 
 
 def _rows(nodes: Nodes, keys: Float[np.ndarray, "genome link"]) -> Rows:
-    """Where the nodes with these keys stand; 0 for an unused link."""
+    """Rows of the nodes with these keys; 0 for an unused link."""
     return np.argmax(nodes[:, None, :, 0] == keys[:, :, None], axis=2)
 
 
 def _live(
     nodes: Nodes, links: Links, source: Rows, target: Rows, inputs: int
 ) -> Bool[np.ndarray, "genome node"]:
-    """Which nodes a way leads to from an input."""
+    """Nodes that a path leads to from an input."""
     used = ~np.isnan(links[..., 0])
     live = np.zeros(nodes.shape[:2], bool)
     live[:, :inputs] = True
@@ -95,7 +94,7 @@ def _live(
 
 
 def _activation(nodes: Nodes, names: Sequence[str], linear: Bool[np.ndarray, "node"]) -> Rows:
-    """Numbers of ours for places in TensorNEAT's list, whose −1 is the identity."""
+    """Our numbers for indices of TensorNEAT's list, whose −1 is the identity."""
     known = list(ACTIVATIONS)
     identity = known.index("identity")
     number = np.array([*map(known.index, names), identity])

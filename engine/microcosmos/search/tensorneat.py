@@ -1,6 +1,6 @@
-"""TensorNEAT's own NEAT (Wang et al., arXiv:2404.01817) as a backend, where it is installed.
+"""TensorNEAT's own NEAT (Wang et al., arXiv:2404.01817) as an optional backend.
 
-This file alone imports it, and only to carry it out: it is under the GPL, version 3.
+Only this file imports it, and only to run it: it is under the GPL, version 3.
 """
 
 from collections.abc import Callable, Mapping
@@ -45,21 +45,21 @@ class Backend:
     algorithm: Any
     next_state: Callable[[State, Array], State]
     meta: Mapping[str, Any]
-    """What its genomes mean, as `networks.read_tensorneat` needs it."""
+    """Names for its genomes, for `networks.read_tensorneat`."""
 
     def setup(self, seed: int) -> State:
         """The first population."""
         key = import_module("tensorneat.common").State(randkey=jax.random.PRNGKey(seed))
-        # A program is compiled again for names in another order.
+        # Names in another order would compile the program again.
         return self.from_arrays(self.to_arrays(self.algorithm.setup(key)))
 
     def ask(self, state: State) -> tuple[np.ndarray, np.ndarray]:
-        """The genomes to be measured: nodes and connections, (individual, row, column)."""
+        """The genomes to measure: nodes and connections, (individual, row, column)."""
         nodes, connections = self.algorithm.ask(state)
         return np.asarray(nodes), np.asarray(connections)
 
     def tell(self, state: State, fitness: Float[np.ndarray, "individual"]) -> State:
-        """The next population; a fitness that is no number is the worst there is."""
+        """The next population; a NaN fitness counts as worst."""
         values = np.asarray(fitness, np.float32)
         return self.next_state(state, jnp.asarray(np.where(np.isnan(values), -np.inf, values)))
 
@@ -68,18 +68,15 @@ class Backend:
         return _flat(state, "")
 
     def from_arrays(self, arrays: Mapping[str, np.ndarray | Array]) -> State:
-        """The state of such arrays; it goes on bit for bit."""
+        """The state of such arrays, bit for bit."""
         states = import_module("tensorneat.common")
         named = {name: jnp.asarray(arrays[name]) for name in sorted(arrays)}
-        own = {name: x for name, x in named.items() if "." not in name}
+        plain = {name: x for name, x in named.items() if "." not in name}
         species = {name.split(".")[1]: x for name, x in named.items() if "." in name}
-        return states.State(**own, species=states.State(**species))
+        return states.State(**plain, species=states.State(**species))
 
     def population(self, state: State) -> tuple[CPPN, Bool[np.ndarray, "individual"]]:
-        """The genomes as our networks, and which of them compute every output.
-
-        In the place of another, whose outputs are NaN, stands a network without connections.
-        """
+        """The genomes as our networks, and which of them compute every output; see `cppns`."""
         nodes, connections = self.ask(state)
         names, ends = self.meta["activation_names"], ("num_inputs", "num_outputs")
         return cppns(nodes, connections, names, *(self.meta[end] for end in ends))
@@ -90,7 +87,7 @@ def build(
 ) -> Backend:
     """TensorNEAT with those of our settings that it has; it allots by rank.
 
-    Raises `ValueError` where it is not installed, or cannot do what the settings ask for.
+    Raises `ValueError` if it is not installed, or cannot follow the settings.
     """
     require()
     if settings.rates.recurrent:
@@ -169,7 +166,7 @@ def _genome(
 
 
 def _function(name: str) -> Callable:
-    """TensorNEAT's function of that name; it is given ours where it has none."""
+    """TensorNEAT's function of that name; ours is registered if it has none."""
     known = import_module("tensorneat.common").ACT
     if name not in known.name2jnp:
         known.add_func(name, ACTIVATIONS[name])

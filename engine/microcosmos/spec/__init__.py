@@ -1,25 +1,15 @@
-"""Everything a run can be, validated: the only place where a default is written."""
+"""Specs: validated models of everything that a run can be, with all defaults."""
 
 from .base import Part, field_path
-from .body import Body, Chain, Known, PluginBody, made_elsewhere, shape
+from .body import Body, Chain, PluginBody, SwimmerBody, is_unavailable, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
 from .drawing import Drawing, drawing
 from .emitters import Emitter
-from .encodings import (
-    Controller,
-    Direct,
-    Free,
-    Grown,
-    PluginControl,
-    Weights,
-    genes,
-    lengthening,
-)
+from .encodings import Bounds, Controller, Direct, Grown, PluginControl, Weights, gene_count
 from .estimate import Estimate, estimate
 from .evolution import Evolution
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
-from .fields import Energy, Steric
 from .folding import Digit, Folding, Picture, picture
 from .gaits import FORMS, Gaits
 from .neuroevolution import Neuroevolution
@@ -29,7 +19,7 @@ from .refinement import Refinement
 from .scaling import Scaling
 from .scene import Fold, Gait, Scene
 from .search import Archive, Descriptor, Generations, Reevaluation, Search, Stop, Task
-from .world import World
+from .world import Energy, Steric, World
 
 __all__ = [
     "EXPERIMENTS",
@@ -37,6 +27,7 @@ __all__ = [
     "OUTPUTS",
     "Archive",
     "Body",
+    "Bounds",
     "Chain",
     "Control",
     "Controller",
@@ -52,13 +43,11 @@ __all__ = [
     "Experiment",
     "Fold",
     "Folding",
-    "Free",
     "Gait",
     "Gaits",
     "Generations",
     "Genome",
     "Grown",
-    "Known",
     "Neuroevolution",
     "Part",
     "Picture",
@@ -76,15 +65,15 @@ __all__ = [
     "Spec",
     "Steric",
     "Stop",
+    "SwimmerBody",
     "Task",
     "Weights",
     "World",
     "drawing",
     "estimate",
     "field_path",
-    "genes",
-    "lengthening",
-    "made_elsewhere",
+    "gene_count",
+    "is_unavailable",
     "parse",
     "picture",
     "plugins_in",

@@ -1,8 +1,9 @@
-"""What every part of a spec shares: nothing unknown is accepted and nothing changes."""
+"""The base class of all parts of a spec, and the declaration of their fields."""
 
 from collections.abc import Sequence
+from typing import Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
 
@@ -18,39 +19,37 @@ class Part(BaseModel):
     )
 
 
+def unit(name: str) -> JsonDict:
+    """The unit of a field, for forms and the reference."""
+    return {"unit": name}
+
+
+def field(default: Any, *, unit: str = "", source: str = "", **limits: Any) -> Any:
+    """Declare a field: its default, unit, the source of its method, and pydantic's limits."""
+    given = {"unit": unit, "source": source}
+    extra: JsonDict = {name: text for name, text in given.items() if text}
+    return Field(default=default, json_schema_extra=extra or None, **limits)
+
+
+SELDOM = ConfigDict(json_schema_extra={"seldom": True})
+"""Marks a part that people seldom change: a form shows it closed."""
+
+ENCODINGS = ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "plugin")
+BUILDERS = ("chain", "ring", "arc", "walk", "star", "tree", "polyline", "graph")
+NETWORK_OPERATORS = ("neat", "population", "lamarckian")
+VECTOR_OPERATORS = ("iso+line", "gaussian", "cma-mae", "cma-me", "cma-mega")
 TAGS: dict[str, tuple[str, ...]] = {
-    "body": (
-        "chain",
-        "ring",
-        "arc",
-        "walk",
-        "star",
-        "tree",
-        "polyline",
-        "graph",
-        "known",
-        "plugin",
-    ),
-    "genome": ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "plugin"),
-    "control": ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "plugin"),
+    "body": (*BUILDERS, "known", "plugin"),
+    "genome": ENCODINGS,
+    "control": ENCODINGS,
     "targets": ("digit", "picture"),
-    "emitters": (
-        "random",
-        "neat",
-        "population",
-        "iso+line",
-        "gaussian",
-        "cma-mae",
-        "cma-me",
-        "lamarckian",
-        "cma-mega",
-    ),
+    "emitters": ("random", *NETWORK_OPERATORS, *VECTOR_OPERATORS),
 }
-"""Fields that are one of several parts, and what pydantic puts behind them in errors."""
+"""The tags of union fields, which pydantic adds to the paths of errors."""
 
 
 def field_path(location: Sequence[str | int]) -> str:
-    """Where pydantic found an error, as people write it: without tags of unions."""
+    """Return the path of pydantic's error location as people write it, without tags."""
     kept, owner = [], ""
     for part in location:
         if part in TAGS.get(owner, ()):
@@ -58,12 +57,3 @@ def field_path(location: Sequence[str | int]) -> str:
         kept.append(str(part))
         owner = part if isinstance(part, str) else owner
     return ".".join(kept)
-
-
-def unit(name: str) -> JsonDict:
-    """The unit of a field, for the forms that people fill in."""
-    return {"unit": name}
-
-
-SELDOM = ConfigDict(json_schema_extra={"seldom": True})
-"""Marks a part that people seldom change: a form shows it closed."""

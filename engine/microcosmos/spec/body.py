@@ -1,4 +1,4 @@
-"""The body: one of several builders, each with its own measures."""
+"""Bodies in a spec: builders with their sizes, and the graphs that they stand for."""
 
 from functools import lru_cache
 from typing import Annotated, Any, Literal, Self, get_args
@@ -9,148 +9,139 @@ from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
 from ..bodies import swimmers
-from .base import Part, unit
+from .base import BUILDERS, Part, field
 from .plugins import PluginName, PluginVersion, complete_plugin
 from .sources import PAPER, RODS, after
 
 SUPPORT = 4.0
-"""Cells that the four-point delta reaches across, beyond a body's own extent."""
+"""Width of the four-point delta in cells: room that a world needs beyond a body's extent."""
 
-MOST = 4096
-"""Nodes of a body."""
+MAX_NODES = 4096
+"""Most nodes of a body."""
 
 
 class Elastic(Part):
-    """Stiffness, the same everywhere."""
+    """Stiffness and node spacing, the same everywhere."""
 
     model_config = after(RODS)
 
-    stretch: float = Field(default=1.0, ge=0.0, le=1.0)
-    """Share of the stretching error that one projection removes."""
-    shear: float = Field(default=1.0, ge=0.0, le=1.0)
-    """Share of the shearing error that one projection removes."""
-    bend: float = Field(default=1.0, ge=0.0, le=1.0)
-    """Share of the bending error that one projection removes."""
+    stretch: float = field(1.0, ge=0.0, le=1.0)
+    """Stretching stiffness: share of the error that one projection removes."""
+    shear: float = field(1.0, ge=0.0, le=1.0)
+    """Shearing stiffness: share of the error that one projection removes."""
+    bend: float = field(1.0, ge=0.0, le=1.0)
+    """Bending stiffness: share of the error that one projection removes."""
 
     @model_validator(mode="after")
     def refuse_malformed(self) -> Self:
-        if (count := _nodes(self)) > MOST:
-            raise ValueError(f"a body must have at most {MOST} nodes, got {count:.6g}")
+        if (count := _node_count(self)) > MAX_NODES:
+            raise ValueError(f"a body must have at most {MAX_NODES} nodes, got {count:.6g}")
         shape(self)  # pyright: ignore[reportArgumentType]
         return self
 
 
-def spacing() -> Any:
-    return Field(default=1.0, ge=0.5, le=2.0, json_schema_extra=unit("cells"))
+class Spaced(Elastic):
+    """A body of edges of one length."""
+
+    spacing: float = field(1.0, ge=0.5, le=2.0, unit="cells")
+    """Rest length of an edge; above 2 cells, fluid leaks between the nodes."""
 
 
-class Chain(Elastic):
+class Chain(Spaced):
     """A straight filament."""
 
     builder: Literal["chain"] = "chain"
-    nodes: int = Field(default=32, ge=3, le=MOST, json_schema_extra=unit("nodes"))
-    """Nodes of the filament."""
-    spacing: float = spacing()
-    """Rest length of an edge; wider than 2 cells, fluid leaks between the nodes."""
+    nodes: int = field(32, ge=3, le=MAX_NODES, unit="nodes")
+    """Number of nodes."""
 
 
-class Ring(Elastic):
+class Ring(Spaced):
     """A closed filament, round at rest."""
 
     builder: Literal["ring"]
-    nodes: int = Field(default=32, ge=4, le=MOST, json_schema_extra=unit("nodes"))
-    """Nodes of the ring."""
-    spacing: float = spacing()
-    """Rest length of an edge."""
+    nodes: int = field(32, ge=4, le=MAX_NODES, unit="nodes")
+    """Number of nodes."""
 
 
-class Arc(Elastic):
+class Arc(Spaced):
     """An open circle, like a bell."""
 
     builder: Literal["arc"]
-    nodes: int = Field(default=32, ge=4, le=MOST, json_schema_extra=unit("nodes"))
-    """Nodes of the arc."""
-    spacing: float = spacing()
-    """Rest length of an edge."""
-    gap: float = Field(default=0.25, gt=0.0, lt=1.0)
-    """Share of the circle that is missing."""
+    nodes: int = field(32, ge=4, le=MAX_NODES, unit="nodes")
+    """Number of nodes."""
+    gap: float = field(0.25, gt=0.0, lt=1.0)
+    """Missing share of the circle."""
 
 
 class Walk(Elastic):
     """A filament along a random walk, which may cross itself."""
 
     builder: Literal["walk"]
-    nodes: int = Field(default=1000, ge=3, le=MOST, json_schema_extra=unit("nodes"))
-    """Nodes of the filament."""
-    spacing: float = Field(default=0.4, ge=0.25, le=2.0, json_schema_extra=unit("cells"))
+    nodes: int = field(1000, ge=3, le=MAX_NODES, unit="nodes")
+    """Number of nodes."""
+    spacing: float = field(0.4, ge=0.25, le=2.0, unit="cells")
     """Rest length of an edge."""
-    deviation: float = Field(default=0.3, ge=0.0, le=3.0, json_schema_extra=unit("rad"))
+    deviation: float = field(0.3, ge=0.0, le=3.0, unit="rad")
     """Standard deviation of the angle at each joint."""
-    seed: int = Field(default=3, ge=0, lt=2**32)
-    """Which of many walks it is."""
+    seed: int = field(3, ge=0, lt=2**32)
+    """Random seed of the walk."""
 
 
-class Star(Elastic):
+class Star(Spaced):
     """Straight arms from one middle node."""
 
     builder: Literal["star"]
-    arms: int = Field(default=5, ge=3, le=64)
-    """Arms, evenly around the middle."""
-    arm_nodes: int = Field(default=8, ge=1, le=1024, json_schema_extra=unit("nodes"))
-    """Nodes of an arm, the middle one not among them."""
-    spacing: float = spacing()
-    """Rest length of an edge."""
+    arms: int = field(5, ge=3, le=64)
+    """Number of arms, evenly spaced around the middle."""
+    arm_nodes: int = field(8, ge=1, le=1024, unit="nodes")
+    """Nodes per arm, without the middle node."""
 
 
-class Tree(Elastic):
-    """A stem that branches again and again."""
+class Tree(Spaced):
+    """A stem that branches repeatedly."""
 
     builder: Literal["tree"]
-    levels: int = Field(default=3, ge=1, le=8)
-    """How often a branch ends in branches, the stem among them."""
-    branches: int = Field(default=2, ge=2, le=4)
-    """Branches at the end of each."""
-    segment_nodes: int = Field(default=6, ge=1, le=256, json_schema_extra=unit("nodes"))
-    """Nodes of a branch."""
-    spacing: float = spacing()
-    """Rest length of an edge."""
-    angle: float = Field(default=0.9, gt=0.0, le=2.0, json_schema_extra=unit("rad"))
-    """Between the outermost branches of a fork."""
+    levels: int = field(3, ge=1, le=8)
+    """Levels of branches, the stem included."""
+    branches: int = field(2, ge=2, le=4)
+    """Branches per fork."""
+    segment_nodes: int = field(6, ge=1, le=256, unit="nodes")
+    """Nodes per branch."""
+    angle: float = field(0.9, gt=0.0, le=2.0, unit="rad")
+    """Angle between the outermost branches of a fork."""
 
 
-class Polyline(Elastic):
-    """A filament along given points, with nodes evenly spaced."""
+class Polyline(Spaced):
+    """A filament along given points, its nodes evenly spaced at about `spacing`."""
 
     builder: Literal["polyline"]
-    points: Annotated[tuple[tuple[float, float], ...], Field(min_length=2, max_length=MOST)]
-    """Corners as [x, y] in cells; only their shape counts, the middle is put in the world's."""
-    spacing: float = spacing()
-    """About the rest length of an edge."""
+    points: tuple[tuple[float, float], ...] = Field(min_length=2, max_length=MAX_NODES)
+    """Corners as [x, y] in cells. Only the shape counts; it is centred in the world."""
     closed: bool = False
-    """Whether the last point is joined to the first."""
+    """Join the last point to the first."""
 
 
 class Graph(Elastic):
-    """Any filaments: nodes and the edges between them, at rest as they are drawn."""
+    """Any filaments: nodes and edges, at rest as drawn."""
 
     builder: Literal["graph"]
-    nodes: Annotated[tuple[tuple[float, float], ...], Field(min_length=3, max_length=MOST)]
-    """Places as [x, y] in cells."""
-    edges: Annotated[tuple[tuple[int, int], ...], Field(min_length=2, max_length=4 * MOST)]
+    nodes: tuple[tuple[float, float], ...] = Field(min_length=3, max_length=MAX_NODES)
+    """Positions as [x, y] in cells."""
+    edges: tuple[tuple[int, int], ...] = Field(min_length=2, max_length=4 * MAX_NODES)
     """Pairs of node numbers, from 0."""
 
 
 Swimmer = Literal["worm", "tadpole", "ray", "cilia", "jellyfish"]
-"""The known swimmers, by name."""
+"""Names of the five swimmers of the paper."""
 
 
-class Known(Part):
-    """The body of one of the five known swimmers."""
+class SwimmerBody(Part):
+    """The body of one of the five swimmers of the paper."""
 
     model_config = after(PAPER)
 
     builder: Swimmer
-    """Whose body."""
+    """Name of the swimmer."""
 
 
 WITH_BODY = ("body", "gait")
@@ -166,21 +157,8 @@ class PluginBody(Part):
     complete = complete_plugin(WITH_BODY, "builder")
 
 
-NAMES = (
-    "chain",
-    "ring",
-    "arc",
-    "walk",
-    "star",
-    "tree",
-    "polyline",
-    "graph",
-    *get_args(Swimmer),
-)
-
-
 def _tag(value: Any) -> Any:
-    """A body that names no builder is a chain."""
+    """The tag of a body; one without a builder is a chain."""
     if isinstance(value, dict):
         name = value.get("builder", "chain")
     else:
@@ -199,32 +177,38 @@ Body = Annotated[
     | Annotated[Tree, Tag("tree")]
     | Annotated[Polyline, Tag("polyline")]
     | Annotated[Graph, Tag("graph")]
-    | Annotated[Known, Tag("known")]
+    | Annotated[SwimmerBody, Tag("known")]
     | Annotated[SkipJsonSchema[PluginBody], Tag("plugin")],
     Discriminator(
         _tag,
         custom_error_type="unknown_builder",
-        custom_error_message="`builder` must be one of " + ", ".join(NAMES),
+        custom_error_message="`builder` must be one of "
+        + ", ".join((*BUILDERS, *get_args(Swimmer))),
     ),
 ]
 """A body, by the name of its builder."""
 
 
 def shape(body: Body) -> bodies.Body:
-    """The graph of a body at rest; `ValueError` where it is malformed or not to be had."""
+    """Return the graph of a body at rest.
+
+    Raises `ValueError` where it is malformed, or `plugins.Missing` where its plug-in is not
+    loaded.
+    """
     return _shape(resolved(body))  # pyright: ignore[reportArgumentType]
 
 
-def about(body: Body) -> bodies.Body:
-    """The graph of a body, or where it is made elsewhere a chain with as many nodes at most."""
-    if made_elsewhere(body):
+def estimated_shape(body: Body) -> bodies.Body:
+    """Return the graph of a body, or the longest chain if its plug-in is not loaded."""
+    if is_unavailable(body):
         assert isinstance(body, PluginBody)
-        return bodies.chain(min(MOST, max(3, body.plugin.sizes.get("nodes", MOST))), 1.0)
+        most = body.plugin.sizes.get("nodes", MAX_NODES)
+        return bodies.chain(min(MAX_NODES, max(3, most)), 1.0)
     return shape(body)
 
 
-def made_elsewhere(body: Body) -> bool:
-    """Whether it is of one's own, in a version that is not loaded here."""
+def is_unavailable(body: Body) -> bool:
+    """Whether a plug-in builds the body whose version is not loaded in this process."""
     if not isinstance(body, PluginBody):
         return False
     try:
@@ -235,22 +219,22 @@ def made_elsewhere(body: Body) -> bool:
 
 
 def resolved(body: Body) -> Body:
-    """A body of one's own as the graph that it is: that means the same to everybody."""
+    """Return a plug-in's body as a graph, which means the same everywhere."""
     if not isinstance(body, PluginBody):
         return body
     plugin = plugins.find(WITH_BODY, body.builder, body.plugin.source)
     made = plugin(settings=body.plugin.settings)
-    made = getattr(made, "body", made)  # A swimmer has one.
+    made = getattr(made, "body", made)  # A gait returns a swimmer.
     if not isinstance(made, bodies.Body):
-        raise plugins.Broken(f"{body.builder} must give a body, got {type(made).__name__}")
+        raise plugins.Broken(f"{body.builder} must return a body, got {type(made).__name__}")
     return _graph(body, made)
 
 
 def _graph(body: PluginBody, made: bodies.Body) -> Graph:
-    most = body.plugin.sizes.get("nodes", MOST)
+    most = body.plugin.sizes.get("nodes", MAX_NODES)
     if len(made.positions) > most:
         raise plugins.Broken(
-            f"{body.builder} must give at most the {most} `nodes` that it declares, got "
+            f"{body.builder} must return at most the {most} `nodes` that it declares, got "
             f"{len(made.positions)}"
         )
     uneven = [name for name in ("stretch", "shear", "bend") if np.ptp(getattr(made, name)) > 0]
@@ -276,8 +260,8 @@ def _graph(body: PluginBody, made: bodies.Body) -> Graph:
     return graph
 
 
-def _nodes(body: Elastic) -> float:
-    """About how many nodes there will be, where fields alone do not bound it."""
+def _node_count(body: Elastic) -> float:
+    """The approximate number of nodes of builders whose fields alone do not bound it."""
     match body:
         case Star():
             return 1 + body.arms * body.arm_nodes
@@ -291,10 +275,10 @@ def _nodes(body: Elastic) -> float:
 
 @lru_cache(maxsize=64)
 def _shape(body: Body) -> bodies.Body:
-    if isinstance(body, Known):
+    if isinstance(body, SwimmerBody):
         return swimmers.SWIMMERS[body.builder]().body
-    measures = {name: getattr(body, name) for name in type(body).model_fields}
-    if measures.pop("builder") == "graph":
-        nodes, edges = (np.array(measures.pop(name)) for name in ("nodes", "edges"))
-        return bodies.from_edges(nodes, edges, **measures)
-    return getattr(bodies, body.builder)(**measures)
+    sizes = {name: getattr(body, name) for name in type(body).model_fields}
+    if sizes.pop("builder") == "graph":
+        nodes, edges = (np.array(sizes.pop(name)) for name in ("nodes", "edges"))
+        return bodies.from_edges(nodes, edges, **sizes)
+    return getattr(bodies, body.builder)(**sizes)

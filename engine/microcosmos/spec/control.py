@@ -1,42 +1,38 @@
-"""The controller: what a CPPN sees, what its outputs mean and how its genome varies."""
+"""Controllers: actuation, the inputs of networks, the CPPN, and the mutation of its genome."""
 
 from typing import Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from .base import Part, unit
-from .sources import CPPN, NEAT, PAPER, after, source
+from .base import Part, field
+from .sources import CPPN, NEAT, PAPER, after
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
 OUTPUTS = ("rest_angle", "rest_length")
 
 
 class Actuation(Part):
-    """How far, how fast and with which clock rest angles and rest lengths change."""
+    """Amplitude and timing of rest angles and rest lengths."""
 
-    timer: Literal["sine-cosine", "linear"] = Field(
-        default="sine-cosine", json_schema_extra=source(f"linear: {PAPER}")
-    )
-    """Time as sine and cosine of the phase, or rising linearly from 0 to 1."""
-    period: float = Field(default=100.0, ge=4.0, le=1e6, json_schema_extra=unit("steps"))
+    timer: Literal["sine-cosine", "linear"] = field("sine-cosine", source=f"linear: {PAPER}")
+    """Time input: sine and cosine of the phase, or linear from 0 to 1."""
+    period: float = field(100.0, ge=4.0, le=1e6, unit="steps")
     """Period of the sine and cosine."""
-    ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
-    """Over how many periods the actuation grows from nothing to its full size."""
-    angle_scale: float = Field(default=0.1, gt=0.0, le=1.5, json_schema_extra=unit("rad"))
-    """Rest angles are the body's own plus this times what the controller says, −1 to 1."""
-    length_scale: float = Field(default=0.1, ge=0.0, le=0.8)
-    """Rest lengths are the body's own times 1 + this times what the controller says."""
+    ramp: float = field(1.0, ge=0.0, le=100.0, unit="periods")
+    """Time in which the actuation grows from zero to its full amplitude."""
+    angle_scale: float = field(0.1, gt=0.0, le=1.5, unit="rad")
+    """Amplitude of rest angles: the controller's output (−1 to 1) times this is added."""
+    length_scale: float = field(0.1, ge=0.0, le=0.8)
+    """Amplitude of rest lengths: factor 1 + this times the controller's output (−1 to 1)."""
 
 
 class Sight(Actuation):
-    """What a network is told at every node of the body."""
+    """Inputs of a network at every node of the body."""
 
-    position: Literal["signed", "unit"] = Field(
-        default="signed", json_schema_extra=source(f"unit: {PAPER}")
-    )
-    """Position along the filament from −1 to 1, or from 0 to 1."""
-    sense_energy: bool = Field(default=False, json_schema_extra=source(PAPER))
-    """Whether the network also sees the energy at its node, which closes the loop."""
+    position: Literal["signed", "unit"] = field("signed", source=f"unit: {PAPER}")
+    """Position along the filament: −1 to 1 (signed) or 0 to 1 (unit)."""
+    sense_energy: bool = field(False, source=PAPER)
+    """Add the energy at the node as an input (closed loop)."""
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -50,8 +46,7 @@ class Control(Sight):
 
     encoding: Literal["cppn"] = "cppn"
     recurrent: bool = False
-    """Whether the network may have cycles: its nodes are updated together, once a step, and
-    keep their values from step to step."""
+    """Allow cycles: all nodes are updated once a step and keep their values between steps."""
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -59,30 +54,28 @@ class Control(Sight):
 
 
 class Genome(Part):
-    """Room for a CPPN, and how often each kind of mutation happens to a child."""
+    """Size limits of a CPPN's genome, and NEAT's mutation rates per child."""
 
     model_config = after(f"{NEAT}, section 3.1", seldom=True)
 
-    max_nodes: int = Field(default=24, ge=8, le=1024, json_schema_extra=unit("nodes"))
-    """Room for nodes, inputs and outputs among them."""
-    max_connections: int = Field(
-        default=64, ge=8, le=8192, json_schema_extra=unit("connections")
-    )
-    """Room for connections, disabled ones among them."""
-    weight_rate: float = Field(default=0.6, ge=0.0, le=1.0)
-    """Probability, for each weight and bias, to be perturbed."""
-    weight_step: float = Field(default=1.0, gt=0.0, le=10.0)
+    max_nodes: int = field(24, ge=8, le=1024, unit="nodes")
+    """Maximum number of nodes, inputs and outputs included."""
+    max_connections: int = field(64, ge=8, le=8192, unit="connections")
+    """Maximum number of connections, disabled ones included."""
+    weight_rate: float = field(0.6, ge=0.0, le=1.0)
+    """Probability that a weight or bias is perturbed."""
+    weight_step: float = field(1.0, gt=0.0, le=10.0)
     """Standard deviation of a perturbation."""
-    replace_rate: float = Field(default=0.05, ge=0.0, le=1.0)
-    """Probability, for each weight and bias, to be drawn anew."""
-    activation_rate: float = Field(default=0.1, ge=0.0, le=1.0)
-    """Probability, for each node, to get another activation."""
-    toggle_rate: float = Field(default=0.02, ge=0.0, le=1.0)
-    """Probability, for each connection, to be switched on or off."""
-    add_node_rate: float = Field(default=0.15, ge=0.0, le=1.0)
-    """Probability that a connection is split by a new node."""
-    add_connection_rate: float = Field(default=0.25, ge=0.0, le=1.0)
-    """Probability that two nodes are newly connected."""
+    replace_rate: float = field(0.05, ge=0.0, le=1.0)
+    """Probability that a weight or bias is drawn anew."""
+    activation_rate: float = field(0.1, ge=0.0, le=1.0)
+    """Probability that a node gets another activation."""
+    toggle_rate: float = field(0.02, ge=0.0, le=1.0)
+    """Probability that a connection is enabled or disabled."""
+    add_node_rate: float = field(0.15, ge=0.0, le=1.0)
+    """Probability that a new node splits a connection."""
+    add_connection_rate: float = field(0.25, ge=0.0, le=1.0)
+    """Probability that a new connection joins two nodes."""
 
     @model_validator(mode="after")
     def refuse_cramped(self) -> Self:

@@ -1,4 +1,4 @@
-"""What a spec is about, to be drawn before anything runs: bodies in their worlds, pictures."""
+"""Drawings of a spec before it runs: bodies in their worlds, and target pictures."""
 
 from dataclasses import dataclass, replace
 from functools import singledispatch
@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import bodies
 from . import targets
-from .body import Body, made_elsewhere, shape
+from .body import Body, is_unavailable, shape
 from .creature import scene_of
 from .evolution import Evolution
 from .experiments import Spec
@@ -18,46 +18,46 @@ from .scaling import SPACING, Scaling
 from .world import World
 
 MOST_NODES = 1024
-"""Nodes of a body that are drawn, about."""
+"""Approximate number of drawn nodes of a body."""
 MOST_FILAMENTS = 600
-"""Filaments of a crowd that are drawn."""
+"""Most drawn filaments."""
 MOST_PICTURES = 16
-"""Pictures that are drawn."""
+"""Most drawn pictures."""
 PIXELS = 32
-"""Of a drawn picture's longer side."""
+"""Pixels of a drawn picture's longer side."""
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A body at rest in its world; of many nodes fewer are drawn."""
+    """A body at rest in its world, thinned if it has many nodes."""
 
     name: str
     nodes: int
-    """How many there are."""
+    """Number of nodes before thinning."""
     positions: np.ndarray
     """(node, 2) in cells."""
     edges: np.ndarray
-    """(edge, 2) numbers of nodes that are drawn."""
+    """(edge, 2) numbers of drawn nodes."""
     whole: bool = True
-    """Whether every filament is drawn, with however few nodes."""
+    """Whether every filament is drawn."""
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """Bodies, each in a periodic world of its own that is as large as the others'."""
+    """Bodies, each in its own periodic world of the same size."""
 
     width: int
     height: int
     bodies: tuple[Drawn, ...]
     pictures: tuple[tuple[str, np.ndarray], ...] = ()
-    """Names and ink (row, column) from the top."""
+    """Names, and ink (row, column) from the top."""
     picture_size: int = 0
     """The longer side of a picture, in cells."""
 
 
 @singledispatch
 def drawing(spec: Spec) -> Drawing:
-    """What is drawn of a spec."""
+    """Return the drawing of a spec."""
     raise TypeError(f"`spec` must be an experiment's, got {type(spec).__name__}")
 
 
@@ -84,7 +84,7 @@ def _(spec: Folding) -> Drawing:
 def _(spec: Gaits) -> Drawing:
     size = spec.width, spec.height
     found = {name: swimmer_body(name, spec.plugins.get(name)) for name in spec.swimmers}
-    drawn = [_drawn(n, *size, body) for n, body in found.items() if not made_elsewhere(body)]
+    drawn = [_drawn(n, *size, body) for n, body in found.items() if not is_unavailable(body)]
     return Drawing(*size, tuple(drawn))
 
 
@@ -95,21 +95,21 @@ def _(spec: Scaling) -> Drawing:
 
 
 def _alone(world: World, body: Body) -> Drawing:
-    if made_elsewhere(body):  # Nobody here knows what it looks like.
+    if is_unavailable(body):
         return Drawing(world.width, world.height, ())
     drawn = _drawn(body.builder, world.width, world.height, body)
     return Drawing(world.width, world.height, (drawn,))
 
 
 def _drawn(name: str, width: int, height: int, body: Body) -> Drawn:
-    """The body in the middle of its world, where its life begins."""
+    """Draw a body in the middle of its world, where it starts."""
     whole = bodies.placed(shape(body), (width / 2, height / 2))
     positions, edges = bodies.thinned(whole, MOST_NODES)
     return Drawn(name, len(whole.positions), positions, edges)
 
 
 def _crowd(spec: Scaling, nodes: int) -> Drawn:
-    """Straight filaments by their ends; the first of them lie anywhere in the box."""
+    """Draw straight filaments by their ends; the first ones already spread over the box."""
     every = spec.centres(nodes)
     centres = every[:MOST_FILAMENTS]
     half = (spec.filament - 1) * SPACING / 2

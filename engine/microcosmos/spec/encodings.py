@@ -1,14 +1,14 @@
-"""Encodings beside the plain CPPN: what is inherited, and within which bounds."""
+"""Encodings beside the plain CPPN: their genes and the bounds of inherited traits."""
 
 from itertools import pairwise
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
-from .base import Part, unit
-from .body import Body, made_elsewhere, shape
+from .base import ENCODINGS, Part, field, unit
+from .body import Body, is_unavailable, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
 from .plugins import PluginName, PluginVersion, complete_plugin
 
@@ -19,19 +19,19 @@ TRAITS = {
     "shear": (0.0, 1.0),
     "bend": (0.0, 1.0),
 }
-"""What of a body can be inherited, and how far its bounds may lie."""
+"""Traits of a body that can be inherited, and the limits of their bounds."""
 
-OF_JOINTS = ("rest_angle", "bend")
-"""Traits that joints have; the others are of edges."""
+JOINT_TRAITS = ("rest_angle", "bend")
+"""Traits of joints; the others are traits of edges."""
 
 
-class Free(Part):
-    """Bounds of a measure that is inherited."""
+class Bounds(Part):
+    """Bounds of an inherited trait."""
 
     low: float
-    """Least value."""
+    """Lowest value."""
     high: float
-    """Greatest value."""
+    """Highest value."""
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
@@ -40,29 +40,37 @@ class Free(Part):
         return self
 
 
-class Shaping(Part):
-    """Which measures of the body are inherited too."""
+def _bounds(of: str, otherwise: str, **extra: Any) -> Any:
+    return Field(description=f"Bounds of {of}; empty: {otherwise}.", json_schema_extra=extra)
 
-    rest_angle: Free | None = Field(default=None, json_schema_extra=unit("rad"))
-    """Bounds in rad of what is added to each of the body's rest angles; empty: nothing."""
-    rest_length: Free | None = None
-    """Bounds of a factor on each of the body's rest lengths; empty: 1."""
-    stretch: Free | None = None
-    """Bounds of each edge's stretching stiffness; empty: the body's own."""
-    shear: Free | None = None
-    """Bounds of each edge's shearing stiffness; empty: the body's own."""
-    bend: Free | None = None
-    """Bounds of each joint's bending stiffness; empty: the body's own."""
+
+RestAngle = Annotated[
+    Bounds | None, _bounds("the angle added to each rest angle", "none", unit="rad")
+]
+RestLength = Annotated[Bounds | None, _bounds("the factor on each rest length", "1")]
+Stretch = Annotated[Bounds | None, _bounds("each edge's stretching stiffness", "the body's")]
+Shear = Annotated[Bounds | None, _bounds("each edge's shearing stiffness", "the body's")]
+Bend = Annotated[Bounds | None, _bounds("each joint's bending stiffness", "the body's")]
+
+
+class Shaping(Part):
+    """Inherited traits of the body."""
+
+    rest_angle: RestAngle = None
+    rest_length: RestLength = None
+    stretch: Stretch = None
+    shear: Shear = None
+    bend: Bend = None
 
     @property
-    def free(self) -> dict[str, tuple[float, float]]:
-        """Bounds of what is inherited, by name."""
+    def traits(self) -> dict[str, tuple[float, float]]:
+        """Bounds of the inherited traits, by name."""
         found = {name: getattr(self, name) for name in TRAITS}
         return {name: (one.low, one.high) for name, one in found.items() if one is not None}
 
     @model_validator(mode="after")
     def refuse_impossible(self) -> Self:
-        for name, (low, high) in self.free.items():
+        for name, (low, high) in self.traits.items():
             least, most = TRAITS[name]
             if low < least or high > most:
                 raise ValueError(
@@ -73,33 +81,26 @@ class Shaping(Part):
 
 
 class Direct(Actuation, Shaping):
-    """Genes are the control of every joint and edge and, where free, measures of the body."""
+    """Genes are the control of every joint and edge, and the inherited traits of the body."""
 
     encoding: Literal["direct"] = "direct"
     waveform: Literal["fourier", "table"] = "fourier"
-    """A sum of sines and cosines of the phase, or a table with straight lines in between; its
-    time is the period, or the whole simulation where the timer is linear."""
-    terms: int = Field(default=2, ge=1, le=256)
-    """Harmonics of the sum, or entries of the table, for every joint and edge."""
-    spread: float = Field(default=1.0, gt=0.0, le=1.0)
-    """Genes of newcomers lie evenly within ± this; all genes lie within ±1."""
-    faintest: float = Field(default=0.01, gt=0.0, le=1.0)
-    """Newcomers' angles, and lengths, are made fainter by a factor from this to 1, even on a
-    log scale: many independent genes would else come to the same effort in everybody."""
+    """Sum of sines and cosines of the phase, or a table with linear interpolation. Its time is
+    the period, or the whole simulation with a linear timer."""
+    terms: int = field(2, ge=1, le=256)
+    """Harmonics of the sum, or entries of the table, per joint and edge."""
+    spread: float = field(1.0, gt=0.0, le=1.0)
+    """Initial genes are drawn uniformly within ± this; all genes lie within ±1."""
+    faintest: float = field(0.01, gt=0.0, le=1.0)
+    """Smallest factor on a new genome's angles and on its lengths, drawn log-uniformly up to
+    1. Without it, many independent genes give all new genomes the same effort."""
 
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """None: there is no network."""
-        return ()
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """None: there is no network."""
-        return ()
+    inputs: ClassVar[tuple[str, ...]] = ()
+    outputs: ClassVar[tuple[str, ...]] = ()
 
     @property
     def weights(self) -> int:
-        """Genes of one joint's, or one edge's, control."""
+        """Genes that control one joint or edge."""
         return self.terms * (2 if self.waveform == "fourier" else 1)
 
     @model_validator(mode="after")
@@ -109,27 +110,27 @@ class Direct(Actuation, Shaping):
         return self
 
     def parts(self, body: bodies.Body) -> dict[str, int]:
-        """How many genes each trait has, then the control of angles and of lengths."""
+        """Number of genes of each trait, then of the control of angles and of lengths."""
         joints, edges = len(body.joints), len(body.edges)
-        sizes = {name: joints if name in OF_JOINTS else edges for name in self.free}
+        sizes = {name: joints if name in JOINT_TRAITS else edges for name in self.traits}
         if "rest_angle" in sizes:
             sizes["rest_angle"] = len(bodies.unfolded(body).joints)
         return sizes | {"angles": self.weights * joints, "lengths": self.weights * edges}
 
 
 class Weights(Sight):
-    """Genes are the weights and biases of a network whose layers are given."""
+    """Genes are the weights and biases of a network with fixed layers."""
 
     encoding: Literal["weights"] = "weights"
     hidden: Annotated[
         tuple[Annotated[int, Field(ge=1, le=256, json_schema_extra=unit("nodes"))], ...],
         Field(min_length=1, max_length=8),
     ] = (8, 8)
-    """Nodes of each layer between inputs and outputs."""
+    """Nodes of each hidden layer."""
     activation: Literal["tanh", "sin", "sigmoid", "relu", "gaussian"] = "sin"
-    """Of the hidden nodes; outputs go through tanh."""
-    scale: float = Field(default=3.0, gt=0.0, le=100.0)
-    """Weights and biases are this times their genes, which are from −1 to 1."""
+    """Activation of hidden nodes; outputs use tanh."""
+    scale: float = field(3.0, gt=0.0, le=100.0)
+    """Weights and biases per unit of their genes, which lie within ±1."""
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -142,28 +143,21 @@ class Weights(Sight):
 
 
 class Grown(Sight, Shaping):
-    """One CPPN sets rest angles and lengths, and before that grows the chain itself."""
+    """One CPPN grows the chain, then sets its rest angles and rest lengths."""
 
     encoding: Literal["cppn-body"] = "cppn-body"
-    min_nodes: int = Field(default=4, ge=3, le=4096, json_schema_extra=unit("nodes"))
-    """So many nodes there are at least; at most those of the body."""
-    rest_angle: Free | None = Field(
-        default=Free(low=-0.15, high=0.15), json_schema_extra=unit("rad")
-    )
-    """Bounds in rad of what is added to each of the body's rest angles; empty: nothing."""
-    rest_length: Free | None = Free(low=0.75, high=1.25)
-    """Bounds of a factor on each of the body's rest lengths; empty: 1."""
-    stretch: Free | None = Free(low=0.5, high=1.0)
-    """Bounds of each edge's stretching stiffness; empty: the body's own."""
-    shear: Free | None = Free(low=0.1, high=1.0)
-    """Bounds of each edge's shearing stiffness; empty: the body's own."""
-    bend: Free | None = Free(low=0.1, high=1.0)
-    """Bounds of each joint's bending stiffness; empty: the body's own."""
+    min_nodes: int = field(4, ge=3, le=4096, unit="nodes")
+    """Minimum number of nodes; the maximum is that of the body."""
+    rest_angle: RestAngle = Bounds(low=-0.15, high=0.15)
+    rest_length: RestLength = Bounds(low=0.75, high=1.25)
+    stretch: Stretch = Bounds(low=0.5, high=1.0)
+    shear: Shear = Bounds(low=0.1, high=1.0)
+    bend: Bend = Bounds(low=0.1, high=1.0)
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """The control, the body's free measures, and where it ends."""
-        return (*OUTPUTS, *(f"body_{name}" for name in self.free), "growth")
+        """The control, the inherited traits, and growth, which decides where the body ends."""
+        return (*OUTPUTS, *(f"body_{name}" for name in self.traits), "growth")
 
 
 class PluginControl(Actuation):
@@ -172,33 +166,23 @@ class PluginControl(Actuation):
     encoding: PluginName
     plugin: PluginVersion
 
+    inputs: ClassVar[tuple[str, ...]] = ()
+    outputs: ClassVar[tuple[str, ...]] = ()
     complete = complete_plugin(("encoding",), "encoding")
 
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """None: there is no network."""
-        return ()
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """None: there is no network."""
-        return ()
-
     def genes(self, body: bodies.Body) -> int:
-        """Numbers of a creature with such a body."""
+        """Number of genes of a creature with such a body."""
         sizes = self.plugin.sizes
         each = {"genes": 1, "per_joint": len(body.joints), "per_edge": len(body.edges)}
         return sum(count * sizes.get(name, 0) for name, count in each.items())
 
 
-MOST_GENES = 65_536
-"""Numbers of one creature."""
-
-NAMES = ("cppn", "direct", "weights", "cppn-body")
+MAX_GENES = 65_536
+"""Most genes of a creature whose genome is a vector."""
 
 
-def kind(value: Any) -> Any:
-    """The tag of a controller; one that names no encoding is a CPPN."""
+def encoding_tag(value: Any) -> Any:
+    """Return the tag of a controller; one without an encoding is a CPPN."""
     if isinstance(value, dict):
         name = value.get("encoding", "cppn")
     else:
@@ -213,24 +197,24 @@ Controller = Annotated[
     | Annotated[Grown, Tag("cppn-body")]
     | Annotated[SkipJsonSchema[PluginControl], Tag("plugin")],
     Discriminator(
-        kind,
+        encoding_tag,
         custom_error_type="unknown_encoding",
-        custom_error_message="`encoding` must be one of " + ", ".join(NAMES),
+        custom_error_message="`encoding` must be one of " + ", ".join(ENCODINGS[:4]),
     ),
 ]
-"""What sets rest angles and rest lengths, and is inherited."""
+"""A controller whose genome is inherited, by its encoding."""
 
 
-def lengthening(control: Controller) -> float:
-    """By how much of its own length a controller may stretch a body."""
+def max_stretch(control: Controller) -> float:
+    """The largest share of its length by which a controller may stretch a body."""
     if isinstance(control, Shaping) and control.rest_length is not None:
         return control.rest_length.high * (1 + control.length_scale) - 1
     return control.length_scale
 
 
 def refuse_unfit(control: Controller, body: Body) -> None:
-    """The body must be one that the encoding can change as it is asked to."""
-    if made_elsewhere(body):  # Whoever can make it looks.
+    """Raise `ValueError` where the encoding cannot control or shape the body."""
+    if is_unavailable(body):  # A worker that can build it checks it.
         return
     whole = shape(body)
     if isinstance(control, Grown) and body.builder != "chain":
@@ -242,26 +226,24 @@ def refuse_unfit(control: Controller, body: Body) -> None:
             f"`control.min_nodes` must be at most the body's {len(whole.positions)} nodes, got "
             f"{control.min_nodes}"
         )
-    if isinstance(control, Shaping) and {"rest_angle", "rest_length"} & set(control.free):
+    if isinstance(control, Shaping) and {"rest_angle", "rest_length"} & set(control.traits):
         try:
             bodies.unfolded(whole)
         except ValueError as error:
             raise ValueError(
                 f"`control.rest_angle` and `rest_length` must be empty for this `body`: {error}"
             ) from error
-    if (count := genes(control, whole)) > MOST_GENES:
-        raise ValueError(f"a creature must have at most {MOST_GENES} numbers, got {count}")
+    if (count := gene_count(control, whole)) > MAX_GENES:
+        raise ValueError(f"a creature must have at most {MAX_GENES} genes, got {count}")
 
 
 def refuse_cramped(control: Controller, genome: Genome) -> None:
-    """There must be room for networks in which every input leads to every output."""
+    """Raise `ValueError` where networks cannot connect every input to every output."""
     if not isinstance(control, Control | Grown):
         return
     inputs, outputs = len(control.inputs), len(control.outputs)
-    for name, needed in (
-        ("max_nodes", inputs + outputs),
-        ("max_connections", inputs * outputs),
-    ):
+    least = {"max_nodes": inputs + outputs, "max_connections": inputs * outputs}
+    for name, needed in least.items():
         if (found := getattr(genome, name)) < needed:
             raise ValueError(
                 f"`genome.{name}` must be at least {needed} for {inputs} inputs and {outputs} "
@@ -269,8 +251,8 @@ def refuse_cramped(control: Controller, genome: Genome) -> None:
             )
 
 
-def genes(control: Controller, body: bodies.Body) -> int:
-    """Length of a vector of genes; 0 where they are a network's."""
+def gene_count(control: Controller, body: bodies.Body) -> int:
+    """Length of a vector genome; 0 where the genome is a network."""
     if isinstance(control, Direct):
         return sum(control.parts(body).values())
     if isinstance(control, PluginControl):

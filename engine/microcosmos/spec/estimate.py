@@ -1,4 +1,4 @@
-"""What a run will need, before it is accepted."""
+"""Estimates of the memory and work of a run."""
 
 from dataclasses import dataclass
 from functools import singledispatch
@@ -6,9 +6,9 @@ from math import ceil
 
 from ..bodies.unfolding import MOST as LAID_OUT
 from . import reverse
-from .body import about as shape
+from .body import estimated_shape as shape
 from .creature import room, scene_of
-from .encodings import Controller, Direct, Grown, Weights, genes
+from .encodings import Controller, Direct, Grown, Weights, gene_count
 from .evolution import Evolution
 from .experiments import Spec
 from .folding import Folding
@@ -21,11 +21,11 @@ from .world import World
 
 PLANES = 9
 WINDOW = 16
-"""Cells around a node."""
+"""Cells in the coupling window of a node."""
 GRADIENT = 7
-"""How much longer a gradient takes than the simulation alone."""
+"""Time of a gradient relative to the simulation alone."""
 CHUNK = 2**13
-"""Nodes that are worked on at a time."""
+"""Nodes processed at a time."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +38,11 @@ class Estimate:
 
 @singledispatch
 def estimate(spec: Spec) -> Estimate:
-    """An upper estimate of a worker's memory, and the work of the whole run.
+    """Return an upper estimate of a worker's memory, and the work of the whole run.
 
-    Memory counts what is in flight at once with the populations before, during and after a
-    step, the coupling's windows of 16 cells a node, the controls of all steps, and for an
-    archive the offspring and what varying them takes. It leaves out what JAX itself occupies.
+    Memory counts one block: the populations before, during and after a step, the coupling's
+    windows of 16 cells per node, and the controls of all steps; for an archive also the
+    offspring and their variation. It leaves out the memory of JAX itself.
     """
     raise TypeError(f"`spec` must be an experiment's, got {type(spec).__name__}")
 
@@ -51,7 +51,7 @@ def estimate(spec: Spec) -> Estimate:
 def _(spec: Evolution) -> Estimate:
     search = spec.search
     rows = 3 * spec.genome.max_nodes + 5 * spec.genome.max_connections
-    genome = FLOAT * (genes(spec.control, shape(spec.body)) or rows)
+    genome = FLOAT * (gene_count(spec.control, shape(spec.body)) or rows)
     archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 160)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
     gradients = sum(spec.gradients) * search.generations
@@ -128,7 +128,7 @@ def _(spec: Scaling) -> Estimate:
 
 
 def slopes(spec: Evolution) -> int:
-    """Bytes of the gradients that emitters ask for at once."""
+    """Bytes of the gradients that emitters compute at once."""
     pairs = zip(spec.emitters, spec.gradients, strict=True)
     return max(
         (
@@ -142,7 +142,7 @@ def slopes(spec: Evolution) -> int:
 
 
 def placements(world: World) -> int:
-    """Worlds that a creature lives in."""
+    """Number of worlds per creature."""
     return world.energy.placements if world.energy else 1
 
 
@@ -166,7 +166,7 @@ def simulation(scene: Scene, network_nodes: int) -> int:
 
 
 def _width(control: Controller | Gait | Fold) -> int:
-    """Numbers at each node and time that a controller works with, where no network's."""
+    """Numbers per node and time of a controller without NEAT genes."""
     if isinstance(control, Direct):
         return control.weights
     return max(control.sizes) if isinstance(control, Weights) else 0

@@ -1,12 +1,12 @@
-"""What the specs of searches for creatures have in common."""
+"""The common part of the specs of searches."""
 
 from abc import abstractmethod
 from typing import Generic, Self, TypeVar
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from .base import Part
-from .body import Body, Chain, made_elsewhere, resolved
+from .base import Part, field
+from .body import Body, Chain, is_unavailable, resolved
 from .control import Control, Genome
 from .coupling import Coupling
 from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
@@ -22,7 +22,7 @@ How = TypeVar("How", bound=Generations)
 def refuse_crowd(
     emitters: tuple[Emitter | PopulationEmitter, ...], search: Generations
 ) -> None:
-    """A population of its own must be able to hold all that the search begins from."""
+    """Raise `ValueError` where a population cannot hold all initial creatures."""
     populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
     if not search.initial or not populations:
         return
@@ -39,21 +39,21 @@ def refuse_crowd(
 
 
 class Evolution(Part, Generic[Name, How]):
-    """Generations of creatures that live in one scene, and an archive of the best."""
+    """A search over generations of creatures in one scene, with an archive of elites."""
 
     experiment: Name
-    seed: int = Field(default=0, ge=0, lt=2**32)
-    """The one source of randomness."""
+    seed: int = field(0, ge=0, lt=2**32)
+    """Random seed."""
     world: World = World()
     body: Body = Chain()
-    """The creature at rest, before it is controlled."""
+    """Body at rest."""
     coupling: Coupling = Coupling()
     control: Controller = Control()
-    """What sets rest angles and rest lengths while a creature swims, and is inherited."""
+    """Controller of rest angles and rest lengths; its genome is inherited."""
     genome: Genome = Genome()
     task: Task = Task()
     archive: Archive = Archive()
-    """Where the best creature of each kind is kept."""
+    """Archive: the fittest creature (elite) of each cell."""
     search: How
 
     @model_validator(mode="after")
@@ -77,24 +77,24 @@ class Evolution(Part, Generic[Name, How]):
     @property
     @abstractmethod
     def emitters(self) -> tuple[Emitter | PopulationEmitter, ...]:
-        """Where children come from."""
+        """Sources of offspring."""
 
     @property
     @abstractmethod
     def slots(self) -> tuple[int, ...]:
-        """Children of each emitter in a generation."""
+        """Offspring per generation of each emitter."""
 
     @property
     def gradients(self) -> tuple[int, ...]:
-        """Creatures that each emitter asks the slopes of in a generation."""
+        """Gradients per generation that each emitter needs."""
         return tuple(map(gradients, self.emitters, self.slots))
 
     @property
     def scene(self) -> Scene:
-        """What is simulated for each creature."""
+        """The scene of every creature."""
         return Scene(
             world=self.world,
-            body=self.body if made_elsewhere(self.body) else resolved(self.body),
+            body=self.body if is_unavailable(self.body) else resolved(self.body),
             coupling=self.coupling,
             control=self.control,
             task=self.task,

@@ -1,4 +1,4 @@
-"""The experiments there are, and the way from a JSON document to a spec."""
+"""The kinds of experiments, and the parsing of a JSON document into a spec."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -45,25 +45,25 @@ def _experiment(title: str, module: Any, spec: type[Part]) -> Experiment:
 
 
 _ALL = (
-    _experiment(
-        "Quality-diversity: the best swimmer of every kind", quality_diversity, QualityDiversity
+    (
+        "Quality-diversity: the fittest swimmer in every cell",
+        quality_diversity,
+        QualityDiversity,
     ),
-    _experiment("Neuroevolution: NEAT, one swimmer", neuroevolution, Neuroevolution),
-    _experiment("Folding: filaments that fold into pictures", folding, Folding),
-    _experiment("Refinement: one creature made fitter by gradients", refinement, Refinement),
-    _experiment("Gaits: five known swimmers at every viscosity", gaits, Gaits),
-    _experiment("Scaling: wall time against the number of nodes", scaling, Scaling),
+    ("Neuroevolution: NEAT, one swimmer", neuroevolution, Neuroevolution),
+    ("Folding: filaments that fold into pictures", folding, Folding),
+    ("Refinement: one creature made fitter by gradients", refinement, Refinement),
+    ("Gaits: five swimmers at every viscosity", gaits, Gaits),
+    ("Scaling: wall time against the number of nodes", scaling, Scaling),
 )
-EXPERIMENTS = {experiment.name: experiment for experiment in _ALL}
+EXPERIMENTS = {one.name: one for one in (_experiment(*parts) for parts in _ALL)}
 
 
 def parse(document: Mapping[str, Any], known: Catalogue | None = None) -> Spec:
-    """The spec in a document, its `experiment` named.
+    """Return the spec in a document that names its `experiment`.
 
-    `known` says what there is of one's own; else it is what this process has loaded.
-
-    Raises `pydantic.ValidationError`, whose errors name each field, what was needed and
-    what came.
+    `known` lists the available plug-ins; by default, those loaded in this process. Raises
+    `pydantic.ValidationError`, whose errors name each field, what was needed and what came.
     """
     name = document.get("experiment") if isinstance(document, Mapping) else document
     experiment = EXPERIMENTS.get(name) if isinstance(name, str) else None

@@ -6,37 +6,36 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import Field, ValidationInfo, model_validator
 
 from ..plugins import is_plugin
-from .base import Part, unit
-from .body import Body, Known, PluginBody, Swimmer, made_elsewhere, resolved
+from .base import Part, field, unit
+from .body import Body, PluginBody, Swimmer, SwimmerBody, is_unavailable, resolved
 from .coupling import Coupling
-from .fields import Steric
 from .plugins import OR_PLUGIN, PluginVersion, PluginVersions, pinned
-from .scene import Gait, Scene, refuse_too_large
+from .scene import Scene, refuse_too_large
 from .search import Task
-from .sources import PAPER, source
-from .world import World
+from .sources import PAPER
+from .world import Steric, World
 
 FORMS = {
     "ours": "force- and torque-free, one actuator strength for all",
     "strong": "force- and torque-free, actuators that never tire",
     "paper": "as in the paper: two layers, free edge angles, not force-free",
 }
-"""How bodies and fluid are coupled, by name."""
+"""Forms of the coupling, by name."""
 
 Form = Literal["ours", "strong", "paper"]
 Viscosity = Annotated[float, Field(ge=1e-3, le=2.0, json_schema_extra=unit("cells²/step"))]
 
 
 class Gaits(Part):
-    """Five known swimmers, each by its own gait, at every viscosity."""
+    """Swimmers with hand-made gaits, at every viscosity."""
 
     experiment: Literal["gaits"] = "gaits"
-    swimmers: tuple[Annotated[Swimmer, *OR_PLUGIN], ...] = Field(
-        default=get_args(Swimmer), min_length=1, json_schema_extra=source(PAPER)
+    swimmers: tuple[Annotated[Swimmer, *OR_PLUGIN], ...] = field(
+        get_args(Swimmer), min_length=1, source=PAPER
     )
-    """Who swims."""
+    """Swimmers."""
     forms: Annotated[tuple[Form, ...], Field(min_length=1)] = ("ours", "strong", "paper")
-    """Forms of the coupling, side by side: ours, ours with tireless actuators, the paper's."""
+    """Forms of the coupling: ours, ours with actuators of constant strength, the paper's."""
     viscosities: Annotated[tuple[Viscosity, ...], Field(min_length=1, max_length=256)] = (
         0.001,
         0.002,
@@ -50,21 +49,21 @@ class Gaits(Part):
         1.0,
         2.0,
     )
-    """Kinematic viscosities in cells²/step."""
-    width: int = Field(default=64, ge=64, le=2048, json_schema_extra=unit("cells"))
-    """Size of the box along x."""
-    height: int = Field(default=64, ge=64, le=2048, json_schema_extra=unit("cells"))
-    """Size of the box along y."""
-    period: int = Field(default=1200, ge=20, le=100_000, json_schema_extra=unit("steps"))
-    """Steps of one stroke."""
-    cycles: int = Field(default=3, ge=1, le=100, json_schema_extra=unit("strokes"))
-    """Strokes; the displacement is that of the last one."""
-    ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
-    """Over how many periods the stroke grows to its full size; 0: at once."""
-    block: int = Field(default=4, ge=1, le=256, json_schema_extra=unit("points"))
-    """Points computed by one call of the compiled program; results depend on its bits."""
-    nu_c: float = Field(default=0.1, gt=0.0, le=1e3, json_schema_extra=unit("cells²/step"))
-    """Viscosity at which actuators have half of their strength, in the form `ours`."""
+    """Kinematic viscosities."""
+    width: int = field(64, ge=64, le=2048, unit="cells")
+    """Width of the box (x)."""
+    height: int = field(64, ge=64, le=2048, unit="cells")
+    """Height of the box (y)."""
+    period: int = field(1200, ge=20, le=100_000, unit="steps")
+    """Steps per stroke."""
+    cycles: int = field(3, ge=1, le=100, unit="strokes")
+    """Number of strokes; displacement is measured over the last one."""
+    ramp: float = field(1.0, ge=0.0, le=100.0, unit="periods")
+    """Time in which the stroke grows from zero to its full amplitude; 0: at once."""
+    block: int = field(4, ge=1, le=256, unit="points")
+    """Points per call of the compiled program; the exact bits of results depend on it."""
+    nu_c: float = field(0.1, gt=0.0, le=1e3, unit="cells²/step")
+    """Viscosity at which actuators have half their strength, in the form `ours`."""
     steric: Steric | None = None
     """Repulsion between nodes; empty: none."""
     plugins: PluginVersions = Field(default={})
@@ -90,7 +89,7 @@ class Gaits(Part):
         for name in ("swimmers", "forms", "viscosities"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
-                raise ValueError(f"`{name}` must differ, got {list(values)}")
+                raise ValueError(f"`{name}` must not repeat, got {list(values)}")
         for swimmer in self.swimmers:
             place = World(width=self.width, height=self.height)
             refuse_too_large(place, swimmer_body(swimmer, self.plugins.get(swimmer)), 0.1)
@@ -98,51 +97,49 @@ class Gaits(Part):
 
     @property
     def generations(self) -> int:
-        """One for every form and swimmer: all viscosities are computed together."""
+        """One per form and swimmer, with all viscosities."""
         return len(self.strokes)
 
     @property
     def strokes(self) -> tuple[tuple[str, str], ...]:
-        """Every form with every swimmer: what is computed together."""
+        """Every form with every swimmer."""
         return tuple((form, swimmer) for form in self.forms for swimmer in self.swimmers)
 
     def scene(self, form: str, swimmer: str, viscosity: float) -> Scene:
         """One point of the sweep."""
         return Scene.model_validate(
             {
-                "world": World(
-                    width=self.width,
-                    height=self.height,
-                    viscosity=viscosity,
-                    steric=self.steric,
-                ),
+                "world": {
+                    "width": self.width,
+                    "height": self.height,
+                    "viscosity": viscosity,
+                    "steric": self.steric,
+                },
                 "body": swimmer_body(swimmer, self.plugins.get(swimmer)),
                 "coupling": self.coupling(form),
-                "control": Gait.model_validate(
-                    {
-                        "swimmer": swimmer,
-                        "period": self.period,
-                        "ramp": self.ramp,
-                        "plugin": self.plugins.get(swimmer),
-                    }
-                ),
+                "control": {
+                    "swimmer": swimmer,
+                    "period": self.period,
+                    "ramp": self.ramp,
+                    "plugin": self.plugins.get(swimmer),
+                },
                 "task": Task(steps=self.period * self.cycles),
             }
         )
 
     def coupling(self, form: str) -> Coupling:
-        """What a form's name stands for."""
+        """Return the coupling of a form."""
         if form == "paper":
             return Coupling(projection="none", theta_feedback=0, layers=2)
         return Coupling(nu_c=self.nu_c if form == "ours" else None)
 
 
 def swimmer_body(swimmer: str, plugin: PluginVersion | None = None) -> Body:
-    """The body of a known swimmer, or of a plug-in's."""
+    """Return the body of a swimmer."""
     if plugin is None:
-        return Known.model_validate({"builder": swimmer})
+        return SwimmerBody.model_validate({"builder": swimmer})
     body = PluginBody(builder=swimmer, plugin=plugin)
-    return body if made_elsewhere(body) else resolved(body)
+    return body if is_unavailable(body) else resolved(body)
 
 
 PRESETS = {

@@ -1,4 +1,4 @@
-"""What is measured of every elite, and the axis that each makes by default."""
+"""The measures of every evaluation, and the default axis of each."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -8,7 +8,7 @@ Scale = Literal["log10", "linear"]
 
 @dataclass(frozen=True)
 class Measure:
-    """A measure, its unit, and the ends of its axis."""
+    """A measure: its title and unit, and the default ends and scale of its axis."""
 
     title: str
     unit: str
@@ -39,7 +39,7 @@ Name = Literal[
     "efficiency",
     "nodes",
 ]
-"""In the order in which they are recorded."""
+"""Names of the measures, in the order in which they are recorded."""
 
 MEASURES: dict[str, Measure] = {
     "displacement": Measure("Displacement", "cells", 0.0, 20.0),

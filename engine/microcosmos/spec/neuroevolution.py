@@ -7,27 +7,24 @@ from .control import Control
 from .coupling import Coupling
 from .emitters import PopulationEmitter
 from .evolution import Evolution
-from .fields import Energy, Steric
 from .search import Generations, Task
-from .world import World
+from .world import Energy, Steric, World
 
 
 class Neuroevolution(Evolution[Literal["neuroevolution"], Generations]):
-    """NEAT over swimmers: one population that gets fitter; an archive looks on."""
+    """NEAT over swimmers: one population becomes fitter; the archive records its elites."""
 
     experiment: Literal["neuroevolution"] = "neuroevolution"
     search: Generations = Generations(batch=150)
-    """The population is a batch."""
+    """Generations; the batch is the population."""
     neat: PopulationEmitter = PopulationEmitter()
 
     @property
     def emitters(self) -> tuple[PopulationEmitter, ...]:
-        """The population alone."""
         return (self.neat,)
 
     @property
     def slots(self) -> tuple[int, ...]:
-        """The population is all of a generation."""
         return (self.search.batch,)
 
 

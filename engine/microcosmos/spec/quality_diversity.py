@@ -7,11 +7,10 @@ from pydantic import model_validator
 from .body import Chain
 from .control import Control
 from .coupling import Coupling
-from .emitters import Emitter
+from .emitters import USING_GRADIENTS, Emitter
 from .evolution import Evolution
-from .fields import Steric
-from .search import Archive, Descriptor, Search, Task, refuse_flat
-from .world import World
+from .search import Archive, Descriptor, Search, Task, refuse_flat_axes
+from .world import Steric, World
 
 
 class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
@@ -22,7 +21,9 @@ class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
 
     @model_validator(mode="after")
     def check_descriptors(self) -> Self:
-        refuse_flat(self.archive, self.search.emitters)
+        for emitter in self.search.emitters:
+            if emitter.operator in USING_GRADIENTS:
+                refuse_flat_axes(self.archive, emitter.operator)
         return self
 
     @property

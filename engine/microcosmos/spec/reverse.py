@@ -1,4 +1,4 @@
-"""What reverse mode keeps in memory: measured of compiled programs, rounded upwards."""
+"""Memory of reverse-mode gradients, measured on compiled programs and rounded up."""
 
 from math import ceil
 
@@ -9,7 +9,7 @@ FLOAT = 4
 
 
 def of_step(world: World, coupling: Coupling, nodes: int) -> int:
-    """Bytes of what a step's derivative needs of it."""
+    """Bytes that the derivative of a step keeps."""
     kept = 20 * nodes * coupling.constraint_iterations
     if world.fluid:
         windows = 80 * (1 + coupling.forcing_iterations) * coupling.layers
@@ -18,17 +18,17 @@ def of_step(world: World, coupling: Coupling, nodes: int) -> int:
 
 
 def of_state(world: World, nodes: int) -> int:
-    """Bytes of a state from which steps are done again."""
+    """Bytes of a state from which steps are recomputed."""
     return FLOAT * (9 * world.width * world.height + 5 * nodes)
 
 
 def shortest(steps: int, step: int, state: int) -> int:
-    """The segment that takes the least memory, of steps and states of so many bytes."""
+    """The segment that takes the least memory, given the bytes of a step and a state."""
     return max(1, round((steps * state / step) ** 0.5))
 
 
 def in_all(steps: int, segment: int | None, step: int, state: int) -> int:
-    """Bytes of all steps, or of a state for each segment and one segment's steps."""
+    """Bytes of all steps, or of one state per segment and the steps of one segment."""
     if segment is None or segment >= steps:
         return steps * step
     return ceil(steps / segment) * state + segment * step

@@ -5,18 +5,18 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from .base import Part, unit
-from .fields import Steric
-from .sources import PAPER, source
+from .base import Part, field, unit
+from .sources import PAPER
+from .world import Steric
 
 Nodes = Annotated[int, Field(ge=20, le=2_000_000, json_schema_extra=unit("nodes"))]
 
 SPACING = 0.35
-"""Cells between nodes, along a filament and across: 500,000 of them fill a box of 256²."""
+"""Cells between nodes, along a filament and across: 500,000 nodes fill a box of 256²."""
 
 
 class Scaling(Part):
-    """Wall time of the paper's 1,000 steps, part by part, as nodes are added to one box."""
+    """Wall time of the paper's 1,000 steps, and of each part, against the number of nodes."""
 
     experiment: Literal["scaling"] = "scaling"
     nodes: Annotated[tuple[Nodes, ...], Field(min_length=2, max_length=64)] = (
@@ -31,29 +31,23 @@ class Scaling(Part):
         256_000,
         500_000,
     )
-    """Numbers of nodes, ascending, as filaments side by side at places drawn at random."""
-    filament: int = Field(default=20, ge=3, le=1000, json_schema_extra=unit("nodes"))
-    """Nodes of each filament."""
-    width: int = Field(
-        default=256, ge=32, le=2048, json_schema_extra=unit("cells") | source(PAPER)
-    )
-    """Size of the box along x."""
-    height: int = Field(
-        default=256, ge=32, le=2048, json_schema_extra=unit("cells") | source(PAPER)
-    )
-    """Size of the box along y."""
-    steps: int = Field(
-        default=1000, ge=2, le=1_000_000, json_schema_extra=unit("steps") | source(PAPER)
-    )
-    """Steps that are carried out; times are told for 1,000."""
-    part_steps: int = Field(default=20, ge=2, le=10_000, json_schema_extra=unit("steps"))
-    """Steps of each part by itself, repeated three times."""
+    """Numbers of nodes, ascending; filaments lie at random places side by side."""
+    filament: int = field(20, ge=3, le=1000, unit="nodes")
+    """Nodes per filament."""
+    width: int = field(256, ge=32, le=2048, unit="cells", source=PAPER)
+    """Width of the box (x)."""
+    height: int = field(256, ge=32, le=2048, unit="cells", source=PAPER)
+    """Height of the box (y)."""
+    steps: int = field(1000, ge=2, le=1_000_000, unit="steps", source=PAPER)
+    """Measured steps; times are reported per 1,000."""
+    part_steps: int = field(20, ge=2, le=10_000, unit="steps")
+    """Measured steps of each part, repeated three times."""
     steric: Steric = Steric()
     """Repulsion between nodes."""
-    all_pairs: int = Field(default=8_000, ge=0, le=100_000, json_schema_extra=unit("nodes"))
-    """Up to so many nodes an all-pairs repulsion is timed beside; 0: never."""
-    seed: int = Field(default=0, ge=0, lt=2**32)
-    """Decides where filaments are."""
+    all_pairs: int = field(8_000, ge=0, le=100_000, unit="nodes")
+    """Largest number of nodes for which all-pairs repulsion is timed too; 0: never."""
+    seed: int = field(0, ge=0, lt=2**32)
+    """Random seed of the filaments' places."""
 
     @model_validator(mode="after")
     def check(self) -> Self:
@@ -73,11 +67,11 @@ class Scaling(Part):
 
     @property
     def places(self) -> tuple[int, int]:
-        """How many filaments have room beside each other along x, and along y."""
+        """Filaments that fit along x, and along y."""
         return int(self.width / (self.filament * SPACING)), int(self.height / SPACING)
 
     def centres(self, nodes: int) -> np.ndarray:
-        """(filament, 2) middles of as many filaments as have so many nodes, in cells."""
+        """(filament, 2) centres in cells of the filaments that have `nodes` nodes in all."""
         columns, rows = self.places
         place = np.random.default_rng(self.seed).permutation(columns * rows)
         place = place[: nodes // self.filament]
@@ -86,7 +80,7 @@ class Scaling(Part):
 
     @property
     def generations(self) -> int:
-        """One for every number of nodes."""
+        """One per number of nodes."""
         return len(self.nodes)
 
 

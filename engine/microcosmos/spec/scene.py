@@ -1,4 +1,4 @@
-"""A creature's scene: the world, body, coupling, controller and task that it means."""
+"""Scenes: the world, body, coupling, controller and task of one creature."""
 
 from math import ceil
 from typing import Annotated, Any, Literal, Self
@@ -7,8 +7,8 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from ..bodies.extent import extent
-from .base import Part, unit
-from .body import SUPPORT, Body, Chain, Swimmer, made_elsewhere, shape
+from .base import Part, field
+from .body import SUPPORT, Body, Chain, Swimmer, is_unavailable, shape
 from .control import Control, Sight
 from .coupling import Coupling
 from .encodings import (
@@ -17,8 +17,8 @@ from .encodings import (
     Grown,
     PluginControl,
     Weights,
-    kind,
-    lengthening,
+    encoding_tag,
+    max_stretch,
     refuse_unfit,
 )
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersions, complete_plugin
@@ -27,37 +27,37 @@ from .world import World
 
 
 class Gait(Part):
-    """A hand-made gait of one of the known swimmers."""
+    """The hand-made gait of a swimmer."""
 
     swimmer: Annotated[Swimmer, *OR_PLUGIN]
-    """Whose gait."""
-    period: int = Field(default=1200, ge=20, le=1_000_000, json_schema_extra=unit("steps"))
-    """Steps of one stroke."""
-    ramp: float = Field(default=1.0, ge=0.0, le=100.0, json_schema_extra=unit("periods"))
-    """Over how many periods the stroke grows from nothing to its full size; 0: at once."""
+    """Name of the swimmer."""
+    period: int = field(1200, ge=20, le=1_000_000, unit="steps")
+    """Steps per stroke."""
+    ramp: float = field(1.0, ge=0.0, le=100.0, unit="periods")
+    """Time in which the stroke grows from zero to its full amplitude; 0: at once."""
     plugin: MaybePlugin = None
 
     complete = complete_plugin(("gait",), "swimmer")
 
 
 class Fold(Part):
-    """A rest shape that every joint and edge has for life."""
+    """A rest shape that stays constant."""
 
     encoding: Literal["fold"] = "fold"
     lengths: Literal["log", "raw"] = "log"
-    """Whether what is inherited of a rest length is the logarithm of a factor, which keeps it
-    positive, or cells that are added, as in the paper."""
+    """Genes of rest lengths: logarithms of factors, which keep lengths positive, or cells that
+    are added, as in the paper."""
 
 
 def _kind(value: Any) -> Any:
-    """The tag of a controller or of a gait."""
+    """Return the tag of a controller or a gait."""
     if isinstance(value, Gait) or (isinstance(value, dict) and "swimmer" in value):
         return "gait"
-    return kind(value)
+    return encoding_tag(value)
 
 
 class Scene(Part):
-    """What is simulated for one creature."""
+    """Everything that is simulated for one creature."""
 
     world: World = World()
     body: Body = Chain()
@@ -79,13 +79,13 @@ class Scene(Part):
     @model_validator(mode="after")
     def check(self) -> Self:
         refuse_senseless(self.world, self.control, self.task)
-        if isinstance(self.control, Fold):  # Which may lie in heaps and reach around the box.
+        if isinstance(self.control, Fold):  # It may overlap itself and reach around the box.
             return self
         if not isinstance(self.control, Gait):
             refuse_misfit(self.world, self.body, self.control)
             return self
         refuse_too_large(self.world, self.body, 0.0)
-        if self.control.plugin:  # Whose body may stand there as the graph that it is.
+        if self.control.plugin:  # Its body may already be a graph.
             return self
         if self.body.builder != self.control.swimmer:
             raise ValueError(
@@ -96,14 +96,14 @@ class Scene(Part):
 
 
 def refuse_misfit(world: World, body: Body, control: Controller) -> None:
-    """Body and controller must fit each other, and however it acts the body the world."""
+    """Raise `ValueError` where body, controller and world do not fit each other."""
     refuse_unfit(control, body)
-    refuse_too_large(world, body, lengthening(control))
+    refuse_too_large(world, body, max_stretch(control))
 
 
 def refuse_too_large(world: World, body: Body, stretch: float) -> None:
-    """However it turns and unfolds, a stretched body and the delta's support must fit in."""
-    if made_elsewhere(body):  # Whoever can make it looks.
+    """Raise `ValueError` where the stretched body, turned any way, does not fit the world."""
+    if is_unavailable(body):  # A worker that can build it checks it.
         return
     longest = extent(shape(body))
     needed = ceil(longest * (1 + stretch) + SUPPORT)
@@ -116,10 +116,10 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
 
 
 def refuse_senseless(world: World, control: Controller | Gait | Fold, task: Task) -> None:
-    """Energy must be there to be sensed or to count."""
+    """Raise `ValueError` where energy is sensed or counts but the world has none."""
     senses = isinstance(control, Sight) and control.sense_energy
     collects = task.plugin is None and task.fitness != "displacement"
     if world.energy is None and (senses or collects):
-        field = "control.sense_energy" if senses else "task.fitness"
+        path = "control.sense_energy" if senses else "task.fitness"
         value = True if senses else task.fitness
-        raise ValueError(f"`world.energy` must be there where `{field}` is {value!r}; got none")
+        raise ValueError(f"`world.energy` must be set where `{path}` is {value!r}; got none")

@@ -1,4 +1,4 @@
-"""The task, the archive and the search that fills it."""
+"""The task, the archive and the search of a run."""
 
 from math import prod
 from typing import Annotated, Any, Literal, Self
@@ -6,40 +6,36 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from . import measures
-from .base import Part, unit
-from .emitters import BY_SLOPES, GROWING, WITHOUT_SLOPES, Emitter, NeatEmitter, slots
+from .base import Part, field
+from .emitters import NUMBERING, WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
-from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION, after, source
+from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION, after
 
 Fitness = Literal["displacement", "energy", "displacement+energy"]
 
 
 class Task(Part):
-    """How long a creature is simulated, and what its fitness is."""
+    """Duration of a simulation and the fitness of a creature."""
 
-    steps: int = Field(default=500, ge=10, le=1_000_000, json_schema_extra=unit("steps"))
+    steps: int = field(500, ge=10, le=1_000_000, unit="steps")
     """Steps of the simulation."""
-    fitness: Annotated[Fitness, *OR_PLUGIN] = Field(
-        default="displacement", json_schema_extra=source(PAPER)
-    )
-    """Distance between the mean unwrapped node position at the end and at the start; energy
-    that all nodes collect; or both."""
-    energy_weight: float = Field(
-        default=1e-3, gt=0.0, le=1e3, json_schema_extra=unit("cells/energy")
-    )
-    """What a unit of collected energy is worth beside a cell of displacement."""
+    fitness: Annotated[Fitness, *OR_PLUGIN] = field("displacement", source=PAPER)
+    """Fitness: displacement (distance between the mean node positions at start and end),
+    energy collected by all nodes, or both."""
+    energy_weight: float = field(1e-3, gt=0.0, le=1e3, unit="cells/energy")
+    """Weight of collected energy relative to displacement."""
     plugin: MaybePlugin = None
 
     complete = complete_plugin(("fitness",), "fitness")
 
 
 def _by_name(schema: dict[str, Any]) -> None:
-    """The default is another for each measure."""
+    """Omit the default, which each measure has of its own."""
     schema.pop("default")
 
 
 def _end(schema: dict[str, Any]) -> None:
-    """An end of an axis; the unit too is the measure's."""
+    """Omit the default of an end of an axis and add the units of measures."""
     _by_name(schema)
     schema["units"] = {name: one.unit for name, one in measures.MEASURES.items()}
     schema["unit_of"] = "name"
@@ -49,21 +45,21 @@ class Descriptor(Part):
     """One axis of the archive."""
 
     name: Annotated[measures.Name, *OR_PLUGIN]
-    """What is measured; ends and scale are the measure's own unless they are given."""
+    """Measure on the axis; it provides the default ends and scale."""
     low: float = Field(default=0.0, ge=-1e30, le=1e30, json_schema_extra=_end)
-    """Lower end of the axis, in raw units; what is below counts in the first bin."""
+    """Lower end of the axis; lower values count in the first bin."""
     high: float = Field(default=1.0, ge=-1e30, le=1e30, json_schema_extra=_end)
-    """Upper end of the axis, in raw units; what is above counts in the last bin."""
-    bins: int = Field(default=20, ge=1, le=1024)
-    """Cells along the axis."""
+    """Upper end of the axis; higher values count in the last bin."""
+    bins: int = field(20, ge=1, le=1024)
+    """Bins along the axis."""
     scale: measures.Scale = Field(default="linear", json_schema_extra=_by_name)
-    """Whether bins are equally wide in the logarithm or in the raw value."""
+    """Scale of the axis: bins of equal width in the value, or in its logarithm."""
     plugin: MaybePlugin = None
 
     @model_validator(mode="before")
     @classmethod
     def complete(cls, given: Any, info: ValidationInfo) -> Any:
-        """What is left out is the measure's own."""
+        """Fill in the measure's default ends and scale."""
         given, declared = completed(given, ("descriptor",), "name", info)
         known = isinstance(given, dict) and measures.MEASURES.get(str(given.get("name")))
         usual = declared.axis if declared else known
@@ -81,12 +77,12 @@ class Descriptor(Part):
         return self
 
 
-CELLS = 2**20
-"""The most that an archive may have."""
+MAX_CELLS = 2**20
+"""Most cells of an archive."""
 
 
 class Archive(Part):
-    """Cells over one to eight descriptors, one elite in each."""
+    """An archive over one to eight descriptors, with one elite per cell."""
 
     model_config = after(MAP_ELITES)
 
@@ -94,12 +90,12 @@ class Archive(Part):
         Descriptor(name="bending_effort"),
         Descriptor(name="stretching_effort"),
     )
-    """Axes of the archive: what tells its kinds of creatures apart."""
-    centroids: int | None = Field(default=None, ge=2, le=CELLS, json_schema_extra=source(CVT))
-    """Cells of a centroidal Voronoi tessellation, equally large on the descriptors' own scales
-    and in place of their bins; none: the bins make a grid."""
-    seed: int = Field(default=0, ge=0, lt=2**32)
-    """Which of many tessellations that is."""
+    """Axes of the archive."""
+    centroids: int | None = field(None, ge=2, le=MAX_CELLS, source=CVT)
+    """Number of cells of a centroidal Voronoi tessellation, which replaces the bins; empty: a
+    grid of bins."""
+    seed: int = field(0, ge=0, lt=2**32)
+    """Random seed of the tessellation."""
 
     @property
     def plugins(self) -> dict[str, PluginVersion]:
@@ -120,31 +116,23 @@ class Archive(Part):
     def refuse_repeated(self) -> Self:
         names = [d.name for d in self.descriptors]
         if len(set(names)) < len(names):
-            raise ValueError(f"`descriptors` must differ, got {names}")
+            raise ValueError(f"`descriptors` must not repeat, got {names}")
         return self
 
     @model_validator(mode="after")
     def refuse_too_many(self) -> Self:
-        if self.cells > CELLS:
+        if self.cells > MAX_CELLS:
             product = " × ".join(map(str, self.shape))
             raise ValueError(
-                f"`descriptors` must make at most {CELLS:,} cells, all of which are kept in "
-                f"memory with their genomes; got {product} = {self.cells:,} (`centroids` gives "
-                "any number of cells over many descriptors)"
+                f"`descriptors` must make at most {MAX_CELLS:,} cells, got {product} = "
+                f"{self.cells:,}: reduce `bins` or set `centroids`"
             )
         return self
 
 
-def refuse_flat(archive: Archive, emitters: tuple[Emitter, ...]) -> None:
-    """What learns by gradients needs descriptors that have one."""
-    for emitter in emitters:
-        if emitter.operator in BY_SLOPES:
-            refuse_flat_axes(archive, emitter.operator)
-
-
 def refuse_flat_axes(archive: Archive, purpose: str) -> None:
-    """Descriptors must have derivatives."""
-    flat = [axis.name for axis in archive.descriptors if axis.name in WITHOUT_SLOPES]
+    """Raise `ValueError` where a descriptor has no derivative."""
+    flat = [axis.name for axis in archive.descriptors if axis.name in WITHOUT_GRADIENT]
     if flat:
         raise ValueError(
             f"`archive.descriptors` must have derivatives for {purpose}, got {flat[0]!r}"
@@ -152,42 +140,41 @@ def refuse_flat_axes(archive: Archive, purpose: str) -> None:
 
 
 class Stop(Part):
-    """When a run ends before its generations are through; each may be left out."""
+    """Conditions that end a run after the generation that meets one; empty: none."""
 
-    evaluations: int | None = Field(default=None, ge=1, json_schema_extra=unit("evaluations"))
-    """After the generation in which so many creatures have been evaluated."""
-    device_hours: float | None = Field(default=None, gt=0.0, json_schema_extra=unit("hours"))
-    """After the generation in which evaluation has taken so long, all devices added up. What
-    was decided is recorded, but another run may end at another generation."""
-    fitness: float | None = Field(default=None, json_schema_extra=unit("fitness"))
-    """After the generation in which a creature was at least so fit."""
+    evaluations: int | None = field(None, ge=1, unit="evaluations")
+    """Maximum number of evaluations."""
+    device_hours: float | None = field(None, gt=0.0, unit="hours")
+    """Maximum time of evaluation, summed over devices. The decision is recorded, but another
+    run of the spec may end at another generation."""
+    fitness: float | None = field(None, unit="fitness")
+    """Target fitness."""
 
 
 class Reevaluation(Part):
-    """Elites evaluated again under disturbed conditions, to see how much of them was luck."""
+    """Repeated evaluation of elites under disturbed conditions, to test their robustness."""
 
     model_config = after(REEVALUATION)
 
-    every: int = Field(default=25, ge=1, le=1_000_000, json_schema_extra=unit("generations"))
-    """After every so many generations, and after the last."""
-    samples: int = Field(default=1, ge=1, le=100, json_schema_extra=unit("evaluations"))
-    """Evaluations of each elite each time."""
+    every: int = field(25, ge=1, le=1_000_000, unit="generations")
+    """Interval; elites are also evaluated after the last generation."""
+    samples: int = field(1, ge=1, le=100, unit="evaluations")
+    """Evaluations per elite each time."""
     phase: bool = True
-    """Whether a periodic timer starts anywhere in its period."""
+    """Start a periodic timer at a random phase."""
     pose: bool = True
-    """Whether the body starts anywhere, turned by any angle."""
-    viscosity: float = Field(default=0.05, ge=0.0, le=0.5)
-    """Up to which share of itself the viscosity changes."""
+    """Start the body at a random position and angle."""
+    viscosity: float = field(0.05, ge=0.0, le=0.5)
+    """Largest relative change of the viscosity."""
     energy: bool = True
-    """Whether the packets of energy are moved, where there are any."""
+    """Move the packets of energy to random places."""
 
 
 MAX_INITIAL = 4096
-"""The most creatures that a search may begin from."""
+"""Most initial creatures of a search."""
 
 
 def _in_order(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Each once, in one order, so that the order in which they were named changes nothing."""
     return tuple(sorted(set(names)))
 
 
@@ -199,37 +186,35 @@ InitialCreatures = Annotated[
 
 
 class Generations(Part):
-    """Generations of equal size, and when they end."""
+    """Number and size of generations, and when to stop."""
 
-    generations: int = Field(
-        default=50, ge=1, le=1_000_000, json_schema_extra=unit("generations")
-    )
-    """Generations of the run, the random first one among them."""
-    batch: int = Field(default=64, ge=1, le=65_536, json_schema_extra=unit("creatures"))
-    """Creatures evaluated in a generation."""
-    block: int = Field(default=16, ge=1, le=4096, json_schema_extra=unit("creatures"))
-    """Creatures evaluated by one call of the compiled program; results depend on its bits."""
+    generations: int = field(50, ge=1, le=1_000_000, unit="generations")
+    """Number of generations, the first random one included."""
+    batch: int = field(64, ge=1, le=65_536, unit="creatures")
+    """Evaluations per generation."""
+    block: int = field(16, ge=1, le=4096, unit="creatures")
+    """Creatures per call of the compiled program; the exact bits of results depend on it."""
     stop: Stop = Stop()
-    """When to end before the generations are through."""
+    """Conditions that end the run early."""
     reevaluation: Reevaluation | None = None
-    """How elites are evaluated again; none: they are not."""
+    """Repeated evaluation of elites; empty: none."""
     initial: InitialCreatures = ()
-    """Names (SHA-256) of creatures that the search begins from, in place of random ones."""
+    """Initial creatures (SHA-256), in place of random ones."""
 
 
 class Search(Generations):
-    """MAP-Elites: children of elites in generations of equal size."""
+    """MAP-Elites: generations of offspring of elites."""
 
     model_config = after(MAP_ELITES)
 
     emitters: Annotated[tuple[Emitter, ...], Field(min_length=1, max_length=16)] = (
         NeatEmitter(),
     )
-    """Where children come from."""
+    """Sources of offspring."""
 
     @property
     def slots(self) -> tuple[int, ...]:
-        """Children of each emitter in a generation."""
+        """Offspring per generation of each emitter."""
         return slots(self.batch, tuple(emitter.share for emitter in self.emitters))
 
     @model_validator(mode="after")
@@ -237,13 +222,13 @@ class Search(Generations):
         if 0 in self.slots:
             idle = self.emitters[self.slots.index(0)].operator
             raise ValueError(
-                f"`batch` must leave a creature for each of the `emitters`, got "
-                f"{self.batch}, none of them for {idle!r}"
+                f"`batch` must be large enough for each of the `emitters`, got {self.batch}, "
+                f"which leaves none for {idle!r}"
             )
-        growing = [one.operator for one in self.emitters if one.operator in GROWING]
+        growing = [one.operator for one in self.emitters if one.operator in NUMBERING]
         if len(growing) > 1:
             raise ValueError(
-                f"`emitters` must hold one of {' and '.join(GROWING)} at most, so that equal "
+                f"`emitters` must hold one of {' and '.join(NUMBERING)} at most, so that equal "
                 f"mutations of a generation get equal numbers; got {', '.join(growing)}"
             )
         return self

@@ -1,4 +1,4 @@
-"""Where methods come from, as the schemas and the reference of all fields say it."""
+"""Sources of the methods, for the schemas and the reference."""
 
 from pydantic import ConfigDict
 from pydantic.config import JsonDict
@@ -31,11 +31,11 @@ DIGITS = "Alpaydin and Kaynak, UCI (1998), doi:10.24432/C50P49"
 
 
 def source(text: str) -> JsonDict:
-    """The source of a field, beside its unit."""
+    """The source of a field, for its schema."""
     return {"source": text}
 
 
 def after(text: str, *, seldom: bool = False) -> ConfigDict:
-    """The source of a whole part; `seldom` marks one that people seldom change."""
+    """Configure a part with a source; `seldom` marks one that people seldom change."""
     extra: JsonDict = {"seldom": True} if seldom else {}
     return ConfigDict(json_schema_extra=extra | source(text))

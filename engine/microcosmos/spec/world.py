@@ -1,12 +1,57 @@
-"""The box of fluid and its fields, in lattice units (dx = dt = 1)."""
+"""The box of fluid and its scalar fields, in lattice units (dx = dt = 1)."""
 
 from typing import Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from .base import Part, unit
-from .fields import Energy, Steric
-from .sources import LATTICE, TRT, after, source
+from .base import Part, field
+from .sources import LATTICE, OURS, PAPER, TRT, after
+
+
+class Steric(Part):
+    """Repulsion between nodes by the gradient of their smoothed density."""
+
+    model_config = after(PAPER)
+
+    strength: float = field(4.0, gt=0.0, le=20.0, unit="cells³")
+    """Displacement per step and unit of the density's gradient."""
+    limit: float = field(0.1, gt=0.0, le=0.5, unit="cells/step")
+    """Limit of a node's displacement by repulsion."""
+    smoothing: Literal["gaussian", "binomial"] = "gaussian"
+    """Gaussian by Fourier transform (the paper), or a binomial stencil of the same width."""
+
+
+class Energy(Part):
+    """Gaussian packets of energy at random places, to be sensed and collected."""
+
+    model_config = after(PAPER)
+
+    packets: int = field(8, ge=1, le=4096)
+    """Number of packets."""
+    width: float = field(4.0, ge=1.0, le=64.0, unit="cells")
+    """Standard deviation of a packet."""
+    amplitude: float = field(1.0, gt=0.0, le=1e3, unit="energy/cell²")
+    """Energy density in the middle of a packet."""
+    seed: int = field(0, ge=0, lt=2**32)
+    """Random seed of the packets' places, which are the same for every creature."""
+    placements: int = field(1, ge=1, le=64)
+    """Worlds per creature, each with the packets moved; measures are means over them. With
+    several, a memorised path does not help; only sensing does."""
+    consume: bool = field(False, source=OURS)
+    """Remove collected energy; otherwise the field is persistent, as in the paper."""
+    rate: float = field(0.1, gt=0.0, le=1.0)
+    """Share of the energy around a node that it takes per step, if energy is consumed."""
+    diffusion: float = field(0.0, ge=0.0, le=0.25, unit="cells²/step")
+    """Diffusion coefficient of the energy; 0: none."""
+
+    @model_validator(mode="after")
+    def refuse_faint(self) -> Self:
+        if self.consume and self.rate * self.amplitude < 1e-6:
+            raise ValueError(
+                "`rate` times `amplitude` must be at least 1e-6, or float32 loses what is "
+                f"collected; got {self.rate * self.amplitude:g}"
+            )
+        return self
 
 
 class World(Part):
@@ -14,28 +59,26 @@ class World(Part):
 
     model_config = after(LATTICE)
 
-    width: int = Field(default=64, ge=16, le=2048, json_schema_extra=unit("cells"))
-    """Size of the box along x."""
-    height: int = Field(default=64, ge=16, le=2048, json_schema_extra=unit("cells"))
-    """Size of the box along y."""
-    viscosity: float = Field(
-        default=0.05, ge=1e-3, le=2.0, json_schema_extra=unit("cells²/step")
-    )
+    width: int = field(64, ge=16, le=2048, unit="cells")
+    """Width of the box (x)."""
+    height: int = field(64, ge=16, le=2048, unit="cells")
+    """Height of the box (y)."""
+    viscosity: float = field(0.05, ge=1e-3, le=2.0, unit="cells²/step")
     """Kinematic viscosity ν; the relaxation time is τ = 3 ν + 1/2."""
-    magic: Literal["capped", "fixed"] = Field(default="capped", json_schema_extra=source(TRT))
-    """Magic parameter Λ of the two relaxation times: 3/16, or at most (τ − 1/2)/2."""
+    magic: Literal["capped", "fixed"] = field("capped", source=TRT)
+    """Magic parameter Λ of the two relaxation times: 3/16 (fixed), or at most (τ − 1/2)/2."""
     fluid: bool = True
-    """Whether there is a fluid; without it bodies are moved by their constraints alone."""
+    """Simulate the fluid; without it, constraints alone move bodies."""
     steric: Steric | None = None
     """Repulsion between nodes; empty: filaments pass through each other."""
     energy: Energy | None = None
-    """Packets of energy to sense and collect; empty: none."""
+    """Packets of energy; empty: none."""
 
     @model_validator(mode="after")
     def refuse_unstable(self) -> Self:
         if self.magic == "fixed" and self.viscosity < 0.01:
             raise ValueError(
-                "`magic` must be 'capped' where `viscosity` is below 0.01: with a fixed magic "
-                f"parameter the fluid is unstable there; got 'fixed' at {self.viscosity:g}"
+                "`magic` must be 'capped' where `viscosity` is below 0.01, since a fixed magic "
+                f"parameter is unstable there; got 'fixed' at {self.viscosity:g}"
             )
         return self

@@ -1,4 +1,4 @@
-"""Films of a replay: GIF, which plays everywhere, and MP4, which is small."""
+"""Films of a replay, GIF and MP4, and the export of any picture by its file's ending."""
 
 import io
 import tempfile
@@ -12,7 +12,8 @@ import numpy as np
 
 from ..optional import require
 from .raster import frame
-from .replay_file import Replay
+from .replay_file import Replay, read_replay
+from .strip import strip
 
 ENCODER = "libx264"
 QUALITY = {"preset": "medium", "crf": "18"}
@@ -78,7 +79,7 @@ def _palette(pictures: list[np.ndarray]) -> Any:
 
 def _refuse_without_encoder() -> None:
     if ENCODER not in require("av").codecs_available:
-        raise RuntimeError(
+        raise ValueError(
             f"An MP4 needs PyAV with {ENCODER}, which this one was built without; "
             "make a GIF instead."
         )
@@ -101,3 +102,27 @@ def _encode(pictures: Iterator[np.ndarray], path: Path, rate: int) -> None:
             image = av.VideoFrame.from_ndarray(picture, format="rgb24")
             film.mux(stream.encode(image.reformat(format="yuv420p", dst_colorspace=BT709)))
         film.mux(stream.encode())
+
+
+MAKERS = {".png": strip, ".gif": gif, ".mp4": mp4}
+NEEDS = {".png": ("PIL.Image",), ".gif": ("PIL.Image",), ".mp4": ("PIL.Image", "av")}
+"""Optional modules of each kind of file."""
+
+
+def check(path: Path) -> None:
+    """Raise where a file of this kind cannot be written, before anything is computed."""
+    kind = path.suffix.lower()
+    if kind not in MAKERS:
+        raise ValueError(f"`path` must end in {', '.join(MAKERS)}, got {str(path)!r}.")
+    for module in NEEDS[kind]:
+        require(module)
+
+
+def export(data: bytes, path: str | Path, **options: Any) -> None:
+    """Write the bytes of a replay as .png (a strip of moments), .gif or .mp4.
+
+    `options` are those of `strip`, `gif` or `mp4`.
+    """
+    path = Path(path)
+    check(path)
+    path.write_bytes(MAKERS[path.suffix.lower()](read_replay(data), **options))

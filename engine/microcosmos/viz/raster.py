@@ -9,9 +9,67 @@ from functools import lru_cache
 
 import numpy as np
 
-from .antialias import coverage, distance
 from .replay_file import Replay
-from .viewport import View, view
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A picture of one period of the box around a centre; x to the right, y up."""
+
+    centre: np.ndarray
+    """The point in the picture's middle, in cells."""
+
+    size: tuple[int, int]
+    """Cells along x and y."""
+
+    shape: tuple[int, int]
+    """Rows and columns of the picture."""
+
+    @property
+    def scale(self) -> np.ndarray:
+        """Pixels a cell along x and y."""
+        return np.array(self.shape[::-1]) / self.size
+
+    def pixels(self, points: np.ndarray) -> np.ndarray:
+        """Points (..., 2) in cells as (column, row); the first pixel's middle is at 0.5."""
+        away = (points - self.centre) * [1, -1]
+        return (away + np.array(self.size) / 2) * self.scale
+
+    def sampled(self, field: np.ndarray) -> np.ndarray:
+        """A periodic field (x, y) at the picture's pixels (row, column).
+
+        Between cells it is Catmull and Rom's cubic spline, which keeps the cells' values.
+        """
+        (rows, columns), (width, height) = self.shape, self.size
+        x = self.centre[0] + ((np.arange(columns) + 0.5) / columns - 0.5) * width
+        y = self.centre[1] - ((np.arange(rows) + 0.5) / rows - 0.5) * height
+        return _weights(y, height) @ field.astype(np.float32).T @ _weights(x, width).T
+
+
+def view(size: tuple[int, int], width: int, centre: np.ndarray) -> View:
+    """A view of `width` pixels, and as high as the box is; both are even, as films need."""
+    if width < 16 or width % 2:
+        raise ValueError(f"`width` must be an even number of pixels from 16, got {width}.")
+    height = 2 * max(8, round(width * size[1] / size[0] / 2))
+    return View(centre, size, (height, width))
+
+
+def _weights(places: np.ndarray, cells: int) -> np.ndarray:
+    """The weight (place, cell) of each cell's value at places along a periodic axis."""
+    first = np.floor(places).astype(int)
+    t = places - first
+    spline = (
+        t * (-1 + t * (2 - t)),
+        2 + t**2 * (3 * t - 5),
+        t * (1 + t * (4 - 3 * t)),
+        t**2 * (t - 1),
+    )
+    weights = np.zeros((len(places), cells), np.float32)
+    for offset, weight in enumerate(spline):
+        # A box of fewer than four cells meets a cell twice.
+        np.add.at(weights, (np.arange(len(places)), (first + offset - 1) % cells), weight / 2)
+    return weights
+
 
 GRID = 8
 """Cells between the dots that stand still in the fluid."""
@@ -148,3 +206,63 @@ def _blend(picture: np.ndarray, colour: Colour, opacity: np.ndarray) -> None:
     pixels = picture.reshape(-1, 3)
     share = opacity.ravel()[painted][:, None].astype(np.float32)
     pixels[painted] += share * (np.array(colour, np.float32) - pixels[painted])
+
+
+PIECE = 6.0
+"""Longer lines are cut into pieces of at most so many pixels."""
+
+BATCH = 4096
+"""Pieces whose surroundings are looked at together."""
+
+
+def distance(
+    starts: np.ndarray, ends: np.ndarray, shape: tuple[int, int], reach: float
+) -> np.ndarray:
+    """The distance (row, column) from each pixel's middle to the nearest line, at most `reach`.
+
+    Lines are (line, 2) points (column, row) in pixels, the first pixel's middle at 0.5. What
+    leaves the picture on one side enters on the other.
+    """
+    field = np.full(shape[0] * shape[1], reach, np.float32)
+    starts, ends = _pieces(starts, ends)
+    around = np.arange(
+        -int(np.ceil(reach + PIECE / 2)) - 1, int(np.ceil(reach + PIECE / 2)) + 2
+    )
+    for first in range(0, len(starts), BATCH):
+        a, b = (points[first : first + BATCH] for points in (starts, ends))
+        pixels = np.floor((a + b) / 2).astype(int)[:, :, None] + around  # (piece, 2, place)
+        column = (pixels[:, 0] + 0.5 - a[:, :1]).astype(np.float32)[:, None, :]
+        row = (pixels[:, 1] + 0.5 - a[:, 1:]).astype(np.float32)[:, :, None]
+        places = (pixels[:, 1] % shape[0] * shape[1])[:, :, None] + (pixels[:, 0] % shape[1])[
+            :, None, :
+        ]
+        np.minimum.at(field, places.ravel(), _to_line(column, row, b - a).ravel())
+    return field.reshape(shape)
+
+
+def coverage(distances: np.ndarray, width: float) -> np.ndarray:
+    """The share of each pixel that lines of this width cover, edges smoothed over a pixel.
+
+    A line thinner than a pixel is a pixel wide and fainter.
+    """
+    thickness = max(width, 1.0)
+    return (width / thickness) * np.clip(thickness / 2 + 0.5 - distances, 0, 1)
+
+
+def _to_line(column: np.ndarray, row: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Distances (piece, row, column) from points to a line from the origin to `along`."""
+    x, y = along.astype(np.float32).T[:, :, None, None]
+    square = np.maximum(x**2 + y**2, np.float32(1e-12))
+    share = np.clip((column * x + row * y) / square, 0, 1)
+    return np.hypot(column - share * x, row - share * y)
+
+
+def _pieces(starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same lines, cut into equal pieces where they are long."""
+    length = np.hypot(*(ends - starts).T)
+    count = np.maximum(1, np.ceil(length / PIECE)).astype(int)
+    line = np.repeat(np.arange(len(starts)), count)
+    number = np.arange(len(line)) - np.repeat(np.cumsum(count) - count, count)
+    step = ((ends - starts) / count[:, None])[line]
+    first = starts[line] + number[:, None] * step
+    return first, first + step

@@ -1,7 +1,7 @@
-"""A replay: the recorded motion of one creature, what drives it, and the fluid around it.
+"""Recording of replays: the motion of one creature, its drive, and the fluid around it.
 
 The program that records rounds differently from the one that evaluates, and rollouts are
-chaotic, so a replay says how far its fitness is from the recorded one.
+chaotic, so a replay states the difference of its fitness from the recorded one.
 """
 
 import json
@@ -31,26 +31,26 @@ from ..spec.estimate import placements, simulation
 from .replay_file import REPLAY_FORMAT
 
 FRAMES = 250
-"""At most so many frames are kept besides the first, whatever the number of steps."""
+"""Largest number of frames besides the first."""
 
 FRAME_BYTES = 2**28
-"""At most about so many bytes of planes are held while a replay is made."""
+"""Limit of the memory for planes during recording, in bytes."""
 
 LEVELS = {"vorticity": np.int8, "velocity": np.int8, "energy": np.uint8}
-"""Planes of the fluid, in the order and the type in which they are kept."""
+"""Planes of the fluid with their types, in the order of the file."""
 
 ROOM = (8, 8)
-"""Where there is no network."""
+"""Nodes and connections for a creature without a network."""
 
 CELL_STEPS = 3 * 10**10
-"""Fluid cells times steps that a replay may take: minutes."""
+"""Limit of fluid cells times steps: minutes."""
 
 
 def record(file: Mapping[str, Any]) -> bytes:
     """The replay of a creature file: a JSON header, then motion, rest shapes and planes.
 
-    The layout is described in `docs/formats.md`. Raises `creature.CreatureError` for a
-    file that is not sound.
+    The layout is described in `docs/formats.md`. Raises `creature.CreatureError` for an
+    invalid file.
     """
     file = creature.parse(file)
     scene = watchable(creature.scene_of(file))
@@ -83,7 +83,7 @@ def record(file: Mapping[str, Any]) -> bytes:
         "force_free": scene.coupling.force_free,
         "device": device_kind(),
     }
-    there = there_among(scene, present)
+    there = present_parts(scene, present)
     return _pack(
         header,
         np.asarray(film.positions[:, present], "<f4"),
@@ -96,7 +96,7 @@ def record(file: Mapping[str, Any]) -> bytes:
 def _comparison(
     file: Mapping[str, Any], scene: Scene, measures: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """What was recorded when the creature was measured, and what this replay finds."""
+    """Fitness and descriptors as recorded and in this replay."""
     replayed = {name: float(value) for name, value in measures.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
@@ -132,17 +132,16 @@ def unmeasured(scene: Scene) -> Scene:
     return scene.model_copy(update={"task": task, "plugins": {}})
 
 
-def there_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Which edges and which joints have all their nodes among those that are present."""
+def present_parts(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Masks of the edges and joints whose nodes are all present."""
     body = shape(scene.body)
     edges = np.all(present[body.edges], axis=1)
     return edges, np.all(edges[body.joints], axis=1)
 
 
 def graph_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (edge, 2) between nodes and joints (joint, 2) between edges that are there, as
-    those are counted."""
-    edges, joints = there_among(scene, present)
+    """Edges (edge, 2) and joints (joint, 2) that are present, renumbered."""
+    edges, joints = present_parts(scene, present)
     body = shape(scene.body)
     return (
         (np.cumsum(present) - 1)[body.edges[edges]],
@@ -151,13 +150,13 @@ def graph_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def interval(scene: Scene, network_nodes: int) -> int:
-    """Every how many steps a frame is kept.
+    """Steps between frames.
 
-    Raises `creature.CreatureError` where the simulation is too long or too large to watch.
+    Raises `creature.CreatureError` if the simulation is too long or too large.
     """
     cells = scene.world.width * scene.world.height
     several = placements(scene.world)
-    lives = 1 + several if several > 1 else 1  # The one that is shown, and those of the mean.
+    lives = 1 + several if several > 1 else 1  # The shown one, and those of the mean.
     for field, limit, found, unit in (
         ("task.steps", CELL_STEPS, cells * scene.task.steps * lives, "cell steps"),
         ("body.nodes", 2**32, simulation(scene, network_nodes), "bytes of memory"),
@@ -172,13 +171,13 @@ def interval(scene: Scene, network_nodes: int) -> int:
 
 
 def energy_changes(scene: Scene) -> bool:
-    """Whether there is energy that does not stay where and as it is."""
+    """Whether the energy changes during the simulation."""
     energy = scene.world.energy
     return energy is not None and (energy.consume or energy.diffusion > 0)
 
 
 def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
-    """What moves the body of a parsed creature file: its genotype, or a gait's rest shapes."""
+    """The genotype, or the gait's rest shapes, of a parsed creature file."""
     if isinstance(scene.control, Gait):
         return build_stroke(scene.control, scene.task.steps)
     encoding = build_encoding(scene, creature.room(file) or ROOM)
@@ -186,77 +185,79 @@ def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
 
 
 class Film(eqx.Module):
-    """What is shown of a simulation, one entry a frame; frames are the start and the state
-    after each `every` steps."""
+    """The start and the state after each `every` steps, one entry a frame."""
 
     positions: Array
     vorticity: Array
     velocity: Array
-    """(frame, 2, x, y). It cannot be had of the vorticity: sound is a large part of it."""
+    """(frame, 2, x, y). Not derivable from the vorticity: sound is a large part of it."""
     energy: Array
-    """(frame, x, y); one plane where nothing changes it, none without energy."""
+    """(frame, x, y); one plane if nothing changes it, none without energy."""
     rest: Rest
-    """What was asked for in the step before each frame; at the start in the first step."""
+    """Rest shapes of the step before each frame; for the first frame, of the first step."""
     present: Array
-    """Which nodes have grown."""
+    """Nodes that have grown."""
 
 
 @lru_cache(maxsize=16)
 def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
-    """From an actuator to the film and the measures.
+    """The program from an actuator to the film and the measures.
 
     Compiled programs are kept, so that the second creature of a run is shown at once.
     """
     scene = Scene.model_validate_json(scene_json)
     task = build_task(scene)
-    frames = scene.task.steps // every
     changes = energy_changes(scene)
-
-    def frame(state):
-        u = world.flow(task.world, state)
-        return state.positions, vorticity(u), u, state.energy if changes else None
 
     def run(actuator):
         driven = search.drive(task, actuator)
-
-        def go_on(state, given):
-            return search.simulate(replace(driven, start=state, inputs=given))
-
-        def advance(state, given):
-            end, seen = go_on(state, given)
-            return end, (frame(end), seen)
-
-        whole = jax.tree.map(
-            lambda x: x[: frames * every].reshape(frames, every, *x.shape[1:]), driven.inputs
-        )
-        left = jax.tree.map(lambda x: x[frames * every :], driven.inputs)
-        end, (shown, seen) = jax.lax.scan(advance, driven.start, whole)
-        end, last = go_on(end, left)
-        seen = jax.tree.map(
-            lambda x, y: jnp.concatenate([x.reshape(-1, *x.shape[2:]), y]), seen, last
-        )
-        positions, curl, velocity, planes = jax.tree.map(
-            lambda first, rest: jnp.concatenate([first[None], rest]), frame(driven.start), shown
-        )
+        film, end, seen = _filmed(task, driven, scene.task.steps // every, every, changes)
         values = search.motion_of(task, driven, end, seen)
         if task.placements is not None:
             values = _mean_motion(task, driven)
         if task.encoding is not None:
             values["hidden_nodes"], values["connections"] = task.encoding.size(actuator)
-        there = driven.world.present
-        everybody = jnp.ones(positions.shape[1], bool)
-        before = np.maximum(np.arange(frames + 1) * every - 1, 0)
-        film = Film(
-            positions,
-            curl,
-            velocity,
-            _unchanging(driven.start.energy, task.world.size) if planes is None else planes,
-            jax.tree.map(lambda x: x[before], seen.rest),
-            everybody if there is None else there,
-        )
         return film, values
 
     return jax.jit(run)
+
+
+def _filmed(
+    task: search.Task, driven: Drive, frames: int, every: int, changes: bool
+) -> tuple[Film, world.State, world.Measures]:
+    """The film, the last state, and the observations of all steps."""
+
+    def frame(state):
+        u = world.flow(task.world, state)
+        return state.positions, vorticity(u), u, state.energy if changes else None
+
+    def go_on(state, given):
+        return search.simulate(replace(driven, start=state, inputs=given))
+
+    def advance(state, given):
+        end, seen = go_on(state, given)
+        return end, (frame(end), seen)
+
+    whole = jax.tree.map(
+        lambda x: x[: frames * every].reshape(frames, every, *x.shape[1:]), driven.inputs
+    )
+    left = jax.tree.map(lambda x: x[frames * every :], driven.inputs)
+    end, (shown, seen) = jax.lax.scan(advance, driven.start, whole)
+    end, last = go_on(end, left)
+    seen = jax.tree.map(
+        lambda x, y: jnp.concatenate([x.reshape(-1, *x.shape[2:]), y]), seen, last
+    )
+    positions, curl, velocity, energy = jax.tree.map(
+        lambda first, rest: jnp.concatenate([first[None], rest]), frame(driven.start), shown
+    )
+    if energy is None:
+        energy = _unchanging(driven.start.energy, task.world.size)
+    before = np.maximum(np.arange(frames + 1) * every - 1, 0)
+    rest = jax.tree.map(lambda x: x[before], seen.rest)
+    present = driven.world.present
+    if present is None:
+        present = jnp.ones(positions.shape[1], bool)
+    return Film(positions, curl, velocity, energy, rest, present), end, seen
 
 
 def _unchanging(energy: Array | None, size: tuple[int, int]) -> Array:
@@ -264,7 +265,7 @@ def _unchanging(energy: Array | None, size: tuple[int, int]) -> Array:
 
 
 def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
-    """What is measured on the mean over all placements of energy; the first one is shown."""
+    """Mean measures over all placements of energy; the film shows the first one."""
 
     def motion(shift: Array) -> dict[str, Any]:
         moved = search.elsewhere(driven, shift)
@@ -275,7 +276,6 @@ def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
 
 
 def _levels(values: np.ndarray, scale: float, kind: type[np.integer]) -> np.ndarray:
-    """Values as whole parts of the largest one."""
     return np.round(values / scale * np.iinfo(kind).max).astype(kind)
 
 

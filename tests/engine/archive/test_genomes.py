@@ -36,11 +36,11 @@ def document(control, genes):
 
 
 def values(control):
-    count = spec.genes(control, spec.shape(spec.Chain(nodes=6)))
+    count = spec.gene_count(control, spec.shape(spec.Chain(nodes=6)))
     return {"values": encode(np.linspace(-1, 1, count))}
 
 
-VECTORS = [spec.Direct(bend=spec.Free(low=0.1, high=0.9)), spec.Weights(hidden=(4,))]
+VECTORS = [spec.Direct(bend=spec.Bounds(low=0.1, high=0.9)), spec.Weights(hidden=(4,))]
 
 
 @pytest.mark.parametrize("control", VECTORS)
@@ -57,7 +57,9 @@ def test_vectors_of_another_length_or_beyond_one_are_refused(control):
     with pytest.raises(creature.CreatureError, match=r"must hold \d+ numbers, got 3"):
         creature.parse(short)
     wide = values(control)
-    wide["values"] = encode(np.full(spec.genes(control, spec.shape(spec.Chain(nodes=6))), 1.5))
+    wide["values"] = encode(
+        np.full(spec.gene_count(control, spec.shape(spec.Chain(nodes=6))), 1.5)
+    )
     with pytest.raises(creature.CreatureError, match="-1 to 1") as caught:
         creature.parse(document(control, wide))
     assert caught.value.field == "identity.genome.values"

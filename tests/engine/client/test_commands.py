@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from microcosmos.cli import app, overrides, remote, tables
+from microcosmos.cli import app, overrides, remote
 from microcosmos.client import NotFound, Run
 from microcosmos.version import VERSION
 
@@ -165,7 +165,7 @@ def test_what_people_write_is_no_markup(told, record, monkeypatch):
     monkeypatch.setitem(record, "name", "swims [bold]far[/nowhere]")
     for command, name in (("tokens list", TOKEN["name"]), ("runs", record["name"])):
         assert name in told(*command.split())[0].stdout
-    monkeypatch.setattr(tables, "stdout", lambda: Console(width=40))
+    monkeypatch.setattr(remote, "stdout", lambda: Console(width=40))
     assert record["id"][:8] in told("runs")[0].stdout
 
 

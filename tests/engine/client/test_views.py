@@ -12,14 +12,13 @@ from microcosmos.client import (
     NoAnswer,
     drawing,
     formatting,
-    maps,
     notebook,
     polling,
     terminal,
     views,
 )
 from microcosmos.client.columns import Columns, array
-from microcosmos.client.polling import Standing
+from microcosmos.client.polling import RunState
 
 CURVES = {
     "generation": [1, 2, 3],
@@ -58,25 +57,25 @@ def test_what_is_unknown_is_a_gap_and_what_is_constant_a_line():
     assert drawing.polyline([], 10, 4) == ""
 
 
-def shown(standing, width=100):
+def shown(state, width=100):
     console = Console(width=width, record=True, file=sys.stderr)
-    console.print(terminal.drawn(standing, width))
+    console.print(terminal.drawn(state, width))
     return console.export_text()
 
 
 def test_a_terminal_shows_how_it_stands(record):
-    text = shown(Standing(record, CURVES))
+    text = shown(RunState(record, CURVES))
     for part in ("“mine”", "0f3c1a2b", "50 %", "5/10 generations", "1 min 15 s left"):
         assert part in text
     for part in ("12.5 evaluations/s", "QD score 3.25", "coverage 12.5 %", "best 1.5"):
         assert part in text
     assert any(letter > "\u2800" for letter in text)
-    narrow = shown(Standing(record, CURVES), 40)
+    narrow = shown(RunState(record, CURVES), 40)
     assert max(map(len, narrow.splitlines())) <= 40
 
 
 def test_how_far_and_how_long_stand_on_one_line_of_a_usual_terminal(record):
-    (line,) = (one for one in shown(Standing(record), 80).splitlines() if "50 %" in one)
+    (line,) = (one for one in shown(RunState(record), 80).splitlines() if "50 %" in one)
     assert "1 min 15 s left" in line
 
 
@@ -86,7 +85,7 @@ def test_trouble_and_reasons_are_shown(record):
         "waiting_reason": "no worker is free",
         "eta_seconds": None,
     }
-    text = shown(Standing(waits, {}, "No server answers."))
+    text = shown(RunState(waits, {}, "No server answers."))
     assert "queued: no worker is free" in text
     assert "No server answers." in text
     assert "evaluations/s" not in text
@@ -94,7 +93,7 @@ def test_trouble_and_reasons_are_shown(record):
 
 def test_a_table_shows_its_summary(record):
     table = record | {"qd_score": None, "summary": {"fastest_speed": 0.25, "name": "x"}}
-    assert "fastest speed 0.25" in shown(Standing(table))
+    assert "fastest speed 0.25" in shown(RunState(table))
 
 
 def test_plain_lines_come_when_something_changes(record, capsys):
@@ -105,7 +104,7 @@ def test_plain_lines_come_when_something_changes(record, capsys):
         (0.6, "running"),
         (1, "failed"),
     ):
-        view.show(Standing(record | {"progress": progress, "status": status, "error": "why"}))
+        view.show(RunState(record | {"progress": progress, "status": status, "error": "why"}))
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 3
     assert "failed: why" in lines[-1]
@@ -130,12 +129,12 @@ def ipython(monkeypatch):
 
 
 def test_a_notebook_brings_one_display_up_to_date(ipython, record):
-    view = views.fitting()
+    view = views.choose()
     assert isinstance(view, notebook.Notebook)
     named = record | {"name": "<script>"}
     with view:
-        view.show(Standing(named, CURVES))
-        view.show(Standing(named | {"status": "finished"}, CURVES))
+        view.show(RunState(named, CURVES))
+        view.show(RunState(named | {"status": "finished"}, CURVES))
     first, last = ipython[0]._repr_html_(), ipython[-1]._repr_html_()
     assert first.count("<polyline") == 3
     assert "<script>" not in first
@@ -145,9 +144,9 @@ def test_a_notebook_brings_one_display_up_to_date(ipython, record):
 
 def test_without_a_terminal_or_notebook_there_are_lines(monkeypatch):
     monkeypatch.delitem(sys.modules, "IPython", raising=False)
-    assert isinstance(views.fitting(), views.Lines)
+    assert isinstance(views.choose(), views.Lines)
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
-    assert isinstance(views.fitting(), terminal.Terminal)
+    assert isinstance(views.choose(), terminal.Terminal)
 
 
 def test_columns_are_arrays_with_gaps_as_nan():
@@ -161,7 +160,9 @@ def test_columns_are_arrays_with_gaps_as_nan():
 
 def test_a_map_has_its_cells_where_they_are():
     axes = [{"name": "turning", "bins": 4}, {"name": "<b>", "bins": 2}]
-    picture = maps.svg(axes, np.array([0, 3, 6]), np.array([1.0, 2.0, 3.0]), "a caption")
+    picture = drawing.archive_map(
+        axes, np.array([0, 3, 6]), np.array([1.0, 2.0, 3.0]), "a caption"
+    )
     squares = re.findall(r'x="([\d.]+)" y="([\d.]+)" .*? fill="(#\w+)"', picture)
     assert squares == [
         ("0.00", "160.00", "#440154"),
@@ -169,7 +170,7 @@ def test_a_map_has_its_cells_where_they_are():
         ("240.00", "160.00", "#fde725"),
     ]
     assert "<b>" not in picture
-    assert "<rect" not in maps.svg(axes, np.array([]), np.array([]), "")
+    assert "<rect" not in drawing.archive_map(axes, np.array([]), np.array([]), "")
 
 
 def test_columns_are_a_data_frame_where_pandas_is_there():
@@ -190,7 +191,7 @@ def test_without_pandas_it_is_said_what_to_install(monkeypatch):
     [(0.4, "0 s"), (75, "1 min 15 s"), (3720, "1 h 2 min"), (90000, "1 d 1 h"), (None, "")],
 )
 def test_durations_have_two_units(seconds, words_):
-    assert formatting.lasting(seconds) == words_
+    assert formatting.duration(seconds) == words_
 
 
 def test_a_sweep_is_watched_through_an_outage(fake, monkeypatch):
@@ -207,15 +208,15 @@ def test_a_sweep_is_watched_through_an_outage(fake, monkeypatch):
     left = list(states)
 
     def read(path):
-        if (standing := left.pop(0)) is None:
+        if (counts := left.pop(0)) is None:
             raise NoAnswer("No server answers.")
-        return sweep | {"status_counts": standing}
+        return sweep | {"status_counts": counts}
 
     connection = fake({}).client.connection
     monkeypatch.setattr(connection, "read", read)
     shown = [
-        (standing.record["status"], standing.trouble)
-        for standing in polling.follow_sweep(connection, "5eed")
+        (state.record["status"], state.problem)
+        for state in polling.follow_sweep(connection, "5eed")
     ]
     lost = ("running", "No server answers.")
     assert shown == [("queued", None), ("running", None), lost, lost, ("failed", None)]

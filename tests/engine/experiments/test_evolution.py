@@ -121,8 +121,8 @@ def test_diverged_creatures_are_kept_apart_with_their_reason(small):
     state, first = experiment.advance(experiment.init())
     state, second = experiment.advance(state)
     assert first.diverged > 0
-    assert second.diverged == len(state.quarantine.status)
-    assert set(np.unique(state.quarantine.status)) <= {1, 2}
+    assert second.diverged == len(state.failures.status)
+    assert set(np.unique(state.failures.status)) <= {1, 2}
     assert np.isfinite(np.asarray(state.elites.fitness)).all()
     restored = experiment.restore(experiment.save(state))
     assert experiment.save(restored) == experiment.save(state)
@@ -140,7 +140,7 @@ def test_an_evaluation_that_cannot_be_trusted_is_no_elite(experiment, monkeypatc
     monkeypatch.setattr(evolution.search, "evaluate_blocks", too_fast)
     state, report = experiment.advance(experiment.init())
     assert report.diverged == 1
-    assert state.quarantine.slot.tolist() == fittest
+    assert state.failures.slot.tolist() == fittest
     assert fittest[0] not in np.asarray(state.elites.slot)[np.asarray(state.elites.occupied)]
 
 

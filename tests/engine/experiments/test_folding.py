@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from microcosmos import fields, search, viz
+from microcosmos import fields, search
 from microcosmos.archive import creature
 from microcosmos.archive.table import read_table
 from microcosmos.build import build, build_descent
 from microcosmos.spec import parse
 from microcosmos.viz.figures import experiments
+from microcosmos.viz.replay import record
 from microcosmos.viz.replay_file import read_replay
 
 
@@ -48,7 +49,7 @@ def test_every_filament_is_a_creature_whose_replay_ends_at_its_loss(course):
     for number, row in enumerate(state.table.rows):
         file = creature.document(json.loads(row.identity), row.measured, row.provenance)
         assert creature.parse(file)["sha256"] == row.creature
-        replay = read_replay(viz.record(file))
+        replay = read_replay(record(file))
         density = fields.splat(jnp.asarray(replay.positions[-1]), task.world.size, 1.0)
         loss = np.mean((fields.saturated(density) - state.folds.picture[number]) ** 2)
         np.testing.assert_allclose(loss, row.values["least"], rtol=1e-3)

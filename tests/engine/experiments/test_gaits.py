@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -12,8 +13,10 @@ import pytest
 from microcosmos import search, units
 from microcosmos.archive import creature
 from microcosmos.audit.reproducibility import check
-from microcosmos.experiments.gaits import Gaits
-from microcosmos.spec import EXPERIMENTS
+from microcosmos.build.tables import build_strokes
+from microcosmos.experiments import gaits
+from microcosmos.experiments.table_file import TableRun
+from microcosmos.spec import EXPERIMENTS, parse
 from microcosmos.viz.replay import FRAMES, interval
 
 
@@ -80,14 +83,15 @@ def test_soft_actuators_have_a_larger_sperm_number(course):
 
 
 def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
-    stroke = sweep.strokes[0]
+    stroke = build_strokes(parse(json.loads(sweep.spec)))[0]
     names = search.STROKE_MEASURES
     values = np.ones((3, len(names)), np.float32)
     values[1, names.index("mach")] = np.nan
     values[2, names.index("mach")] = 2.0
     found = search.Evaluation(*map(jnp.asarray, (values[:, 0], values, np.array([0, 1, 2]))))
     found = jax.device_get(found)
-    broken = Gaits(sweep.spec, (replace(stroke, program=None),), 3, sweep.device)
+    rows = partial(gaits.stroke_rows, replace(stroke, program=None), block=3, device="cpu")
+    broken = TableRun(sweep.spec, sweep.device, 1, lambda _, stop: rows(stop), gaits.report)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "evaluate_blocks", lambda *_, **__: found)
         state, report = broken.advance(broken.init())
@@ -103,7 +107,8 @@ def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
 
 
 def test_the_spacing_that_warns_is_the_widest(sweep):
-    assert all(stroke.spacing <= units.WIDEST for stroke in sweep.strokes)
+    strokes = build_strokes(parse(json.loads(sweep.spec)))
+    assert all(stroke.spacing <= units.WIDEST for stroke in strokes)
 
 
 @pytest.mark.fast

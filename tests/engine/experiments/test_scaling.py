@@ -4,8 +4,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from microcosmos.archive.report import Row
 from microcosmos.build.tables import build_crowd
-from microcosmos.experiments.scaling import LINEAR_FROM, Scaling, summary
+from microcosmos.experiments.scaling import LINEAR_FROM, report, summary
+from microcosmos.experiments.table_file import TableRun
 from microcosmos.experiments.timing import _all_pairs
 from microcosmos.spec import parse
 from microcosmos.spec.scaling import SPACING
@@ -74,7 +76,7 @@ def test_what_did_not_stay_finite_counts_for_nothing():
     rows = [row(16_000, 4.0), row(32_000, 6.0), row(64_000, 99.0, status="non-finite")]
     assert summary(rows)["exponent"] == pytest.approx(1.0)
     assert summary([row(16_000, 4.0, memory_bytes=None)])["peak_memory_bytes"] is None
-    experiment = Scaling("{}", (64_000,), lambda nodes, stop: (rows[2],), "cpu")
+    experiment = TableRun("{}", "cpu", 1, lambda number, stop: (Row(rows[2]),), report)
     assert experiment.advance(experiment.init())[1].diverged == 1
 
 

@@ -32,4 +32,4 @@ def test_size_and_genes_are_those_of_the_layers():
     hidden, connections = task.encoding.size(genotype)
     assert (hidden, connections) == (9, 3 * 5 + 5 * 4 + 4 * 2)
     assert genotype.values.shape == (3 * 5 + 5 + 5 * 4 + 4 + 4 * 2 + 2,)
-    assert spec.genes(control, spec.shape(spec.Chain())) == len(genotype.values)
+    assert spec.gene_count(control, spec.shape(spec.Chain())) == len(genotype.values)

@@ -211,7 +211,7 @@ def test_a_creature_says_what_it_needs_and_repeats_bit_for_bit(course, away):
     assert creature_h5.load(creature_h5.dump(file)) == file
     away()
     assert creature.parse(json.dumps(file)) == file, "a file is read without the module"
-    with pytest.raises(plugins.Missing, match=r"own\."):
+    with pytest.raises(plugins.Missing, match=r"extra\."):
         check(file)
 
 

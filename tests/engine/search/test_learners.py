@@ -11,7 +11,7 @@ from microcosmos import neat, search
 from microcosmos.genomes import Vector, minimal
 from microcosmos.search import emitters
 from microcosmos.search.gradients import CONSTANT, genes_of
-from microcosmos.spec.emitters import WITHOUT_SLOPES
+from microcosmos.spec.emitters import WITHOUT_GRADIENT
 
 GENES, SLOTS, CELLS = 12, 8, 100
 COUNTERS = neat.first_counters(3, 2)
@@ -144,4 +144,4 @@ def test_both_are_learners_and_plain_neat_is_not(lamarckian):
 
 
 def test_the_spec_knows_which_measures_have_no_slope():
-    assert set(WITHOUT_SLOPES) == set(CONSTANT)
+    assert set(WITHOUT_GRADIENT) == set(CONSTANT)

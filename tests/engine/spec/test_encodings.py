@@ -76,16 +76,16 @@ def test_vectors_have_a_bounded_length():
         body={"nodes": 256},
         world={"width": 512, "height": 512},
     )
-    assert "at most 65536 numbers" in said
+    assert "at most 65536 genes" in said
 
 
 def test_genes_are_counted_part_by_part():
     body = spec.shape(spec.Chain(nodes=10))
-    free = spec.Free(low=0.5, high=1.0)
+    free = spec.Bounds(low=0.5, high=1.0)
     direct = spec.Direct(bend=free, rest_length=free, waveform="table", terms=3)
     assert direct.parts(body) == {"rest_length": 9, "bend": 8, "angles": 24, "lengths": 27}
-    assert spec.genes(direct, body) == 68
-    assert spec.genes(spec.Control(), body) == 0
+    assert spec.gene_count(direct, body) == 68
+    assert spec.gene_count(spec.Control(), body) == 0
 
 
 def test_networks_have_room_for_all_that_leads_to_outputs():

@@ -17,8 +17,8 @@ def refusal(**parts):
 @pytest.mark.parametrize(
     ("parts", "said"),
     [
-        ({"control": {"sense_energy": True}}, "`world.energy` must be there where `control"),
-        ({"task": {"fitness": "energy"}}, "`world.energy` must be there where `task.fitness`"),
+        ({"control": {"sense_energy": True}}, "`world.energy` must be set where `control"),
+        ({"task": {"fitness": "energy"}}, "`world.energy` must be set where `task.fitness`"),
         (
             {"control": {"swimmer": "ray"}, "body": {"builder": "worm"}},
             "`body.builder` must be 'ray' for its gait, got 'worm'",

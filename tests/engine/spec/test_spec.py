@@ -61,7 +61,7 @@ def test_a_fixed_magic_parameter_is_refused_where_it_is_unstable():
 
 def test_one_descriptor_twice_is_refused():
     axis = {"name": "bending_effort"}
-    assert "`descriptors` must differ" in refusal(archive={"descriptors": [axis, axis]})
+    assert "`descriptors` must not repeat" in refusal(archive={"descriptors": [axis, axis]})
 
 
 def test_a_log_axis_from_zero_is_refused():

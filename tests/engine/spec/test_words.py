@@ -64,7 +64,7 @@ def test_a_field_says_what_it_means(owner, name, forms):
 
 @pytest.mark.parametrize(("owner", "name", "forms"), leaves())
 def test_a_number_has_a_unit_unless_it_is_pure(owner, name, forms):
-    if not any(map(is_number, forms)) or owner == "Free":  # Whose unit is its owner's.
+    if not any(map(is_number, forms)) or owner == "Bounds":  # Whose unit is its owner's.
         return
     pure = name in " ".join(PURE.values()).split() or (owner, name) == (
         "Reevaluation",

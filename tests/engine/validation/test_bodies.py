@@ -2,7 +2,7 @@
 
 import pytest
 
-from validation import gradients, repulsion, shapes, stability
+from validation import bodies, gradients, shapes
 
 pytestmark = pytest.mark.long
 
@@ -19,7 +19,7 @@ def test_a_shape_that_was_never_asked_for_is_noticed(float64):
 
 
 def test_two_bodies_push_each_other_away_and_not_the_fluid(dtype):
-    assert not repulsion.check(name=dtype.name).missed
+    assert not bodies.check_repulsion(name=dtype.name).missed
 
 
 def test_gradients_with_steric_and_energy_agree_with_finite_differences():
@@ -27,4 +27,4 @@ def test_gradients_with_steric_and_energy_agree_with_finite_differences():
 
 
 def test_random_controllers_stay_finite():
-    assert not stability.check((0.001, 0.01, 2.0), seeds=2, steps=1500).missed
+    assert not bodies.check_stability((0.001, 0.01, 2.0), seeds=2, steps=1500).missed

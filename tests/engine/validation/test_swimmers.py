@@ -2,8 +2,9 @@
 
 import pytest
 
-from microcosmos import bodies, coupling, world
-from validation import passive, scenes, swimmers
+from microcosmos import coupling, world
+from microcosmos.bodies import ring
+from validation import bodies, scenes, swimmers
 
 pytestmark = pytest.mark.long
 
@@ -12,11 +13,11 @@ GHOST = world.Form(projection=coupling.unprojected, theta_feedback=0.0)
 
 
 def test_rings_and_rods_turn_with_a_shear_flow(dtype):
-    assert not passive.check(dtype.name).missed
+    assert not bodies.check_passive(dtype.name).missed
 
 
 def test_a_ring_in_the_literal_form_does_not_turn(float64):
-    angle, shear = passive.turned(bodies.ring(28, 1.0), float64, form=GHOST)
+    angle, shear = bodies.turned(ring(28, 1.0), float64, form=GHOST)
     assert abs(angle) <= 1e-4 * shear
 
 

@@ -16,13 +16,13 @@ from microcosmos.viz.replay_file import read_replay
 
 NODES, STEPS, ROOM = 8, 24, (16, 32)
 BASE = {"period": 12, "angle_scale": 0.3}
-BENT = spec.Free(low=-0.1, high=0.1)
+BENT = spec.Bounds(low=-0.1, high=0.1)
 
 
 def controls():
     return {
         "recurrent": spec.Control(recurrent=True, **BASE),
-        "direct": spec.Direct(rest_angle=BENT, bend=spec.Free(low=0.3, high=1.0), **BASE),
+        "direct": spec.Direct(rest_angle=BENT, bend=spec.Bounds(low=0.3, high=1.0), **BASE),
         "weights": spec.Weights(**BASE),
         "cppn-body": spec.Grown(**BASE),
     }

@@ -183,7 +183,7 @@ def test_equal_figures_are_equal_files(rows, tmp_path, suffix):
 
 
 def test_a_file_of_another_kind_is_refused(timings, tmp_path):
-    with pytest.raises(ValueError, match=r"`path` must end in .png, .svg, .pdf, got"):
+    with pytest.raises(ValueError, match=r"must end in .pdf, .svg, .png; got"):
         experiments.save(experiments.scaling(timings), tmp_path / "a.bmp")
 
 

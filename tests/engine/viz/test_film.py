@@ -9,8 +9,7 @@ import pytest
 from PIL import Image
 
 from microcosmos.viz import film as module
-from microcosmos.viz.files import export
-from microcosmos.viz.film import gif, mp4
+from microcosmos.viz.film import export, gif, mp4
 from microcosmos.viz.raster import frame
 
 pytestmark = pytest.mark.long
@@ -83,7 +82,7 @@ def test_an_mp4_is_the_same_every_time(film, swimming):
 
 def test_an_mp4_without_an_encoder_is_refused(swimming, monkeypatch):
     monkeypatch.setattr(module, "ENCODER", "libabsent")
-    with pytest.raises(RuntimeError, match=r"PyAV with libabsent.*make a GIF instead"):
+    with pytest.raises(ValueError, match=r"PyAV with libabsent.*make a GIF instead"):
         mp4(swimming)
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from microcosmos.viz.preview import HEIGHT, MOMENT, WIDTH, preview
 from microcosmos.viz.raster import THEMES, frame
+from microcosmos.viz.strip import HEIGHT, MOMENT, WIDTH, preview
 
 pytestmark = pytest.mark.fast
 

@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from microcosmos.viz.antialias import coverage, distance
-from microcosmos.viz.raster import THEMES, frame
+from microcosmos.viz.raster import THEMES, coverage, distance, frame, view
 from microcosmos.viz.replay_file import read_replay
-from microcosmos.viz.viewport import view
 
 pytestmark = pytest.mark.fast
 

@@ -11,8 +11,7 @@ import pytest
 
 from microcosmos import fields, search
 from microcosmos.archive import creature
-from microcosmos.audit.remeasure import measurement
-from microcosmos.audit.reproducibility import check
+from microcosmos.audit.reproducibility import check, measurement
 from microcosmos.build import build, build_encoding, build_task
 from microcosmos.spec import parse
 from microcosmos.spec.creature.identity import Identity

@@ -173,7 +173,7 @@ class Kept:
 
     def __exit__(self, *_: object) -> None: ...
 
-    def show(self, standing: polling.Standing) -> None:
+    def show(self, standing: polling.RunState) -> None:
         record = standing.record
         curve = list(standing.curves["generation"])
         self.shown.append((record["status"], record["generation"], curve))
@@ -185,7 +185,7 @@ def worked(attempt, record):
     """The run goes on by a generation whenever it is shown, until its third."""
     left = [1, 2, 3, None]
 
-    def go_on(standing: polling.Standing) -> None:
+    def go_on(standing: polling.RunState) -> None:
         reached = (standing.curves["generation"] or [0])[-1]
         if left and reached == 4 - len(left):
             generation = left.pop(0)
@@ -198,10 +198,10 @@ def worked(attempt, record):
 
 
 def test_a_run_is_followed_by_events(client, run, worked):
-    from microcosmos.client.watching import watch
+    from microcosmos.client.views import watch
 
     view = Kept(worked)
-    assert watch(client.connection, run.id, view) == "finished"
+    assert watch(polling.follow(client.connection, run.id), "Run x", view) == "finished"
     status, generation, curve = view.shown[-1]
     assert (status, generation, curve) == ("finished", 3, [1, 2, 3])
     curves = [curve for _, _, curve in view.shown]
@@ -239,8 +239,8 @@ def test_watching_survives_an_absence_of_the_server(serve, services, run, worked
         monkeypatch.setattr(client.connection, "read", read)
         troubles = []
         for standing in found:
-            troubles.append(standing.trouble)
-            if standing.trouble is None:
+            troubles.append(standing.problem)
+            if standing.problem is None:
                 worked(standing)
         assert troubles.count("No server answers.") >= 1
         assert (troubles[-1], standing.record["status"]) == (None, "finished")

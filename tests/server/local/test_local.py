@@ -117,7 +117,7 @@ def test_services_that_others_need_end_last(tmp_path):
         return lambda: spawn(command, os.environ, tmp_path / name)
 
     tree = Tree()
-    tree.ground.append(Child("redis", start("ground")))
+    tree.services.append(Child("redis", start("ground")))
     tree.children.append(Child("server", start("child ")))
     for name in ("ground", "child "):
         wait_until(lambda name=name: "up" in (tmp_path / name).read_text())

@@ -1,14 +1,14 @@
-/** Where a page is at home: in the whole installation, or in one share, beyond which it asks nothing. */
+/** The scope of the page: the installation, or one share. */
 
 const path = globalThis.location?.pathname ?? "";
 
-/** Whether strangers may see the page at an address. */
+/** True if an address is public. */
 export const isPublicPage = (path: string) => /^\/(s\/.|commons\/?$)/.test(path);
 
-/** The share that this page shows; null where it is a page of the installation itself. */
+/** The share that this page shows; null for a page of the installation. */
 export const sharedSlug = /^\/s\/([\w-]+)/.exec(path)?.[1] ?? null;
 
-/** What names a share in requests: its holder reads on the ordinary routes what it shows. */
+/** The header that names the share in requests. */
 export const SHARE_HEADER = "Microcosmos-Share";
 export const shareHeaders: Record<string, string> = sharedSlug ? { [SHARE_HEADER]: sharedSlug } : {};
 

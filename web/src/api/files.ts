@@ -1,20 +1,16 @@
-/** Ask whether a file is ready or exists, without reading it. */
+/** Check and download files. */
 
 import { shareHeaders, sharedSlug } from "./address";
 import { problemOf } from "./problem";
 import { noteStatus } from "./signedOut";
 
-/** True once a rendering is there, null while it is made; nothing of it is read. */
+/** True if a rendering exists, null while it is rendered; its content is not read. */
 export async function renderingReady(url: string): Promise<true | null> {
-  return (await readHead(url)).status === 202 ? null : true;
+  return (await checkFile(url)).status === 202 ? null : true;
 }
 
-/** Throws the reason where a file cannot be had; nothing of it is read. */
-export async function checkFile(url: string): Promise<void> {
-  await readHead(url);
-}
-
-async function readHead(url: string): Promise<Response> {
+/** Throw if a file does not exist; its content is not read. */
+export async function checkFile(url: string): Promise<Response> {
   const stop = new AbortController();
   const response = await request(url, stop.signal);
   stop.abort();
@@ -28,7 +24,7 @@ async function request(url: string, signal?: AbortSignal): Promise<Response> {
   return response;
 }
 
-/** Download a file under the name that the server gives it. Links cannot name a share: it is fetched. */
+/** Download a file under the name that the server gives it. In a share it is fetched, because links carry no header. */
 export async function save(url: string): Promise<void> {
   const link = document.createElement("a");
   if (sharedSlug) {

@@ -1,4 +1,4 @@
-/** The HTTP client: it names the share of the page, and throws problems. */
+/** The HTTP client, which names the share of the page and throws problems. */
 
 import createClient from "openapi-fetch";
 import { shareHeaders } from "./address";

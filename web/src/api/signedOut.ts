@@ -1,4 +1,4 @@
-/** Every request may find out that nobody is signed in: the frame of the page is told. */
+/** The event that a request was refused because nobody is signed in. */
 
 export const SIGNED_OUT = "microcosmos:unknown";
 

@@ -1,9 +1,9 @@
-/** The words of the wire, under the names that the page uses. */
+/** Types of requests, answers and events, under the names that the page uses. */
 
 import type { components, operations } from "./schema";
 
 type Wire = components["schemas"];
-/** A type of the server, with parts that OpenAPI can only call objects. */
+/** A type of the server with some fields more precise than in OpenAPI. */
 type With<T, Parts> = Omit<T, keyof Parts> & Parts;
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
@@ -11,14 +11,14 @@ export type Spec = { [key: string]: Json };
 export type Schema = { [keyword: string]: Json };
 
 export type Run = With<Wire["RunRead"], { spec: Spec; summary: Values | null }>;
-/** How a run stands; what it is may be left out where that was told before. */
+/** The state of a run; the spec may be missing if it was sent before. */
 export type RunEvent = Omit<Run, "spec"> & { spec?: Spec };
 export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
-/** What people may say of a run. */
+/** Fields of a run that users edit. */
 export type RunChange = Partial<Pick<Run, "name" | "tags" | "note">>;
 export type RunQuery = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
 export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }> & Owned;
-/** With the name of the token it was made with, null without one. */
+/** `owner` is the name of the token; null without one. */
 export type Owned = { owner: string | null };
 export type SweepPage = With<Wire["SweepPage"], { items: Sweep[] }>;
 export type SweepChanged = Sweep & Pick<Wire["SweepChanged"], "changed" | "skipped">;
@@ -29,21 +29,21 @@ export type SweepCurves = Wire["SweepCurves"];
 export type SweepEstimate = Wire["SweepEstimate"];
 export type Member = Wire["SweepRun"];
 export type Spread = Omit<Wire["Final"], "values">;
-/** What a case has at the fields of the grid, by their paths. */
+/** Values of a case at the fields of the grid, by path. */
 export type CaseValues = { [path: string]: Json };
 export type Grid = { [path: string]: Json[] };
-/** What is asked for: each case of the grid with each seed. */
+/** Each case of the grid is run with each seed. */
 export interface SweepRequest {
   spec: Spec;
   seeds: number | number[];
   grid: Grid;
   name: string | null;
 }
-/** A run that begins from another's creatures, its spec changed by a merge patch. */
+/** A run from the creatures of another run; the spec is a merge patch. */
 export interface ForkRequest {
   run: string;
   from: { creatures: string[] } | { cells: number[] } | { archive: true };
-  /** Elites as they were after it; left out: as they are. */
+  /** The generation of the elites; by default the newest. */
   generation?: number;
   spec: Spec;
   name: string | null;
@@ -72,16 +72,16 @@ export type CreatedToken = Wire["TokenCreated"];
 export type TokenCreate =
   operations["create_token_api_v1_tokens_post"]["requestBody"]["content"]["application/json"];
 export type TokenScope = Token["scope"];
-/** A picture that a filament folds into. */
+/** A picture into which a filament folds. */
 export type Target = Wire["Target"];
 
 export type Value = null | boolean | number | string;
 export type Values = { [name: string]: Value };
-/** A line of a run's result; `creature` names whom it is about, if anybody. */
+/** A row of a results table. */
 export type ResultRow = Values & { creature: string | null };
 export type Results = With<Wire["ResultsRead"], { rows: ResultRow[]; summary: Values | null }>;
 
-/** A network of nodes and connections; one may grow the body too. */
+/** A network of nodes and connections; `cppn-body` grows the body too. */
 export interface Genes {
   encoding: "cppn" | "cppn-body";
   control: Spec;
@@ -97,7 +97,7 @@ export interface Genes {
   };
 }
 
-/** A gait made by hand, in the place of genes. */
+/** A gait designed by hand, in place of genes. */
 export interface Gait {
   encoding: "gait";
   swimmer: string;
@@ -107,12 +107,12 @@ export interface Gait {
   plugin?: Spec;
 }
 
-/** Genes that are numbers: a controller itself, a network's weights, or a rest shape. */
+/** Numeric genes: a control signal, the weights of a network, or a rest shape. */
 export interface Vector {
   encoding: "direct" | "weights" | "fold";
   control: Spec;
   values: string;
-  /** Of a network whose weights these are. */
+  /** Of the network with these weights. */
   inputs?: string[];
   outputs?: string[];
 }
@@ -132,20 +132,20 @@ export interface AuditRow {
   quantity: string;
   value: number | null;
   unit: string;
-  /** What it needs to be, in words. */
+  /** The limit, as a number or in words. */
   bar: string | number | null;
   passed: boolean | null;
-  /** What it means where it has not passed. */
+  /** The meaning of a failure. */
   note: string;
 }
 
-/** Whether a creature's swimming survives refinement, and the figures that say so. */
+/** The verdict on a creature's swimming, with its figures. */
 export interface Audit {
   verdict: { survives: boolean; reasons: string[] };
   rows: AuditRow[];
 }
 
-/** A creature file; one made elsewhere may know neither its figures nor its origin. */
+/** A creature file; an imported one may lack measures and origin. */
 export interface Creature {
   identity: {
     format: string;
@@ -170,17 +170,17 @@ export interface Creature {
     version: string;
   } | null;
   licence: string;
-  /** Who is to be named. */
+  /** Names of the authors. */
   credit?: string[];
 }
 
-/** What an error's body should be; something between page and server may answer otherwise. */
+/** The body of an error; a proxy may answer with anything else. */
 export type ProblemDocument = Partial<Wire["Problem"]>;
 export type FieldError = Pick<Wire["FieldError"], "field" | "message">;
 
 type GenerationColumns = Omit<Generations, "summary">;
 
-/** The last entry of each column of `Generations`, and everything else that was told. */
+/** The last entry of each column of `Generations`, and the summary of the generation. */
 export type GenerationEvent = { run: string; summary: Values | null } & {
   [name in keyof GenerationColumns]: GenerationColumns[name][number];
 };
@@ -190,7 +190,7 @@ export type ElitesEvent = ArchiveColumns & { run: string; generation: number };
 export interface ResultsEvent {
   run: string;
   generation: number;
-  /** As the run's, where this generation changed it. */
+  /** The summary of the run, if this generation changed it. */
   summary: Values | null;
   rows: ResultRow[];
 }

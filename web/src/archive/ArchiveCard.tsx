@@ -1,13 +1,12 @@
-/** The archive of a run: as a map or as a wall of creatures, now or in the past. */
+/** The archive of a run, as a map or a gallery, at any generation. */
 
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import { pageUrl } from "../api/address";
 import type { Archive, Run } from "../api/types";
-import type { Elites } from "../store/elites";
+import { type Elite, type Elites, fittest } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
-import { ArchiveMap, type HoveredElite } from "./ArchiveMap";
-import { AxisSelect } from "./AxisSelect";
-import { ColourSelect } from "./ColourSelect";
+import { ArchiveMap } from "./ArchiveMap";
+import { Choices } from "./Choices";
 import { Slices } from "./Slices";
 import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
@@ -15,7 +14,7 @@ import { Segments } from "../ui/Select";
 import { Guide } from "../ui/Guide";
 import { ForkLink } from "../ui/ForkLink";
 import { SelectToggle, SelectionBar, useSelection } from "./SelectionBar";
-import { bestOf, stepsOf, useGuide } from "./guide";
+import { stepsOf, useGuide } from "./guide";
 import { ElitePreview } from "./ElitePreview";
 import { type ArchiveView, setSlice, useArchiveView } from "./archiveView";
 import type { ArchiveViewProps } from "./binFocus";
@@ -36,7 +35,7 @@ interface Props {
 export function ArchiveCard({ run, archive, elites, query }: Props) {
   const [at, setAt] = useMoment(query, run.generation);
   const view = useArchiveView(run, archive, elites, query, at);
-  const [looking, setLooking] = useState<HoveredElite | null>(null);
+  const [focused, setFocused] = useState<Elite | null>(null);
   const guide = useGuide(run);
   const [about, setAbout] = useState<string | null>(null);
   const gallery = query.get("view") === "gallery";
@@ -55,8 +54,8 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
           key={names}
           {...props}
           elites={view.elites}
-          onLook={setLooking}
-          inset={looking && <ElitePreview sha={looking.elite.creature} />}
+          onFocus={setFocused}
+          inset={focused && <ElitePreview sha={focused.creature} />}
         />
       )}
       {view.error && <p class="banner wrong">{view.error}</p>}
@@ -68,8 +67,8 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
           asked={guide.asked}
           onStep={({ about }) => {
             setAbout(about);
-            const best = bestOf(view);
-            if (about === "legend" && best && props.marked === null) props.onMark(best.cell);
+            const best = fittest(view.elites);
+            if (about === "legend" && best && props.marked === null) props.onMark(best[0]);
           }}
           onEnd={() => {
             setAbout(null);
@@ -81,7 +80,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   );
 }
 
-/** What the map and the gallery are given alike. */
+/** Props of both map and gallery. */
 function useViewProps(
   run: Run,
   view: ArchiveView,
@@ -135,33 +134,16 @@ const VIEWS = [
   ["gallery", text.gallery],
 ] as const;
 
-function Choices({ archive, view: { axes, colour, palette } }: { archive: Archive; view: ArchiveView }) {
-  return (
-    <div class="archive-choices">
-      <AxisSelect
-        archive={archive}
-        names={[axes[0].name, axes[1].name]}
-        onChoose={([x, y]) => setQuery({ x, y })}
-      />
-      <ColourSelect
-        {...{ archive, colour, palette }}
-        onColour={(colour) => setQuery({ colour: colour === "fitness" ? null : colour })}
-        onPalette={(palette) => setQuery({ palette: palette === "viridis" ? null : palette })}
-      />
-    </div>
-  );
-}
+const DELAY_MS = 300;
 
-const SETTLED_MS = 300;
-
-/** The generation that is shown, null for the newest; the address follows once it rests. */
+/** The generation shown, null for the newest; the address follows with a delay. */
 function useMoment(query: URLSearchParams, last: number) {
   const given = query.get("at");
   const asked = given !== null && /^\d+$/.test(given) ? Number(given) : null;
   const [at, setAt] = useState(asked);
   const written = useRef(asked);
   useEffect(() => {
-    // Back and forward move it too; what was written here may be passed already.
+    // Back and forward change the address too.
     if (asked !== written.current) setAt(asked);
     written.current = asked;
   }, [asked]);
@@ -170,9 +152,9 @@ function useMoment(query: URLSearchParams, last: number) {
     const timer = setTimeout(() => {
       written.current = at;
       setQuery({ at: at === null ? null : String(at) });
-    }, SETTLED_MS);
+    }, DELAY_MS);
     return () => clearTimeout(timer);
   }, [at]);
-  // After a rewind there are fewer generations than were asked for.
+  // After a rewind, the requested generation may not exist.
   return [at !== null && at >= last ? null : at, setAt] as const;
 }

@@ -1,4 +1,4 @@
-/** The gallery, with the motions of what it shows. */
+/** The gallery with the motions of its visible creatures. */
 
 import { useState } from "preact/hooks";
 import { useMotions } from "../store/motions";

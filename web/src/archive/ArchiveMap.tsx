@@ -1,9 +1,9 @@
-/** The archive as a map: one cell an elite, to be looked at, pointed at and opened. */
+/** The archive as a map of its elites. */
 
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
 import type { Elite, Elites } from "../store/elites";
-import { HorizontalLabels, VerticalLabels } from "./AxisLabels";
+import { AxisLabels } from "./AxisLabels";
 import { type ArchiveViewProps, useBinFocus } from "./binFocus";
 import { useBoxSelect } from "./boxSelect";
 import { ColourLegend } from "./ColourLegend";
@@ -14,30 +14,25 @@ import type { Tiles } from "./projection";
 import { type Box, binsOf, binsWithin, cellsIn, isAdditive, keyHelp, toggle, union } from "./selection";
 import { text } from "./text";
 
-export interface HoveredElite {
-  cell: number;
-  elite: Elite;
-}
-
 interface Props extends ArchiveViewProps {
   elites: Elites;
-  /** The elite that is pointed at, else the marked one. */
-  onLook: (looking: HoveredElite | null) => void;
-  /** What stands beside the cell that is looked at. */
+  /** Called with the elite under the pointer, or the marked one. */
+  onFocus: (elite: Elite | null) => void;
+  /** Shown beside the focused cell. */
   inset: ComponentChildren;
 }
 
-/** Cells are the archive's; bins are the map's, and each shows the best elite in it. */
+/** Cells belong to the archive, bins to the map; a bin shows its best elite. */
 export function ArchiveMap(props: Props) {
-  const { axes, colouring, onOpen, onChoose, onLook } = props;
+  const { axes, colouring, onOpen, onChoose, onFocus } = props;
   const focus = useBinFocus(props);
   const { tile } = focus;
-  useLayoutEffect(() => onLook(tile ? { cell: tile.cell, elite: tile.elite } : null), [tile?.elite]);
+  useLayoutEffect(() => onFocus(tile?.elite ?? null), [tile?.elite]);
   return (
     <div class="map">
-      <VerticalLabels axis={axes[1]} />
+      <AxisLabels axis={axes[1]} side="y" />
       <MapPlot {...props} focus={focus} />
-      <HorizontalLabels axis={axes[0]} />
+      <AxisLabels axis={axes[0]} side="x" />
       <ColourLegend colouring={colouring} />
       <EliteReading
         {...{ tile, axes, onOpen }}
@@ -69,7 +64,7 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
     if (bin === null || drag.wasDrag()) return;
     if (onChoose && isAdditive(event)) return onChoose(toggle(props.chosen, cellsIn([bin], projection)));
     const { cell } = tiles.get(bin)!;
-    // A finger cannot hover: its first tap looks, the second opens.
+    // Fingers cannot hover: the first tap marks, the second opens.
     if ((event as PointerEvent).pointerType === "touch" && bin !== from) onMark(cell);
     else onOpen(cell);
   };
@@ -100,7 +95,7 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
   );
 }
 
-/** The bin under the pointer, where it holds an elite. */
+/** The bin under the pointer, if it has an elite. */
 function tileUnder(event: MouseEvent, layout: Layout, tiles: Tiles): number | null {
   const box = (event.currentTarget as Element).getBoundingClientRect();
   const [x, y] = [event.clientX - box.left, event.clientY - box.top];
@@ -108,7 +103,7 @@ function tileUnder(event: MouseEvent, layout: Layout, tiles: Tiles): number | nu
   return bin !== null && tiles.has(bin) ? bin : null;
 }
 
-/** The outline of the bin that is looked at, above the picture. */
+/** The outline of the focused bin. */
 function BinOutline({ layout, bin }: { layout: Layout; bin: number }) {
   const points = layout
     .outline(bin)
@@ -122,7 +117,6 @@ function BinOutline({ layout, bin }: { layout: Layout; bin: number }) {
   );
 }
 
-/** The box that is being drawn. */
 function SelectionBox({ from, to }: Box) {
   const [x, y] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
   const [width, height] = [Math.abs(from[0] - to[0]), Math.abs(from[1] - to[1])];
@@ -133,7 +127,7 @@ function SelectionBox({ from, to }: Box) {
   );
 }
 
-/** Stands where it hides neither the bin nor more of the map than it must. */
+/** Placed so that it hides neither the bin nor much of the map. */
 function PlacedBeside({
   layout,
   bin,

@@ -1,38 +1,24 @@
 /** The axes of the map, labelled with raw values. */
 
+import { place, ticksOf } from "../charts/plot/scale";
 import { number, scientific } from "../ui/format";
-import type { MapAxis } from "./axes";
-import { type Tick, ticks } from "./geometry";
+import { type MapAxis, scaleOf } from "./axes";
 
-export function HorizontalLabels({ axis }: { axis: MapAxis }) {
+const MAX_TICKS = 6;
+
+export function AxisLabels({ axis, side }: { axis: MapAxis; side: "x" | "y" }) {
+  const scale = scaleOf(axis);
+  const start = side === "x" ? "left" : "bottom";
   return (
-    <div class="axis axis-x" aria-hidden="true">
-      {ticks(axis).map((tick) => (
-        <span key={tick.at} class="tick" style={{ left: `${100 * tick.at}%` }}>
-          {label(axis, tick)}
+    <div class={`axis axis-${side}`} aria-hidden="true">
+      {ticksOf(scale, MAX_TICKS).map((value) => (
+        <span key={value} class="tick" style={{ [start]: `${100 * place(scale, value)}%` }}>
+          {!scale.log || (value >= 1e-2 && value < 1e4) ? number(value) : scientific(value, 0)}
         </span>
       ))}
       <span class="axis-name">{name(axis)}</span>
     </div>
   );
-}
-
-export function VerticalLabels({ axis }: { axis: MapAxis }) {
-  return (
-    <div class="axis axis-y" aria-hidden="true">
-      {ticks(axis).map((tick) => (
-        <span key={tick.at} class="tick" style={{ bottom: `${100 * tick.at}%` }}>
-          {label(axis, tick)}
-        </span>
-      ))}
-      <span class="axis-name">{name(axis)}</span>
-    </div>
-  );
-}
-
-function label(axis: MapAxis, { value }: Tick): string {
-  const plain = axis.scale === "linear" || (value >= 1e-2 && value < 1e4);
-  return plain ? number(value) : scientific(value, 0);
 }
 
 function name({ title, unit, scale }: MapAxis): string {

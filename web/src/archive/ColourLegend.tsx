@@ -3,13 +3,14 @@
 import { ColourBar } from "../ui/ColourBar";
 import { css, sequential } from "../ui/colours";
 import { count, number } from "../ui/format";
-import { type Colouring, AGE, valueAlong } from "./colouring";
+import { valueAt } from "../charts/plot/scale";
+import { type Colouring, AGE } from "./colouring";
 import { text } from "./text";
 
 export function ColourLegend({ colouring }: { colouring: Colouring }) {
-  const { measure, palette } = colouring;
+  const { measure, palette, scale } = colouring;
   const write = measure.name === AGE ? count : number;
-  const numbers = [0, 0.5, 1].map((t) => write(valueAlong(colouring, t)));
+  const numbers = [0, 0.5, 1].map((t) => write(valueAt(scale, t)));
   const label = measure.unit ? `${measure.title} (${measure.unit})` : measure.title;
   return (
     <ColourBar

@@ -1,4 +1,4 @@
-/** Measures of the elite under the pointer. */
+/** Measures of the focused elite. */
 
 import type { ComponentChildren } from "preact";
 import type { Elite } from "../store/elites";
@@ -12,10 +12,10 @@ interface Props {
   tile: Tile | undefined;
   axes: readonly MapAxis[];
   colour: Measure;
-  /** Shown if no elite is pointed at. */
+  /** Shown without a focused elite. */
   hint: string;
   onOpen: (cell: number) => void;
-  /** What else can be done with an elite. */
+  /** Further links and buttons for an elite. */
   actions: (elite: Elite, cell: number) => ComponentChildren;
 }
 
@@ -23,7 +23,7 @@ export function EliteReading({ tile, axes, colour, hint, onOpen, actions }: Prop
   return (
     <p id="map-reading" class="map-reading" aria-live="polite">
       {tile ? (
-        <Words {...{ tile, onOpen, actions, measures: [...axes, colour] }} />
+        <Words {...{ tile, onOpen, actions }} measures={[...axes, colour]} />
       ) : (
         <span class="quiet">{hint}</span>
       )}
@@ -31,29 +31,26 @@ export function EliteReading({ tile, axes, colour, hint, onOpen, actions }: Prop
   );
 }
 
-interface WordsProps {
+interface WordsProps extends Pick<Props, "onOpen" | "actions"> {
   tile: Tile;
   measures: readonly Measure[];
-  onOpen: (cell: number) => void;
-  actions: Props["actions"];
 }
 
 function Words({ tile: { elite, cell, behind }, measures, onOpen, actions }: WordsProps) {
-  const told = new Map(measures.map((measure) => [measure.name, measure]));
-  for (const name of [FITNESS, AGE]) told.delete(name);
+  const shown = new Map(measures.map((measure) => [measure.name, measure]));
+  for (const name of [FITNESS, AGE]) shown.delete(name);
+  const figures = [
+    [text.fitness, number(elite.fitness)],
+    ...[...shown.values()].map(({ title, valueOf }) => [title, number(valueOf(elite))]),
+    [text.generation, elite.generation],
+  ];
   return (
     <>
-      <span>
-        {text.fitness} <b>{number(elite.fitness)}</b>
-      </span>
-      {[...told.values()].map(({ name, title, valueOf }) => (
-        <span key={name}>
-          {title} <b>{number(valueOf(elite))}</b>
+      {figures.map(([title, value]) => (
+        <span key={title}>
+          {title} <b>{value}</b>
         </span>
       ))}
-      <span>
-        {text.generation} <b>{elite.generation}</b>
-      </span>
       {behind > 0 && (
         <span>
           {text.bestOf} <b>{count(behind + 1)}</b> {text.here}

@@ -1,4 +1,4 @@
-/** The archive as a wall of moving creatures, each in the place that its descriptors give it. */
+/** The archive as a gallery of moving creatures, placed by their descriptors. */
 
 import type { ComponentChildren, RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
@@ -6,32 +6,31 @@ import type { Motion } from "../decode/motion";
 import { useClock } from "../replay/clock";
 import { type Size, useSize } from "../ui/canvas";
 import { prefersStillness, useTheme } from "../ui/theme";
-import { HorizontalLabels, VerticalLabels } from "./AxisLabels";
+import { AxisLabels } from "./AxisLabels";
 import { type ArchiveViewProps, useBinFocus } from "./binFocus";
 import { ColourLegend } from "./ColourLegend";
 import { type GalleryPicture, drawGallery } from "./drawGallery";
 import { EliteReading } from "./EliteReading";
-import { cornerOf, visibleBins } from "./galleryTiles";
-import type { Shape } from "./geometry";
+import { type Shape, cornerOf, visibleBins } from "./geometry";
 import type { Projection } from "./projection";
 import { binsOf, cellsIn, isAdditive, keyHelp, toggle } from "./selection";
 import { text } from "./text";
 
 interface Props extends ArchiveViewProps {
-  /** Pixels of a tile's side; null: as large as fits. */
+  /** Side of a tile in pixels; null for the largest that fits. */
   side: number | null;
   motions: ReadonlyMap<string, Motion>;
-  /** The creatures that are seen, from the middle outwards. */
+  /** Called with the visible creatures, sorted from the middle. */
   onSee: (creatures: string[]) => void;
   onSide: (side: number) => void;
-  /** The size that was chosen, once the finger is off. */
+  /** Called with the chosen size when the slider is released. */
   onSettle: (side: number) => void;
 }
 
 const [SMALLEST, LARGEST] = [36, 180];
-/** Below this, a body is hard to make out: then the wall scrolls rather than fit. */
+/** Smaller tiles are hard to read: the gallery scrolls instead. */
 const READABLE = 52;
-/** All of a replay passes in so many seconds. */
+/** Duration of a loop. */
 const SECONDS = 5;
 
 const bounded = (side: number) => Math.min(LARGEST, Math.max(SMALLEST, side));
@@ -60,14 +59,14 @@ export function Gallery(props: Props) {
       <TileSize side={side} onSide={props.onSide} onSettle={props.onSettle} />
       <div class="gallery-frame">
         <AxisRail class="gallery-y" by={-scroll[1]} length={wall[1]} shown={shown.height} upright>
-          <VerticalLabels axis={axes[1]} />
+          <AxisLabels axis={axes[1]} side="y" />
         </AxisRail>
         <Port {...props} {...{ port, focus, binUnder }} onScroll={setScroll}>
           <Tiles {...props} {...picture} />
           <div style={{ width: `${wall[0]}px`, height: `${wall[1]}px` }} />
         </Port>
         <AxisRail class="gallery-x" by={-scroll[0]} length={wall[0]} shown={shown.width}>
-          <HorizontalLabels axis={axes[0]} />
+          <AxisLabels axis={axes[0]} side="x" />
         </AxisRail>
       </div>
       <ColourLegend colouring={colouring} />
@@ -92,7 +91,7 @@ interface Seen {
   size: Size;
 }
 
-/** The filled bins in the window; `onSee` is told of their creatures. */
+/** The filled bins in the window; `onSee` gets their creatures. */
 function useSeen({ projection: { tiles }, shape, side, scroll, size }: Seen, onSee: Props["onSee"]) {
   const seen = useMemo(() => {
     const window = { left: scroll[0], top: scroll[1], ...size };
@@ -130,7 +129,7 @@ interface PortProps extends Props {
   children: ComponentChildren;
 }
 
-/** The window that the wall scrolls in, with its pointer and keys. */
+/** The scrolling window, with pointer and keys. */
 function Port({ port, focus, binUnder, onScroll, children, ...props }: PortProps) {
   const { projection, chosen, onChoose, onOpen } = props;
   return (
@@ -166,7 +165,7 @@ interface TilesProps extends Props {
   scroll: Offset;
 }
 
-/** The canvas that shows the tiles that are seen. */
+/** The canvas with the visible tiles. */
 function Tiles({ projection, colouring, motions, shape, side, seen, focused, size, ...props }: TilesProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const theme = useTheme();
@@ -179,16 +178,16 @@ function Tiles({ projection, colouring, motions, shape, side, seen, focused, siz
 
 interface RailProps {
   class: string;
-  /** How far the wall is scrolled, in pixels. */
+  /** Scroll offset in pixels. */
   by: number;
   length: number;
-  /** How much of it the window shows: its name stands in the middle of that. */
+  /** The visible length; the name of the axis is in its middle. */
   shown: number;
   upright?: boolean;
   children: ComponentChildren;
 }
 
-/** An axis that scrolls with the wall. */
+/** An axis that scrolls with the gallery. */
 function AxisRail({ class: name, by, length, shown, upright = false, children }: RailProps) {
   const style = upright
     ? { height: `${length}px`, transform: `translateY(${by}px)` }
@@ -201,7 +200,7 @@ function AxisRail({ class: name, by, length, shown, upright = false, children }:
   );
 }
 
-/** Scrolls no farther than it takes to show the whole tile. */
+/** Scroll just enough to show the whole tile. */
 function reveal(port: HTMLElement, [left, top]: [number, number], side: number): void {
   const { scrollLeft, scrollTop, clientWidth, clientHeight } = port;
   port.scrollTo({
@@ -210,7 +209,7 @@ function reveal(port: HTMLElement, [left, top]: [number, number], side: number):
   });
 }
 
-/** Draws the wall again and again while it is on the screen; else once for each change. */
+/** Redraw the gallery in every frame while it is on the screen, otherwise after each change. */
 function useAnimation(
   canvas: RefObject<HTMLCanvasElement | null>,
   size: Size,
@@ -220,7 +219,7 @@ function useAnimation(
   const share = useRef(0);
   const onScreen = useOnScreen(canvas);
   const draw = () => {
-    const element = canvas.current; // None any more in the frame in which the page is left.
+    const element = canvas.current; // Null in the frame after the page was left.
     if (element && size.width > 0) drawGallery(element, size, picture, scroll, share.current);
   };
   useClock(onScreen && !prefersStillness(), (seconds) => {

@@ -15,7 +15,7 @@ import { text } from "./text";
 
 const setSelection = (chosen: CellSet) => setQuery({ cells: chosen.size > 0 ? formatCells(chosen) : null });
 
-/** The cells of the address that hold an elite. */
+/** The cells in the address that have an elite. */
 export function useSelection(query: URLSearchParams, elites: Elites): Selection {
   const cells = query.get("cells") ?? "";
   const refusal = useRefusal();
@@ -31,7 +31,7 @@ interface OneProps extends Selection {
   projection: Projection;
 }
 
-/** Select or deselect the elite that is looked at, for touch screens. */
+/** Select or deselect the focused elite, for touch screens. */
 export function SelectToggle({ cell, projection, chosen, onChoose }: OneProps) {
   const bin = projection.bins.get(cell);
   if (!onChoose || bin === undefined) return null;
@@ -49,7 +49,7 @@ export function SelectToggle({ cell, projection, chosen, onChoose }: OneProps) {
 interface Props extends Selection {
   run: Run;
   elites: Elites;
-  /** A generation of the past; null for the newest. */
+  /** The generation shown; null for the newest. */
   at: number | null;
 }
 
@@ -59,7 +59,7 @@ export function SelectionBar({ run, elites, at, chosen, onChoose }: Props) {
   const creatures = new Set(cells.map((cell) => elites.get(cell)!.creature)).size;
   const which = text.creatures(count(creatures), at === null ? null : count(at));
   return (
-    <div class="chosen-bar">
+    <div class="row chosen-bar">
       <span role="status">{chosen.size > 0 && text.selected(which)}</span>
       {/* Outside the live region: it would be read at every step of the slider. */}
       {chosen.size === 0 && creatures > 0 && <span>{which}</span>}

@@ -1,7 +1,8 @@
 /** Ranges of the descriptors that are not axes of the map. */
 
+import { valueAt } from "../charts/plot/scale";
 import { number } from "../ui/format";
-import type { MapAxis } from "./axes";
+import { type MapAxis, scaleOf } from "./axes";
 import type { Slice } from "./projection";
 import { text } from "./text";
 
@@ -13,7 +14,7 @@ interface Props {
 export function Slices({ slices, onChange }: Props) {
   if (slices.length === 0) return null;
   return (
-    <div class="slices">
+    <div class="row slices">
       {slices.map((slice) => (
         <One key={slice.axis.name} slice={slice} onChange={onChange} />
       ))}
@@ -52,8 +53,5 @@ function One({ slice, onChange }: { slice: Slice; onChange: Props["onChange"] })
   );
 }
 
-/** The raw value where a bin begins. */
-export function edgeOf({ low, high, bins, scale }: MapAxis, bin: number): number {
-  const t = bin / bins;
-  return scale === "log10" ? low * (high / low) ** t : low + (high - low) * t;
-}
+/** The raw value at the start of a bin. */
+const edgeOf = (axis: MapAxis, bin: number) => valueAt(scaleOf(axis), bin / axis.bins);

@@ -9,9 +9,9 @@ import { text } from "./text";
 interface Props {
   /** The newest generation. */
   last: number;
-  /** The generation that is shown; null: the newest, whichever that is. */
+  /** The generation shown; null for the newest. */
   at: number | null;
-  /** Whether the past is known already. */
+  /** True if the history is loaded. */
   ready: boolean;
   onMove: (generation: number | null) => void;
 }

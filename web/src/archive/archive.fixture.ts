@@ -2,7 +2,7 @@
 
 import type { Archive } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
-import { axisOf } from "./axes";
+import { type Measures, axisOf } from "./axes";
 import { project } from "./projection";
 
 export const AXES = [
@@ -23,7 +23,15 @@ export function elite(fitness: number, ...descriptors: number[]): Elite {
   return { fitness, descriptors, generation: 1, creature: `c${fitness}`, seenAt: 1 };
 }
 
-export const NONE = new Map();
+/** Elites by cell. */
+export const elitesOf = (elites: Record<number, Elite>): Elites =>
+  new Map(Object.entries(elites).map(([cell, each]) => [Number(cell), each]));
+
+/** Measures by name and creature. */
+export const measuresOf = (measures: Record<string, Record<string, number>>): Measures =>
+  new Map(Object.entries(measures).map(([name, column]) => [name, new Map(Object.entries(column))]));
+
+export const NONE: Measures = new Map();
 
 export const over = (archive: Archive, elites: Elites, names: [string, string], measures = NONE) =>
   project(elites, [axisOf(names[0], archive, elites, measures), axisOf(names[1], archive, elites, measures)]);

@@ -1,12 +1,12 @@
 import { describe, expect, it } from "vitest";
 import { axisOf, choicesOf, missingOf, namesOf } from "./axes";
 import { binOf, project } from "./projection";
-import { voronoiLayout } from "./layout";
+import { type Spot, voronoiLayout } from "./layout";
 import { Delaunay } from "d3-delaunay";
-import { AXES, archiveOf, elite, NONE, over } from "./archive.fixture";
+import { AXES, archiveOf, elite, elitesOf, measuresOf, NONE, over } from "./archive.fixture";
 
 describe("the axes of a map", () => {
-  it("are the archive's first two, and fitness where there is but one", () => {
+  it("are the archive's first two, or its only one and fitness", () => {
     expect(namesOf(archiveOf(3), null, null)).toEqual(["a", "b"]);
     expect(namesOf(archiveOf(1), null, null)).toEqual(["a", "fitness"]);
     expect(namesOf(archiveOf(2), "turning", "c")).toEqual(["turning", "c"]);
@@ -14,42 +14,23 @@ describe("the axes of a map", () => {
     expect(namesOf(archiveOf(2), "unheard of", "fitness")).toEqual(["a", "fitness"]);
   });
 
-  it("can be everything that was of which elites carry their descriptors", () => {
+  it("can be any measure; descriptors need not be fetched", () => {
     expect(choicesOf(archiveOf(2)).at(-1)).toEqual(["fitness", "Fitness"]);
     expect(missingOf(archiveOf(2), ["a", "turning"])).toEqual(["turning"]);
     expect(missingOf(archiveOf(2), ["b", "fitness"])).toEqual([]);
   });
 
-  it("have round ends around values, whole bins for whole numbers, decades on a log scale", () => {
-    const elites = new Map([
-      [0, elite(0.31, 0)],
-      [1, elite(1.18, 0)],
-    ]);
+  it("have round ends, whole bins for integers, and decades on a log scale", () => {
+    const elites = elitesOf({ 0: elite(0.31, 0), 1: elite(1.18, 0) });
     const fitness = axisOf("fitness", archiveOf(1), elites, NONE);
     expect(fitness.low).toBeLessThanOrEqual(0.31);
     expect(fitness.high).toBeGreaterThanOrEqual(1.18);
     expect(fitness.high - fitness.low).toBeLessThan(1.3);
-    const nodes = new Map([
-      [
-        "nodes",
-        new Map([
-          ["c0.31", 3],
-          ["c1.18", 9],
-        ]),
-      ],
-    ]);
+    const nodes = measuresOf({ nodes: { "c0.31": 3, "c1.18": 9 } });
     expect(axisOf("nodes", archiveOf(1), elites, nodes)).toMatchObject({ low: 3, high: 10, bins: 7 });
     const log = archiveOf(1);
     log.recorded[3]!.scale = "log10";
-    const turning = new Map([
-      [
-        "turning",
-        new Map([
-          ["c0.31", 0.02],
-          ["c1.18", 30],
-        ]),
-      ],
-    ]);
+    const turning = measuresOf({ turning: { "c0.31": 0.02, "c1.18": 30 } });
     const axis = axisOf("turning", log, elites, turning);
     log.recorded[3]!.scale = "linear";
     expect([axis.low, axis.high]).toEqual([0.01, 100]);
@@ -58,7 +39,10 @@ describe("the axes of a map", () => {
 });
 
 describe("an archive on a map", () => {
-  it("of its own two axes has each cell at its place, whatever its descriptors round to", () => {
+  /** Elites in the same column of a 2 × 4 × 3 grid, whose cells are 12 i + 3 j + k. */
+  const together = { 3: elite(1, 0, 2, 0), 4: elite(5, 0, 2, 0.5), 5: elite(2, 0, 2, 1) };
+
+  it("over its own axes shows each cell at its place, whatever its descriptors are", () => {
     const elites = new Map(Array.from({ length: 8 }, (_, cell) => [cell, elite(cell, 9, 9)]));
     const { layout, tiles, bins } = over(archiveOf(2), elites, ["a", "b"]);
     expect(layout.count).toBe(8);
@@ -66,14 +50,8 @@ describe("an archive on a map", () => {
     expect([...bins]).toEqual(Array.from({ length: 8 }, (_, cell) => [cell, cell]));
   });
 
-  it("of three axes shows the best of those that fall together, and counts the others", () => {
-    // Cells of a 2 × 4 × 3 grid: 12 k + 3 j + i.
-    const elites = new Map([
-      [3, elite(1, 0, 2, 0)],
-      [4, elite(5, 0, 2, 0.5)],
-      [5, elite(2, 0, 2, 1)],
-      [20, elite(3, 1, 9, 1)],
-    ]);
+  it("of three axes shows the best elite of a bin, and counts the others", () => {
+    const elites = elitesOf({ ...together, 20: elite(3, 1, 9, 1) });
     const { tiles, bins } = over(archiveOf(3), elites, ["a", "b"]);
     expect([...tiles.keys()]).toEqual([1, 6]);
     expect(tiles.get(1)).toMatchObject({ cell: 4, behind: 2 });
@@ -83,21 +61,15 @@ describe("an archive on a map", () => {
     expect([turned.layout.count, turned.bins.get(20)]).toEqual([6, 5]);
   });
 
-  it("of Voronoi cells is binned by what was measured, until they are known", () => {
+  it("of Voronoi cells is binned by descriptors until the centroids are known", () => {
     const elites = new Map([[777, elite(1, 0.99, 1)]]);
     const { layout, bins } = over(archiveOf(2, "cvt"), elites, ["a", "b"]);
     expect(layout.centre(bins.get(777)!)).toEqual([47 / 48, 47 / 48]);
   });
 
   it("of Voronoi cells shows each cell around its centroid", () => {
-    const cells = voronoiLayout(
-      [
-        [0.2, 0.2],
-        [0.8, 0.2],
-        [0.5, 0.9],
-      ],
-      Delaunay,
-    );
+    const points = ["0.2 0.2", "0.8 0.2", "0.5 0.9"].map((point) => point.split(" ").map(Number));
+    const cells = voronoiLayout(points as unknown as Spot[], Delaunay);
     const elites = new Map([[2, elite(1, 0.99, 1)]]);
     const axis = (name: string) => axisOf(name, archiveOf(2, "cvt"), elites, NONE);
     const { tiles, layout } = project(elites, [axis("a"), axis("b")], [], cells);
@@ -107,12 +79,8 @@ describe("an archive on a map", () => {
     for (const [x, y] of layout.outline(0)) expect(x <= 0.5 && y <= 1).toBe(true);
   });
 
-  it("shows what passes the slices of the axes that it folds", () => {
-    const elites = new Map([
-      [3, elite(1, 0, 2, 0)],
-      [4, elite(5, 0, 2, 0.5)],
-      [5, elite(2, 0, 2, 1)],
-    ]);
+  it("shows the elites within the slices of hidden axes", () => {
+    const elites = elitesOf(together);
     const axis = (name: string) => axisOf(name, archiveOf(3), elites, NONE);
     const through = (from: number, to: number) =>
       project(elites, [axis("a"), axis("b")], [{ axis: axis("c"), from, to }]).tiles.get(1);
@@ -121,12 +89,9 @@ describe("an archive on a map", () => {
     expect(through(0, 0)).toMatchObject({ cell: 3, behind: 0 });
   });
 
-  it("along a measure leaves out whom it is not known of", () => {
-    const elites = new Map([
-      [0, elite(1, 0, 1)],
-      [1, elite(2, 0, 1)],
-    ]);
-    const measures = new Map([["turning", new Map([["c2", 0.5]])]]);
+  it("along a measure omits elites without a value", () => {
+    const elites = elitesOf({ 0: elite(1, 0, 1), 1: elite(2, 0, 1) });
+    const measures = measuresOf({ turning: { c2: 0.5 } });
     const { tiles } = over(archiveOf(2), elites, ["turning", "fitness"], measures);
     expect([...tiles.values()].map(({ cell }) => cell)).toEqual([1]);
   });

@@ -1,10 +1,9 @@
-/** What of an archive is shown and how: read from the address, put together from the store. */
+/** The view of an archive, from the address and the store. */
 
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Archive, Run } from "../api/types";
-import { type Elites } from "../store/elites";
+import { type Elites, walkThrough } from "../store/elites";
 import { useCentroids, useMeasures, useHistory } from "../store/fetch";
-import { walkThrough } from "../store/elites";
 import { setQuery } from "../store/router";
 import { type Measures, type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
 import { type Colouring, AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
@@ -14,18 +13,18 @@ import { type Palette, PALETTES } from "../ui/colours";
 
 export interface ArchiveView {
   axes: readonly [MapAxis, MapAxis];
-  /** The archive's axes that are not shown, each with what of it is let through. */
+  /** Ranges of the archive's axes that are not shown. */
   slices: Slice[];
   colour: string;
   palette: Palette;
   elites: Elites;
   generation: number;
-  /** Whether what is shown is what was asked for; the past takes a moment to come. */
+  /** False while the history is loaded. */
   ready: boolean;
-  /** Why the past cannot be shown. */
+  /** The error if the history could not be loaded. */
   error: string | null;
   map: Projection;
-  /** The same on even bins, where the map shows Voronoi cells. */
+  /** The same on even bins, if the map shows Voronoi cells. */
   grid: Projection;
   colouring: Colouring;
 }
@@ -47,7 +46,7 @@ export function useArchiveView(
   const measures = at !== null && past ? past.measures : now;
   const walk = useMemo(() => past && walkThrough(past.history), [past]);
   const elites = useMemo(() => (at !== null && walk ? walk(at) : live), [at, walk, live]);
-  // Axes follow what is there now: they must not move while the past is played.
+  // Axes follow the newest elites, so that they stay while the history is played.
   const axes = useMemo(() => axesOf([x, y], archive, live, measures), [x, y, archive, live, measures]);
   const asked = hiddenAxes(archive, x, y)
     .map(({ name }) => query.get(`only.${name}`))
@@ -81,7 +80,7 @@ function axesOf([x, y]: [string, string], archive: Archive, elites: Elites, meas
 const hiddenAxes = ({ axes }: Archive, x: string, y: string) =>
   axes.filter(({ name }) => name !== x && name !== y);
 
-/** Bins as the address has them, `3-7`; all of them where it has none. */
+/** The bins in the address, `3-7`; by default all. */
 function sliceOf(axis: MapAxis, query: URLSearchParams): Slice {
   const [, from, to] = /^(\d+)-(\d+)$/.exec(query.get(`only.${axis.name}`) ?? "") ?? [];
   const last = axis.bins - 1;
@@ -95,7 +94,7 @@ export function setSlice({ axis }: Slice, from: number, to: number): void {
   setQuery({ [`only.${axis.name}`]: all ? null : `${from}-${to}` });
 }
 
-/** The Voronoi cells, where the map is drawn over both descriptors of a CVT. */
+/** The Voronoi cells, if the axes are both descriptors of a CVT. */
 function useCells(id: string, archive: Archive, names: [string, string]): Layout | null {
   const [x, y] = names.map((name) => archive.axes.findIndex((axis) => axis.name === name));
   const wanted = archive.kind === "cvt" && archive.axes.length === 2 && x! >= 0 && y! >= 0;
@@ -106,7 +105,7 @@ function useCells(id: string, archive: Archive, names: [string, string]): Layout
     if (!wanted || !centroids) return;
     const points = centroids.map((place) => [place[x!]!, 1 - place[y!]!] as const);
     let current = true;
-    // Few archives have such cells: the others need not load what draws them.
+    // Few archives have such cells.
     void import("d3-delaunay").then(({ Delaunay }) => {
       if (current) setLayout(voronoiLayout(points, Delaunay));
     });

@@ -1,25 +1,25 @@
-/** What an archive can be looked at along: its own axes, and everything recorded. */
+/** Axes of a map: descriptors of the archive, recorded measures and fitness. */
 
 import type { Archive, Axis } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
 import { words } from "../ui/format";
-import { roundStep } from "./geometry";
+import { type Scale, roundStep } from "../charts/plot/scale";
 import { text } from "./text";
 
-/** Columns of measures by name: what was recorded of each creature. */
+/** Recorded measures by name and creature. */
 export type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
 export const FITNESS = "fitness";
-/** Bins of an axis that is not the grid's. */
+/** Bins of an axis that is not an axis of the grid. */
 const BINS = 24;
 
-/** Everything that a map can be drawn over, by name. */
+/** All measures that can be an axis, by name. */
 export const choicesOf = (archive: Archive) => [
   ...archive.recorded.map(({ name, title }): [string, string] => [name, title]),
   [FITNESS, text.fitness] as [string, string],
 ];
 
-/** The names of both axes: those asked for, else the archive's first two, else fitness. */
+/** The names of both axes: the requested ones, or the archive's first two, or fitness. */
 export function namesOf(archive: Archive, x: string | null, y: string | null): [string, string] {
   const known = new Set(choicesOf(archive).map(([name]) => name));
   const own = [...archive.axes.map(({ name }) => name), FITNESS];
@@ -27,19 +27,20 @@ export function namesOf(archive: Archive, x: string | null, y: string | null): [
   return [first, y && known.has(y) ? y : (own.slice(0, 2).find((name) => name !== first) ?? FITNESS)];
 }
 
-/** The names that no elite carries itself, and that have to be asked for. */
+/** The names of measures that elites do not contain, which are fetched. */
 export function missingOf(archive: Archive, names: string[]): string[] {
   const there = [...archive.axes.map(({ name }) => name), FITNESS];
   return names.filter((name) => !there.includes(name));
 }
 
-/** An axis of the map, and how an elite finds its place along it. */
+export const scaleOf = ({ scale, low, high }: Axis): Scale => ({ log: scale === "log10", low, high });
+
 export interface MapAxis extends Axis, Measure {
-  /** The bin of an elite's own cell, where the axis is one of the grid's. */
+  /** The bin of a cell, if this is an axis of the grid. */
   binOf: ((cell: number) => number) | null;
 }
 
-/** A number that each elite has, under a name that people read. */
+/** A number of each elite, with its title. */
 export interface Measure {
   name: string;
   title: string;
@@ -52,11 +53,11 @@ export function measureOf(name: string, archive: Archive, measures: Measures): M
   const own = archive.axes.findIndex((axis) => axis.name === name);
   const recorded = archive.recorded.find((measure) => measure.name === name);
   const scale = archive.axes[own]?.scale ?? recorded?.scale ?? "linear";
-  const told = { name, title: recorded?.title ?? words(name), unit: recorded?.unit ?? "", scale };
-  if (own >= 0) return { ...told, valueOf: ({ descriptors }) => descriptors[own] ?? null };
-  if (name === FITNESS) return { ...told, valueOf: ({ fitness }) => fitness };
+  const common = { name, title: recorded?.title ?? words(name), unit: recorded?.unit ?? "", scale };
+  if (own >= 0) return { ...common, valueOf: ({ descriptors }) => descriptors[own] ?? null };
+  if (name === FITNESS) return { ...common, valueOf: ({ fitness }) => fitness };
   const column = measures.get(name);
-  return { ...told, valueOf: ({ creature }) => column?.get(creature) ?? null };
+  return { ...common, valueOf: ({ creature }) => column?.get(creature) ?? null };
 }
 
 export function axisOf(name: string, archive: Archive, elites: Elites, measures: Measures): MapAxis {
@@ -75,13 +76,13 @@ export function axisOf(name: string, archive: Archive, elites: Elites, measures:
   return { ...measure, low, high, bins, binOf: null };
 }
 
-/** Cells count in C order: the bin along one of the axes. */
+/** The bin of a cell along one axis; cells count in C order. */
 function placeAlong(axes: readonly Axis[], own: number): (cell: number) => number {
   const after = axes.slice(own + 1).reduce((product, { bins }) => product * bins, 1);
   return (cell) => Math.floor(cell / after) % axes[own]!.bins;
 }
 
-/** Round ends around the values there are; the measure's own where there are none. */
+/** Round ends around the values; without values, those of the measure. */
 function endsOf(
   values: readonly number[],
   scale: Axis["scale"],

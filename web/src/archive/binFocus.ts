@@ -1,20 +1,20 @@
-/** The bin of a map or gallery that is pointed at or marked, and the keys that move it. */
+/** The focused bin of a map or gallery: under the pointer, or marked and moved by keys. */
 
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
-import type { Elite } from "../store/elites";
+import { type Elite, fittest } from "../store/elites";
 import type { MapAxis } from "./axes";
 import type { Colouring } from "./colouring";
 import { type Direction, type Layout, isDirection, nextBin } from "./layout";
 import type { Projection, Tile, Tiles } from "./projection";
 import { type Selection, selectByKey } from "./selection";
 
-/** What a map and a gallery are given alike. */
+/** Props of both map and gallery. */
 export interface ArchiveViewProps extends Selection {
   axes: readonly [MapAxis, MapAxis];
   projection: Projection;
   colouring: Colouring;
-  /** The cell that the address names. */
+  /** The cell in the address. */
   marked: number | null;
   onMark: (cell: number) => void;
   onOpen: (cell: number) => void;
@@ -27,13 +27,13 @@ interface BinFocus {
   setHovered: (bin: number | null) => void;
   /** The bin of the marked cell. */
   from: number | null;
-  /** The bin that is pointed at, else the marked one, and its tile. */
+  /** The bin under the pointer, or the marked one, and its tile. */
   focused: number | null;
   tile: Tile | undefined;
   press: (event: KeyboardEvent) => void;
 }
 
-/** `onMove` is told of the bin that an arrow key leads to. */
+/** `onMove` gets the bin after an arrow key. */
 export function useBinFocus(
   { projection, marked, chosen, onChoose, onMark, onOpen }: ArchiveViewProps,
   onMove?: (bin: number) => void,
@@ -58,12 +58,8 @@ export function useBinFocus(
   return { hovered, setHovered, from, focused, tile, press };
 }
 
-/** The bin that an arrow key leads to; from nowhere, that of the best elite. */
+/** The bin after an arrow key; without a start, that of the best elite. */
 function binByKey(key: Direction, from: number | null, tiles: Tiles, layout: Layout) {
   if (from !== null) return nextBin(from, key, tiles.keys(), layout);
-  let best: number | null = null;
-  for (const [bin, { elite }] of tiles) {
-    if (best === null || elite.fitness > tiles.get(best)!.elite.fitness) best = bin;
-  }
-  return best;
+  return fittest([...tiles].map(([bin, { elite }]) => [bin, elite] as const))?.[0] ?? null;
 }

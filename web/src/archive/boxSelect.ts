@@ -1,18 +1,18 @@
-/** A box drawn over an element with the mouse or a pen; a finger scrolls instead. */
+/** A box drawn over an element with the mouse or a pen; fingers scroll instead. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Box } from "./selection";
 import type { Spot } from "./layout";
 
-/** Fewer pixels are a click. */
-const LEAST = 5;
+/** Shorter movements, in pixels, are clicks. */
+const MIN_DISTANCE = 5;
 
 interface Started {
   event: PointerEvent;
   from: Spot;
 }
 
-/** `onEnd` is told the box once the button is released. The click that follows is none. */
+/** `onEnd` gets the box when the button is released. */
 export function useBoxSelect(enabled: boolean, onEnd: (box: Box, event: PointerEvent) => void) {
   const started = useRef<Started | null>(null);
   const [box, setBox] = useState<Box | null>(null);
@@ -29,14 +29,14 @@ export function useBoxSelect(enabled: boolean, onEnd: (box: Box, event: PointerE
   }, [box !== null]);
   return {
     box,
-    /** Whether a click was the end of a drag. */
+    /** True if a click is the end of a drag. */
     wasDrag: () => dragged.current,
     /** True while a box is drawn. */
     onMove: (event: PointerEvent): boolean => {
       if (!started.current) return false;
       const { event: first, from } = started.current;
       const far = Math.hypot(event.clientX - first.clientX, event.clientY - first.clientY);
-      if (!dragged.current && far < LEAST) return false;
+      if (!dragged.current && far < MIN_DISTANCE) return false;
       if (!dragged.current) (event.currentTarget as Element).setPointerCapture(event.pointerId);
       dragged.current = true;
       setBox({ from, to: spotOf(event) });
@@ -59,7 +59,7 @@ export function useBoxSelect(enabled: boolean, onEnd: (box: Box, event: PointerE
   };
 }
 
-/** Where on the element, from 0 to just below 1; beyond its edge is at the edge. */
+/** The position on the element, clipped to [0, 1). */
 function spotOf(event: PointerEvent): Spot {
   const { left, top, width, height } = (event.currentTarget as Element).getBoundingClientRect();
   const bounded = (share: number) => Math.min(1 - 1e-9, Math.max(0, share));

@@ -1,46 +1,35 @@
 import { describe, expect, it } from "vitest";
-import { colourMeasure, colouringOf, binColours, placeOf, valueAlong } from "./colouring";
+import { colourMeasure, colouringOf, binColours, placeOf } from "./colouring";
+import { valueAt } from "../charts/plot/scale";
 import { rasterOf, gridLayout } from "./layout";
-import { archiveOf, elite, NONE, over } from "./archive.fixture";
+import { archiveOf, elite, elitesOf, measuresOf, NONE, over } from "./archive.fixture";
 
 describe("the colours of a map", () => {
-  const elites = new Map([
-    [0, elite(1, 0.1, 1)],
-    [1, elite(10, 0.9, 1)],
-    [2, elite(100, 0.5, 1)],
-  ]);
+  const elites = elitesOf({ 0: elite(1, 0.1, 1), 1: elite(10, 0.9, 1), 2: elite(100, 0.5, 1) });
   const { tiles } = over(archiveOf(2), elites, ["a", "b"]);
 
-  it("go from the least to the greatest value, on a log scale by decades", () => {
+  it("go from the lowest to the highest value, on a log scale by decades", () => {
     const measure = { ...colourMeasure("fitness", archiveOf(2), NONE, 5), scale: "log10" as const };
     const colouring = colouringOf(measure, "viridis", tiles);
-    expect(colouring.range).toEqual([0, 2]);
-    expect(valueAlong(colouring, 0.5)).toBeCloseTo(10);
+    expect(colouring.scale).toEqual({ log: true, low: 1, high: 100 });
+    expect(valueAt(colouring.scale, 0.5)).toBeCloseTo(10);
     expect([...tiles.values()].map((tile) => placeOf(colouring, tile))).toEqual([0, 0.5, 1]);
   });
 
-  it("have a place for those of the past, who may be less fit than anybody is now", () => {
+  it("clip the values of past elites", () => {
     const fitness = colourMeasure("fitness", archiveOf(2), NONE, 5);
     const colouring = colouringOf(fitness, "viridis", tiles);
     const past = over(archiveOf(2), new Map([[0, elite(-7, 0.1, 1)]]), ["a", "b"]).tiles;
     expect(binColours(past, 4, colouring, 7, 8)[0]).toBe(binColours(tiles, 4, colouring, 7, 8)[0]);
   });
 
-  it("by age count back from the generation that is shown", () => {
+  it("by age count back from the generation shown", () => {
     const measure = colourMeasure("age", archiveOf(2), NONE, 9);
     expect(measure.valueOf(elite(1, 0))).toBe(8);
   });
 
-  it("tell an unknown value from an empty cell and from any known one", () => {
-    const measures = new Map([
-      [
-        "turning",
-        new Map([
-          ["c1", 0.5],
-          ["c10", 0.7],
-        ]),
-      ],
-    ]);
+  it("distinguish an unknown value from an empty cell and from known ones", () => {
+    const measures = measuresOf({ turning: { c1: 0.5, c10: 0.7 } });
     const measure = colourMeasure("turning", archiveOf(2), measures, 5);
     const colours = binColours(tiles, 4, colouringOf(measure, "viridis", tiles), 7, 8);
     expect(colours[2]).toBe(8);
@@ -50,7 +39,7 @@ describe("the colours of a map", () => {
 });
 
 describe("the pixels of a map", () => {
-  it("know the bins under them, the last row of a grid at the top", () => {
+  it("show the bins, the last row of a grid at the top", () => {
     expect([...rasterOf(gridLayout([2, 2]), 2, 2, 1)]).toEqual([1, 3, 0, 2]);
   });
 

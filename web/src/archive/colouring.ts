@@ -1,7 +1,8 @@
-/** What the colours of a map mean: a measure of the elites, a scale, a palette. */
+/** The colours of a map: a measure of the elites, a scale and a palette. */
 
 import type { Archive } from "../api/types";
-import { type Palette, pixel, sequential, table } from "../ui/colours";
+import { type Scale, place } from "../charts/plot/scale";
+import { type Palette, sequential, table } from "../ui/colours";
 import { FITNESS, type Measures, type Measure, choicesOf, measureOf } from "./axes";
 import type { Tile, Tiles } from "./projection";
 import { text } from "./text";
@@ -9,19 +10,19 @@ import { text } from "./text";
 export interface Colouring {
   measure: Measure;
   palette: Palette;
-  range: readonly [low: number, high: number];
+  scale: Scale;
 }
 
 export const AGE = "age";
 
-/** Everything that a map can be coloured by, by name. */
+/** All measures that can be coloured, by name. */
 export const coloursOf = (archive: Archive): [name: string, title: string][] => [
   [FITNESS, text.fitness],
   [AGE, text.age],
   ...choicesOf(archive).filter(([name]) => name !== FITNESS),
 ];
 
-/** The measure of that name; age counts back from the generation that is shown. */
+/** The measure of that name; age counts back from the generation shown. */
 export function colourMeasure(
   name: string,
   archive: Archive,
@@ -33,49 +34,38 @@ export function colourMeasure(
   return { name, title: text.age, unit: "generations", scale: "linear", valueOf };
 }
 
-/** Ends at the least and the greatest value there is. */
+/** The scale ends at the lowest and the highest value. */
 export function colouringOf(measure: Measure, palette: Palette, tiles: Tiles): Colouring {
+  const log = measure.scale === "log10";
   let [low, high] = [Infinity, -Infinity];
   for (const { elite } of tiles.values()) {
-    const value = scaled(measure, measure.valueOf(elite));
-    if (value === null) continue;
+    const value = measure.valueOf(elite);
+    if (value === null || (log && value <= 0)) continue;
     low = Math.min(low, value);
     high = Math.max(high, value);
   }
-  return { measure, palette, range: low <= high ? [low, high] : [0, 1] };
+  if (low > high) [low, high] = log ? [1, 10] : [0, 1];
+  return { measure, palette, scale: { log, low, high } };
 }
 
-/** A value on the measure's own scale; null where there is none. */
-function scaled({ scale }: Measure, value: number | null): number | null {
-  if (value === null || scale === "linear") return value;
-  return value > 0 ? Math.log10(value) : null;
-}
-
-/** Numbers as people read them for a place along the colours, from 0 to 1. */
-export function valueAlong({ measure, range: [low, high] }: Colouring, t: number): number {
-  const value = low + (high - low) * t;
-  return measure.scale === "log10" ? 10 ** value : value;
-}
-
-/** Of a tile along the colours, from 0 to 1, what is beyond an end at it; null where unknown. */
-export function placeOf({ measure, range: [low, high] }: Colouring, tile: Tile): number | null {
-  const value = scaled(measure, measure.valueOf(tile.elite));
-  if (value === null) return null;
-  return Math.min(1, Math.max(0, (value - low) / (high - low || 1)));
+/** The position of a tile along the colours, from 0 to 1; null if the value is unknown. */
+export function placeOf({ measure, scale }: Colouring, tile: Tile): number | null {
+  const value = measure.valueOf(tile.elite);
+  if (value === null || (scale.log && value <= 0)) return null;
+  if (scale.low === scale.high) return 0;
+  return Math.min(1, Math.max(0, place(scale, value)));
 }
 
 const SHADES = 256;
 const tables = new Map<Palette, Uint32Array>();
 
 function shadesOf(palette: Palette): Uint32Array {
-  const known = tables.get(palette);
-  if (known) return known;
-  const shades = table((t) => sequential(t, palette), SHADES, [0, 1]);
+  const shades = tables.get(palette) ?? table((t) => sequential(t, palette), SHADES, [0, 1]);
   tables.set(palette, shades);
   return shades;
 }
 
-/** A pixel of the image for each bin; `empty` where it holds nobody. */
+/** A pixel of the image for each bin; `empty` and `unknown` are given as pixels. */
 export function binColours(
   tiles: Tiles,
   count: number,
@@ -91,6 +81,3 @@ export function binColours(
   }
   return colours;
 }
-
-export const shade = (red: number, green: number, blue: number, alpha: number) =>
-  pixel([red, green, blue], alpha);

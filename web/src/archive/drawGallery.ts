@@ -1,14 +1,14 @@
-/** The part of a wall that is seen, as it is at one moment. */
+/** Draw the visible part of a gallery at one moment. */
 
 import type { Motion } from "../decode/motion";
 import { type Size, prepare } from "../ui/canvas";
 import { css, sequential } from "../ui/colours";
+import type { Theme } from "../ui/theme";
 import { type Colouring, placeOf } from "./colouring";
 import { FADED } from "./drawMap";
-import type { Shape } from "./geometry";
+import { type Shape, cornerOf } from "./geometry";
 import type { Tiles } from "./projection";
 import { traceBody } from "../replay/bodyPath";
-import { cornerOf } from "./galleryTiles";
 
 export interface GalleryPicture {
   shape: Shape;
@@ -18,9 +18,9 @@ export interface GalleryPicture {
   bins: readonly number[];
   colouring: Colouring;
   motions: ReadonlyMap<string, Motion>;
-  theme: "light" | "dark";
+  theme: Theme;
   marked: number | null;
-  /** The bins that stand out before all others; null: none does. */
+  /** The selected bins; null without a selection. */
   chosen: ReadonlySet<number> | null;
 }
 
@@ -29,7 +29,7 @@ const INKS = {
   dark: { body: "#fdf8ec", quiet: "rgb(240 244 246 / 0.3)", tint: 0.38 },
 };
 
-/** `share` of a replay's time has passed; the window begins at `left` and `top` of the wall. */
+/** `share` is the elapsed share of the replays; the window starts at `left` and `top` of the gallery. */
 export function drawGallery(
   canvas: HTMLCanvasElement,
   size: Size,

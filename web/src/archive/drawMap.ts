@@ -1,35 +1,35 @@
-/** The cells of an archive on a canvas: pixels that know their bins, and flashes above them. */
+/** Draw the cells of an archive on a canvas, and flashes above them. */
 
 import { type Size, prepare } from "../ui/canvas";
-import { type Colouring, binColours, shade } from "./colouring";
+import { type Rgb, pixel } from "../ui/colours";
+import type { Theme } from "../ui/theme";
+import { type Colouring, binColours } from "./colouring";
 import { type Layout, rasterOf } from "./layout";
 import type { Tiles } from "./projection";
 
 export const FLASH_MS = 1200;
-/** What of its colour is left to whom is not chosen where others are. */
+/** Opacity of cells that are not selected. */
 export const FADED = 0.28;
 
 export interface Picture {
   layout: Layout;
   tiles: Tiles;
   colouring: Colouring;
-  /** When elites last changed, by their cells in the archive, in milliseconds. */
+  /** Times of the last changes by cell, in milliseconds. */
   changed: ReadonlyMap<number, number>;
-  /** The bins that stand out before all others; null: none does. */
+  /** The selected bins; null without a selection. */
   chosen: ReadonlySet<number> | null;
-  theme: "light" | "dark";
+  theme: Theme;
 }
 
-const INKS = {
-  light: { flash: "#0b1216", empty: shade(20, 50, 70, 0.055), unknown: shade(20, 50, 70, 0.25) },
-  dark: {
-    flash: "#f4f8fa",
-    empty: shade(180, 215, 235, 0.055),
-    unknown: shade(180, 215, 235, 0.25),
-  },
-};
+const inks = (flash: string, ground: Rgb) => ({
+  flash,
+  empty: pixel(ground, 0.055),
+  unknown: pixel(ground, 0.25),
+});
+const INKS = { light: inks("#0b1216", [20, 50, 70]), dark: inks("#f4f8fa", [180, 215, 235]) };
 
-/** Draws maps of one canvas; what depends on its size and layout alone is kept. */
+/** Draws maps on one canvas; caches the raster of its size and layout. */
 export class MapPainter {
   private layout: Layout | null = null;
   private raster = new Int32Array(0);
@@ -59,7 +59,7 @@ export class MapPainter {
   }
 }
 
-/** Leaves of all that are not chosen a shadow. */
+/** Fade all bins that are not selected. */
 function fade(colours: Uint32Array, tiles: Tiles, chosen: ReadonlySet<number>): void {
   for (const bin of tiles.keys()) {
     if (chosen.has(bin)) continue;

@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Axis } from "../api/types";
-import { cellAt, cellOf, placeOf, rectangle, ticks } from "./geometry";
+import { cellAt, cellOf, cornerOf, placeOf, rectangle, visibleBins } from "./geometry";
 import { type Direction, gridLayout, nextBin } from "./layout";
 
 const SHAPE = [4, 3] as const;
@@ -11,12 +10,12 @@ describe("a cell", () => {
     for (let cell = 0; cell < 12; cell++) expect(cellOf(placeOf(cell, SHAPE), SHAPE)).toBe(cell);
   });
 
-  it("stands further right along the first axis and higher along the second", () => {
+  it("is further right along the first axis and higher along the second", () => {
     expect(rectangle(0, SHAPE, 400, 300)).toEqual({ x: 0, y: 200, w: 100, h: 100 });
     expect(rectangle(11, SHAPE, 400, 300)).toEqual({ x: 300, y: 0, w: 100, h: 100 });
   });
 
-  it("is found again under its own centre", () => {
+  it("is found at its own centre", () => {
     for (let cell = 0; cell < 12; cell++) {
       const { x, y, w, h } = rectangle(cell, SHAPE, 1, 1);
       expect(cellAt(x + w / 2, y + h / 2, SHAPE)).toBe(cell);
@@ -35,32 +34,20 @@ describe("the arrow keys", () => {
     ["ArrowUp", at(2, 4)],
     ["ArrowLeft", null],
     ["ArrowDown", null],
-  ])("%s goes to the nearest filled cell that way, or nowhere", (direction, expected) => {
+  ])("%s goes to the nearest filled cell, or nowhere", (direction, expected) => {
     expect(nextBin(at(1, 1), direction, filled, gridLayout([10, 10]))).toBe(expected);
   });
 });
 
-describe("the ticks of an axis", () => {
-  const axis = (low: number, high: number, scale: Axis["scale"]): Axis => {
-    return { name: "bending_effort", low, high, bins: 20, scale };
-  };
-
-  it("are whole decades on a logarithmic scale", () => {
-    const made = ticks(axis(1e-4, 1e2, "log10"), 7);
-    expect(made.map(({ at }) => Number((6 * at).toFixed(9)))).toEqual([0, 1, 2, 3, 4, 5, 6]);
-    made.forEach(({ value }, k) => expect(value).toBeCloseTo(10 ** (k - 4), 12));
+describe("a gallery", () => {
+  it("has the first axis to the right, the second upwards", () => {
+    expect(cornerOf(0, [3, 2], 10)).toEqual([0, 10]);
+    expect(cornerOf(5, [3, 2], 10)).toEqual([20, 0]);
   });
 
-  it("are the ends where there is no decade between", () => {
-    expect(ticks(axis(2, 8, "log10"))).toEqual([
-      { at: 0, value: 2 },
-      { at: 1, value: 8 },
-    ]);
-  });
-
-  it("are round numbers on a linear scale, no more than asked for", () => {
-    const made = ticks(axis(0, 0.15, "linear"), 6);
-    expect(made.map(({ value }) => value)).toEqual([0, 0.05, 0.1, 0.15]);
-    expect(made.at(-1)!.at).toBeCloseTo(1, 12);
+  it("shows the filled tiles in the window, sorted from its middle", () => {
+    const window = { left: 15, top: 0, width: 15, height: 10 };
+    expect(visibleBins([0, 1, 2, 3, 4, 5], [3, 2], 10, window)).toEqual([5, 3]);
+    expect(visibleBins([0, 1], [3, 2], 10, window)).toEqual([]);
   });
 });

@@ -1,7 +1,8 @@
-/** The tour of an archive, and whether it was shown before. */
+/** The tour of an archive. */
 
 import { useState } from "preact/hooks";
 import type { Archive, Run } from "../api/types";
+import { fittest } from "../store/elites";
 import { count, number } from "../ui/format";
 import type { Step } from "../ui/Guide";
 import type { ArchiveView } from "./archiveView";
@@ -9,7 +10,7 @@ import { text } from "./text";
 
 const STORAGE_KEY = "microcosmos:guided";
 
-/** Storage may be forbidden: then the guide is offered again. */
+/** If storage is forbidden, the tour is offered again. */
 export function wasGuided(): boolean {
   try {
     return localStorage.getItem(STORAGE_KEY) !== null;
@@ -22,7 +23,7 @@ function rememberGuided(): void {
   try {
     localStorage.setItem(STORAGE_KEY, "1");
   } catch {
-    // It will be offered again.
+    // The tour is offered again.
   }
 }
 
@@ -45,7 +46,7 @@ export function useGuide(run: Run) {
 }
 
 export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }: ArchiveView): Step[] {
-  const best = bestOf({ elites });
+  const best = fittest(elites)?.[1];
   const [x, y] = axes.map(({ title }) => title.toLowerCase());
   const running = run.status === "running" || run.status === "queued";
   return [
@@ -82,13 +83,4 @@ export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }:
       selector: ".archive-head",
     },
   ];
-}
-
-/** The fittest of all that are shown, and its cell. */
-export function bestOf({ elites }: Pick<ArchiveView, "elites">) {
-  let best: { cell: number; fitness: number; generation: number } | null = null;
-  for (const [cell, { fitness, generation }] of elites) {
-    if (best === null || fitness > best.fitness) best = { cell, fitness, generation };
-  }
-  return best;
 }

@@ -1,4 +1,4 @@
-/** How the bins of a map lie on it: places go from 0 to 1, to the right and downwards. */
+/** Layouts of the bins of a map; positions go from 0 to 1, to the right and downwards. */
 
 import type { Delaunay } from "d3-delaunay";
 import { type Shape, cellAt, rectangle } from "./geometry";
@@ -7,7 +7,7 @@ export type Spot = readonly [x: number, y: number];
 
 export interface Layout {
   readonly count: number;
-  /** The bin under a place; null beyond the map. */
+  /** The bin at a position; null outside the map. */
   at(x: number, y: number): number | null;
   centre(bin: number): Spot;
   outline(bin: number): Spot[];
@@ -33,7 +33,7 @@ export function gridLayout(shape: Shape): Layout {
   };
 }
 
-/** The cells around points, as far as the map goes. */
+/** Voronoi cells within the map. */
 export function voronoiLayout(points: Spot[], tessellate: typeof Delaunay): Layout {
   const delaunay = tessellate.from(
     points,
@@ -41,7 +41,7 @@ export function voronoiLayout(points: Spot[], tessellate: typeof Delaunay): Layo
     ([, y]) => y,
   );
   const cells = delaunay.voronoi([0, 0, 1, 1]);
-  let last = 0; // Where the search for the next place begins: most often nearby.
+  let last = 0; // The search starts here: the next position is mostly nearby.
   return {
     count: points.length,
     at: (x, y) => {
@@ -64,7 +64,7 @@ const STEPS: Record<Direction, Spot> = {
 
 export const isDirection = (key: string): key is Direction => key in STEPS;
 
-/** The nearest filled bin in a direction; being off its line counts twice. */
+/** The nearest filled bin in a direction; the distance across it counts twice. */
 export function nextBin(
   from: number,
   direction: Direction,
@@ -85,8 +85,8 @@ export function nextBin(
   return best;
 }
 
-/** Bins narrower than this, in pixels of the page, stand without a gap. */
-const ROOMY = 5;
+/** Narrower bins, in CSS pixels, have no gap. */
+const MIN_WIDTH = 5;
 
 /** The bin at each pixel of a picture; −1 in the gaps between bins. */
 export function rasterOf(layout: Layout, width: number, height: number, density: number) {
@@ -98,11 +98,11 @@ export function rasterOf(layout: Layout, width: number, height: number, density:
     }
   }
   const side = Math.sqrt((width * height) / layout.count) / density;
-  if (side >= ROOMY) cutGaps(raster, width, Math.max(1, Math.round(density)));
+  if (side >= MIN_WIDTH) cutGaps(raster, width, Math.max(1, Math.round(density)));
   return raster;
 }
 
-/** From the end, so that what is compared with is as it was. */
+/** From the end, so that neighbours are still unchanged. */
 function cutGaps(raster: Int32Array, width: number, gap: number): void {
   for (let k = raster.length - 1; k >= 0; k--) {
     const column = k % width;

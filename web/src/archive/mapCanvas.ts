@@ -1,4 +1,4 @@
-/** The canvas of a map, always as the archive is now. */
+/** The canvas of a map. */
 
 import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
@@ -9,7 +9,7 @@ import { FLASH_MS, MapPainter, type Picture } from "./drawMap";
 
 type MapContent = Pick<Picture, "layout" | "tiles" | "colouring" | "chosen">;
 
-/** A canvas that always shows the picture, and flashes where it changed. */
+/** Draw the map when it changes, and flash changed cells. */
 export function useMapCanvas(plot: RefObject<HTMLElement | null>, drawn: MapContent, elites: Elites) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const painter = useMemo(() => new MapPainter(), []);
@@ -31,7 +31,7 @@ export function useMapCanvas(plot: RefObject<HTMLElement | null>, drawn: MapCont
   return canvas;
 }
 
-/** When each cell last got another elite; what is there at first has not changed. */
+/** The time of the last change of each cell; the first elites do not count. */
 function useChanges(elites: Elites): ReadonlyMap<number, number> {
   const seen = useRef<Elites | null>(null);
   const times = useRef<ReadonlyMap<number, number>>(new Map());
@@ -48,7 +48,7 @@ function useChanges(elites: Elites): ReadonlyMap<number, number> {
   return times.current;
 }
 
-/** Draws a picture at once, and again with every frame for as long as `draw` asks for it. */
+/** Draw at once, and in every frame while `draw` returns true. */
 function animate(draw: (now: number) => boolean): () => void {
   let frame = 0;
   const step = () => {

@@ -1,16 +1,16 @@
-/** An archive folded onto two axes: of the elites that share a bin, the best is shown. */
+/** Project an archive onto two axes; a bin shows the best of its elites. */
 
 import type { Axis } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
-import type { MapAxis } from "./axes";
+import { place } from "../charts/plot/scale";
+import { type MapAxis, scaleOf } from "./axes";
 import { type Shape, cellOf } from "./geometry";
 import { type Layout, gridLayout } from "./layout";
 
-/** What one bin of the map shows. */
 export interface Tile {
   cell: number;
   elite: Elite;
-  /** How many elites stand in the same bin and are not shown. */
+  /** Hidden elites in the same bin. */
   behind: number;
 }
 
@@ -19,18 +19,18 @@ export type Tiles = ReadonlyMap<number, Tile>;
 export interface Projection {
   layout: Layout;
   tiles: Tiles;
-  /** The bin of each cell that has a place on the map. */
+  /** The bin of each cell on the map. */
   bins: ReadonlyMap<number, number>;
 }
 
-/** What of an axis that the map does not show is let through: its bins from one to another. */
+/** A range of bins of an axis that the map does not show. */
 export interface Slice {
   axis: MapAxis;
   from: number;
   to: number;
 }
 
-/** Where `cells` is given, the map shows the archive's own cells, as that lays them out. */
+/** `cells` is the layout of the archive's own cells, if the map shows them. */
 export function project(
   elites: Elites,
   [x, y]: readonly [MapAxis, MapAxis],
@@ -70,10 +70,8 @@ function binOn(axis: MapAxis, cell: number, elite: Elite): number | null {
   return value === null ? null : binOf(axis, value);
 }
 
-/** The bin of a value; what is beyond an end counts in the bin there. */
-export function binOf({ low, high, bins, scale }: Axis, value: number): number {
-  const place = scale === "log10" ? Math.log10(Math.max(value, low)) : value;
-  const [from, to] = scale === "log10" ? [Math.log10(low), Math.log10(high)] : [low, high];
-  const bin = Math.floor((bins * (place - from)) / (to - from) + 1e-9);
-  return Math.min(bins - 1, Math.max(0, bin));
+/** The bin of a value; values beyond an end count in the last bin. */
+export function binOf(axis: Axis, value: number): number {
+  const share = place(scaleOf(axis), Math.max(value, axis.low));
+  return Math.min(axis.bins - 1, Math.floor(axis.bins * share + 1e-9));
 }

@@ -15,13 +15,13 @@ export interface Selection {
 
 const NONE: CellSet = new Set();
 
-/** The cells of all elites that stand in some bins. */
+/** The cells of all elites in some bins. */
 export function cellsIn(bins: Iterable<number>, projection: Pick<Projection, "bins">): CellSet {
   const wanted = new Set(bins);
   return new Set([...projection.bins].flatMap(([cell, bin]) => (wanted.has(bin) ? [cell] : [])));
 }
 
-/** The bins in which somebody stands who is chosen; null where nobody is: then none stands out. */
+/** The bins with selected elites; null without a selection. */
 export function binsOf(chosen: CellSet, projection: Pick<Projection, "bins">): CellSet | null {
   if (chosen.size === 0) return null;
   return new Set([...chosen].flatMap((cell) => projection.bins.get(cell) ?? []));
@@ -29,13 +29,13 @@ export function binsOf(chosen: CellSet, projection: Pick<Projection, "bins">): C
 
 export const union = (some: CellSet, others: CellSet): CellSet => new Set([...some, ...others]);
 
-/** With these cells, or without them where all of them were chosen. */
+/** Add these cells, or remove them if all of them are selected. */
 export function toggle(chosen: CellSet, cells: CellSet): CellSet {
   const all = [...cells].every((cell) => chosen.has(cell));
   return all ? new Set([...chosen].filter((cell) => !cells.has(cell))) : union(chosen, cells);
 }
 
-/** What keys do on a map or a wall, in the words that a screen reader says. */
+/** A description of the keys for screen readers. */
 export const keyHelp = ({ onChoose }: Pick<Selection, "onChoose">): string => text.keyHelp(onChoose !== null);
 
 /** The selection after a key; null if the key does not change it. */
@@ -58,7 +58,7 @@ export interface Box {
   to: Spot;
 }
 
-/** The filled bins whose middle a box has, and those under the corners it was drawn between. */
+/** The filled bins with their middle in a box, and those under its two corners. */
 export function binsWithin({ from, to }: Box, layout: Layout, tiles: Tiles): number[] {
   const [left, right] = [Math.min(from[0], to[0]), Math.max(from[0], to[0])];
   const [top, bottom] = [Math.min(from[1], to[1]), Math.max(from[1], to[1])];
@@ -69,5 +69,5 @@ export function binsWithin({ from, to }: Box, layout: Layout, tiles: Tiles): num
   });
 }
 
-/** Whether a click or a drag is to add to what is chosen. */
+/** True if a click or a drag adds to the selection. */
 export const isAdditive = (event: MouseEvent) => event.shiftKey || event.ctrlKey || event.metaKey;

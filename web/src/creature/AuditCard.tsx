@@ -5,9 +5,9 @@ import type { Audit, AuditRow } from "../api/types";
 import { usePolled } from "../store/polling";
 import { setQuery } from "../store/router";
 import { number } from "../ui/format";
+import { type Column, Table } from "../ui/Table";
 import { CheckCard } from "./CheckCard";
 import { text } from "./text";
-import "./audit.css";
 
 interface Props {
   sha: string;
@@ -32,7 +32,10 @@ export function AuditCard({ sha, query }: Props) {
       running={requested && !audit ? text.auditing : null}
     >
       {!requested && <p class="quiet small">{text.auditAbout}</p>}
-      {audit && <Figures audit={audit} />}
+      {audit && <p class="reasons">{textOf(audit)}</p>}
+      {audit && (
+        <Table label={text.auditFigures} columns={COLUMNS} rows={audit.rows} keyOf={({ name }) => name} />
+      )}
     </CheckCard>
   );
 }
@@ -43,55 +46,38 @@ function textOf({ verdict: { survives, reasons } }: Audit): string {
   return text.auditReasons(start, survives, reasons.join("; "));
 }
 
-function Figures({ audit }: { audit: Audit }) {
-  return (
-    <>
-      <p class="reasons">{textOf(audit)}</p>
-      <div class="scroll">
-        <table class="results">
-          <thead>
-            <tr>
-              <th scope="col">{text.figure}</th>
-              <th scope="col" class="numeric">
-                {text.value}
-              </th>
-              <th scope="col">{text.limit}</th>
-              <th scope="col">
-                <span class="unseen">{text.result}</span>
-              </th>
-            </tr>
-          </thead>
-          <tbody>
-            {audit.rows.map((row) => (
-              <Row key={row.name} {...row} />
-            ))}
-          </tbody>
-        </table>
-      </div>
-    </>
-  );
-}
-
 const SIGNS = { true: ["✓", text.passed], false: ["✕", text.failed], null: ["", ""] } as const;
 
-function Row({ quantity, value, unit, bar, passed, note }: AuditRow) {
-  const [sign, word] = SIGNS[`${passed}`];
-  return (
-    <tr>
-      <td class="figure">
+const COLUMNS: Column<AuditRow>[] = [
+  {
+    title: text.figure,
+    cell: ({ quantity, passed, note }) => (
+      <>
         {quantity}
         {passed === false && <span class="small wrong-text">{note}</span>}
-      </td>
-      <td class="numeric">
+      </>
+    ),
+  },
+  {
+    title: text.value,
+    cell: ({ value, unit }) => (
+      <>
         {number(value)} <span class="quiet">{unit}</span>
-      </td>
-      <td>{typeof bar === "number" ? number(bar) : bar}</td>
-      <td>
+      </>
+    ),
+  },
+  { title: text.limit, cell: ({ bar }) => (typeof bar === "number" ? number(bar) : bar) },
+  {
+    title: text.result,
+    unseen: true,
+    cell: ({ passed }) => {
+      const [sign, word] = SIGNS[`${passed}`];
+      return (
         <span class={`mark-word ${passed === false ? "wrong" : "right"}`} title={word}>
           <span aria-hidden="true">{sign}</span>
           <span class="unseen">{word}</span>
         </span>
-      </td>
-    </tr>
-  );
-}
+      );
+    },
+  },
+];

@@ -1,6 +1,7 @@
 /** A card that runs a check of a creature: its verdict, a button, its progress and its result. */
 
 import type { ComponentChildren } from "preact";
+import { Card } from "../ui/Page";
 import { text } from "./text";
 
 interface Props {
@@ -19,13 +20,13 @@ interface Props {
 
 export function CheckCard({ name, title, verdict, button, onStart, running, note, error, children }: Props) {
   return (
-    <section class={`card ${name}`} aria-labelledby={`${name}-title`}>
-      <div class="card-head">
-        <h2 id={`${name}-title`}>{title}</h2>
-        {verdict && <span class={`badge ${verdict[0]}`}>{verdict[1]}</span>}
-        <span class="spring" />
-        {button && <button onClick={onStart}>{button}</button>}
-      </div>
+    <Card
+      id={name}
+      title={title}
+      kind={name}
+      note={verdict && <span class={`badge ${verdict[0]}`}>{verdict[1]}</span>}
+      actions={button && <button onClick={onStart}>{button}</button>}
+    >
       {running && !error && (
         <p class="quiet" role="status">
           {note ? text.retrying(note) : running}
@@ -33,6 +34,6 @@ export function CheckCard({ name, title, verdict, button, onStart, running, note
       )}
       {error && <p class="banner wrong">{error}</p>}
       {children}
-    </section>
+    </Card>
   );
 }

@@ -1,6 +1,6 @@
 /** The page of a creature: motion, network, measures and origin. */
 
-import { useEffect, useMemo } from "preact/hooks";
+import { useMemo } from "preact/hooks";
 import * as api from "../api/client";
 import { sharedSlug } from "../api/address";
 import type { Creature, Spec } from "../api/types";
@@ -9,6 +9,7 @@ import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { number, short, words } from "../ui/format";
 import { isForceFree } from "../ui/coupling";
+import { Page, useTitle } from "../ui/Page";
 import { reasonOf } from "../ui/NotFound";
 import { NotForceFree } from "../ui/NotForceFree";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
@@ -36,16 +37,10 @@ interface Props {
 
 export function CreaturePage({ sha, query }: Props) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
-  useEffect(() => {
-    document.title = text.pageTitle(short(sha));
-  }, [sha]);
+  useTitle(text.title(short(sha)));
   const run = query.get("run");
   return (
-    <main>
-      <nav class="crumbs" aria-label={text.breadcrumbs}>
-        <a href="/">{text.runs}</a>
-        {run && <a href={`/runs/${run}`}>{short(run)}</a>}
-      </nav>
+    <Page crumbs={[["/", text.runs], ...(run ? [[`/runs/${run}`, short(run)] as const] : [])]}>
       <header class="page-head">
         <h1>
           {creature?.identity.genome.encoding === "gait"
@@ -62,7 +57,7 @@ export function CreaturePage({ sha, query }: Props) {
       {error && <p class="banner wrong">{reasonOf(error, sha)}</p>}
       {!creature && !error && <p class="quiet loading">{text.loading}</p>}
       {creature && <CreatureView key={sha} {...{ creature, query }} />}
-    </main>
+    </Page>
   );
 }
 

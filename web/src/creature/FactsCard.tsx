@@ -1,6 +1,7 @@
 /** Measures, coupling and origin of a creature. */
 
 import type { Creature } from "../api/types";
+import { Card } from "../ui/Page";
 import { Term } from "../ui/Term";
 import { type Group, formOf, groupsOf, originOf } from "./facts";
 import { text } from "./text";
@@ -12,8 +13,7 @@ export function FactsCard({ creature }: { creature: Creature }) {
     { title: text.origin, rows: originOf(creature) },
   ];
   return (
-    <section class="card facts-card" aria-labelledby="facts-title">
-      <h2 id="facts-title">{text.facts}</h2>
+    <Card id="facts" title={text.facts} kind="facts-card">
       <div class="facts-columns">
         {groups.map(({ title, rows }) => (
           <div key={title} hidden={rows.length === 0}>
@@ -31,6 +31,6 @@ export function FactsCard({ creature }: { creature: Creature }) {
           </div>
         ))}
       </div>
-    </section>
+    </Card>
   );
 }

@@ -8,6 +8,7 @@ import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { FamilyTree } from "./FamilyTree";
 import { familyLayoutOf } from "./relatives";
+import { Card } from "../ui/Page";
 import { count } from "../ui/format";
 import { text } from "./text";
 
@@ -30,15 +31,11 @@ export function FamilyCard({ creature, query }: Props) {
     sharedSlug && !run ? null : pageUrl(`/creatures/${name}${run ? `?run=${run}` : ""}`);
   const credited = value ? creditOf(value[0].items, creature) : [];
   const lost = value?.[0].items.some(({ kept }) => !kept);
+  const more = value?.[0].more && back < FARTHEST && (
+    <button onClick={() => setQuery({ back: String(back + FURTHER) })}>{text.moreAncestors}</button>
+  );
   return (
-    <section class="card" aria-labelledby="family-title">
-      <div class="card-head">
-        <h2 id="family-title">{sharedSlug ? text.ancestors : text.family}</h2>
-        <span class="spring" />
-        {value?.[0].more && back < FARTHEST && (
-          <button onClick={() => setQuery({ back: String(back + FURTHER) })}>{text.moreAncestors}</button>
-        )}
-      </div>
+    <Card id="family" title={sharedSlug ? text.ancestors : text.family} actions={more}>
       {error && (
         <p class="banner wrong">
           {error} {text.reload}
@@ -56,7 +53,7 @@ export function FamilyCard({ creature, query }: Props) {
           {tree.hidden > 0 && text.hiddenChildren(count(tree.hidden))}
         </p>
       )}
-    </section>
+    </Card>
   );
 }
 

@@ -19,7 +19,7 @@ export function GeneStrip({ values }: { values: Float32Array }) {
         <path class="negative" d={pathOf(bars, (value) => Math.min(0, value))} />
         <path class="zero" d={`M0,0H${bars.length}`} />
       </svg>
-      <figcaption>
+      <figcaption class="row">
         <span class="key positive">{text.positiveGenes}</span>
         <span class="key negative">{text.negativeGenes}</span>
         <span class="quiet">

@@ -10,6 +10,7 @@ import { GeneStrip } from "./GeneStrip";
 import { NetworkGraph } from "./NetworkGraph";
 import { NetworkOutputs } from "./NetworkOutputs";
 import type { Moment } from "../replay/moment";
+import { Card } from "../ui/Page";
 import { FileLink } from "../ui/FileLink";
 import { text } from "./text";
 
@@ -50,8 +51,7 @@ interface NetworkProps extends Omit<Props, "creature"> {
 function Network({ network, files, ...rest }: NetworkProps) {
   const [chosen, choose] = useState<number | null>(null);
   return (
-    <section class="card" aria-labelledby="network-title">
-      <h2 id="network-title">{text.network}</h2>
+    <Card id="network" title={text.network}>
       <NetworkGraph network={network} chosen={chosen} onChoose={choose} />
       <NetworkOutputs {...rest} {...{ network, chosen }} />
       {files && (
@@ -62,16 +62,15 @@ function Network({ network, files, ...rest }: NetworkProps) {
           ))}
         </p>
       )}
-    </section>
+    </Card>
   );
 }
 
 function Numbers({ genes }: { genes: Vector }) {
   const values = useMemo(() => decodeFloats(genes.values), [genes]);
   return (
-    <section class="card" aria-labelledby="genes-title">
-      <h2 id="genes-title">{text.genes}</h2>
+    <Card id="genes" title={text.genes}>
       <GeneStrip values={values} />
-    </section>
+    </Card>
   );
 }

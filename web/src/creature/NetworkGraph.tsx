@@ -42,7 +42,7 @@ export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
           ))}
         </svg>
       </div>
-      <figcaption>
+      <figcaption class="row">
         <span class="key positive">{text.positive}</span>
         <span class="key negative">{text.negative}</span>
         <span class="key off">{text.disabled}</span>

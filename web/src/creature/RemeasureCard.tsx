@@ -8,6 +8,7 @@ import type { Measurement } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { usePolled } from "../store/polling";
 import { number, words } from "../ui/format";
+import { type Column, Table } from "../ui/Table";
 import { CheckCard } from "./CheckCard";
 import { text } from "./text";
 
@@ -55,6 +56,12 @@ function useMeasurement(sha: string) {
   return { found, idle: found !== null, running, note, error: failed ?? error, start };
 }
 
+const COLUMNS: Column<Measurement["figures"][number]>[] = [
+  { title: text.number, cell: ({ name }) => words(name) },
+  { title: text.recorded, cell: ({ recorded }) => number(recorded, 6) },
+  { title: text.here, cell: ({ measured }) => number(measured, 6) },
+];
+
 function MeasurementResult({ exact, device, recorded_device, fitness, figures }: Measurement) {
   const same = device === recorded_device;
   return (
@@ -68,24 +75,7 @@ function MeasurementResult({ exact, device, recorded_device, fitness, figures }:
       {figures.length > 0 && (
         <details>
           <summary>{figures.length === 1 ? text.oneDiffers : text.someDiffer(figures.length)}</summary>
-          <table class="plain-table">
-            <thead>
-              <tr>
-                <th scope="col">{text.number}</th>
-                <th scope="col">{text.recorded}</th>
-                <th scope="col">{text.here}</th>
-              </tr>
-            </thead>
-            <tbody>
-              {figures.map(({ name, recorded, measured }) => (
-                <tr key={name}>
-                  <th scope="row">{words(name)}</th>
-                  <td class="figure">{number(recorded, 6)}</td>
-                  <td class="figure">{number(measured, 6)}</td>
-                </tr>
-              ))}
-            </tbody>
-          </table>
+          <Table label={text.differences} columns={COLUMNS} rows={figures} keyOf={({ name }) => name} />
         </details>
       )}
     </>

@@ -6,6 +6,7 @@ import { anglesOf, lengthsOf, sizeOf } from "../decode/shape";
 import type { Moment } from "../replay/moment";
 import { setQuery } from "../store/router";
 import { number, percent } from "../ui/format";
+import { Card } from "../ui/Page";
 import { Segments } from "../ui/Select";
 import { DivergingLegend, HeatMap } from "./HeatMap";
 import { text } from "./text";
@@ -38,20 +39,18 @@ interface Props {
 
 export function SpaceTimeCard({ replay, query, moment }: Props) {
   const quantity = query.get("shape") === "lengths" ? "lengths" : "angles";
+  const view = (
+    <Segments
+      label={text.shapeView}
+      choices={TITLES}
+      value={quantity}
+      onChoose={(name) => setQuery({ shape: name === "angles" ? null : name })}
+    />
+  );
   return (
-    <section class="card" aria-labelledby="shape-title">
-      <div class="card-head">
-        <h2 id="shape-title">{text.shape}</h2>
-        <span class="spring" />
-        <Segments
-          label={text.shapeView}
-          choices={TITLES}
-          value={quantity}
-          onChoose={(name) => setQuery({ shape: name === "angles" ? null : name })}
-        />
-      </div>
+    <Card id="shape" title={text.shape} actions={view}>
       <SpaceTime {...{ replay, quantity, moment }} />
-    </section>
+    </Card>
   );
 }
 

@@ -2,6 +2,7 @@
 
 export const text = {
   audit: "Physics audit",
+  auditFigures: "Figures of the audit",
   runAudit: "Run audit",
   auditAbout:
     "The audit simulates the creature with twice the resolution and half the time step, with another delta kernel, and with a reciprocal gait. Swimming that does not survive is an artefact of the solver.",
@@ -19,8 +20,7 @@ export const text = {
   result: "Result",
   passed: "passed",
   failed: "failed",
-  pageTitle: (sha: string) => `Creature ${sha} · Microcosmos`,
-  breadcrumbs: "Breadcrumbs",
+  title: (sha: string) => `Creature ${sha}`,
   runs: "Runs",
   creature: "Creature",
   fork: "Start a new run from this creature",
@@ -99,6 +99,7 @@ export const text = {
   sameDevice: "The device is of the same kind as the recorded one.",
   otherDevice: (device: string, recorded: string) =>
     `Device here: ${device}; recorded on ${recorded}, where rounding may differ.`,
+  differences: "Numbers that differ",
   oneDiffers: "1 number differs",
   someDiffer: (count: number) => `${count} numbers differ`,
   number: "Number",

@@ -30,7 +30,7 @@ interface Props {
 
 export function LookChoice({ names, name, look, change }: Props) {
   return (
-    <div class="view-options">
+    <div class="row">
       {names.length > 1 && (
         <Segments
           label={text.field}

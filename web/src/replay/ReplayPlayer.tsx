@@ -62,7 +62,7 @@ export function ReplayPlayer({ films, ...given }: Props) {
           </figure>
         ))}
       </div>
-      <div class="controls">
+      <div class="row">
         <Transport {...playback} header={replays[0]!.header} />
         <Speed value={look.speed} onChange={(speed) => change({ speed })} />
       </div>

@@ -16,41 +16,14 @@ describe("motion", () => {
     expect(meanOf(positionsAt(replay, 1))).toEqual([2, 2]);
   });
 
-  it("draws a chain as one line, a ring closed, a star as its arms", () => {
-    expect(
-      chainsOf([
-        [0, 1],
-        [1, 2],
-        [2, 3],
-      ]),
-    ).toEqual([[0, 1, 2, 3]]);
-    expect(
-      chainsOf([
-        [0, 1],
-        [1, 2],
-        [2, 0],
-      ]),
-    ).toEqual([[0, 1, 2, 0]]);
-    expect(
-      chainsOf([
-        [0, 1],
-        [0, 2],
-        [0, 3],
-      ]),
-    ).toEqual([
-      [0, 1],
-      [0, 2],
-      [0, 3],
-    ]);
-    expect(
-      chainsOf([
-        [0, 1],
-        [2, 3],
-      ]),
-    ).toEqual([
-      [0, 1],
-      [2, 3],
-    ]);
+  it.each([
+    ["a chain", "01 12 23", "0123"],
+    ["a closed ring", "01 12 20", "0120"],
+    ["the arms of a star", "01 02 03", "01 02 03"],
+    ["two bodies", "01 23", "01 23"],
+  ])("draws %s", (_, edges, chains) => {
+    const pairs = edges.split(" ").map((edge) => [Number(edge[0]), Number(edge[1])] as const);
+    expect(chainsOf(pairs).map((chain) => chain.join(""))).toEqual(chains.split(" "));
   });
 
   it("goes through every node, and straight where the nodes are in line", () => {

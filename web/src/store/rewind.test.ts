@@ -8,10 +8,7 @@ describe("a snapshot", () => {
   it("keeps later events that arrived before it", () => {
     const later = reduce(reduce(opened, elites(3, 5, "cc")), elites(2, 0, "old"));
     const next = reduce(later, snapshot(later));
-    expect(creatures(next)).toEqual([
-      [0, "aa"],
-      [5, "cc"],
-    ]);
+    expect(creatures(next)).toEqual({ 0: "aa", 5: "cc" });
   });
 
   it("that comes first keeps the events since the run was opened", () => {
@@ -19,10 +16,7 @@ describe("a snapshot", () => {
     const waiting = after({ type: "run", run: RUN }, open, elites(3, 5, "cc"), told);
     expect(waiting.details.get("a")).toMatchObject({ archive: null, curves: null });
     const next = reduce(waiting, snapshot(waiting));
-    expect(creatures(next)).toEqual([
-      [0, "aa"],
-      [5, "cc"],
-    ]);
+    expect(creatures(next)).toEqual({ 0: "aa", 5: "cc" });
     expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
   });
 
@@ -47,7 +41,7 @@ describe("a rewind", () => {
 
   it("drops cells and curves of later generations", () => {
     const next = reduce(reduce(opened, elites(3, 7, "cc")), rewind);
-    expect(creatures(next)).toEqual([[0, "aa"]]);
+    expect(creatures(next)).toEqual({ 0: "aa" });
     expect(next.details.get("a")!.curves!.generation).toEqual([1]);
   });
 
@@ -67,7 +61,7 @@ describe("a rewind", () => {
   it("invalidates snapshots that were requested before it", () => {
     const late = snapshot(opened);
     const next = reduce(reduce(opened, rewind), late);
-    expect(creatures(next)).toEqual([[0, "aa"]]);
+    expect(creatures(next)).toEqual({ 0: "aa" });
   });
 });
 
@@ -83,14 +77,11 @@ describe("a reset", () => {
     const lost = [elites(7, 9, "lost"), { type: "generation", event: generation(7) }] as Action[];
     const before = lost.reduce(reduce, opened);
     const shown = reduce(before, { type: "reset" });
-    expect(creatures(shown)).toContainEqual([9, "lost"]);
+    expect(creatures(shown)).toMatchObject({ 9: "lost" });
     const fresh = [elites(3, 5, "cc"), { type: "generation", event: generation(3) }] as Action[];
     const waiting = fresh.reduce(reduce, shown);
     const next = reduce(waiting, snapshot(waiting));
-    expect(creatures(next)).toEqual([
-      [0, "aa"],
-      [5, "cc"],
-    ]);
+    expect(creatures(next)).toEqual({ 0: "aa", 5: "cc" });
     expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);
   });
 });

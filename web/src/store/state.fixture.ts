@@ -51,9 +51,9 @@ export function generation(number: number): GenerationEvent {
   return { run: "a", generation: number, evaluations, seconds, ...values, summary };
 }
 
-export function elites(told: number, cell: number, creature: string): Action {
+export function elites(number: number, cell: number, creature: string): Action {
   const columns = { cell: [cell], fitness: [9], descriptors: [[0, 0]], creature: [creature] };
-  const event = { run: "a", generation: told, elite_generation: [told], ...columns };
+  const event = { run: "a", generation: number, elite_generation: [number], ...columns };
   return { type: "elites", event };
 }
 
@@ -76,4 +76,4 @@ export const open: Action & { type: "open" } = { type: "open", run: "a", more: 1
 export const opened = after({ type: "run", run: RUN }, open, snapshot);
 
 export const creatures = (state: State) =>
-  [...state.details.get("a")!.elites].map(([cell, { creature }]) => [cell, creature]);
+  Object.fromEntries([...state.details.get("a")!.elites].map(([cell, { creature }]) => [cell, creature]));

@@ -6,14 +6,8 @@ import { RUN, generation, elites, after, opened, creatures } from "./state.fixtu
 describe("events", () => {
   it("change the cells that they name", () => {
     const next = reduce(opened, elites(3, 5, "cc"));
-    expect(creatures(next)).toEqual([
-      [0, "aa"],
-      [5, "cc"],
-    ]);
-    expect(creatures(opened)).toEqual([
-      [0, "aa"],
-      [5, "bb"],
-    ]);
+    expect(creatures(next)).toEqual({ 0: "aa", 5: "cc" });
+    expect(creatures(opened)).toEqual({ 0: "aa", 5: "bb" });
   });
 
   it("extend curves and update figures, each generation once", () => {

@@ -52,7 +52,7 @@ export function Guide({ steps, asked, onStep, onEnd }: Props) {
         <h2>{step.title}</h2>
         <p>{step.text}</p>
       </div>
-      <p class="guide-buttons">
+      <p class="row">
         <button class="plain" onClick={onEnd}>
           {last ? text.close : text.skip}
         </button>

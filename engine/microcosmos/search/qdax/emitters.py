@@ -18,8 +18,8 @@ from ..insertion import Elites
 from .repertoires import needed, order, to_repertoire
 
 
-class Told(eqx.Module):
-    """An emitter of QDax's, and what became of its last children until it is told."""
+class Pending(eqx.Module):
+    """The state of a QDax emitter, and the outcome of its last children to learn next."""
 
     emitter: PyTree[Array]
     genes: Float[Array, "slot gene"]
@@ -27,15 +27,15 @@ class Told(eqx.Module):
     place: Float[Array, "slot axis"]
     sound: Bool[Array, "slot"]
     due: Bool[Array, ""]
-    """Whether the last children were its own: the first ones are newcomers."""
+    """Whether the last children were its own; the first ones are newcomers."""
 
 
 @dataclass(frozen=True)
 class QdaxEmitter:
-    """Any emitter of QDax's that begins without creatures, over vectors.
+    """Any emitter of QDax's over vectors that needs no creatures to begin.
 
-    It is told in the next generation, when the archive is what QDax shows it. Genes are cut at
-    −1 and 1. What diverged counts as worse than the rest, in the best elite's cell.
+    It learns an outcome in the next generation, with the archive that QDax would show it. Genes
+    are cut at −1 and 1. Diverged creatures count as worst, in the best elite's cell.
     """
 
     slots: int
@@ -44,8 +44,7 @@ class QdaxEmitter:
     emitter: Any
     operator: str
 
-    def init(self, *, key: PRNGKeyArray) -> Told:
-        """As QDax begins, over an empty repertoire."""
+    def init(self, *, key: PRNGKeyArray) -> Pending:
         genes = jnp.zeros((self.slots, *jax.eval_shape(self._newcomer).values.shape))
         place = jnp.zeros((self.slots, len(self.cells.axes)))
         fitness = jnp.full(self.slots, -jnp.inf, genes.dtype)
@@ -55,12 +54,11 @@ class QdaxEmitter:
             state = self.emitter.init(_raw(key), empty, genes, fitness, place, {})
         none = jnp.zeros(self.slots, bool)
         state = jax.tree.map(jnp.asarray, state)
-        return Told(state, genes, fitness, place, none, jnp.zeros((), bool))
+        return Pending(state, genes, fitness, place, none, jnp.zeros((), bool))
 
     def emit(
-        self, state: Told, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, Told, Counters]:
-        """Newcomers while the archive is empty, then what the emitter makes."""
+        self, state: Pending, archive: Elites, counters: Counters, *, keys: Keys
+    ) -> tuple[Children, Pending, Counters]:
         with jax.numpy_rank_promotion("allow"):
             repertoire = to_repertoire(archive, self.cells)
             learnt = jax.lax.cond(
@@ -72,8 +70,7 @@ class QdaxEmitter:
         due = jnp.any(archive.occupied)
         return children, replace(state, emitter=learnt, due=due), counters
 
-    def tell(self, state: Told, outcome: Outcome) -> Told:
-        """Kept until the next generation."""
+    def tell(self, state: Pending, outcome: Outcome) -> Pending:
         assert isinstance(outcome.genotypes, Vector)
         return replace(
             state,
@@ -83,7 +80,7 @@ class QdaxEmitter:
             sound=outcome.sound & jnp.isfinite(outcome.fitness),
         )
 
-    def _learnt(self, state: Told, repertoire: Any) -> PyTree[Array]:
+    def _learnt(self, state: Pending, repertoire: Any) -> PyTree[Array]:
         sound, best = state.sound, jnp.argmax(repertoire.fitnesses[:, 0])
         worst = jnp.min(jnp.where(sound, state.fitness, repertoire.fitnesses[best, 0])) - 1.0
         learnt = self.emitter.state_update(
@@ -127,13 +124,11 @@ class NeatEmitter:
 
     @property
     def batch_size(self) -> int:
-        """Children a generation."""
         return self.emitter.slots
 
     @property
     def use_all_data(self) -> bool:
-        """Numbers that others gave are not given again."""
-        return True
+        return True  # Genes that others numbered are not numbered again.
 
     def init(
         self,
@@ -144,13 +139,11 @@ class NeatEmitter:
         descriptors: Array,
         extra_scores: dict[str, Array],
     ) -> Counters:
-        """After all genes of the first networks."""
         return _beyond(genotypes, Counters(jnp.asarray(0), jnp.asarray(0)))
 
     def emit(
         self, repertoire: Any, emitter_state: Counters, key: Array
     ) -> tuple[CPPN, dict[str, Array]]:
-        """Children of networks in the repertoire."""
         fitness = jnp.reshape(repertoire.fitnesses, -1)
         nothing = jnp.zeros(fitness.shape, jnp.int32)
         archive = Elites(
@@ -177,12 +170,11 @@ class NeatEmitter:
         descriptors: Array,
         extra_scores: dict[str, Array],
     ) -> Counters:
-        """After all genes of the children too."""
         return _beyond(genotypes, emitter_state)
 
 
 def _beyond(networks: CPPN, counters: Counters) -> Counters:
-    """The next numbers after those of networks, and not before the given ones."""
+    """The first numbers after those of the networks and the given ones."""
     used = jnp.where(networks.connection_used, networks.innovation, -1)
     nodes = jnp.where(networks.node_used, networks.node_id, -1)
     return Counters(
@@ -192,5 +184,4 @@ def _beyond(networks: CPPN, counters: Counters) -> Counters:
 
 
 def _raw(key: PRNGKeyArray) -> Array:
-    """A key as numbers, as QDax's states hold it."""
     return jax.random.key_data(key)

@@ -1,7 +1,7 @@
-"""Repertoires and scoring functions as QDax has them.
+"""Repertoires and scoring functions of QDax.
 
-Its descriptors and centroids are places from 0 to 1 on our axes' own scales; its rows of a grid
-are in another order than ours.
+Its descriptors and centroids are from 0 to 1 on our axes' own scales; its rows of a grid are in
+another order than ours.
 """
 
 import importlib
@@ -25,7 +25,7 @@ EXTRA_SCORES = ("measures", "generation", "slot")
 
 
 def needed(module: str) -> Any:
-    """A module of QDax's. Raises `ValueError` with the command to install it."""
+    """Import a module of QDax. Raises `ValueError` with the command to install it."""
     try:
         return importlib.import_module(f"qdax.{module}")
     except ImportError as error:
@@ -41,10 +41,10 @@ def scoring_function(
 ) -> Callable:
     """QDax's protocol around an evaluation of a batch: fitness, descriptors, extra scores.
 
-    Genotypes are networks, or plain arrays of genes from −1 to 1. What diverged has fitness
-    −inf, so that no repertoire takes it. With `slopes` the extra scores hold what QDax's
-    CMA-MEGA asks for: (creature, gene, output) unit slopes of fitness and descriptors, 0 where
-    they are not finite. A descriptor's direction is the same on any of its scales.
+    Genotypes are networks, or plain arrays of genes from −1 to 1. Diverged creatures have
+    fitness −inf, so that no repertoire takes them. With `slopes` the extra scores hold unit
+    slopes (creature, gene, output) of fitness and descriptors for CMA-MEGA, 0 if not finite. A
+    descriptor's direction is the same on any of its scales.
     """
 
     def score(genotypes: Any, key: Any = None) -> tuple[Array, Array, dict[str, Array]]:
@@ -91,23 +91,23 @@ def to_repertoire(elites: Elites, cells: Cells) -> Any:
 def from_repertoire(repertoire: Any, cells: Cells, measures: int) -> Elites:
     """Our elites of a repertoire over the same cells.
 
-    Where it holds no measures of ours as extra scores, those that are descriptors are made
-    from its descriptors and the others are NaN.
+    Without measures of ours among its extra scores, its descriptors give those measures and
+    the others are NaN.
     """
-    rows, genes, told = np.argsort(order(cells)), repertoire.genotypes, repertoire.extra_scores
+    rows, genes, extra = np.argsort(order(cells)), repertoire.genotypes, repertoire.extra_scores
     plain = isinstance(genes, jax.Array | np.ndarray)
     genotypes = jax.tree.map(lambda x: x[rows], Vector(jnp.asarray(genes)) if plain else genes)
     fitness = jnp.reshape(repertoire.fitnesses, -1)[rows]
     there, none = jnp.isfinite(fitness), jnp.zeros(cells.count, jnp.int32)
-    known = told.get("measures")
+    known = extra.get("measures")
     if known is None:
         known = _measures(repertoire.descriptors, cells.axes, measures)
     return Elites(
         occupied=there,
         fitness=jnp.where(there, fitness, 0.0),
         measures=jnp.where(there[:, None], known[rows], 0.0),
-        generation=told["generation"][rows] if "generation" in told else none,
-        slot=told["slot"][rows] if "slot" in told else none,
+        generation=extra["generation"][rows] if "generation" in extra else none,
+        slot=extra["slot"][rows] if "slot" in extra else none,
         genotypes=genotypes,
     )
 

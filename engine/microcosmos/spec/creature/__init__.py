@@ -1,4 +1,4 @@
-"""The creature file as pydantic models: identity, genomes, measured numbers, provenance."""
+"""The creature file: identity, genome, measured numbers and provenance."""
 
 from .file import CreatureError, CreatureFile, check, fitness_of, room, scene_of
 from .identity import Identity

@@ -1,9 +1,9 @@
-"""NEAT genes of a CPPN as they are written in a creature file, and their soundness."""
+"""NEAT genes of a CPPN in a creature file, and their validation."""
 
 from itertools import pairwise
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator
+from pydantic import AfterValidator, Field
 
 from ...naming import decode
 from ..base import Part
@@ -17,18 +17,21 @@ MAX_NODES, MAX_CONNECTIONS = 1024, 8192
 Number = Annotated[int, Field(ge=0, lt=2**31)]
 
 
+def _decodable(text: str) -> str:
+    decode(text)
+    return text
+
+
+Float32 = Annotated[str, AfterValidator(_decodable)]
+"""Base64 of float32 values."""
+
+
 class Nodes(Part):
     """Node genes: numbers, activations and biases."""
 
     id: tuple[Number, ...] = Field(max_length=MAX_NODES)
     activation: tuple[Activation, ...] = Field(max_length=MAX_NODES)
-    bias: str = Field(max_length=8 * MAX_NODES)
-
-    @field_validator("bias")
-    @classmethod
-    def check_bias(cls, text: str) -> str:
-        decode(text)
-        return text
+    bias: Float32 = Field(max_length=8 * MAX_NODES)
 
 
 class Connections(Part):
@@ -38,13 +41,7 @@ class Connections(Part):
     source: tuple[Number, ...] = Field(max_length=MAX_CONNECTIONS)
     target: tuple[Number, ...] = Field(max_length=MAX_CONNECTIONS)
     enabled: tuple[bool, ...] = Field(max_length=MAX_CONNECTIONS)
-    weight: str = Field(max_length=8 * MAX_CONNECTIONS)
-
-    @field_validator("weight")
-    @classmethod
-    def check_weight(cls, text: str) -> str:
-        decode(text)
-        return text
+    weight: Float32 = Field(max_length=8 * MAX_CONNECTIONS)
 
 
 def check_genes(
@@ -52,7 +49,7 @@ def check_genes(
 ) -> None:
     """Raise `ValueError` where genes do not make a network in canonical order.
 
-    It must be feed-forward unless `cycles` are allowed.
+    The network must be feed-forward unless `cycles` are allowed.
     """
     _same_length("nodes", nodes.id, nodes.activation, decode(nodes.bias))
     _same_length(
@@ -72,7 +69,7 @@ def check_genes(
         raise ValueError("`nodes` that are inputs must have activation identity and bias 0")
     pairs = list(zip(connections.source, connections.target, strict=True))
     if len(set(pairs)) < len(pairs):
-        raise ValueError("`connections` must join each pair of nodes once, got one twice")
+        raise ValueError("`connections` must join each pair of nodes at most once")
     if missing := set(connections.source + connections.target) - set(nodes.id):
         raise ValueError(f"`connections` must join existing nodes, got {sorted(missing)[:5]}")
     if any(target < inputs for target in connections.target):
@@ -93,7 +90,7 @@ def _increasing(where: str, numbers: tuple[int, ...]) -> None:
 
 
 def _refuse_cycles(ids: tuple[int, ...], pairs: list[tuple[int, int]]) -> None:
-    """Kahn's algorithm; whatever is left over lies on or behind a cycle."""
+    """Kahn's algorithm: the nodes left over lie on or behind a cycle."""
     waiting = dict.fromkeys(ids, 0)
     targets: dict[int, list[int]] = {node: [] for node in ids}
     for source, target in pairs:

@@ -1,4 +1,4 @@
-"""The creature file: identity, hash, measured numbers, provenance, licence, credit."""
+"""The creature file: its model, and checks of its contents."""
 
 import re
 from collections.abc import Mapping
@@ -31,29 +31,29 @@ class CreatureError(ValueError):
 
 
 class Measured(Part):
-    """What was found when the creature was evaluated, and what repeating it exactly needs."""
+    """Results of an evaluation, and the conditions of its exact repetition."""
 
     fitness: float
     descriptors: Figures
     measures: Figures
     block: int = Field(ge=1, le=4096)
     room: tuple[Room, Room] | None = None
-    """`max_nodes` and `max_connections` of the evaluated arrays; none without a network."""
+    """`max_nodes` and `max_connections` of the evaluated arrays; None without a network."""
     device: str
     plugins: PluginVersions = Field(default={})
     """Versions of the plug-ins among the measures."""
 
     @model_validator(mode="after")
     def check_agreement(self) -> Self:
-        """Descriptors are measures, so that a check of those is one of all."""
-        told = self.descriptors
-        if wrong := [name for name in told if told[name] != self.measures.get(name)]:
+        """Descriptors must equal the measures of their names."""
+        found = self.descriptors
+        if wrong := [name for name in found if found[name] != self.measures.get(name)]:
             raise ValueError(f"`measures` must hold descriptors; got other values of {wrong}")
         return self
 
 
 class Provenance(Part):
-    """Where the creature came from."""
+    """The origin of a creature in a run."""
 
     parents: tuple[Digest, ...]
     operator: str
@@ -63,7 +63,7 @@ class Provenance(Part):
 
 
 class CreatureFile(Part):
-    """The whole document that people share."""
+    """The document that people share."""
 
     identity: Identity
     sha256: Digest
@@ -71,16 +71,16 @@ class CreatureFile(Part):
     provenance: Provenance | None = None
     licence: str = LICENCE
     credit: Credit = ()
-    """Who is to be named wherever the creature is shown."""
+    """Names to show with the creature."""
 
     @model_validator(mode="after")
     def check_measured(self) -> Self:
-        """The arrays that were measured had room for the genes; fitness is its measures'."""
+        """The measured arrays must have room for the genes; measures must give the fitness."""
         if self.measured is None:
             return self
         room_of(self.identity.genome, self.measured.room)
         expected = fitness_of(self.identity.task, self.measured.measures)
-        # Compilers may fuse the sum, which rounds it otherwise.
+        # Compilers may fuse the sum, which rounds differently.
         if not np.isclose(self.measured.fitness, expected, rtol=1e-5, atol=1e-9):
             raise ValueError(
                 f"`measured.fitness` must be {expected!r} as `measures` have it for "
@@ -90,8 +90,8 @@ class CreatureFile(Part):
 
 
 def fitness_of(task: Task, measures: Mapping[str, float]) -> float:
-    """Fitness in float32, as it is computed where a creature is evaluated."""
-    if task.plugin is not None:  # Which is among what was measured.
+    """Return the fitness in float32, as an evaluation computes it."""
+    if task.plugin is not None:
         return measures.get(task.fitness, np.nan)
     displacement = np.float32(measures.get("displacement", np.nan))
     energy = np.float32(task.energy_weight) * np.float32(measures.get("energy", np.nan))
@@ -100,7 +100,7 @@ def fitness_of(task: Task, measures: Mapping[str, float]) -> float:
 
 
 def check(data: Any) -> dict[str, Any]:
-    """Return the creature file, checked: its genes, its world and its hash.
+    """Return the creature file with its genes, world and hash checked.
 
     Raises `CreatureError`, which names the field, what was needed and what came.
     """
@@ -115,19 +115,19 @@ def check(data: Any) -> dict[str, Any]:
     whole = file.model_dump(mode="json")
     expected = name(whole["identity"])
     if expected != file.sha256:
-        raise CreatureError("sha256", f"the identity's own hash {expected}", file.sha256)
+        raise CreatureError("sha256", f"the hash of the identity, {expected}", file.sha256)
     return whole
 
 
 def scene_of(file: Mapping[str, Any]) -> Scene:
-    """What is simulated when a parsed file is evaluated or replayed."""
+    """Return the scene in which a parsed file is evaluated or replayed."""
     scene = Identity.model_validate(file["identity"]).scene
     plugins = (file.get("measured") or {}).get("plugins")
     return Scene(**{**dict(scene), "plugins": plugins}) if plugins else scene
 
 
 def room_of(genome: Part, recorded: tuple[int, int] | None) -> tuple[int, int] | None:
-    """The room that was recorded, else just enough: sums round differently in another."""
+    """Return the recorded room, or the least that fits: sums round differently in another."""
     if not isinstance(genome, Network):
         return None
     least = (max(8, len(genome.nodes.id)), max(8, len(genome.connections.innovation)))
@@ -140,7 +140,7 @@ def room_of(genome: Part, recorded: tuple[int, int] | None) -> tuple[int, int] |
 
 
 def room(file: Mapping[str, Any]) -> tuple[int, int] | None:
-    """`max_nodes` and `max_connections` for a parsed file's network; None without one."""
+    """Return `max_nodes` and `max_connections` of a parsed file's network; None without one."""
     parsed = CreatureFile.model_validate(file)
     measured = parsed.measured
     return room_of(parsed.identity.genome, measured.room if measured else None)

@@ -1,4 +1,4 @@
-"""Genomes as they stand in creature files, by their encoding."""
+"""Genomes in creature files, by their encoding."""
 
 from typing import Literal, Self
 
@@ -10,13 +10,13 @@ from .. import encodings, scene
 from ..base import Part
 from ..body import Body, shape
 from ..control import Control, Sight
-from ..encodings import MOST_GENES
+from ..encodings import MAX_GENES
 from ..scene import Gait
 from .cppn_genes import Connections, Nodes, check_genes
 
 
 class CPPN(Part):
-    """The genes of a controller, without unused room, in the order of their numbers."""
+    """The used genes of a CPPN controller, ordered by number."""
 
     encoding: Literal["cppn"]
     inputs: tuple[str, ...]
@@ -34,7 +34,7 @@ class CPPN(Part):
 
 
 class Grown(Part):
-    """The genes of a network that grows a body and controls it."""
+    """The used genes of a CPPN that grows a body and controls it, ordered by number."""
 
     encoding: Literal["cppn-body"]
     inputs: tuple[str, ...]
@@ -53,7 +53,8 @@ class Grown(Part):
 class Vector(Part):
     """Genes that are numbers from −1 to 1."""
 
-    values: str = Field(max_length=8 * MOST_GENES)
+    control: encodings.Direct | encodings.Weights | encodings.PluginControl
+    values: str = Field(max_length=8 * MAX_GENES)
     """Base64 of float32."""
 
     @field_validator("values")
@@ -63,20 +64,20 @@ class Vector(Part):
             raise ValueError(f"needs values from -1 to 1, got one of size {largest:g}")
         return text
 
+    def refuse_other_length(self, body: Body) -> None:
+        """Raise `ValueError` where the body needs another number of genes."""
+        _refuse_count(self.values, encodings.gene_count(self.control, shape(body)))
+
 
 class Direct(Vector):
-    """The control of every joint and edge, and measures of the body."""
+    """The control of every joint and edge, and inherited traits of the body."""
 
     encoding: Literal["direct"]
     control: encodings.Direct
 
-    def refuse_other_length(self, body: Body) -> None:
-        """There must be as many genes as the body needs."""
-        _refuse_other_length(self.values, self.control, body)
-
 
 class Weights(Vector):
-    """The weights of a network of given layers."""
+    """The weights of a network with fixed layers."""
 
     encoding: Literal["weights"]
     inputs: tuple[str, ...]
@@ -88,13 +89,9 @@ class Weights(Vector):
         _check_network(self, self.control)
         return self
 
-    def refuse_other_length(self, body: Body) -> None:
-        """There must be as many genes as the layers need."""
-        _refuse_other_length(self.values, self.control, body)
-
 
 class PluginGenome(Vector):
-    """Numbers that a module of one's own makes movements of."""
+    """Numbers that a plug-in turns into movements."""
 
     encoding: str
     control: encodings.PluginControl
@@ -108,47 +105,38 @@ class PluginGenome(Vector):
             )
         return self
 
-    def refuse_other_length(self, body: Body) -> None:
-        """There must be as many genes as the body needs."""
-        _refuse_other_length(self.values, self.control, body)
-
 
 class Fold(Part):
-    """The rest angle of every joint and the rest length of every edge."""
+    """A constant rest angle of every joint and rest length of every edge."""
 
     encoding: Literal["fold"]
     control: scene.Fold
-    values: str = Field(max_length=8 * MOST_GENES)
-    """Base64 of float32: rad that are added to the body's angles, then what
-    `control.lengths` makes of its lengths."""
+    values: str = Field(max_length=8 * MAX_GENES)
+    """Base64 of float32: rad added to the body's angles, then changes of its lengths as
+    `control.lengths` says."""
 
     def refuse_other_length(self, body: Body) -> None:
-        """A number for each joint and edge."""
         whole = shape(body)
-        needed, found = len(whole.joints) + len(whole.edges), len(decode(self.values))
-        if found != needed:
-            raise ValueError(f"`genome.values` must hold {needed} numbers, got {found}")
+        _refuse_count(self.values, len(whole.joints) + len(whole.edges))
 
 
 class Stroke(Gait):
-    """A hand-made gait in the place of genes."""
+    """A hand-made gait in place of genes."""
 
     encoding: Literal["gait"]
 
 
 Network = CPPN | Grown
-"""Genomes whose genes are those of NEAT."""
+"""Genomes of NEAT genes."""
 
 
 def _check_network(genome: CPPN | Grown | Weights, control: Sight) -> None:
-    """Inputs and outputs must be those that the controller has."""
     for name in ("inputs", "outputs"):
         needed, found = getattr(control, name), getattr(genome, name)
         if found != needed:
             raise ValueError(f"`{name}` must be {list(needed)}, got {list(found)}")
 
 
-def _refuse_other_length(values: str, control: encodings.Controller, body: Body) -> None:
-    needed, found = encodings.genes(control, shape(body)), len(decode(values))
-    if found != needed:
+def _refuse_count(values: str, needed: int) -> None:
+    if (found := len(decode(values))) != needed:
         raise ValueError(f"`genome.values` must hold {needed} numbers, got {found}")

@@ -1,25 +1,23 @@
-"""Everything that a creature is, as it is written and named."""
+"""The identity of a creature, whose SHA-256 is its name."""
 
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Tag, model_validator
 
-from ..base import Part
+from ..base import ENCODINGS, Part
 from ..body import Body, PluginBody
 from ..coupling import Coupling
-from ..encodings import kind
+from ..encodings import encoding_tag
 from ..scene import Gait, Scene
 from ..search import Task
 from ..world import World
 from .genomes import CPPN, Direct, Fold, Grown, PluginGenome, Stroke, Weights
 
-NAMES = ("cppn", "direct", "weights", "cppn-body", "gait", "fold")
-
 
 def _kind(value: Any) -> Any:
-    """The tag of a genome, which has to name its encoding."""
+    """Return the tag of a genome, which must name its encoding."""
     named = not isinstance(value, dict) or "encoding" in value
-    return kind(value) if named else None
+    return encoding_tag(value) if named else None
 
 
 Genome = Annotated[
@@ -33,19 +31,19 @@ Genome = Annotated[
     Discriminator(
         _kind,
         custom_error_type="unknown_encoding",
-        custom_error_message="`encoding` must be one of " + ", ".join(NAMES),
+        custom_error_message="`encoding` must be one of " + ", ".join(ENCODINGS[:-1]),
     ),
 ]
 
 
 class PlacedWorld(World):
-    """The world with the form of the coupling, both of which a creature's numbers depend on."""
+    """The world and the coupling, on both of which a creature's measures depend."""
 
     coupling: Coupling
 
 
 class Identity(Part):
-    """Everything that a creature is."""
+    """Genome, world, body and task of a creature."""
 
     format: Literal["microcosmos-creature/1"]
     genome: Genome
@@ -57,14 +55,14 @@ class Identity(Part):
     def check_fit(self) -> Self:
         scene = self.scene
         if isinstance(self.body, PluginBody):
-            raise ValueError(f"`body` must be the graph that it is, got {self.body.builder!r}")
+            raise ValueError(f"`body` must be a graph, got {self.body.builder!r}")
         if isinstance(self.genome, Direct | Weights | Fold | PluginGenome):
             self.genome.refuse_other_length(scene.body)
         return self
 
     @property
     def scene(self) -> Scene:
-        """What is simulated."""
+        """The scene that is simulated."""
         world, genome = self.world.model_dump(), self.genome
         gait = isinstance(genome, Stroke)
         control = Gait(**genome.model_dump(exclude={"encoding"})) if gait else genome.control

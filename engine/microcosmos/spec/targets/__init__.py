@@ -1,12 +1,12 @@
 """Pictures that filaments fold into: digits, files and words; JAX-free."""
 
 from .digits import DIGITS, digit
-from .placing import MOST, decoded, encoded, field, fitted
+from .placing import MAX_PIXELS, decoded, encoded, field, fitted
 from .sources import mnist, png, text
 
 __all__ = [
     "DIGITS",
-    "MOST",
+    "MAX_PIXELS",
     "decoded",
     "digit",
     "encoded",

@@ -8,7 +8,6 @@ that scikit-learn's `load_digits` begins with.
 import numpy as np
 
 GREYS = "0123456789abcdefg"
-"""From paper to ink."""
 
 DIGITS = (
     "005d9100 00dfaf50 03f20b80 04c00880 05800980 04b01c70 02e5ac00 006da000",
@@ -22,10 +21,10 @@ DIGITS = (
     "009e8100 00ceec00 009a0f40 003gce20 004gg200 03g8ad20 01f13g80 00bgfb10",
     "00bc0000 02gggd00 03gcae00 01g1cf00 00dg9f20 000309b0 00009f40 009cd300",
 )
-"""Rows from the top, a character a pixel."""
+"""Rows from the top, one character per pixel."""
 
 
 def digit(number: int) -> np.ndarray:
-    """The ink (row, column) of a digit, from 0 to 1."""
+    """Return the ink (row, column) of a digit, from 0 to 1."""
     rows = DIGITS[number].split()
     return np.array([[GREYS.index(pixel) for pixel in row] for row in rows]) / 16

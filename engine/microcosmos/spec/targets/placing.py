@@ -1,4 +1,4 @@
-"""Pictures as numbers: packed for a spec, fitted to a size, and laid on the lattice."""
+"""Pictures as arrays: packed for a spec, resampled, and placed on the lattice."""
 
 from base64 import b64decode, b64encode
 
@@ -7,20 +7,20 @@ import numpy as np
 Ink = np.ndarray
 """(row, column) from the top, 0 is paper and 1 is ink."""
 
-MOST = 256
-"""Pixels of a packed picture's longer side."""
+MAX_PIXELS = 256
+"""Most pixels of a packed picture's longer side."""
 
 SHARPENING = 2.5
-"""How much steeper ink rises over paper once a small picture is enlarged."""
+"""Factor on the contrast of an enlarged picture."""
 
 
 def encoded(ink: Ink) -> str:
-    """Base64 of one byte a pixel, row by row."""
+    """Return base64 of one byte per pixel, row by row."""
     return b64encode(np.round(255 * np.clip(ink, 0, 1)).astype(np.uint8).tobytes()).decode()
 
 
 def decoded(pixels: str, width: int, height: int) -> Ink:
-    """The picture; raises `ValueError` where there are not just as many bytes."""
+    """Return the picture; raise `ValueError` for another number of bytes."""
     data = b64decode(pixels, validate=True)
     if len(data) != width * height:
         raise ValueError(f"needs {width} × {height} bytes, got {len(data)}")
@@ -28,10 +28,9 @@ def decoded(pixels: str, width: int, height: int) -> Ink:
 
 
 def fitted(ink: Ink, longest: int) -> Ink:
-    """The picture with a longer side of `longest` pixels.
+    """Resample a picture to a longer side of `longest` pixels.
 
-    What is enlarged is made sharper: else the edges of a picture of few pixels would be grey,
-    which a filament, there or not, cannot be.
+    An enlarged picture is sharpened: a filament cannot reproduce grey edges.
     """
     rows, columns = ink.shape
     scale = longest / max(rows, columns)
@@ -43,7 +42,7 @@ def fitted(ink: Ink, longest: int) -> Ink:
 
 
 def field(ink: Ink, size: tuple[int, int], longest: int) -> np.ndarray:
-    """The picture in the middle of a lattice (x, y), y upwards, and paper around it."""
+    """Return a lattice (x, y), y upwards, with the picture in its middle."""
     found = fitted(ink, longest)[::-1].T
     plane = np.zeros(size, np.float32)
     x, y = ((whole - part) // 2 for whole, part in zip(size, found.shape, strict=True))
@@ -53,7 +52,7 @@ def field(ink: Ink, size: tuple[int, int], longest: int) -> np.ndarray:
 
 def _weights(old: int, new: int) -> np.ndarray:
     """(new, old) weights of Keys's cubic kernel (IEEE Trans. ASSP 29, 1153, 1981; a = −1/2),
-    widened where a picture becomes smaller; each row sums to 1."""
+    widened where a picture shrinks; each row sums to 1."""
     scale = old / new
     width = max(1.0, scale)
     middle = (np.arange(new) + 0.5) * scale - 0.5

@@ -1,4 +1,4 @@
-"""Pictures from PNG files, words in any font, and MNIST's own files."""
+"""Pictures from image files, text and MNIST files."""
 
 import gzip
 import struct
@@ -7,20 +7,19 @@ from pathlib import Path
 import numpy as np
 
 from ...optional import require
-from .placing import MOST, Ink, fitted
+from .placing import MAX_PIXELS, Ink, fitted
 
 IMAGES = 2051
-"""What an IDX file of images begins with (LeCun, Cortes and Burges, The MNIST database)."""
+"""First word of an IDX file of images (LeCun, Cortes and Burges, The MNIST database)."""
 
 LARGEST = 4096
-"""Pixels along a side beyond which a picture is made smaller before it is looked at."""
+"""Most pixels along a side; larger picture files are reduced on reading."""
 
 
 def png(path: str | Path) -> Ink:
-    """The ink of a picture file: dark on light, or what is opaque where it is transparent.
+    """Return the ink of a picture file: dark pixels, or opaque ones if some are transparent.
 
-    Pictures larger than a spec holds are made smaller. Raises `ValueError` where the file is
-    no picture or shows nothing.
+    Large pictures are reduced. Raises `ValueError` where the file is no picture or blank.
     """
     images = require("PIL.Image")
     try:
@@ -34,7 +33,7 @@ def png(path: str | Path) -> Ink:
 
 
 def text(words: str, font: str | Path | None = None, size: int = 128) -> Ink:
-    """Words in a font file (.ttf, .otf), or in Pillow's own font, `size` pixels high."""
+    """Return the ink of words in a font file or Pillow's font, `size` pixels high."""
     images, draw, fonts = (
         require(f"PIL.{part}") for part in ("Image", "ImageDraw", "ImageFont")
     )
@@ -53,7 +52,7 @@ def text(words: str, font: str | Path | None = None, size: int = 128) -> Ink:
 
 
 def mnist(path: str | Path, number: int) -> Ink:
-    """Picture `number` of an IDX file of images as MNIST has them, packed with gzip or not."""
+    """Return picture `number` of an MNIST (IDX) file, with or without gzip."""
     data = Path(path).read_bytes()
     if data[:2] == b"\x1f\x8b":
         data = gzip.decompress(data)
@@ -73,5 +72,5 @@ def mnist(path: str | Path, number: int) -> Ink:
 
 def _small(ink: Ink, what: str) -> Ink:
     if ink.max() == 0:
-        raise ValueError(f"a picture must show something dark; got nothing in {what}.")
-    return fitted(ink, MOST) if max(ink.shape) > MOST else ink
+        raise ValueError(f"a picture must show something dark, got a blank one in {what}.")
+    return fitted(ink, MAX_PIXELS) if max(ink.shape) > MAX_PIXELS else ink

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...spec import Chain
-from ...spec.body import Known, PluginBody, shape
+from ...spec.body import PluginBody, SwimmerBody, shape
 from ...spec.emitters import PopulationEmitter
 from .axes import Axis, chosen
 from .groups import Group
 from .reading import Archive, Search
-from .regions import Layout
+from .sheet import Layout
 
 FITNESS = {
     "displacement": "Fitness is the displacement of the mean node",
@@ -119,15 +119,13 @@ def _emitters(spec: Search) -> str:
 
 def _body(spec: Search) -> str:
     body = spec.body
-    if isinstance(
-        body, PluginBody
-    ):  # Whose nodes are known to those alone who have its module.
+    if isinstance(body, PluginBody):
         return f"the body “{body.plugin.title}” ({body.builder})"
     nodes = len(shape(body).positions)
     if isinstance(body, Chain):
         return f"a filament of {nodes} nodes"
-    whose = f"the body of a {body.builder}" if isinstance(body, Known) else f"a {body.builder}"
-    return f"{whose} of {nodes} nodes"
+    whole = "the body of a" if isinstance(body, SwimmerBody) else "a"
+    return f"{whole} {body.builder} of {nodes} nodes"
 
 
 def _control(spec: Search) -> str:

@@ -7,8 +7,7 @@ import numpy as np
 
 from .axes import fitness_label
 from .groups import Group, spread
-from .plotting import COLOURS
-from .style import GREY, blank, lettered
+from .style import COLOURS, GREY, blank, lettered
 
 SHOWN = ("best", "coverage", "qd_score")
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import caption, curves, groups, lineage, maps, regions, saving, sheet
-from .family import family
+from . import caption, curves, groups, lineage, maps, saving, sheet
+from .lineage import family
 from .reading import Archive, read
 from .style import millimetres, styled
 
@@ -66,7 +66,7 @@ def contact(
 
     saving.kind(out)
     found, columns, rows = open_archive(file), *grid
-    plan = regions.layout(found, axes=axes, columns=columns, rows=rows)
+    plan = sheet.layout(found, axes=axes, columns=columns, rows=rows)
     cells = [int(found.cells[region.elite]) for region in plan.regions]
     moved = motions.motions(file.read_bytes(), cells, lambda done: tell(done, len(cells)))
     with styled():

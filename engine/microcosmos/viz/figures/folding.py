@@ -12,7 +12,7 @@ from ...archive import file
 from ...build import build_descent
 from ...device import compiler_options
 from ...genomes import Vector
-from .plotting import COLOURS, GREY, blank, tidy
+from .style import COLOURS, GREY, INCH, blank, tidy
 
 MOMENTS = {"early": 0.1, "middle": 0.4, "late": 1.0}
 """Shares of a life at which filaments are shown."""
@@ -35,7 +35,8 @@ def folds(data: bytes) -> Any:
     courses = _courses(chosen, genes)
     banks, across = ceil(len(names) / COLUMNS), min(COLUMNS, len(names))
     rows = len(MOMENTS) + 1
-    figure = blank(max(5.0, 1.05 * across + 0.6), 1.08 * rows * banks + 2.6)
+    width, height = max(5.0, 1.05 * across + 0.6), 1.08 * rows * banks + 2.6
+    figure = blank(INCH * width, INCH * height)
     grid = figure.add_gridspec(rows * banks + 1, across, height_ratios=[1] * rows * banks + [2])
     for number, name in enumerate(names):
         top, column = number // COLUMNS * rows, number % COLUMNS

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import isfinite, log10
 from typing import Any
 
-from .plotting import GREY, Row, blank, look, refuse_lacking, tidy
+from .style import GREY, INCH, Row, blank, look, refuse_lacking, tidy
 
 NEEDED = ("form", "swimmer", "viscosity", "displacement", "status")
 
@@ -30,7 +30,7 @@ def sweep(rows: Sequence[Row]) -> Any:
     found = {row["form"] for row in rows}
     forms = [form for form in FORMS if form in found] + sorted(found - FORMS.keys())
     swimmers = list(dict.fromkeys(row["swimmer"] for row in rows))
-    figure = blank(3.4 * len(forms) + 1.2, 4.4)
+    figure = blank(INCH * (3.4 * len(forms) + 1.2), INCH * 4.4)
     panels = figure.subplots(1, len(forms), squeeze=False)[0]
     for panel, form in zip(panels, forms, strict=True):
         here = [row for row in rows if row["form"] == form]

@@ -8,7 +8,7 @@ from ...build import build
 from ..replay import record
 from ..replay_file import read_replay
 from .reading import read
-from .regions import Motion
+from .sheet import Motion
 
 
 def documents(data: bytes, cells: Sequence[int]) -> list[dict[str, Any]]:

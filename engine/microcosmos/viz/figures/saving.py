@@ -1,4 +1,4 @@
-"""Figures as files: the same figure gives the same bytes."""
+"""Figures as files, with captions: the same figure gives the same bytes."""
 
 from io import BytesIO
 from pathlib import Path
@@ -6,11 +6,11 @@ from textwrap import wrap
 from typing import Any
 
 from ...archive.atomic import write_whole
+from ...optional import require
 from .style import INCH
-from .tex import latex
 
 LETTER, LINE = 1.22, 2.8
-"""How wide and how high a letter of a caption is on average, in mm."""
+"""Mean width and height of a letter of a caption, in mm."""
 
 TITLE = "Microcosmos"
 
@@ -19,10 +19,10 @@ KINDS = {
     ".svg": {"Date": None, "Creator": None},
     ".png": {"Software": None},
 }
-"""Kinds of file, and what matplotlib would write into each that is another elsewhere."""
+"""Kinds of file, and the metadata of each that would differ between machines."""
 
-TOLD = {".pdf": "Subject", ".svg": "Description", ".png": "Description"}
-"""Where a caption stands in each."""
+CAPTION_FIELDS = {".pdf": "Subject", ".svg": "Description", ".png": "Description"}
+"""The metadata field of the caption in each kind of file."""
 
 
 def kind(path: Path) -> str:
@@ -33,10 +33,13 @@ def kind(path: Path) -> str:
 
 
 def encoded(figure: Any, suffix: str, *, caption: str = "", dpi: int = 300) -> bytes:
-    """The bytes of a figure; its caption is among what the file says of itself."""
-    told = {**KINDS[suffix], "Title": TITLE, **({TOLD[suffix]: caption} if caption else {})}
+    """The bytes of a figure, with its caption in the metadata."""
+    metadata = {**KINDS[suffix], "Title": TITLE}
+    if caption:
+        metadata[CAPTION_FIELDS[suffix]] = caption
     out = BytesIO()
-    figure.savefig(out, format=suffix[1:], dpi=dpi, metadata=told)
+    with require("matplotlib").rc_context({"svg.hashsalt": "microcosmos"}):
+        figure.savefig(out, format=suffix[1:], dpi=dpi, metadata=metadata)
     return out.getvalue()
 
 
@@ -49,7 +52,7 @@ def publish(
     tex: bool = False,
     dpi: int = 300,
 ) -> list[Path]:
-    """Writes a figure and, beside it, its caption, and says what was written.
+    """Write a figure and, beside it, its caption; return the paths.
 
     `under` puts the caption below the figure too, `tex` writes it for LaTeX as well.
     """
@@ -57,17 +60,49 @@ def publish(
     if under:
         below(figure, caption)
     write_whole(path, encoded(figure, suffix, caption=caption, dpi=dpi))
-    told = {path.with_suffix(".caption.txt"): caption}
+    captions = {path.with_suffix(".caption.txt"): caption}
     if tex:
-        told[path.with_suffix(".caption.tex")] = latex(caption)
-    for beside, text in told.items():
+        captions[path.with_suffix(".caption.tex")] = latex(caption)
+    for beside, text in captions.items():
         write_whole(beside, f"{text}\n".encode())
-    return [path, *told]
+    return [path, *captions]
 
 
 def below(figure: Any, caption: str) -> None:
-    """The caption under a figure, which grows by its height."""
+    """Add the caption under a figure, which grows by its height."""
     width, height = figure.get_size_inches()
     lines = wrap(caption, int(width * INCH / LETTER))
     figure.set_size_inches(width, height + (len(lines) + 1) * LINE / INCH)
     figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=6, linespacing=1.3)
+
+
+THIN = "\u202f"
+"""A narrow space."""
+
+ESCAPES = {
+    THIN: r"\,",
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "%": r"\%",
+    "&": r"\&",
+    "#": r"\#",
+    "$": r"\$",
+    "_": r"\_",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "²": r"$^2$",
+    "³": r"$^3$",
+    "×": r"$\times$",
+    "·": r"$\cdot$",
+    "ν": r"$\nu$",
+    "−": r"$-$",
+    "…": r"\ldots{}",
+    "’": "'",
+}
+
+
+def latex(text: str) -> str:
+    """The text for LaTeX: special letters escaped, others as UTF-8."""
+    text = text.replace(" %", THIN + "%")
+    return "".join(ESCAPES.get(letter, letter) for letter in text)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from .plotting import COLOURS, GREY, Row, blank, look, refuse_lacking, tidy
+from .style import COLOURS, GREY, INCH, Row, blank, look, refuse_lacking, tidy
 
 NEEDED = ("method", "nodes", "seconds")
 
@@ -27,7 +27,7 @@ def scaling(rows: Sequence[Row], summary: Row | None = None) -> Any:
     rows = sorted(rows, key=lambda row: row["nodes"])
     ours = [row for row in rows if row["method"] == "microcosmos"]
     pairs = [row for row in rows if row["method"] == "all-pairs"]
-    figure = blank(10.5, 4.8)
+    figure = blank(INCH * 10.5, INCH * 4.8)
     time, memory = figure.subplots(1, 2, width_ratios=(3, 2))
     _proportional(time, ours)
     _line(time, pairs, "seconds", "all pairs" + _power(summary, "exponent_all_pairs"), PAIRS)

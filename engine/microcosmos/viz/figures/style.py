@@ -1,21 +1,29 @@
-"""How figures for print look: their sizes, letters and colours."""
+"""Sizes, letters and colours of figures."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import Any
 
 from ...optional import require
 
 INCH = 25.4
-"""Millimetres."""
+"""Millimetres an inch."""
 
 COLUMNS = {"single": 85.0, "double": 178.0}
-"""Widths of a column and of a page, as most journals have them, in mm."""
+"""Widths of a column and of a page in most journals, in mm."""
+
+Row = Mapping[str, Any]
+"""Flat names and values of an experiment's result."""
+
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#000000")
+"""Colours of Okabe and Ito, which colour-blind people tell apart."""
+
+MARKERS = ("o", "s", "^", "D", "v", "P", "*")
 
 INK, GREY, PALE = "#1b2226", "#5f6b73", "#c9d0d4"
 EMPTY = "#eef1f2"
-"""Of cells with nobody in them."""
+"""Colour of empty cells."""
 
 RC: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],  # Comes with matplotlib: the same letters everywhere.
@@ -47,7 +55,6 @@ RC: dict[str, Any] = {
     "axes.labelpad": 2.5,
     "lines.linewidth": 1.0,
     "pdf.fonttype": 42,  # TrueType, which journals ask for.
-    "svg.hashsalt": "microcosmos",
 }
 
 SAMPLES = {
@@ -60,7 +67,7 @@ most colour-blind people too."""
 
 
 def styled() -> AbstractContextManager:
-    """The look of print, for as long as a figure is made and saved."""
+    """Matplotlib's settings for print, while a figure is made and saved."""
     return require("matplotlib").rc_context(RC)
 
 
@@ -73,7 +80,7 @@ def palette(name: str) -> Any:
 
 
 def millimetres(width: str) -> float:
-    """A width as people write it: `single`, `double`, `85mm`, `3.5in`, or a number of mm."""
+    """The width in mm of `single`, `double`, `85mm`, `3.5in`, or a number of mm."""
     found = re.fullmatch(r"([0-9.]+) *(mm|cm|in|)", width.strip())
     try:
         size = COLUMNS.get(width) or float(found[1]) * _unit(found[2])  # pyright: ignore
@@ -92,14 +99,36 @@ def _unit(name: str) -> float:
 
 
 def blank(width: float, height: float) -> Any:
-    """A figure of so many mm, drawn without matplotlib's global state."""
+    """A figure of a size in mm, without matplotlib's global state."""
     figure = require("matplotlib.figure").Figure((width / INCH, height / INCH))
     figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02, wspace=0.03, hspace=0.03)
     return figure
 
 
 def lettered(panels: Sequence[Any]) -> None:
-    """(a), (b) ... before the titles of panels, where there are several."""
+    """Write (a), (b) ... over several panels."""
     if len(panels) > 1:
         for number, panel in enumerate(panels):
             panel.set_title(f"({chr(97 + number)})", loc="left", fontweight="bold")
+
+
+def look(number: int) -> dict[str, Any]:
+    """Colour and mark of the line with this number."""
+    return {"color": COLOURS[number % 7], "marker": MARKERS[number % 7]}
+
+
+def tidy(panel: Any) -> None:
+    """Draw a faint grid behind the lines, and no box around them."""
+    panel.set_axisbelow(True)
+    panel.grid(color=GREY, alpha=0.18, lw=0.6)
+    for side in ("left", "right", "top", "bottom"):
+        panel.spines[side].set_color(GREY)
+    panel.tick_params(colors="#333b40", which="both", labelsize=9)
+
+
+def refuse_lacking(rows: Sequence[Row], names: Sequence[str]) -> None:
+    if not rows:
+        raise ValueError("`rows` must have at least one row, got none.")
+    for number, row in enumerate(rows):
+        if lacking := [name for name in names if name not in row]:
+            raise ValueError(f"`rows` must have {', '.join(lacking)}; row {number} has not.")

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos.viz.figures import caption, style
-from microcosmos.viz.figures.family import family, heights
-from microcosmos.viz.figures.lineage import lineage
+from microcosmos.viz.figures.lineage import family, heights, lineage
 
 pytestmark = pytest.mark.long
 

@@ -6,7 +6,7 @@ from scipy.spatial import KDTree
 
 from microcosmos.viz.figures import caption, maps, style
 from microcosmos.viz.figures.axes import chosen, fitness_label
-from microcosmos.viz.figures.tessellation import borders, cells
+from microcosmos.viz.figures.maps import borders, cells
 
 pytestmark = pytest.mark.long
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from microcosmos.viz.figures import caption, maps, saving, style
-from microcosmos.viz.figures.tex import latex
+from microcosmos.viz.figures.saving import latex
 
 pytestmark = pytest.mark.long
 

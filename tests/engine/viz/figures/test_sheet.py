@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos.viz.figures import style
-from microcosmos.viz.figures.regions import Motion, layout, numerals, reading_order
-from microcosmos.viz.figures.sheet import sheet
+from microcosmos.viz.figures.sheet import Motion, layout, numerals, reading_order, sheet
 
 pytestmark = pytest.mark.long
 

@@ -34,7 +34,7 @@ export function CurveOptions({ look: { over, smooth, log } }: { look: CurveView 
 /** What can be chosen for all curves, beside what only some have. */
 export function CurveBar({ log, children }: { log: boolean; children: ComponentChildren }) {
   return (
-    <div class="curve-choices" role="group" aria-label={text.options}>
+    <div class="row curve-choices" role="group" aria-label={text.options}>
       {children}
       <Check title={text.logScale} name="log" on={log} />
     </div>

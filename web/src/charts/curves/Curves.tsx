@@ -50,9 +50,7 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
 
   useEffect(() => {
     if (!drawn) return;
-    const style = getComputedStyle(host.current!);
-    const ink = (name: string) => style.getPropertyValue(name).trim();
-    const options = optionsOf({ series, bands, write, over, log, ink });
+    const options = optionsOf({ series, bands, write, over, log, ink: inkOf(host.current!) });
     plot.current = new uPlot(options, [[], ...series.map(() => [])], host.current!);
     return () => plot.current?.destroy();
   }, changed);
@@ -84,7 +82,17 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
   );
 }
 
-/** What a table of curves is made of: it is made anew where one of them changes. */
+/** Resolve a CSS variable to a colour for a canvas, with an opacity in percent. */
+const inkOf =
+  (element: HTMLElement) =>
+  (variable: string, opacity = 100) => {
+    element.style.color = `color-mix(in srgb, var(${variable}) ${opacity}%, transparent)`;
+    const { color } = getComputedStyle(element);
+    element.style.color = "";
+    return color;
+  };
+
+/** The columns that a table of curves depends on. */
 const partsOf = ({ x, y }: Series) => [x, y];
 
 /** The newest values; other runs are named where they are chosen. */

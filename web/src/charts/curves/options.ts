@@ -10,13 +10,15 @@ import { type Band, type Plot, type Series, valueAt } from "./plots";
 const WHOLE = Array.from({ length: 13 }, (_, power) => [1, 2, 5].map((k) => k * 10 ** power)).flat();
 const SYNC = "generations";
 
+type Ink = (variable: string, opacity?: number) => string;
+
 interface Drawing {
   series: Series[];
   bands: readonly Band[];
   write: Plot["write"];
   over: Axis;
   log: boolean;
-  ink: (name: string) => string;
+  ink: Ink;
 }
 
 export function optionsOf({ series, bands, write, over, log, ink }: Drawing): uPlot.Options {
@@ -43,7 +45,7 @@ export function optionsOf({ series, bands, write, over, log, ink }: Drawing): uP
     series: [{}, ...series.map((each) => lookOf(each, ink, series.length === 1 && !log))],
     bands: bands.map(({ high, low, colour }) => ({
       series: [high + 1, low + 1],
-      fill: `${ink(colour)}2b`,
+      fill: ink(colour, 17),
     })),
     plugins: [tooltip(series, write, over)],
   };
@@ -60,15 +62,15 @@ const LOG_TICKS: Pick<uPlot.Axis, "splits" | "filter"> = {
   filter: (_plot, ticks) => ticks,
 };
 
-function lookOf(series: Series, ink: (name: string) => string, alone: boolean): uPlot.Series {
+function lookOf(series: Series, ink: Ink, alone: boolean): uPlot.Series {
   const { name, colour, dots, dash, faint, edge } = series;
   const stroke = ink(colour);
   const look: uPlot.Series = { label: name, stroke, width: 1.75 };
   if (dots) return { ...look, paths: () => null, points: { show: true, size: 7, fill: stroke } };
-  if (edge) return { ...look, stroke: `${stroke}66`, width: 0.75, points: { show: false } };
+  if (edge) return { ...look, stroke: ink(colour, 40), width: 0.75, points: { show: false } };
   if (faint) return { ...look, width: 1, alpha: 0.35, points: { show: false } };
   const lonely = (plot: uPlot) => plot.data[0].length === 1;
-  const fill = alone && { fill: `${stroke}1f` };
+  const fill = alone && { fill: ink(colour, 12) };
   return { ...look, ...(dash && { dash }), points: { show: lonely }, ...fill };
 }
 

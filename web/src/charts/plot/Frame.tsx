@@ -1,5 +1,6 @@
 /** Axes, grid and titles of a plot. */
 
+import { Term } from "../../ui/Term";
 import type { Axis } from "./Plot";
 import { place, ticksOf } from "./scale";
 
@@ -31,7 +32,6 @@ export function Frame({ x, y, room, upper, shaded }: Props) {
   const { left, right, top, bottom } = room;
   const across = (value: number) => left + place(x.scale, value) * (right - left);
   const up = (value: number) => bottom - place(y.scale, value) * (bottom - top);
-  const middle = (left + right) / 2;
   return (
     <g class="xy-frame">
       <rect x={left} y={top} width={right - left} height={bottom - top} class={shaded ? "shaded" : ""} />
@@ -52,20 +52,35 @@ export function Frame({ x, y, room, upper, shaded }: Props) {
         </g>
       ))}
       <path class="base" d={`M${left} ${bottom}H${right}`} />
-      <text class="title" x={middle} y={bottom + 40}>
-        {x.title}
-      </text>
-      <text class="title" transform={`translate(14 ${(top + bottom) / 2}) rotate(-90)`}>
-        {y.title}
-      </text>
-      {upper && <UpperAxis {...upper} {...{ across, room, middle }} />}
+      {upper && <UpperTicks ticks={upper.ticks} {...{ across, room }} />}
     </g>
   );
 }
 
-type UpperProps = Upper & { across: (value: number) => number; room: Room; middle: number };
+/** Names of the axes, over the drawing: their definitions need elements that can have the focus. */
+export function AxisTitles({ x, y, room, upper }: Omit<Props, "shaded">) {
+  const { left, right, top, bottom } = room;
+  const across = { left, width: right - left };
+  return (
+    <>
+      {upper && (
+        <span class="axis-title" style={{ ...across, top: top - 46 }}>
+          <Term name={upper.title} />
+        </span>
+      )}
+      <span class="axis-title" style={{ ...across, top: bottom + 26 }}>
+        <Term name={x.title} />
+      </span>
+      <span class="axis-title upright" style={{ top, height: bottom - top }}>
+        <Term name={y.title} />
+      </span>
+    </>
+  );
+}
 
-function UpperAxis({ title, ticks, across, room, middle }: UpperProps) {
+type UpperProps = Pick<Upper, "ticks"> & { across: (value: number) => number; room: Room };
+
+function UpperTicks({ ticks, across, room }: UpperProps) {
   return (
     <g>
       {apart(ticks, across).map(({ at, text }) => (
@@ -76,9 +91,6 @@ function UpperAxis({ title, ticks, across, room, middle }: UpperProps) {
           </text>
         </g>
       ))}
-      <text x={middle} y={room.top - 31}>
-        {title}
-      </text>
     </g>
   );
 }

@@ -2,7 +2,7 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { useSize } from "../../ui/canvas";
-import { Frame, type Room, type Upper } from "./Frame";
+import { AxisTitles, Frame, type Room, type Upper } from "./Frame";
 import { Mark } from "./Mark";
 import { type Scale, place } from "./scale";
 import "../lineStyle.css";
@@ -79,6 +79,7 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
             ))}
           </svg>
         )}
+        {width > 0 && <AxisTitles {...{ x, y, room, upper }} />}
         {width > 0 &&
           drawn.map((each) => (
             <Marks
@@ -162,7 +163,7 @@ interface LegendProps {
 
 function Legend({ lines, of, onLight }: LegendProps) {
   return (
-    <figcaption class="xy-legend">
+    <figcaption class="row xy-legend">
       {lines.map((line) => (
         <span key={line.name} onPointerEnter={() => onLight(line.name)} onPointerLeave={() => onLight(null)}>
           <svg viewBox="0 0 26 10" aria-hidden="true">

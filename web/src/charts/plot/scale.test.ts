@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { fromZero, logAround, place, ticksOf } from "./scale";
+import { fromZero, logAround, place, ticksOf, valueAt } from "./scale";
 
 describe("an axis", () => {
   it("has a decade everywhere the same length where it is logarithmic", () => {
@@ -26,5 +26,26 @@ describe("an axis", () => {
     expect(ticksOf(wide, 5)).toEqual([0.001, 0.01, 0.1, 1]);
     expect(ticksOf(wide, 2)).toEqual([0.001, 0.1]);
     expect(ticksOf({ log: false, low: 0, high: 1.07 }, 6)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
+  });
+
+  it("has whole decades as ticks of a wide logarithmic scale", () => {
+    const scale = { log: true, low: 1e-4, high: 1e2 };
+    const made = ticksOf(scale, 7);
+    expect(made.map((value) => Number((6 * place(scale, value)).toFixed(9)))).toEqual([0, 1, 2, 3, 4, 5, 6]);
+    made.forEach((value, k) => expect(value).toBeCloseTo(10 ** (k - 4), 12));
+  });
+
+  it("has round ticks on a linear scale, no more than asked for", () => {
+    const scale = { log: false, low: 0, high: 0.15 };
+    expect(ticksOf(scale, 6)).toEqual([0, 0.05, 0.1, 0.15]);
+    expect(place(scale, 0.15)).toBeCloseTo(1, 12);
+  });
+
+  it("has an inverse", () => {
+    for (const log of [true, false]) {
+      const scale = { log, low: 2, high: 8 };
+      expect(place(scale, valueAt(scale, 0.3))).toBeCloseTo(0.3, 12);
+    }
+    expect(ticksOf({ log: true, low: 2, high: 8 }, 6)).toEqual([2, 5]);
   });
 });

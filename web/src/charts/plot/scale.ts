@@ -1,4 +1,4 @@
-/** Where values stand along an axis, and which of them are named. */
+/** Positions of values along an axis, and its ticks. */
 
 export interface Scale {
   log: boolean;
@@ -6,13 +6,18 @@ export interface Scale {
   high: number;
 }
 
-/** From 0 to 1 over the axis. */
+/** The position of a value, from 0 to 1 along the axis. */
 export function place({ log, low, high }: Scale, value: number): number {
   const at = log ? Math.log10 : (x: number) => x;
   return (at(value) - at(low)) / (at(high) - at(low));
 }
 
-/** Room for positive values on a logarithmic axis, with a little beside them. */
+/** The value at a position, from 0 to 1 along the axis. */
+export function valueAt({ log, low, high }: Scale, share: number): number {
+  return log ? low * (high / low) ** share : low + (high - low) * share;
+}
+
+/** A logarithmic axis with room for the positive values and a margin. */
 export function logAround(values: readonly number[]): Scale {
   const positive = values.filter((value) => value > 0);
   if (positive.length === 0) return { log: true, low: 1, high: 10 };
@@ -21,7 +26,7 @@ export function logAround(values: readonly number[]): Scale {
   return { log: true, low: low / beside, high: high * beside };
 }
 
-/** From zero up to the highest of the values, and a little above it. */
+/** An axis from zero, or the lowest value, to the highest value, with a margin. */
 export function fromZero(values: readonly number[]): Scale {
   const high = Math.max(0, ...values);
   const low = Math.min(0, ...values);
@@ -29,25 +34,27 @@ export function fromZero(values: readonly number[]): Scale {
   return { log: false, low: low < 0 ? low - beside : 0, high: high + beside };
 }
 
-/** Values worth naming, at most about so many. */
+/** Round values, about `most` at most. */
 export function ticksOf(scale: Scale, most: number): number[] {
   const ticks = scale.log ? logTicks(scale, most) : [];
-  // Within less than a decade there may be too few powers.
+  // Less than a decade may contain too few powers.
   return ticks.length < Math.min(2, most) ? linearTicks(scale, most) : ticks;
 }
 
-const STEPS = [1, 2, 5, 10];
-
 function linearTicks({ low, high }: Scale, most: number): number[] {
-  const rough = (high - low) / Math.max(1, most);
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * STEPS.find((each) => each * power >= rough * (1 - 1e-9))!;
+  const step = roundStep((high - low) / Math.max(1, most));
   const first = Math.ceil(low / step - 1e-9);
   const count = Math.floor(high / step + 1e-9) - first + 1;
   return Array.from({ length: count }, (_, i) => Number(((first + i) * step).toPrecision(12)));
 }
 
-/** Powers of ten; where there is room 2 and 5 times them too, where there is little, fewer. */
+/** The next 1, 2 or 5 times a power of ten. */
+export function roundStep(least: number): number {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return [1, 2, 5, 10].map((m) => m * power).find((step) => step >= least * (1 - 1e-9))!;
+}
+
+/** Powers of ten, with 2 and 5 times them if there is room, or fewer. */
 function logTicks({ low, high }: Scale, most: number): number[] {
   const [first, last] = [Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
   const powers = Array.from({ length: last - first + 1 }, (_, i) => first + i);

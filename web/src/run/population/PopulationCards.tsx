@@ -4,7 +4,7 @@ import { useMemo } from "preact/hooks";
 import * as api from "../../api/client";
 import type { Genes, Genome, Run } from "../../api/types";
 import { networkOf } from "../../decode/network";
-import type { Elites } from "../../store/elites";
+import { type Elites, fittest } from "../../store/elites";
 import { useFetched, useSpecies } from "../../store/fetch";
 import { number, short } from "../../ui/format";
 import { Card } from "../../ui/Page";
@@ -15,7 +15,7 @@ import "./population.css";
 
 export function PopulationCards({ run, elites }: { run: Run; elites: Elites }) {
   return (
-    <div class="population">
+    <div class="run-columns even">
       <SpeciesCard run={run} />
       <BestNetwork run={run} elites={elites} />
     </div>
@@ -37,25 +37,21 @@ function SpeciesCard({ run }: { run: Run }) {
 }
 
 function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
-  const best = useMemo(
-    () =>
-      [...elites.values()].reduce((a, b) => (b.fitness > (a?.fitness ?? -Infinity) ? b : a), null as Best),
-    [elites],
-  );
+  const best = useMemo(() => fittest(elites)?.[1] ?? null, [elites]);
   const sha = best?.creature ?? null;
   const { value, error } = useFetched(async () => (sha ? await api.readCreature(sha) : null), [sha]);
   const genome = value?.identity.genome;
   const network = useMemo(() => (genome && isNetwork(genome) ? networkOf(genome) : null), [genome]);
-  const head = best && (
-    <span class="quiet">
+  const note = best && (
+    <>
       {text.bestOf(number(best.fitness, 4), best.generation)}{" "}
       <a href={`/creatures/${best.creature}?run=${run.id}`}>
         <code>{short(best.creature)}</code>
       </a>
-    </span>
+    </>
   );
   return (
-    <Card id="network" title={text.bestNetwork} head={head}>
+    <Card id="network" title={text.bestNetwork} note={note}>
       {error && <p class="wrong-text small">{error}</p>}
       {!best && <p class="quiet waiting">{text.noBest}</p>}
       {network && <NetworkGraph network={network} />}
@@ -63,7 +59,5 @@ function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
     </Card>
   );
 }
-
-type Best = { creature: string; fitness: number; generation: number } | null;
 
 const isNetwork = (genome: Genome): genome is Genes => "nodes" in genome;
