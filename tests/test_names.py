@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import typer
 
+from microcosmos.cli import app
 from server.tables import Base
 
 pytestmark = pytest.mark.fast
@@ -26,21 +28,6 @@ OLD = {
 LEFT = {
     "engine/microcosmos/neat/offspring.py:standing",
     "engine/microcosmos/neat/rng.py:left",
-    "server/auth/bootstrap.py:told",
-    "server/creatures/initial.py:DECISIVE",
-    "server/deletion/garbage.py:AT_ONCE",
-    "server/deletion/purge.py:AT_ONCE",
-    "server/queue/jobs.py:KEPT",
-    "server/runs/curves.py:told",
-    "server/runs/lifecycle.py:KEPT",
-    "server/runs/overview.py:forked",
-    "server/runs/submission.py:DECISIVE",
-    "server/shares/routes.py:told",
-    "server/specs/stored.py:needs",
-    "server/sweeps/planning.py:planning",
-    "server/sweeps/steering.py:AT_ONCE",
-    "server/sweeps/summary.py:Told",
-    "server/sweeps/summary.py:told",
 }
 """Old names that are still there; this list may only shrink."""
 
@@ -87,3 +74,30 @@ def test_no_field_of_the_api_has_an_old_name():
     schemas = document["components"]["schemas"].values()
     fields = {name for schema in schemas for name in schema.get("properties", {})}
     assert not fields & OLD - LEFT
+
+
+def parameters(command, path: str) -> Iterator[str]:
+    """Yield the options and arguments of a command and of those below it."""
+    for parameter in command.params:
+        yield from (f"{path} {name.lstrip('-')}" for name in (parameter.name, *parameter.opts))
+    for name, inner in getattr(command, "commands", {}).items():
+        yield f"{path} {name}"
+        yield from parameters(inner, f"{path} {name}")
+
+
+def test_no_command_or_option_has_an_old_name():
+    found = set(parameters(typer.main.get_command(app), "microcosmos"))
+    assert len(found) > 50
+    assert not {name for name in found if name.rpartition(" ")[2].replace("-", "_") in OLD}
+
+
+def test_routes_are_imported_by_the_application_alone():
+    importing = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "server").rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ImportFrom)
+        for name in (*(node.module or "").split("."), *(one.name for one in node.names))
+        if name == "routes" or name.endswith("_routes")
+    }
+    assert importing == {"server/app.py"}
