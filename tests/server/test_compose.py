@@ -27,7 +27,7 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from server.local.redis_embedded import find_binary, free_port
 from server.main import SHUTDOWN_SECONDS
-from server.maintenance.healthcheck import TERMINATE_AFTER, KILL_AFTER, PARTS
+from server.maintenance.healthcheck import KILL_AFTER, PARTS, TERMINATE_AFTER
 from server.settings import Settings
 from server.tables.migrations import __main__ as migrate
 from worker.supervisor import PATIENCE
