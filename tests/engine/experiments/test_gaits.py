@@ -102,7 +102,7 @@ def test_a_simulation_that_does_not_stay_finite_has_no_numbers(experiment):
 
 def test_the_spacing_that_warns_is_the_widest(experiment):
     strokes = build_strokes(parse(json.loads(experiment.spec)))
-    assert all(stroke.spacing <= units.WIDEST for stroke in strokes)
+    assert all(stroke.spacing <= units.MAX_SPACING for stroke in strokes)
 
 
 @pytest.mark.fast

@@ -124,7 +124,9 @@ def test_a_replay_holds_the_rest_shapes_as_they_were_applied(film, best):
     scene = creature.scene_of(best)
     encoding = build_encoding(scene, creature.room(best))
     task = build_task(scene)
-    genotype = jax.tree.map(jnp.asarray, encoding.read(best["identity"]["genome"]))
+    genotype = jax.tree.map(
+        jnp.asarray, genomes.read(best["identity"]["genome"], encoding.room)
+    )
     rest = search.drive(task, genotype).inputs
     steps = np.maximum(np.arange(film.frames) * film.header["every"] - 1, 0)
     np.testing.assert_allclose(film.drive.angles, rest.angle[steps], atol=1e-6)
@@ -271,7 +273,7 @@ def file(request):
         "device": device_kind(),
     }
     one = genomes.take(alone, 0)
-    return creature.document(identity(builds.frame(scene), encoding, one), measured, None)
+    return creature.document(identity(builds.frame(scene), one), measured, None)
 
 
 @pytest.mark.optimised
