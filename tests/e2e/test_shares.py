@@ -41,7 +41,7 @@ def test_a_creature_is_published_viewed_and_revoked(shared, shared_page: Page, s
     meet_it_in_the_commons(stranger, address, link)
     take_back(page, address, "An eel <b>&")
     stranger.goto(link)
-    expect(stranger.get_by_text("Whoever shared this has taken it back.")).to_be_visible()
+    expect(stranger.get_by_text("Its owner has revoked this share.")).to_be_visible()
 
 
 @pytest.mark.e2e
@@ -137,9 +137,7 @@ def import_it(stranger: Page, address: str, sha: str) -> None:
     for word in ('"CC-BY-SA-4.0"', '"Ada"', '"ancestors"'):
         assert word in text
     answer = stranger.request.post(
-        f"{address}/api/v1/creatures",
-        data=text,
-        headers={"Content-Type": "application/json"},
+        f"{address}/api/v1/creatures", data=text, headers={"Content-Type": "application/json"}
     )
     assert (answer.status, answer.json()) == (200, {"creature": sha})
 

@@ -26,8 +26,8 @@ from sqlalchemy.exc import OperationalError
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from server.local.redis_embedded import find_binary, free_port
-from server.main import GRACE
-from server.maintenance.healthcheck import ASK_AFTER, KILL_AFTER, PARTS
+from server.main import SHUTDOWN_SECONDS
+from server.maintenance.healthcheck import KILL_AFTER, PARTS, TERMINATE_AFTER
 from server.settings import Settings
 from server.tables.migrations import __main__ as migrate
 from worker.supervisor import PATIENCE
@@ -86,12 +86,7 @@ def started(service):
 
 def test_every_module_that_is_started_exists(ours):
     modules = {module for one in ours.values() for module in started(one)}
-    assert {
-        "server.main",
-        "server.tables.migrations",
-        "worker.supervisor",
-        HEALTH,
-    } <= modules
+    assert {"server.main", "server.tables.migrations", "worker.supervisor", HEALTH} <= modules
     for name in modules:
         spec = importlib.util.find_spec(name)
         assert spec, name
@@ -138,10 +133,10 @@ def test_an_unhealthy_container_is_restarted_after_its_start_period(ours):
         assert ours[name]["restart"] == "unless-stopped", name
         assert ours[name]["init"] is True, "signals reach the program through it"
         check = ours[name]["healthcheck"]
-        assert seconds(check["start_period"]) < ASK_AFTER, name
-        assert seconds(check["interval"]) < KILL_AFTER - ASK_AFTER, name
+        assert seconds(check["start_period"]) < TERMINATE_AFTER, name
+        assert seconds(check["interval"]) < KILL_AFTER - TERMINATE_AFTER, name
         grace = seconds(ours[name].get("stop_grace_period", "10s"))
-        assert grace < KILL_AFTER - ASK_AFTER, name
+        assert grace < KILL_AFTER - TERMINATE_AFTER, name
 
 
 def test_a_database_is_ready_once_it_listens_to_others(services):
@@ -188,7 +183,7 @@ def test_containers_have_longer_to_stop_than_their_programs(ours):
     for name, one in ours.items():
         if "worker.supervisor" in one["command"]:
             assert seconds(one["stop_grace_period"]) >= PATIENCE + 15, name
-    assert seconds(ours["server"]["stop_grace_period"]) > GRACE
+    assert seconds(ours["server"]["stop_grace_period"]) > SHUTDOWN_SECONDS
 
 
 def test_only_the_server_has_a_port_on_loopback(services):
@@ -242,10 +237,7 @@ def test_valkey_takes_its_password_from_a_pipe_and_ends_on_sigterm(services, tmp
     port, password = free_port(), "abc123"
     *shell, script = services["valkey"]["command"]
     script = script.replace("$$", "$").replace("dir /data", f"dir {tmp_path}\nport {port}")
-    environment = {
-        "PATH": f"{tmp_path}:{os.environ['PATH']}",
-        "VALKEY_PASSWORD": password,
-    }
+    environment = {"PATH": f"{tmp_path}:{os.environ['PATH']}", "VALKEY_PASSWORD": password}
     with (tmp_path / "log").open("w") as log:
         started = Popen([*shell, script], env=environment, stdout=log, process_group=0)
     try:

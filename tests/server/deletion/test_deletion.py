@@ -52,24 +52,19 @@ def test_a_deleted_run_is_hidden_and_restored_unchanged(api, services, run_id, r
     assert api.get(f"runs/{run_id}/archive").json()["cell"] == [0]
 
 
-def test_queued_and_running_runs_are_not_deleted(api, services, run_id):
+def test_only_idle_runs_are_deleted_and_restored_in_time(api, services, run_id):
     attempt = None
-    for standing in ("queued", "running"):
-        assert f"cancel it first; it is {standing}" in detail(api.delete(f"runs/{run_id}"), 409)
+    for status in ("queued", "running"):
+        refused = detail(api.delete(f"runs/{run_id}"), 409)
+        assert f"cancel it first; it is {status}" in refused
         attempt = attempt or claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/pause")
     attempt.pause()
+    assert "it is paused" in detail(api.post(f"runs/{run_id}/restore"), 409)
     assert api.delete(f"runs/{run_id}").json()["status"] == "paused"
     assert api.delete(f"runs/{run_id}").status_code == 404
-
-
-def test_only_runs_in_the_bin_are_restored_in_time(api, services, run_id):
-    api.post(f"runs/{run_id}/cancel")
-    assert "it is cancelled" in detail(api.post(f"runs/{run_id}/restore"), 409)
-    api.delete(f"runs/{run_id}")
     let_time_pass(services, run_id)
-    answer = api.post(f"runs/{run_id}/restore")
-    assert answer.status_code == 409
+    assert api.post(f"runs/{run_id}/restore").status_code == 409
     assert api.get(f"runs/{run_id}").json()["deleted_at"]
 
 
@@ -84,11 +79,10 @@ def test_the_bin_keeps_runs_for_a_day(api, services, run_id, report):
     assert (run.purge_at - run.deleted_at).total_seconds() == 86_400
 
 
-def test_a_purge_is_published(api, services, run_id):
+def test_a_purge_is_published(api, services, run_id, published):
     api.post(f"runs/{run_id}/cancel")
     delete_for_good(api, services, run_id)
-    told = [f[b"event"] for _, f in services.redis.xrange(services.events.stream)]
-    assert told[-2:] == [b"run", b"purge"]
+    assert [kind for kind, _ in published()][-2:] == ["run", "purge"]
 
 
 @pytest.fixture
@@ -173,8 +167,8 @@ def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, ch
 
 def test_a_purge_may_be_killed_anywhere(api, services, spec, report, run_id, monkeypatch):
     """After every single transaction; what was begun is not to be restored."""
-    monkeypatch.setattr(purge, "AT_ONCE", 2)
-    monkeypatch.setattr("server.deletion.garbage.AT_ONCE", 2)
+    monkeypatch.setattr(purge, "ROWS_PER_TRANSACTION", 2)
+    monkeypatch.setattr("server.deletion.garbage.CREATURES_PER_TRANSACTION", 2)
     before = rows(services), files(services)
     doomed = another(services, spec, 3)
     finish(services, doomed, *(report(g, {0: g, 1: g, 2: g}) for g in range(1, 4)))
@@ -224,13 +218,13 @@ def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
     """Both prove in their own transaction that the time is over, or is not."""
     finish(services, run_id, report(1, {0: 1.0}))
     api.delete(f"runs/{run_id}")
-    assert not purge.take_apart(services)
+    assert not purge.purge_rows(services)
     let_time_pass(services, run_id)
     with services.sessions.write.begin() as session:
         run = session.get_one(Run, run_id)
         with pytest.raises(Exception, match="to restore a run"):
             bin.restore(session, run)
-    assert purge.take_apart(services)
+    assert purge.purge_rows(services)
 
 
 def test_a_creature_that_comes_into_use_during_a_purge_stays(
@@ -241,7 +235,7 @@ def test_a_creature_that_comes_into_use_during_a_purge_stays(
     finish(services, run_id, report(1, {0: 1.0}))
     api.delete(f"runs/{run_id}")
     let_time_pass(services, run_id)
-    while purge.take_apart(services):
+    while purge.purge_rows(services):
         pass
     assert rows(services)["garbage_creatures"] == 1
     claim(services, other, "worker").record(report(1, {0: 1.0}), 1.0)

@@ -7,6 +7,7 @@ import httpx
 import numpy as np
 import pytest
 from answers import detail
+from reports import replay
 from sqlalchemy import select
 
 from microcosmos.archive import creature
@@ -22,7 +23,7 @@ def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
     services.jobs.give_up(job, f"Traceback\n{type(error).__module__}.CreatureError: {error}\n")
     answer = api.get(f"creatures/{known}/replay")
     assert answer.status_code == 500
-    said = "The replay could not be made: `task.steps` needs at most 1 cell step"
+    said = "The replay failed: `task.steps` needs at most 1 cell step"
     assert answer.json()["detail"].startswith(said)
     assert services.jobs.renderings.count == 0
 
@@ -68,7 +69,7 @@ def test_each_kind_is_made_once_and_then_kept(api, services, known, kind, media_
         f"creatures/{known}/{kind}", headers={"If-None-Match": answer.headers["etag"]}
     )
     assert again.status_code == 304
-    assert renderings.kept(services, known, kind) == b"what was made"
+    assert renderings.existing(services, known, kind) == b"what was made"
 
 
 def test_a_film_is_saved_under_the_creatures_name(api, services, known):
@@ -78,12 +79,25 @@ def test_a_film_is_saved_under_the_creatures_name(api, services, known):
     assert answer.headers["content-disposition"] == expected
 
 
-def test_a_failed_kind_leaves_the_others(api, services, known):
+@pytest.mark.parametrize(
+    ("raised", "reported"),
+    [
+        ("ValueError: too large to refine", "ValueError: too large"),
+        (
+            "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)",
+            "OperationalError: database is locked. Try again",
+        ),
+    ],
+)
+def test_a_failed_kind_reports_its_error_and_leaves_the_others(
+    api, services, known, raised, reported
+):
     services.jobs.render(known, "audit")
     job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
-    services.jobs.give_up(job, "Traceback\nValueError: too large to refine\n")
-    answer = api.get(f"creatures/{known}/audit")
-    assert "The audit could not be made: ValueError: too large" in detail(answer, 500)
+    services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
+    found = detail(api.get(f"creatures/{known}/audit"), 500)
+    assert "The audit failed: " in found
+    assert reported in found
     assert api.get(f"creatures/{known}/film.gif").status_code == 202
 
 
@@ -95,15 +109,6 @@ def test_replays_are_rendered_first(services, known):
     assert kinds == ["replay", "film.mp4"], "and no audit before or among them"
 
 
-def test_a_failure_is_reported_by_the_first_line_of_its_error(api, services, known):
-    services.jobs.render(known, "audit")
-    job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
-    raised = "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)"
-    services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
-    detail = api.get(f"creatures/{known}/audit").json()["detail"]
-    assert "OperationalError: database is locked. It can" in detail
-
-
 def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
     renderings.save(services, known, REPLAY, b"of now")
     renderings.save(services, known, "film.gif", b"GIF")
@@ -111,29 +116,11 @@ def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
         row = session.scalars(select(Artifact).where(Artifact.kind == REPLAY)).one()
         assert row.number == REPLAY_VERSION
         row.number = None  # As it was before formats were counted.
-    assert renderings.kept(services, known, REPLAY) is None
+    assert renderings.existing(services, known, REPLAY) is None
     assert api.get(f"creatures/{known}/replay").status_code == 202
     assert api.get(f"creatures/{known}/film.gif").content == b"GIF"
     renderings.save(services, known, REPLAY, b"of now again")
     assert api.get(f"creatures/{known}/replay").content == b"of now again"
-
-
-def recorded(positions: np.ndarray) -> bytes:
-    """A replay with these positions, (frame, node, 2), and some fluid behind them."""
-    frames, nodes, _ = positions.shape
-    header = {
-        "format": "microcosmos-replay/2",
-        "frames": frames,
-        "every": 5,
-        "steps": 5 * (frames - 1),
-        "nodes": nodes,
-        "edges": [[0, 1], [1, 2]],
-        "size": [8, 4],
-        "vorticity": {"scale": 1.0},
-    }
-    told = json.dumps(header).encode()
-    fluid = np.ones((frames, 8, 4), np.int8).tobytes()
-    return struct.pack("<I", len(told)) + told + positions.astype("<f4").tobytes() + fluid
 
 
 def read(data: bytes) -> tuple[dict, np.ndarray]:
@@ -146,7 +133,7 @@ def read(data: bytes) -> tuple[dict, np.ndarray]:
 @pytest.mark.parametrize(("frames", "stride"), [(7, 1), (96, 1), (97, 2), (1001, 11)])
 def test_a_motion_is_every_kth_frame_of_the_replay(api, services, known, frames, stride):
     positions = np.random.default_rng(0).normal(size=(frames, 3, 2)).astype(np.float32)
-    renderings.save(services, known, REPLAY, recorded(positions))
+    renderings.save(services, known, REPLAY, replay(positions))
     answer = api.get(f"creatures/{known}/motion")
     header, motion = read(answer.content)
     np.testing.assert_array_equal(motion, positions[::stride])
@@ -204,4 +191,4 @@ def test_a_measurement_that_failed_says_why(api, services, measured):
     services.jobs.give_up(job, "Traceback\nValueError: out of memory\n")
     answer = api.get(f"creatures/{measured}/measurement")
     assert answer.status_code == 500
-    assert "The measurement could not be made: ValueError: out of memory" in answer.text
+    assert "The measurement failed: ValueError: out of memory" in answer.text
