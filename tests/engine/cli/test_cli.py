@@ -12,13 +12,8 @@ from importlib import import_module
 import httpx
 import pytest
 
-<<<<<<< HEAD
 from microcosmos.archive.file import read_table
-from microcosmos.cli import app, draw
-=======
-from microcosmos.archive.table import read_table
 from microcosmos.cli import pictures
->>>>>>> main
 
 run_command = import_module("microcosmos.cli.run")
 
