@@ -22,7 +22,7 @@ from .auth.tokens import watch
 from .core import errors, nowhere, page, request_log
 from .core.openapi import PROBLEMS, describe
 from .core.security_headers import Discretion
-from .core.shutdown import told_to_stop
+from .core.shutdown import on_shutdown
 from .creatures import network_routes as networks_api
 from .creatures import routes as creatures_api
 from .creatures.sandbox import sandbox
@@ -127,7 +127,7 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
     ]
     app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
     await asyncio.to_thread(sandbox().start)
-    with reconciling(services), told_to_stop(app.state.end_streams):
+    with reconciling(services), on_shutdown(app.state.end_streams):
         yield
     hub.close()
     for task in tasks:

@@ -11,7 +11,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 @contextmanager
-def told_to_stop(tell: Callable[[], object]) -> Iterator[None]:
+def on_shutdown(tell: Callable[[], object]) -> Iterator[None]:
     """Call `tell` when a signal to stop comes, then whoever listened before."""
     if current_thread() is not main_thread():  # Signals do not come here.
         yield

@@ -110,7 +110,7 @@ def test_the_log_names_a_stopped_worker(services, run_id, texts):
 
 def test_the_log_names_a_dead_job(services, run_id, log):
     claim(services, run_id, "worker")
-    leases.job_died(services, run_id, "worker", "killed by signal 9")
+    leases.job_ended(services, run_id, "worker", "killed by signal 9")
     assert ("error", 1, "Attempt 1 ended badly: killed by signal 9") in log()
 
 
