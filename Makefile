@@ -102,11 +102,11 @@ bench: peers web
 
 # All parts, or some: make acceptance PARTS=databases
 acceptance: install web
-	$(BIN)/python tests/faults/acceptance.py $(PARTS)
+	PYTHONPATH=tests/support $(BIN)/python tests/faults/acceptance.py $(PARTS)
 
 # Take a picture of every page into docs/pictures/page; DATA names a folder with finished runs.
 pictures: install web
-	DATA=$(DATA) $(BIN)/python tests/e2e/pictures.py
+	DATA=$(DATA) PYTHONPATH=tests/faults $(BIN)/python tests/e2e/pictures.py
 
 validate: install
 	$(BIN)/python -m validation

@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 import pytest
 from browser import executable, launched, overhear
+from databases import own_redis
 from drive import QUICK, ROOT, Installation
 from playwright.sync_api import Browser, Page
 from small import submit_small_runs
 
-from server.local.redis_embedded import prepare
 from server.services.services import Services, connect
 from server.settings import Settings
 
@@ -120,19 +120,15 @@ def idle(
     if any(needs(item, "shared") for item in request.session.items):
         request.getfixturevalue("shared")  # It computes while these tests look.
     folder = tmp_path_factory.mktemp("idle")
-    own = prepare(folder / "redis")
-    redis = own.start(folder / "redis.log")
-    own.wait(redis, folder / "redis.log")
-    environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": own.url}
-    place = Installation(folder / "data", common | environment)
-    place.start(PATIENCE_S)
-    services = connect(Settings(data=folder / "data", redis_url=own.url))
-    yield Idle(place, services)
-    services.close()
-    place.end()
-    place.close()
-    redis.terminate()
-    redis.wait()
+    with own_redis(folder) as url:
+        environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": url}
+        place = Installation(folder / "data", common | environment)
+        place.start(PATIENCE_S)
+        services = connect(Settings(data=folder / "data", redis_url=url))
+        yield Idle(place, services)
+        services.close()
+        place.end()
+        place.close()
 
 
 @pytest.fixture

@@ -13,8 +13,6 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "faults"))
-
 import numpy as np
 from browser import launched, overhear
 from drive import ROOT, Installation

@@ -2,16 +2,14 @@
 
 import json
 import re
-import struct
-from base64 import b64encode
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
+import reports
 from playwright.sync_api import Locator, Page, expect
 
 from microcosmos.archive import creature
-from microcosmos.spec import parse
 
 FAST = 10_000
 KINDS = {
@@ -22,13 +20,6 @@ KINDS = {
     "Scaling": "1,000 nodes",
 }
 SPEC = {"experiment": "gaits", "swimmers": ["ray", "cilia"], "period": 240}
-
-SMALL = {
-    "experiment": "quality-diversity",
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 16},
-    "task": {"steps": 60},
-}
 
 
 @pytest.fixture
@@ -214,34 +205,10 @@ def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
 
 
 def creature_file() -> dict[str, Any]:
-    """A swimmer with one weight, as anybody might share it."""
-    written = parse(SMALL).model_dump(mode="json")
-    genome = {
-        "encoding": "cppn",
-        "inputs": ["position", "sine", "cosine"],
-        "outputs": ["rest_angle", "rest_length"],
-        "control": written["control"],
-        "nodes": {
-            "id": [0, 1, 2, 3, 4],
-            "activation": ["identity"] * 5,
-            "bias": floats(0, 0, 0, 0, 0),
-        },
-        "connections": {
-            "innovation": [0],
-            "source": [1],
-            "target": [3],
-            "enabled": [True],
-            "weight": floats(1),
-        },
-    }
-    world = {**written["world"], "coupling": written["coupling"]}
-    parts = {"genome": genome, "world": world, "body": written["body"]}
-    whole = {"format": creature.FORMAT, **parts, "task": written["task"]}
-    return creature.document(whole, None, None)
-
-
-def floats(*values: float) -> str:
-    return b64encode(struct.pack(f"<{len(values)}f", *values)).decode()
+    """A swimmer with one weight and 60 steps."""
+    identity = reports.identity()
+    identity["task"]["steps"] = 60
+    return creature.document(identity, None, None)
 
 
 def reach(page: Page, role: str, name: str) -> None:

@@ -137,9 +137,7 @@ def import_it(stranger: Page, address: str, sha: str) -> None:
     for word in ('"CC-BY-SA-4.0"', '"Ada"', '"ancestors"'):
         assert word in text
     answer = stranger.request.post(
-        f"{address}/api/v1/creatures",
-        data=text,
-        headers={"Content-Type": "application/json"},
+        f"{address}/api/v1/creatures", data=text, headers={"Content-Type": "application/json"}
     )
     assert (answer.status, answer.json()) == (200, {"creature": sha})
 

@@ -16,13 +16,11 @@ import time
 from pathlib import Path
 
 import malformed_hdf5
-from comparison import METHODS, SEEDS, compare, draw, sinusoidal, spec
+from databases import Missing, services
 from drive import Installation, interrupt, kill_job, pause_and_resume, stop_worker
-from foraging import forage
-from grown_up import Missing, services
 from left_open import leave_open
 from rich.console import Console
-from slopes import compare_slopes
+from searches import METHODS, SEEDS, compare, compare_slopes, draw, forage, sinusoidal, spec
 from strangers import all_cases, send, watched
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
@@ -77,12 +75,12 @@ def searches(place: Installation) -> bool:
 
 
 def foraging(place: Installation) -> bool:
-    """Whether creatures that sense energy collect more of it."""
+    """Tell whether creatures that sense energy collect more of it."""
     return forage(place, carry_out, console)
 
 
 def slopes(place: Installation) -> bool:
-    """Searches with derivatives and without: printed, whoever wins."""
+    """Print searches with derivatives and without; either may win."""
     compare_slopes(place, carry_out, console, PICTURES / "slopes.png")
     return True
 

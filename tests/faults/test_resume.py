@@ -11,6 +11,7 @@ from contextlib import ExitStack, suppress
 
 import h5py
 import pytest
+from databases import Missing, services
 from drive import (
     REDIS,
     RENDERER,
@@ -21,7 +22,6 @@ from drive import (
     stop_worker,
     wait_until,
 )
-from grown_up import Missing, services
 
 from microcosmos.archive import file
 

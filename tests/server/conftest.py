@@ -1,5 +1,6 @@
 """A real server on a free port, over each database, with a real Redis under its own prefix."""
 
+import json
 import socket
 import time
 from collections.abc import Callable, Iterator
@@ -11,7 +12,9 @@ from uuid import UUID, uuid4
 import httpx
 import pytest
 import reports
-from installation import Installation, empty_redis, own_postgresql, own_redis, running
+from databases import Missing, own_postgresql, own_redis
+from installation import Installation, empty_redis, running
+from sqlalchemy import func, select
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
@@ -20,7 +23,7 @@ from server.attempts.claim import claim
 from server.runs.submission import submit
 from server.services.services import Services
 from server.settings import Settings
-from server.tables import Run
+from server.tables import Base, Run
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
@@ -49,11 +52,15 @@ def installations(tmp_path_factory, redis_url) -> Iterator[Callable[[str], Insta
         @cache
         def install(database: str) -> Installation:
             data = tmp_path_factory.mktemp(database)
+            url = f"sqlite:///{data / 'test.sqlite'}"
+            if database == "postgresql":
+                try:
+                    url = stack.enter_context(own_postgresql())
+                except Missing as missing:
+                    pytest.skip(str(missing))
             settings = Settings(
                 data=data,
-                database_url=stack.enter_context(own_postgresql())
-                if database == "postgresql"
-                else f"sqlite:///{data / 'test.sqlite'}",
+                database_url=url,
                 redis_url=redis_url,
                 redis_prefix=f"test-{uuid4().hex[:12]}:",
                 artifacts_url="",
@@ -156,6 +163,28 @@ def row(services, run_id) -> Callable[[], Run]:
     def read() -> Run:
         with services.sessions.read() as session:
             return session.get_one(Run, run_id)
+
+    return read
+
+
+@pytest.fixture
+def count(services) -> Callable[[type[Base]], int]:
+    """Counts the rows of a table."""
+
+    def count(table: type[Base]) -> int:
+        with services.sessions.read() as session:
+            return session.scalar(select(func.count()).select_from(table))
+
+    return count
+
+
+@pytest.fixture
+def published(services) -> Callable[[], list[tuple[str, Any]]]:
+    """Reads all published events, as pairs of kind and data."""
+
+    def read() -> list[tuple[str, Any]]:
+        entries = services.redis.xrange(services.events.stream)
+        return [(e[b"event"].decode(), json.loads(e[b"data"])) for _, e in entries]
 
     return read
 

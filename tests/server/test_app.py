@@ -12,16 +12,13 @@ import pytest
 from server.core import page
 
 
-def test_a_server_that_can_work_says_so(address):
+def test_a_server_is_ready_with_redis_and_alive_without(address, serve):
     assert httpx.get(f"{address}/healthz").json()["status"] == "ok"
     ready = httpx.get(f"{address}/readyz")
     assert (ready.status_code, ready.json()) == (200, {"database": "ok", "redis": "ok"})
-
-
-def test_a_server_without_redis_is_alive_but_not_ready(serve):
-    with serve(redis_url="redis://127.0.0.1:1/0") as address:
-        assert httpx.get(f"{address}/healthz").status_code == 200
-        ready = httpx.get(f"{address}/readyz", timeout=20)
+    with serve(redis_url="redis://127.0.0.1:1/0") as alone:
+        assert httpx.get(f"{alone}/healthz").status_code == 200
+        ready = httpx.get(f"{alone}/readyz", timeout=20)
     assert (ready.status_code, ready.json()["redis"]) == (503, "unreachable")
 
 
@@ -57,19 +54,14 @@ def test_paths_outside_the_api_are_the_page(built, address, path):
     assert answer.headers["cache-control"] == "no-cache"
 
 
-def test_assets_are_cached_for_ever(built, address):
-    answer = httpx.get(f"{address}/assets/a1b2.js")
-    assert answer.text == "script"
-    assert "immutable" in answer.headers["cache-control"]
-    assert httpx.get(f"{address}/assets/gone.js").status_code == 404
-
-
-def test_assets_are_compressed_on_request(built, address):
+def test_assets_are_compressed_on_request_and_cached_for_ever(built, address):
     for accepted, encoding in (("gzip", "gzip"), ("identity", None)):
         headers = {"Accept-Encoding": accepted}
         answer = httpx.get(f"{address}/assets/a1b2.js", headers=headers)
         assert (answer.text, answer.headers.get("content-encoding")) == ("script", encoding)
         assert answer.headers["content-type"].startswith("text/javascript")
+        assert "immutable" in answer.headers["cache-control"]
+    assert httpx.get(f"{address}/assets/gone.js").status_code == 404
 
 
 def test_the_documentation_is_served_and_announced_where_it_was_built(

@@ -86,12 +86,7 @@ def started(service):
 
 def test_every_module_that_is_started_exists(ours):
     modules = {module for one in ours.values() for module in started(one)}
-    assert {
-        "server.main",
-        "server.tables.migrations",
-        "worker.supervisor",
-        HEALTH,
-    } <= modules
+    assert {"server.main", "server.tables.migrations", "worker.supervisor", HEALTH} <= modules
     for name in modules:
         spec = importlib.util.find_spec(name)
         assert spec, name
@@ -242,10 +237,7 @@ def test_valkey_takes_its_password_from_a_pipe_and_ends_on_sigterm(services, tmp
     port, password = free_port(), "abc123"
     *shell, script = services["valkey"]["command"]
     script = script.replace("$$", "$").replace("dir /data", f"dir {tmp_path}\nport {port}")
-    environment = {
-        "PATH": f"{tmp_path}:{os.environ['PATH']}",
-        "VALKEY_PASSWORD": password,
-    }
+    environment = {"PATH": f"{tmp_path}:{os.environ['PATH']}", "VALKEY_PASSWORD": password}
     with (tmp_path / "log").open("w") as log:
         started = Popen([*shell, script], env=environment, stdout=log, process_group=0)
     try:

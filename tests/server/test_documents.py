@@ -1,9 +1,7 @@
 """The OpenAPI document and docs/operation.md are true."""
 
-import json
 import os
 import re
-import struct
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +11,7 @@ import pytest
 import schemathesis
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
+from reports import archive_file, replay
 from schemathesis import GenerationMode
 from schemathesis.checks import not_a_server_error
 from schemathesis.core.failures import FailureGroup
@@ -22,7 +21,7 @@ from schemathesis.specs.openapi.checks import (
     status_code_conformance,
 )
 
-from microcosmos.archive import creature, file
+from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, estimate
 from server.app import create_app
 from server.attempts.claim import claim
@@ -60,47 +59,18 @@ def known(
     """What paths may name so that there is something to answer: by the parameter."""
     for generation in (1, 2):
         record(generation, {generation: 1.0})
-    attempt.save(2, checkpoint(spec))
+    attempt.save(2, archive_file(spec))
     claim(services, sweep_id, "worker").record(table(1, {"number": 1, "speed": 0.5}), 1.0)
     kept = creature.document(identity(3), None, None)
     with services.sessions.write.begin() as session:
         creatures.add(session, kept)
-    renderings.save(services, kept["sha256"], REPLAY, replay())
+    renderings.save(services, kept["sha256"], REPLAY, replay(np.zeros((1, 2, 2))))
     token = tokens.create(services, "somebody", "read").token
     return {
         "run_id": [str(run_id), str(sweep_id)],
         "sha": [kept["sha256"], report(1, {1: 1.0}).elites[0].creature],
         "token_id": [str(token.id)],
     }
-
-
-def checkpoint(spec: dict[str, Any]) -> bytes:
-    """The file of an archive with one elite."""
-    archive = {
-        "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
-        "measures": np.array([[0.01, 1.0]]),
-        "fitness": np.array([2.5]),
-        "generation": np.array([2]),
-        "creature": np.zeros((1, 32), np.uint8),
-        "cell": np.array([1]),
-    }
-    measures = json.dumps(["bending_effort", "stretching_effort"])
-    told = {"format": file.FORMAT, "spec": json.dumps(spec), "measures": measures}
-    return file.dump({"archive": archive}, told)
-
-
-def replay() -> bytes:
-    """A recording of two nodes in one frame."""
-    header = {
-        "frames": 1,
-        "every": 5,
-        "steps": 0,
-        "nodes": 2,
-        "edges": [[0, 1]],
-        "size": [8, 4],
-    }
-    told = json.dumps(header).encode()
-    return struct.pack("<I", len(told)) + told + bytes(16)
 
 
 @pytest.mark.parametrize("database", ["sqlite"])

@@ -8,10 +8,7 @@ from microcosmos.spec import parse
 from server.attempts.claim import claim
 from server.maintenance.reconcile import reconcile
 from server.runs.submission import submit
-from server.tables import (
-    Base,
-    Run,
-)
+from server.tables import Base, Run
 
 
 def rows(services):

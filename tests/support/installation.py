@@ -1,61 +1,19 @@
 """An installation over a database for all tests, and real servers in threads."""
 
-import os
 import shutil
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from functools import cached_property
-from pathlib import Path
-from uuid import uuid4
 
-import psycopg
-import pytest
 import uvicorn
-from psycopg import sql
-from sqlalchemy import make_url, select
+from sqlalchemy import select
 
 from server.app import create_app
-from server.local.redis_embedded import prepare
 from server.services.services import Services, connect
 from server.settings import Settings
 from server.tables import Base, Run, migrations
-
-POSTGRESQL = "postgresql://127.0.0.1:5432/postgres"
-
-
-@contextmanager
-def own_postgresql() -> Iterator[str]:
-    """A database of PostgreSQL for this process alone, dropped at the end."""
-    if given := os.environ.get("MICROCOSMOS_TEST_DATABASE_URL"):
-        yield given
-        return
-    name = f"microcosmos_test_{uuid4().hex[:12]}"
-    try:
-        connection = psycopg.connect(POSTGRESQL, autocommit=True, connect_timeout=2)
-        connection.execute(sql.SQL("CREATE DATABASE {}").format(sql.Identifier(name)))
-    except psycopg.Error:
-        pytest.skip("no PostgreSQL on 127.0.0.1:5432 where we may create a database")
-    database = sql.Identifier(name)
-    with connection:
-        # What a test wrote need not outlive the machine: nothing waits for the disk.
-        connection.execute(
-            sql.SQL("ALTER DATABASE {} SET synchronous_commit = off").format(database)
-        )
-        yield str(make_url(POSTGRESQL).set(database=name))
-        connection.execute(sql.SQL("DROP DATABASE {} WITH (FORCE)").format(database))
-
-
-@contextmanager
-def own_redis(folder: Path) -> Iterator[str]:
-    """A Redis for this process alone: its address."""
-    redis = prepare(folder / "files")
-    process = redis.start(folder / "log")
-    redis.wait(process, folder / "log")
-    yield redis.url
-    process.terminate()
-    process.wait()
 
 
 class Installation:

@@ -1,16 +1,51 @@
-"""Creatures and reports of generations, as experiments make them."""
+"""Creatures, reports, archives and replays, as experiments and renderers make them."""
 
-import base64
+import json
 import struct
 from types import SimpleNamespace
 from typing import Any
 
-from microcosmos.archive import creature
+import numpy as np
+
+from microcosmos.archive import creature, file
+from microcosmos.naming import encode
 from microcosmos.spec import EXPERIMENTS
 
 
-def little_endian(*values: float) -> str:
-    return base64.b64encode(struct.pack(f"<{len(values)}f", *values)).decode()
+def archive_file(spec: dict[str, Any]) -> bytes:
+    """The file of an archive with one elite, in cell 17."""
+    archive = {
+        "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
+        "measures": np.array([[0.01, 1.0]]),
+        "fitness": np.array([2.5]),
+        "generation": np.array([3]),
+        "creature": np.zeros((1, 32), np.uint8),
+        "cell": np.array([17]),
+    }
+    measures = json.dumps(["bending_effort", "stretching_effort"])
+    attributes = {"format": file.FORMAT, "spec": json.dumps(spec), "measures": measures}
+    return file.dump({"archive": archive}, attributes)
+
+
+def replay(positions: np.ndarray, planes: int = 1, **more: Any) -> bytes:
+    """A replay with these positions, (frame, node, 2), and still fluid, 8 x 4 cells."""
+    frames, nodes, _ = positions.shape
+    header = {
+        "format": "microcosmos-replay/2",
+        "frames": frames,
+        "every": 5,
+        "steps": 5 * (frames - 1),
+        "nodes": nodes,
+        "edges": [[i, i + 1] for i in range(nodes - 1)],
+        "size": [8, 4],
+        "vorticity": {"scale": 1.0},
+        **more,
+    }
+    text = json.dumps(header).encode()
+    angles = len(more["joints"]) + nodes - 1 if "joints" in more else 0
+    floats = positions.astype("<f4").tobytes() + np.zeros((frames, angles), "<f4").tobytes()
+    fluid = np.zeros((frames, planes, *header["size"]), np.int8).tobytes()
+    return struct.pack("<I", len(text)) + text + floats + fluid
 
 
 def identity(number: int = 1) -> dict[str, Any]:
@@ -24,14 +59,14 @@ def identity(number: int = 1) -> dict[str, Any]:
         "nodes": {
             "id": [0, 1, 2, 3, 4],
             "activation": ["identity"] * 5,
-            "bias": little_endian(0, 0, 0, 0, 0),
+            "bias": encode(np.zeros(5)),
         },
         "connections": {
             "innovation": [0],
             "source": [1],
             "target": [3],
             "enabled": [True],
-            "weight": little_endian(number),
+            "weight": encode(np.array([number])),
         },
     }
     return {

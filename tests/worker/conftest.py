@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import pynvml
 import pytest
 import reports
-from installation import Installation, own_redis
+from databases import own_redis
+from installation import Installation
 
 from microcosmos.spec import EXPERIMENTS
 from server.runs.submission import submit

@@ -1,12 +1,12 @@
 """How renderings are made, with an engine that only says what it was asked for."""
 
 import json
-import struct
 import sys
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import reports
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, Gaits
@@ -15,34 +15,21 @@ from server.renderings import storage as renderings
 from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
 from worker import pictures
 
-FRAMES, NODES, SIZE = 7, 3, (24, 16)
-
 
 def replay() -> bytes:
     """Three nodes that move to the right over still fluid."""
-    header = {
-        "format": "microcosmos-replay/2",
-        "creature": "ab" * 32,
-        "frames": FRAMES,
-        "every": 2,
-        "steps": 12,
-        "nodes": NODES,
-        "edges": [[0, 1], [1, 2]],
-        "joints": [[0, 1]],
-        "size": SIZE,
-        "vorticity": {"scale": 0.1},
-        "velocity": {"scale": 0.1},
-        "energy": {"scale": 1.0, "frames": 0},
-        "fitness": {"recorded": None, "replayed": 1.0, "difference": None},
-        "device": "a device",
-    }
-    text = json.dumps(header).encode()
-    time, node = np.arange(FRAMES)[:, None], np.arange(NODES)[None]
-    positions = np.stack(np.broadcast_arrays(8.0 + time + node, 8.0), -1).astype("<f4")
-    rest = np.zeros((FRAMES, 1 + 2), "<f4")  # One joint, two edges.
-    fluid = np.zeros((FRAMES, 1 + 2, *SIZE), np.int8)  # Vorticity and velocity.
-    arrays = positions.tobytes() + rest.tobytes() + fluid.tobytes()
-    return struct.pack("<I", len(text)) + text + arrays
+    time, node = np.arange(7)[:, None], np.arange(3)[None]
+    return reports.replay(
+        np.stack(np.broadcast_arrays(8.0 + time + node, 8.0), -1),
+        planes=1 + 2,  # Vorticity and velocity.
+        creature="ab" * 32,
+        joints=[[0, 1]],
+        size=[24, 16],
+        velocity={"scale": 0.1},
+        energy={"scale": 1.0, "frames": 0},
+        fitness={"recorded": None, "replayed": 1.0, "difference": None},
+        device="a device",
+    )
 
 
 @pytest.fixture

@@ -1,12 +1,12 @@
 """The archive as columns, now and in the past, and as files."""
 
 import hashlib
-import json
 from uuid import UUID
 
 import numpy as np
 import pytest
 from answers import detail, errors, fields
+from reports import archive_file
 
 from microcosmos.archive import file
 from microcosmos.spec import parse
@@ -16,30 +16,12 @@ from server.runs.submission import submit
 
 
 @pytest.fixture
-def h5(spec) -> bytes:
-    """The file of an archive with one elite."""
-    archive = {
-        "genomes": {"bias": np.zeros((1, 2)), "weight": np.ones((1, 3))},
-        "measures": np.array([[0.01, 1.0]]),
-        "fitness": np.array([2.5]),
-        "generation": np.array([3]),
-        "creature": np.zeros((1, 32), np.uint8),
-        "cell": np.array([17]),
-    }
-    attributes = {
-        "format": file.FORMAT,
-        "spec": json.dumps(spec),
-        "measures": json.dumps(["bending_effort", "stretching_effort"]),
-    }
-    return file.dump({"archive": archive}, attributes)
-
-
-@pytest.fixture
-def saved(h5, attempt, record) -> bytes:
-    """A run has this checkpoint."""
+def saved(spec, attempt, record) -> bytes:
+    """The checkpoint of the run, an archive with one elite."""
     record(1)
-    attempt.save(1, h5)
-    return h5
+    content = archive_file(spec)
+    attempt.save(1, content)
+    return content
 
 
 def test_the_archive_is_the_last_elite_of_each_cell(api, run_id, spec, record):
@@ -76,42 +58,34 @@ def test_a_run_without_checkpoint_has_no_file(api, run_id, ending):
 
 def test_the_file_is_the_checkpoint_with_its_hash_as_etag(api, run_id, saved):
     answer = api.get(f"runs/{run_id}/archive.h5")
-    assert answer.content == saved
-    assert answer.headers["etag"] == f'"{hashlib.sha256(saved).hexdigest()}"'
+    etag = f'"{hashlib.sha256(saved).hexdigest()}"'
+    assert (answer.content, answer.headers["etag"]) == (saved, etag)
     assert answer.headers["content-length"] == str(len(saved))
     assert "attachment" in answer.headers["content-disposition"]
-
-
-def test_a_known_file_is_not_sent_again(api, run_id, saved):
-    etag = api.get(f"runs/{run_id}/archive.h5").headers["etag"]
-    again = api.get(f"runs/{run_id}/archive.h5", headers={"If-None-Match": f'"other", {etag}'})
+    known, other = {"If-None-Match": f'"other", {etag}'}, {"If-None-Match": '"other"'}
+    again = api.get(f"runs/{run_id}/archive.h5", headers=known)
     assert (again.status_code, again.content) == (304, b"")
-    other = api.get(f"runs/{run_id}/archive.h5", headers={"If-None-Match": '"other"'})
-    assert other.status_code == 200
+    assert api.get(f"runs/{run_id}/archive.h5", headers=other).status_code == 200
 
 
-@pytest.mark.parametrize(
-    ("wanted", "start", "stop"),
-    [
-        ("bytes=0-9", 0, 10),
-        ("bytes=100-", 100, None),
-        ("bytes=-7", -7, None),
-        ("bytes=5-5", 5, 6),
-    ],
-)
-def test_ranges_of_the_file_are_served(api, run_id, saved, wanted, start, stop):
-    answer = api.get(f"runs/{run_id}/archive.h5", headers={"Range": wanted})
-    assert answer.status_code == 206
-    assert answer.content == saved[start:stop]
-    first = start % len(saved)
-    last = first + len(answer.content) - 1
-    assert answer.headers["content-range"] == f"bytes {first}-{last}/{len(saved)}"
+RANGES = {
+    "bytes=0-9": slice(0, 10),
+    "bytes=100-": slice(100, None),
+    "bytes=-7": slice(-7, None),
+    "bytes=5-5": slice(5, 6),
+}
 
 
-def test_impossible_ranges_are_refused_or_ignored(api, run_id, saved):
+def test_ranges_of_the_file_are_served_and_impossible_ones_refused(api, run_id, saved):
     def ask(**headers):
         return api.get(f"runs/{run_id}/archive.h5", headers=headers)
 
+    for wanted, part in RANGES.items():
+        answer = ask(Range=wanted)
+        assert (answer.status_code, answer.content) == (206, saved[part]), wanted
+        first = part.start % len(saved)
+        last = first + len(answer.content) - 1
+        assert answer.headers["content-range"] == f"bytes {first}-{last}/{len(saved)}"
     beyond = ask(Range=f"bytes={len(saved)}-")
     assert beyond.status_code == 416
     assert beyond.headers["content-range"] == f"bytes */{len(saved)}"
@@ -169,20 +143,23 @@ def test_after_limits_the_archive_to_later_elites(api, run_id, record):
     assert api.get(f"runs/{run_id}/archive", params={"after": -1}).status_code == 422
 
 
-def test_an_unknown_measure_is_refused_with_the_known_ones(api, run_id, record):
-    record(1, {5: 1.0})
-    answer = api.get(f"runs/{run_id}/archive", params={"measures": "energy,displacement"})
-    (error,) = errors(answer)
+def test_unknown_measures_and_too_long_histories_are_refused(api, run_id, record, monkeypatch):
+    record(1, {5: 1.0, 3: 2.0})
+    asked = {"measures": "energy,displacement"}
+    (error,) = errors(api.get(f"runs/{run_id}/archive", params=asked))
     assert (error["field"], error["got"]) == ("measures", ["energy"])
     assert "displacement" in error["needed"]
+    history = f"runs/{run_id}/archive/history"
+    assert fields(api.get(history, params={"measures": "beauty"}))[0] == "measures"
+    monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
+    assert "has 2 entries, of which at most 1" in detail(api.get(history), 422)
 
 
 @pytest.mark.parametrize("descriptors", [(0.5,), (1.0, 2.0, 3.0)])
-def test_elites_have_any_number_of_descriptors(api, services, run_id, descriptors, record):
+def test_elites_have_any_number_of_descriptors(api, run_id, descriptors, record, published):
     record(1, {5: 1.0}, descriptors)
     assert api.get(f"runs/{run_id}/archive").json()["descriptors"] == [list(descriptors)]
-    entries = services.redis.xrange(services.events.stream)
-    (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"elites"]
+    (told,) = [data for kind, data in published() if kind == "elites"]
     assert told["descriptors"] == [list(descriptors)]
 
 
@@ -250,12 +227,6 @@ def test_the_history_contains_the_archive_of_every_generation(api, run_id, recor
         }
 
 
-def test_a_history_with_an_unknown_measure_is_refused(api, run_id, record):
-    record(1, {5: 1.0})
-    answer = api.get(f"runs/{run_id}/archive/history", params={"measures": "beauty"})
-    assert fields(answer)[0] == "measures"
-
-
 def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, spec, report):
     spec["archive"]["centroids"] = 3
     run_id = submit(services, parse(spec))[0].id
@@ -273,10 +244,3 @@ def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, sp
 def test_a_grid_has_no_centroids(api, run_id):
     answer = api.get(f"runs/{run_id}/archive/centroids")
     assert (answer.status_code, answer.json()["title"]) == (404, "No centroids")
-
-
-def test_a_history_too_long_to_be_sent_is_refused(api, run_id, monkeypatch, record):
-    record(1, {5: 1.0, 3: 2.0})
-    monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
-    answer = api.get(f"runs/{run_id}/archive/history")
-    assert "has 2 entries, of which at most 1" in detail(answer, 422)

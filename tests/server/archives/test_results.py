@@ -2,12 +2,10 @@
 
 import csv
 import io
-import json
 from uuid import UUID
 
 import pytest
 from answers import detail
-from sqlalchemy import func, select
 from sqlalchemy.exc import OperationalError
 
 from microcosmos.archive import creature
@@ -18,11 +16,6 @@ from server.workers import registry
 
 WORM = {"swimmer": "worm", "viscosity": 0.5, "ok": True, "number": 1}
 RAY = {"swimmer": "ray", "viscosity": 2.0, "ok": False, "number": 2}
-
-
-def count(services):
-    with services.sessions.read() as session:
-        return session.scalar(select(func.count()).select_from(Result))
 
 
 def test_rows_are_read_in_order_with_their_creatures(api, services, sweep_id, table):
@@ -113,15 +106,17 @@ def test_a_rewind_drops_rows_and_summary_after_the_checkpoint(api, services, swe
 
 
 def test_a_generation_written_twice_after_an_outage_has_its_rows_once(
-    services, sweep_id, table
+    services, sweep_id, table, count
 ):
     attempt = claim(services, sweep_id, "worker")
     for _ in range(2):  # Whether the first was committed nobody knew.
         attempt.record(table(1, WORM, RAY), 1.0)
-    assert count(services) == 2
+    assert count(Result) == 2
 
 
-def test_rows_and_run_are_written_in_one_transaction(services, sweep_id, table, monkeypatch):
+def test_rows_and_run_are_written_in_one_transaction(
+    services, sweep_id, table, monkeypatch, count
+):
     attempt = claim(services, sweep_id, "worker")
 
     def broken(*_):
@@ -132,13 +127,12 @@ def test_rows_and_run_are_written_in_one_transaction(services, sweep_id, table, 
         attempt.record(table(1, WORM), 1.0)
     with services.sessions.read() as session:
         assert session.get_one(Run, sweep_id).generation == 0
-    assert count(services) == 0
+    assert count(Result) == 0
 
 
-def test_new_rows_are_published(services, sweep_id, table):
+def test_new_rows_are_published(services, sweep_id, table, published):
     claim(services, sweep_id, "worker").record(table(1, WORM, summary={"best": 1.0}), 1.0)
-    entries = services.redis.xrange(services.events.stream)
-    (told,) = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"results"]
+    (told,) = [data for kind, data in published() if kind == "results"]
     creature = told["rows"][0].pop("creature")
     assert len(creature) == 64
     assert told == {
@@ -149,9 +143,9 @@ def test_new_rows_are_published(services, sweep_id, table):
     }
 
 
-def test_deleting_a_run_deletes_its_result_rows(services, sweep_id, table):
+def test_deleting_a_run_deletes_its_result_rows(services, sweep_id, table, count):
     sessions: Sessions = services.sessions
     claim(services, sweep_id, "worker").record(table(1, WORM), 1.0)
     with sessions.write.begin() as session:
         session.delete(session.get_one(Run, sweep_id))
-    assert count(services) == 0
+    assert count(Result) == 0

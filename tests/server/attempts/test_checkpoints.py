@@ -3,7 +3,6 @@
 import errno
 
 import pytest
-from sqlalchemy import func, select
 
 from server.attempts.checkpoints import CheckpointUnavailable
 from server.attempts.claim import claim
@@ -11,11 +10,6 @@ from server.storage.artifacts import Artifacts
 from server.tables import Artifact, Creature, Elite, Generation
 
 pytestmark = pytest.mark.postgresql
-
-
-def count(services, table):
-    with services.sessions.read() as session:
-        return session.scalar(select(func.count()).select_from(table))
 
 
 def unmount(folder):
@@ -32,7 +26,7 @@ def damage_all(folder):
 
 
 def test_generations_after_the_checkpoint_are_repeated(
-    services, run_id, report, row, attempt, record
+    services, run_id, report, row, attempt, record, count
 ):
     for generation in range(1, 6):
         record(generation, {generation: 1.0})
@@ -42,22 +36,18 @@ def test_generations_after_the_checkpoint_are_repeated(
     assert (again.generation, again.seconds) == (3, 3.0)
     assert again.restore() == b"state after 3"
     assert (row().generation, row().evaluations, row().qd_score) == (3, 48, 30.0)
-    assert count(services, Generation) == count(services, Elite) == 3
-    assert count(services, Creature) == 5, "creatures are kept, for lineages"
+    assert count(Generation) == count(Elite) == 3
+    assert count(Creature) == 5, "creatures are kept, for lineages"
     again.record(report(4, {4: 1.0}), 1.0)
 
 
-def test_a_run_without_checkpoint_restarts(services, run_id, report, row):
-    claim(services, run_id, "worker").record(report(1, {1: 1.0}), 1.0)
+def test_a_run_without_checkpoint_restarts(services, run_id, row, attempt, record):
+    record(1, {1: 1.0})
+    with pytest.raises(ValueError, match="at most 1; got 2"):
+        attempt.save(2, b"data")
     again = claim(services, run_id, "worker")
     assert (again.generation, again.restore()) == (0, None)
     assert (row().generation, row().qd_score, row().seconds) == (0, None, 0)
-
-
-def test_a_checkpoint_must_be_of_a_recorded_generation(attempt, record):
-    record(1)
-    with pytest.raises(ValueError, match="at most 1; got 2"):
-        attempt.save(2, b"data")
 
 
 def test_superfluous_checkpoints_are_deleted_with_their_files(
@@ -143,7 +133,7 @@ def test_an_old_file_that_cannot_be_deleted_does_not_undo_a_checkpoint(
 
 
 def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(
-    services, run_id, report, row, attempt, record
+    services, run_id, report, row, attempt, record, count
 ):
     for generation in range(1, 4):
         record(generation, {generation: 1.0})
@@ -154,7 +144,7 @@ def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(
     assert second.restore() == b"state 2"
     assert (second.generation, second.seconds) == (2, 2.0)
     assert (row().generation, row().checkpoint_generation, row().qd_score) == (2, 2, 20.0)
-    assert count(services, Generation) == count(services, Elite) == 2
+    assert count(Generation) == count(Elite) == 2
     assert "generation 3 is damaged" in row().warning
     assert "resumes from generation 2" in row().warning
     second.record(report(3, {3: 1.0}), 1.0)
@@ -165,7 +155,7 @@ def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(
 
 @pytest.mark.parametrize("harm", [unmount, lose_the_newest, damage_all])
 def test_a_checkpoint_that_cannot_be_read_deletes_nothing(
-    services, run_id, row, harm, attempt, record
+    services, run_id, row, harm, attempt, record, count
 ):
     for generation in range(1, 3):
         record(generation, {generation: 1.0})
@@ -175,9 +165,7 @@ def test_a_checkpoint_that_cannot_be_read_deletes_nothing(
     with pytest.raises(CheckpointUnavailable, match="checkpoint of generation 2"):
         second.restore()
     assert (row().generation, row().checkpoint_generation, row().qd_score) == (2, 2, 20.0)
-    assert (
-        count(services, Generation) == count(services, Elite) == count(services, Artifact) == 2
-    )
+    assert count(Generation) == count(Elite) == count(Artifact) == 2
 
 
 def test_a_run_resumes_when_its_files_are_there_again(services, run_id, attempt, record):

@@ -3,7 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from sqlalchemy import func, select, update
+from sqlalchemy import update
 from sqlalchemy.exc import OperationalError
 
 from server.attempts import leases
@@ -14,11 +14,6 @@ from server.runs import announce, lifecycle
 from server.tables import Elite, Generation, Run
 
 pytestmark = pytest.mark.postgresql
-
-
-def count(services, table):
-    with services.sessions.read() as session:
-        return session.scalar(select(func.count()).select_from(table))
 
 
 def silence(services, run_id):
@@ -40,7 +35,9 @@ def test_one_of_many_concurrent_claims_succeeds(services, run_id):
     assert len([found for found in claims if found]) == 1
 
 
-def test_a_silent_workers_run_is_claimed_and_its_writes_refused(services, run_id, report):
+def test_a_silent_workers_run_is_claimed_and_its_writes_refused(
+    services, run_id, report, count
+):
     first = claim(services, run_id, "first")
     first.record(report(1, {0: 1.0}), 1.0)
     silence(services, run_id)
@@ -61,16 +58,16 @@ def test_a_silent_workers_run_is_claimed_and_its_writes_refused(services, run_id
             write()
     second.record(report(1, {0: 1.0}), 1.0)
     assert second.requested_state is None
-    assert count(services, Generation) == 1
+    assert count(Generation) == 1
 
 
-def test_a_generation_is_recorded_once_or_not_at_all(services, report, attempt, record):
+def test_a_generation_is_recorded_once_or_not_at_all(report, attempt, record, count):
     broken = report(1, {1: 1.0})
     broken.elites[0].creature = "00" * 32  # Of which there is no creature.
     broken.elites[0].identity = None
     with pytest.raises(Exception, match=r"(?i)null"):
         attempt.record(broken, 1.0)
-    assert count(services, Generation) == count(services, Elite) == 0
+    assert count(Generation) == count(Elite) == 0
     assert attempt.seconds == 0
     record(1, {1: 1.0})
 
@@ -144,11 +141,11 @@ def test_a_cancellation_overrides_a_pause_under_way(services, run_id, row, end, 
     assert row().finished_at is not None
 
 
-def test_a_committed_generation_is_not_written_twice(services, row, attempt, record):
+def test_a_committed_generation_is_not_written_twice(row, attempt, record, count):
     record(1, {1: 1.0}, seconds=2.0)
     attempt.seconds = 0.0  # As after a commit whose answer was lost.
     record(1, {1: 1.0}, seconds=2.0)
-    assert count(services, Generation) == count(services, Elite) == 1
+    assert count(Generation) == count(Elite) == 1
     assert (row().seconds, attempt.seconds) == (2.0, 2.0)
 
 

@@ -42,12 +42,7 @@ OPEN = {
     "GET /{path:path}",
 }
 """Outside of the API: for everybody."""
-STRANGERS = {
-    "GET /shares/{slug}",
-    "GET /commons",
-    "POST /session",
-    "DELETE /session",
-}
+STRANGERS = {"GET /shares/{slug}", "GET /commons", "POST /session", "DELETE /session"}
 """In the API, what is for everybody; and all that lies below a share."""
 SHARED = ("/runs/{run_id}", "/creatures/{sha}")
 """Where that begins which the holder of a share may read, within what it shows."""

@@ -15,12 +15,9 @@ from server.auth.ratelimit import ADDRESSES, BURST, INTERVAL, RateLimit, network
 from server.settings import SHORTEST, Settings
 
 
-@pytest.mark.parametrize("host", ["0.0.0.0", "192.0.2.1", "::"])
-def test_a_server_for_others_needs_a_token(host):
-    assert Settings(host=host, token=None).needs_token
-
-
-def test_loopback_needs_a_token_only_when_configured():
+def test_only_loopback_goes_without_a_token_unless_configured():
+    for host in ("0.0.0.0", "192.0.2.1", "::"):
+        assert Settings(host=host, token=None).needs_token, host
     assert not Settings(host="127.0.0.1", token=None).needs_token
     assert Settings(host="127.0.0.1", token=None, auth="required").needs_token
     assert Settings(host="127.0.0.1", token=SecretStr("s" * SHORTEST)).needs_token
@@ -33,15 +30,11 @@ def test_a_token_that_could_be_guessed_is_refused(monkeypatch):
         Settings()
 
 
-@pytest.mark.parametrize("name", ["evil.example", "127.0.0.1.evil.example", "", "["])
-def test_other_host_names_are_refused(api, name):
-    answer = api.get("runs", headers={"Host": name})
-    assert answer.status_code in (400, 403)
-
-
-@pytest.mark.parametrize("name", ["localhost:8000", "127.0.0.1", "[::1]:8000"])
-def test_the_names_of_this_machine_are_taken(api, name):
-    assert api.get("runs", headers={"Host": name}).status_code == 200
+def test_only_host_names_of_this_machine_are_accepted(api):
+    for name in ("evil.example", "127.0.0.1.evil.example", "", "["):
+        assert api.get("runs", headers={"Host": name}).status_code in (400, 403), name
+    for name in ("localhost:8000", "127.0.0.1", "[::1]:8000"):
+        assert api.get("runs", headers={"Host": name}).status_code == 200, name
 
 
 def test_pages_of_other_sites_are_refused(api, address, spec):
@@ -147,11 +140,7 @@ def test_a_token_is_not_wrong_without_the_database(serve, monkeypatch):
 def test_servers_on_one_host_keep_a_cookie_each(serve):
     """A browser sends the cookies of all ports of a host, as this client does."""
     first, second = SecretStr("first"), SecretStr("second")
-    with (
-        serve(token=first) as one,
-        serve(token=second) as other,
-        httpx.Client() as browser,
-    ):
+    with serve(token=first) as one, serve(token=second) as other, httpx.Client() as browser:
         for address, token in ((one, first), (other, second)):
             asked = {"token": token.get_secret_value()}
             assert browser.post(f"{address}/api/v1/session", json=asked).status_code == 200
@@ -202,21 +191,16 @@ def limit(clock) -> RateLimit:
     return RateLimit(clock)
 
 
-def test_a_burst_of_wrong_tokens_is_allowed_and_recovers(limit, clock):
+def test_a_burst_of_wrong_tokens_from_an_address_is_allowed_and_recovers(limit, clock):
     assert [limit.add("192.0.2.1") for _ in range(BURST)] == [0] * BURST
     assert limit.add("192.0.2.1") == INTERVAL
+    assert limit.add("192.0.2.2") == 0, "each address counts alone"
     clock.now += 2.0
     assert limit.add("192.0.2.1") == INTERVAL - 2.0
     clock.now += INTERVAL - 2.0
     assert limit.add("192.0.2.1") == 0
     clock.now += BURST * INTERVAL
     assert [limit.add("192.0.2.1") for _ in range(BURST)] == [0] * BURST
-
-
-def test_the_rate_limit_counts_each_address_alone(limit):
-    for _ in range(BURST + 1):
-        limit.add("192.0.2.1")
-    assert limit.add("192.0.2.2") == 0
 
 
 def test_the_rate_limit_remembers_limited_addresses(limit):

@@ -6,12 +6,7 @@ from typing import Any
 import pytest
 from relay import Relay
 
-from microcosmos.client import (
-    Client,
-    connection,
-    files,
-    streaming,
-)
+from microcosmos.client import Client, connection, files, streaming
 
 
 @pytest.fixture

@@ -144,22 +144,16 @@ def test_problems_are_sentences(status, body, kind, said):
         Client(url).workers()
 
 
-@pytest.mark.parametrize(
-    ("given", "meant"),
-    [
-        ("localhost:9", "http://localhost:9"),
-        ("https://lab.example/micro/", "https://lab.example/micro"),
-        ("http://127.0.0.1:8000/api/v1/", "http://127.0.0.1:8000"),
-    ],
-)
-def test_addresses_are_normalised(given, meant):
-    assert Client(given).url == meant
-
-
-@pytest.mark.parametrize("given", ["ftp://x", "http://", "http://x:99999"])
-def test_malformed_addresses_are_refused(given):
-    with pytest.raises(ValueError, match="`url` must be an address"):
-        Client(given)
+def test_addresses_are_normalised_and_malformed_ones_refused():
+    for given, meant in {
+        "localhost:9": "http://localhost:9",
+        "https://lab.example/micro/": "https://lab.example/micro",
+        "http://127.0.0.1:8000/api/v1/": "http://127.0.0.1:8000",
+    }.items():
+        assert Client(given).url == meant
+    for malformed in ("ftp://x", "http://", "http://x:99999"):
+        with pytest.raises(ValueError, match="`url` must be an address"):
+            Client(malformed)
 
 
 def test_loopback_requests_bypass_the_proxy(address, monkeypatch):

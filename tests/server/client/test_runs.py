@@ -22,23 +22,16 @@ def test_a_spec_a_file_and_a_preset_are_submitted(client, spec, tmp_path):
     assert client.last().experiment == "gaits"
 
 
-def test_a_key_names_one_run(client, spec):
-    first = client.submit(spec, key="the same")
-    assert client.submit(spec, key="the same") == first
-    assert client.submit(spec) != first
-
-
-def test_a_run_whose_name_is_refused_is_not_queued(client, spec):
+def test_a_key_names_one_run_and_refused_names_and_presets_none(client, spec):
+    with pytest.raises(ValueError, match=r"quality-diversity/demo.*got nonsense"):
+        client.submit("nonsense")
     with pytest.raises(Refused, match="at most 200"):
         client.submit(spec, name="a" * 201)
     assert list(client.runs()) == []
     named = client.submit(spec, name=" one ", key="the same")
     assert client.submit(spec, name="another", key="the same").name == named.name == "one"
-
-
-def test_an_unknown_preset_is_refused_with_those_there_are(client):
-    with pytest.raises(ValueError, match=r"quality-diversity/demo.*got nonsense"):
-        client.submit("nonsense")
+    assert client.submit(spec, key="the same") == named
+    assert client.submit(spec) != named
 
 
 def test_invalid_fields_become_a_sentence(client, spec):
@@ -79,7 +72,9 @@ def test_a_list_goes_on_over_pages(client, spec, monkeypatch):
     assert list(client.runs(experiment=["gaits", "folding"])) == []
 
 
-def test_a_run_is_paused_resumed_changed_and_cancelled(run):
+def test_a_run_is_awaited_paused_resumed_changed_and_cancelled(run):
+    with pytest.raises(TimeoutError, match="it is queued"):
+        run.wait(timeout=0.05)
     assert run.pause().status == "paused"
     assert run.resume().status == "queued"
     assert run.change(tags=["a", "b"], note="why").record["tags"] == ["a", "b"]
@@ -89,14 +84,11 @@ def test_a_run_is_paused_resumed_changed_and_cancelled(run):
     assert run.wait(timeout=0) == "cancelled"
 
 
-def test_waiting_for_a_run_has_its_limits(run):
-    with pytest.raises(TimeoutError, match="it is queued"):
-        run.wait(timeout=0.05)
-
-
-def test_an_estimate_queues_nothing(client, spec):
+def test_the_client_lists_workers_and_experiments_and_estimates(client, spec):
+    assert client.workers() == []
+    assert {one["experiment"] for one in client.experiments()} >= {"gaits", "folding"}
     assert client.estimate(spec)["memory_bytes"] > 0
-    assert list(client.runs()) == []
+    assert list(client.runs()) == [], "an estimate queues nothing"
 
 
 def test_curves_are_columns(run, record):
@@ -111,6 +103,10 @@ def test_curves_are_columns(run, record):
 
 
 def test_an_archive_is_columns_and_creatures(run, record):
+    empty = run.archive()
+    assert len(empty) == 0
+    with pytest.raises(ValueError, match="has none yet"):
+        empty.best()
     record(1, {5: 1.0, 3: 2.0}, measures={"turning": 0.25})
     record(2, {5: 3.0}, measures={"turning": 0.5})
     archive = run.archive()
@@ -128,13 +124,6 @@ def test_an_archive_is_columns_and_creatures(run, record):
         archive.elite((0, 999))
 
 
-def test_an_archive_without_elites_has_no_best(run):
-    archive = run.archive()
-    assert len(archive) == 0
-    with pytest.raises(ValueError, match="has none yet"):
-        archive.best()
-
-
 def test_a_table_comes_as_rows(client, services, sweep_id, table):
     attempt = claim(services, sweep_id, "worker")
     attempt.record(table(1, {"number": 1, "speed": 0.5}, summary={"fastest": 0.5}), 1.0)
@@ -143,11 +132,6 @@ def test_a_table_comes_as_rows(client, services, sweep_id, table):
     assert found.summary == {"fastest": 0.5}
     with pytest.raises(NotFound, match="fills no archive"):
         client.run(str(sweep_id)).archive()
-
-
-def test_the_client_lists_workers_and_experiments(client, run_id):
-    assert client.workers() == []
-    assert {one["experiment"] for one in client.experiments()} >= {"gaits", "folding"}
 
 
 def test_the_client_sends_its_token(serve, monkeypatch):

@@ -79,11 +79,15 @@ def test_the_order_of_parents_decides_which_ancestors_are_listed(api, bring):
         assert found["more"]
 
 
-def test_a_missing_parent_is_listed_by_hash(api, bring, identity):
+def test_a_missing_parent_is_listed_by_hash(api, bring, identity, enter):
     child = bring(2, 1)
     (only,) = api.get(f"creatures/{child}/ancestors").json()["items"]
     assert only["creature"] == creature.name(identity(1))
     assert (only["kept"], only["fitness"], only["operator"]) == (False, None, None)
+    parent = "ab" * 32
+    elite = enter(1, 1.25, parent)
+    (only,) = api.get(f"creatures/{elite}/ancestors").json()["items"]
+    assert (only["creature"], only["kept"]) == (parent, False)
 
 
 def test_children_are_counted_and_named_once_each(api, bring):
@@ -121,13 +125,6 @@ def test_children_are_named_best_first_and_unmeasured_ones_last(api, bring, ente
     assert names(found) == [*best, unmeasured]
     few = api.get(f"creatures/{parent}/children", params={"limit": 2}).json()
     assert (few["total"], names(few)) == (6, best[:2])
-
-
-def test_elites_of_a_run_are_linked_to_their_parents(api, enter):
-    parent = "ab" * 32
-    elite = enter(1, 1.25, parent)
-    (only,) = api.get(f"creatures/{elite}/ancestors").json()["items"]
-    assert (only["creature"], only["kept"]) == (parent, False)
 
 
 def test_a_creature_as_hdf5_is_complete_and_always_the_same_bytes(api, bring):

@@ -46,22 +46,16 @@ def test_each_form_is_for_ever_and_has_a_name(api, known, form):
     assert f"network-{sha[:12]}.{form}" in answer.headers["content-disposition"]
 
 
-def test_the_picture_is_xml_and_the_graph_holds_the_connection(api, known):
+def test_the_forms_hold_the_network(api, known):
     sha = known()
     picture = ElementTree.fromstring(api.get(f"creatures/{sha}/network.svg").text)
     assert picture.tag == "{http://www.w3.org/2000/svg}svg"
     assert re.search(r"1 -> 3", api.get(f"creatures/{sha}/network.dot").text)
-
-
-def test_the_code_computes_what_the_weight_says(api, known):
     space = {}
-    exec(api.get(f"creatures/{known()}/network.py").text, space)
+    exec(api.get(f"creatures/{sha}/network.py").text, space)
     given = np.array([[0.3], [0.25], [0.7]])
     np.testing.assert_allclose(space["network"](given), [[0.5], [0.0]])
-
-
-def test_the_genome_holds_nodes_and_connections(api, known):
-    data = api.get(f"creatures/{known()}/network.npz").content
+    data = api.get(f"creatures/{sha}/network.npz").content
     with np.load(io.BytesIO(data)) as genome:
         assert {"nodes", "conns"} <= set(genome.files)
 

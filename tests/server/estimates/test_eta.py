@@ -39,7 +39,7 @@ def test_no_time_is_estimated_without_measured_runs(api, spec, measured):
     assert ask(api, spec)["seconds"] is None
 
 
-def test_a_run_like_an_earlier_one_takes_as_long(api, spec, measured):
+def test_an_estimate_scales_an_earlier_run_except_for_compilation(api, spec, measured):
     measured(spec, 0.5, first=10.0)
     found = ask(api, spec)
     generations = spec["search"]["generations"]
@@ -47,13 +47,8 @@ def test_a_run_like_an_earlier_one_takes_as_long(api, spec, measured):
     assert found["speed"]["runs"] == 1
     rate = found["speed"]["cell_steps_per_second"]
     assert rate == pytest.approx(estimate(parse(spec)).cell_steps / generations / 0.5)
-
-
-def test_twice_the_work_takes_twice_as_long_compiling_aside(api, spec, measured):
-    measured(spec, 0.5, first=10.0)
-    once = ask(api, spec)["seconds"]
     spec["search"]["generations"] *= 2
-    assert ask(api, spec)["seconds"] - 9.5 == pytest.approx(2 * (once - 9.5))
+    assert ask(api, spec)["seconds"] - 9.5 == pytest.approx(2 * (found["seconds"] - 9.5))
 
 
 def test_several_runs_give_a_median_and_a_range(api, spec, measured):
@@ -125,16 +120,13 @@ def test_a_creature_that_is_refined_is_drawn(api, identity):
     assert [(body["name"], body["nodes"]) for body in found["bodies"]] == [("chain", 16)]
 
 
-def test_a_long_body_is_thinned(api):
+def test_large_drawings_are_thinned(api):
     world = {"width": 2048, "height": 2048}
     walk = {"builder": "walk", "nodes": 4000, "deviation": 0.05}
     folds = {"experiment": "folding", "world": world, "body": walk, "memory": 100}
     (body,) = ask(api, folds)["drawing"]["bodies"]
     assert body["nodes"] == 4000
     assert 500 < len(body["positions"]) < 1100
-
-
-def test_a_wide_drawing_stays_small(api):
     answer = api.post("runs/estimate", json={"experiment": "scaling"})
     assert len(answer.content) < 100_000
     assert answer.json()["drawing"]["bodies"][1]["nodes"] == 500_000

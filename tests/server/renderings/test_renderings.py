@@ -7,6 +7,7 @@ import httpx
 import numpy as np
 import pytest
 from answers import detail
+from reports import replay
 from sqlalchemy import select
 
 from microcosmos.archive import creature
@@ -78,12 +79,25 @@ def test_a_film_is_saved_under_the_creatures_name(api, services, known):
     assert answer.headers["content-disposition"] == expected
 
 
-def test_a_failed_kind_leaves_the_others(api, services, known):
+@pytest.mark.parametrize(
+    ("raised", "reported"),
+    [
+        ("ValueError: too large to refine", "ValueError: too large"),
+        (
+            "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)",
+            "OperationalError: database is locked. It can",
+        ),
+    ],
+)
+def test_a_failed_kind_reports_its_error_and_leaves_the_others(
+    api, services, known, raised, reported
+):
     services.jobs.render(known, "audit")
     job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
-    services.jobs.give_up(job, "Traceback\nValueError: too large to refine\n")
-    answer = api.get(f"creatures/{known}/audit")
-    assert "The audit could not be made: ValueError: too large" in detail(answer, 500)
+    services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
+    found = detail(api.get(f"creatures/{known}/audit"), 500)
+    assert "The audit could not be made: " in found
+    assert reported in found
     assert api.get(f"creatures/{known}/film.gif").status_code == 202
 
 
@@ -93,15 +107,6 @@ def test_replays_are_rendered_first(services, known):
     waiting = services.jobs.renderings.get_job_ids()
     kinds = [services.jobs.find(job_id).args[1] for job_id in waiting]
     assert kinds == ["replay", "film.mp4"], "and no audit before or among them"
-
-
-def test_a_failure_is_reported_by_the_first_line_of_its_error(api, services, known):
-    services.jobs.render(known, "audit")
-    job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
-    raised = "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)"
-    services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
-    detail = api.get(f"creatures/{known}/audit").json()["detail"]
-    assert "OperationalError: database is locked. It can" in detail
 
 
 def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
@@ -118,24 +123,6 @@ def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
     assert api.get(f"creatures/{known}/replay").content == b"of now again"
 
 
-def recorded(positions: np.ndarray) -> bytes:
-    """A replay with these positions, (frame, node, 2), and some fluid behind them."""
-    frames, nodes, _ = positions.shape
-    header = {
-        "format": "microcosmos-replay/2",
-        "frames": frames,
-        "every": 5,
-        "steps": 5 * (frames - 1),
-        "nodes": nodes,
-        "edges": [[0, 1], [1, 2]],
-        "size": [8, 4],
-        "vorticity": {"scale": 1.0},
-    }
-    told = json.dumps(header).encode()
-    fluid = np.ones((frames, 8, 4), np.int8).tobytes()
-    return struct.pack("<I", len(told)) + told + positions.astype("<f4").tobytes() + fluid
-
-
 def read(data: bytes) -> tuple[dict, np.ndarray]:
     (length,) = struct.unpack_from("<I", data)
     header = json.loads(data[4 : 4 + length])
@@ -146,7 +133,7 @@ def read(data: bytes) -> tuple[dict, np.ndarray]:
 @pytest.mark.parametrize(("frames", "stride"), [(7, 1), (96, 1), (97, 2), (1001, 11)])
 def test_a_motion_is_every_kth_frame_of_the_replay(api, services, known, frames, stride):
     positions = np.random.default_rng(0).normal(size=(frames, 3, 2)).astype(np.float32)
-    renderings.save(services, known, REPLAY, recorded(positions))
+    renderings.save(services, known, REPLAY, replay(positions))
     answer = api.get(f"creatures/{known}/motion")
     header, motion = read(answer.content)
     np.testing.assert_array_equal(motion, positions[::stride])

@@ -70,21 +70,23 @@ def test_a_failed_attempt_logs_its_traceback_and_the_next_its_start(
     attempt.fail("Traceback:\nZeroDivisionError: twice nothing")
     claim(services, run_id, "another")
     assert log()[-4:] == [
-        (
-            "error",
-            1,
-            "Attempt 1 ended badly: Traceback:\nZeroDivisionError: twice nothing",
-        ),
+        ("error", 1, "Attempt 1 ended badly: Traceback:\nZeroDivisionError: twice nothing"),
         ("info", 1, "Queued for another attempt."),
         ("info", 2, "Attempt 2 begins on worker another, from the checkpoint of generation 1."),
         ("warning", 2, "Went back: what was recorded of generations 2 to 3 is dropped."),
     ]
 
 
-def test_the_log_names_the_last_attempt(services, run_id, log):
-    for _ in range(lifecycle.ATTEMPTS):
+def test_the_log_names_stopped_workers_dead_jobs_and_the_last_attempt(services, run_id, log):
+    claim(services, run_id, "worker").requeue()
+    texts = [text for _, _, text in log()]
+    assert texts[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
+    claim(services, run_id, "worker")
+    leases.job_ended(services, run_id, "worker", "killed by signal 9")
+    assert ("error", 2, "Attempt 2 ended badly: killed by signal 9") in log()
+    for _ in range(lifecycle.ATTEMPTS - 1):
         claim(services, run_id, "worker").fail("no luck")
-    assert log()[-1] == ("error", 3, "Failed: 3 attempts without a new checkpoint.")
+    assert log()[-1] == ("error", 4, "Failed: 3 attempts without a new checkpoint.")
 
 
 def test_the_log_has_requests_and_their_completion(run_id, api, texts, attempt, record):
@@ -101,17 +103,6 @@ def test_the_log_has_requests_and_their_completion(run_id, api, texts, attempt, 
         "Resumed: queued again.",
         "Cancelled.",
     ]
-
-
-def test_the_log_names_a_stopped_worker(services, run_id, texts):
-    claim(services, run_id, "worker").requeue()
-    assert texts()[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
-
-
-def test_the_log_names_a_dead_job(services, run_id, log):
-    claim(services, run_id, "worker")
-    leases.job_ended(services, run_id, "worker", "killed by signal 9")
-    assert ("error", 1, "Attempt 1 ended badly: killed by signal 9") in log()
 
 
 def test_a_refused_action_leaves_no_entry(run_id, api, texts):

@@ -1,7 +1,6 @@
 """Progress of runs: steering, curves, species and the targets of a folding."""
 
 import base64
-import json
 from concurrent.futures import ThreadPoolExecutor
 from uuid import uuid4
 
@@ -51,17 +50,23 @@ def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run
 
 
 def test_forbidden_actions_are_conflicts_with_a_reason(api, services, run_id):
-    answer = api.post(f"runs/{run_id}/resume")
-    assert detail(answer, 409) == "to resume a run it must be paused; it is queued"
+    refused = detail(api.post(f"runs/{run_id}/resume"), 409)
+    assert refused == "to resume a run it must be paused; it is queued"
     claim(services, run_id, "worker").finish()
     for action in ("pause", "resume", "cancel"):
         assert "it is finished" in detail(api.post(f"runs/{run_id}/{action}"), 409)
+        assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
+        assert api.post(f"runs/nonsense/{action}").status_code == 422
 
 
 def test_progress_is_what_was_recorded(api, run_id, attempt, record):
+    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
     attempt.use("a device")
-    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
-        record(generation, seconds=seconds)
+    record(1, seconds=20.0)
+    with_compilation = api.get(f"runs/{run_id}").json()["evaluations_per_second"]
+    assert with_compilation == 16 / 20
+    record(2, seconds=6.0)
+    record(3, seconds=2.0)
     run = api.get(f"runs/{run_id}").json()
     assert run["generation"] == 3
     assert run["progress"] == 3 / run["generations"]
@@ -70,19 +75,9 @@ def test_progress_is_what_was_recorded(api, run_id, attempt, record):
     assert run["eta_seconds"] == (run["generations"] - 3) * 16 / 8
     assert run["sparkline"] == [10, 20, 30]
     assert run["device"] == "a device"
-
-
-def test_the_final_rate_excludes_the_first_generation(api, run_id, attempt, record):
-    for generation, seconds in ((1, 20.0), (2, 6.0), (3, 2.0)):
-        record(generation, seconds=seconds)
     attempt.finish()
-    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 32 / 8
-
-
-def test_the_rate_of_one_generation_includes_compilation(api, run_id, record):
-    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
-    record(1, seconds=20.0)
-    assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] == 16 / 20
+    without_the_first = api.get(f"runs/{run_id}").json()["evaluations_per_second"]
+    assert without_the_first == 32 / 8
 
 
 def test_curves_are_columns_of_all_or_some_generations(api, run_id, record):
@@ -105,12 +100,6 @@ def test_concurrent_actions_do_not_block_each_other(api, run_id):
     assert sorted(answer.status_code for answer in answers) == [202] + 23 * [409]
 
 
-def test_an_unknown_run_cannot_be_steered(api):
-    for action in ("pause", "resume", "cancel"):
-        assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
-        assert api.post(f"runs/nonsense/{action}").status_code == 422
-
-
 @pytest.fixture
 def told(record):
     """Twelve generations, of which every fifth tells a score."""
@@ -121,30 +110,23 @@ def told(record):
         record(generation, summary=summary)
 
 
-def test_curves_contain_the_numbers_of_summaries(api, run_id, told):
+def test_curves_and_events_contain_the_numbers_of_summaries(api, run_id, told, published):
     curves = api.get(f"runs/{run_id}/generations").json()
     assert curves["generation"] == list(range(1, 13))
     assert list(curves["summary"]) == ["inserted", "corrected"]
     assert curves["summary"]["inserted"] == curves["generation"]
     known = dict(zip(curves["generation"], curves["summary"]["corrected"], strict=True))
     assert {g: value for g, value in known.items() if value is not None} == {5: 2.5, 10: 5.0}
-
-
-def test_thinned_curves_keep_occasional_values(api, run_id, told):
-    curves = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()
-    assert curves["generation"] == [1, 7, 12]
-    assert curves["summary"] == {"inserted": [1, 7, 12], "corrected": [None, 2.5, 5.0]}
+    thin = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()
+    assert thin["generation"] == [1, 7, 12]
+    assert thin["summary"] == {"inserted": [1, 7, 12], "corrected": [None, 2.5, 5.0]}
+    events = [data for kind, data in published() if kind == "generation"]
+    assert [event["summary"].get("corrected") for event in events[3:6]] == [None, 2.5, None]
 
 
 def test_curves_without_summaries_have_no_other_columns(api, run_id, record):
     record(1)
     assert api.get(f"runs/{run_id}/generations").json()["summary"] == {}
-
-
-def test_events_of_generations_carry_the_summary(services, run_id, told):
-    entries = services.redis.xrange(services.events.stream)
-    events = [json.loads(e[b"data"]) for _, e in entries if e[b"event"] == b"generation"]
-    assert [event["summary"].get("corrected") for event in events[3:6]] == [None, 2.5, None]
 
 
 def test_a_run_that_ended_early_is_done(api, run_id, attempt, record):
@@ -159,13 +141,12 @@ def test_species_are_listed_by_generation(api, run_id, record):
     record(1, summary={"species": "0:10 3:6"})
     record(2, summary={"device_seconds": 1.0})
     record(3, summary={"species": "3:16"})
-    assert api.get(f"runs/{run_id}/species").json() == {
-        "generation": [1, 3],
-        "number": [[0, 3], [3]],
-        "members": [[10, 6], [16]],
-    }
-    thin = api.get(f"runs/{run_id}/species", params={"points": 2}).json()
-    assert thin["generation"] == [1, 3]
+    for query in ({}, {"points": 2}):
+        assert api.get(f"runs/{run_id}/species", params=query).json() == {
+            "generation": [1, 3],
+            "number": [[0, 3], [3]],
+            "members": [[10, 6], [16]],
+        }
 
 
 def test_a_run_without_species_has_none(api, run_id, record):
@@ -184,20 +165,13 @@ def test_thinned_curves_sum_reasons_of_divergence(api, run_id, record):
     assert columns["inserted"][-1] == 10
 
 
-@pytest.fixture
-def fold_id(services):
+def test_targets_are_scaled_as_the_filaments_see_them(api, services, run_id):
     presets = {preset.name: preset.spec for preset in EXPERIMENTS["folding"].presets}
-    return submit(services, presets["demo"])[0].id
-
-
-def test_targets_are_scaled_as_the_filaments_see_them(api, fold_id):
+    fold_id = submit(services, presets["demo"])[0].id
     first, second = api.get(f"runs/{fold_id}/targets").json()
     assert (first["name"], second["name"]) == ("3", "7")
     assert (first["width"], first["height"], first["size"]) == (32, 32, 32)
     ink = targets.decoded(first["pixels"], 32, 32)
     assert abs(ink - targets.fitted(targets.digit(3), 32)).max() < 1 / 255
     assert base64.b64decode(first["pixels"]) != base64.b64decode(second["pixels"])
-
-
-def test_a_run_without_targets_has_no_pictures(api, run_id):
     assert "folds nothing" in detail(api.get(f"runs/{run_id}/targets"), 404)

@@ -133,9 +133,13 @@ def test_a_body_that_is_not_json_is_refused_without_parser_words(api, body):
     assert detail.startswith("JSON is needed; the body ") or "object is needed" in detail
 
 
-def test_a_malformed_id_is_answered_with_an_example(api):
-    answer = api.get("runs/abc")
-    assert detail(answer, 422) == (
+def test_invalid_queries_and_missing_paths_answer_with_problems(api):
+    assert api.get("runs", params={"cursor": "nonsense"}).status_code == 422
+    assert fields(api.get("runs", params={"limit": 0}))[0] == "limit"
+    for path in ("runs/00000000-0000-0000-0000-000000000000", "nothing"):
+        answer = api.get(path)
+        assert (answer.status_code, answer.headers["content-type"]) == (404, PROBLEM), path
+    assert detail(api.get("runs/abc"), 422) == (
         "run_id: needs an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427; got 'abc'"
     )
 
@@ -207,18 +211,6 @@ def test_runs_are_listed_newest_first_in_pages(api, spec):
     api.post(f"runs/{ids[2]}/cancel")
     found = api.get("runs", params={"status": "cancelled"}).json()["items"]
     assert [run["id"] for run in found] == [ids[2]]
-
-
-def test_invalid_queries_are_refused(api):
-    assert api.get("runs", params={"cursor": "nonsense"}).status_code == 422
-    assert fields(api.get("runs", params={"limit": 0}))[0] == "limit"
-
-
-@pytest.mark.parametrize("path", ["runs/00000000-0000-0000-0000-000000000000", "nothing"])
-def test_missing_paths_answer_with_a_problem(api, path):
-    answer = api.get(path)
-    assert answer.status_code == 404
-    assert answer.headers["content-type"] == PROBLEM
 
 
 def test_a_database_without_a_free_connection_is_unavailable(api, run_id, monkeypatch):

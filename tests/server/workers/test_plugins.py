@@ -177,10 +177,7 @@ def test_the_job_is_queued_for_its_plug_in_version(api, services, have, mine, sp
     for plugin_versions in (set(), {B}):
         assert [
             queue.get_job_ids() for queue in runnable_queues(services, plugin_versions)
-        ] == [
-            [second],
-            [],
-        ]
+        ] == [[second], []]
 
 
 def test_a_run_names_the_plug_in_it_waits_for(api, services, have, mine):

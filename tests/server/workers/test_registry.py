@@ -43,25 +43,20 @@ def test_a_worker_reports_its_device_load_and_run(api, spec, run_id, alive, reco
 
 
 def test_since_changes_with_the_workers_status(api, run_id, alive):
-    def since():
-        return api.get("workers").json()[0]["since"]
+    def read():
+        return api.get("workers").json()[0]
 
-    alive(load=0.0)
-    first = since()
-    alive(load=1.0)
-    assert since() == first
-    alive(status="busy")
-    second = since()
-    assert second > first
-    alive(status="busy", run=run_id)
-    assert since() > second
-
-
-def test_an_idle_worker_has_no_run(api, alive):
     alive()
-    (found,) = api.get("workers").json()
-    assert (found["status"], found["run"], found["current_run"]) == ("idle", None, None)
-    assert (found["memory_used_bytes"], found["load"]) == (None, None)
+    idle = read()
+    assert (idle["status"], idle["run"], idle["current_run"]) == ("idle", None, None)
+    assert (idle["memory_used_bytes"], idle["load"]) == (None, None)
+    alive(load=1.0)
+    assert read()["since"] == idle["since"]
+    alive(status="busy")
+    second = read()["since"]
+    assert second > idle["since"]
+    alive(status="busy", run=run_id)
+    assert read()["since"] > second
 
 
 def test_the_queue_lists_waiting_runs_in_order(api, services, spec, alive):
@@ -92,8 +87,16 @@ def test_a_run_has_the_time_since_when_it_is_queued(api, services, run_id):
     assert api.post(f"runs/{run_id}/resume").json()["queued_at"] > first["queued_at"]
 
 
-def test_without_a_worker_a_run_says_how_to_start_one(run_id, waiting):
+def test_only_runs_that_are_queued_wait(api, services, run_id, waiting, report):
     assert "`make run` or `python -m worker.supervisor`" in waiting(run_id)
+    api.post(f"runs/{run_id}/pause")
+    assert waiting(run_id) is None
+    api.post(f"runs/{run_id}/resume")
+    attempt = claim(services, run_id, "worker")
+    assert waiting(run_id) is None
+    attempt.record(report(1), 1.0)
+    attempt.finish()
+    assert waiting(run_id) is None
 
 
 def test_a_queued_run_names_busy_workers_and_its_position(api, services, spec, alive, waiting):
@@ -141,18 +144,6 @@ def test_a_run_that_no_worker_can_hold_says_how_much_it_needs(api, spec, alive, 
     assert waiting(run) == words
     alive("large", memory=needed)
     assert waiting(run) == "A worker is free; this run is next."
-
-
-def test_only_runs_that_are_queued_wait(api, services, run_id, waiting, report):
-    assert waiting(run_id)
-    api.post(f"runs/{run_id}/pause")
-    assert waiting(run_id) is None
-    api.post(f"runs/{run_id}/resume")
-    attempt = claim(services, run_id, "worker")
-    assert waiting(run_id) is None
-    attempt.record(report(1), 1.0)
-    attempt.finish()
-    assert waiting(run_id) is None
 
 
 def test_a_list_asks_the_queue_once_however_many_runs_wait(api, services, spec, alive):

@@ -25,22 +25,12 @@ const SignInPage = lazy(async () => (await import("../settings/SignInPage")).Sig
 const SweepPage = lazy(async () => (await import("../sweeps/SweepPage")).SweepPage);
 const WorkersPage = lazy(async () => (await import("../workers/WorkersPage")).WorkersPage);
 
-const TITLES: Record<string, string> = {
-  runs: text.runs,
-  new: text.newRun,
-  compare: text.compare,
-  workers: text.workers,
-  shares: text.shares,
-  settings: text.settings,
-  unknown: text.notFound,
-};
-
 export function App() {
   const place = useLocation();
   const { page } = place.route;
   const signedOut = useSignedOut();
   useEffect(() => void loadPrincipal(), []);
-  useTitle(signedOut ? text.signIn : (TITLES[page] ?? null));
+  useTitle(signedOut ? text.signIn : ((text.titles as Record<string, string>)[page] ?? null));
   return (
     <>
       <header class="top">
@@ -66,18 +56,17 @@ export function Brand({ target }: { target?: string }) {
   );
 }
 
-/** Links of the navigation, in order; a link without a page leaves the application. */
+/** Links of the navigation; a link without a page leaves the application. */
 const LINKS: [href: string, name: string, page: string | null][] = [
-  ["/", text.runs, "runs"],
-  ["/new", text.newRun, "new"],
-  ["/workers", text.workers, "workers"],
-  ["/shares", text.shares, "shares"],
+  ["/", text.titles.runs, "runs"],
+  ["/new", text.titles.new, "new"],
+  ["/workers", text.titles.workers, "workers"],
+  ["/shares", text.titles.shares, "shares"],
   ["/commons", text.commons, null],
-  ["/settings", text.settings, "settings"],
+  ["/settings", text.titles.settings, "settings"],
 ];
 const HELP: (typeof LINKS)[0] = ["/help/", text.help, null];
 
-/** The navigation of a signed-in user. */
 function Navigation({ page }: { page: string }) {
   const refusal = useRefusal();
   const health = useFetched(readHealth, []);
@@ -134,15 +123,9 @@ function RoutedPage({ route, query }: PageLocation) {
   }
 }
 
-const CONNECTIONS = {
-  connecting: text.connecting,
-  live: text.live,
-  lost: text.lost,
-};
-
 function Connection() {
   const connection = useStore((state) => state.connection);
-  const status = CONNECTIONS[connection];
+  const status = text.connections[connection];
   return (
     <span class={`connection ${connection}`} role="status" title={status}>
       <span class="dot" aria-hidden="true" />

@@ -15,7 +15,6 @@ import { Card, Empty, Page } from "../ui/Page";
 import { type Compared, Figures, Specs } from "./Tables";
 import { CurveOptions } from "../charts/curves/CurveOptions";
 import { text } from "./text";
-import "./compare.css";
 
 export function ComparePage({ query }: { query: URLSearchParams }) {
   const asked = [...new Set((query.get("runs") ?? "").split(",").filter(Boolean))];
@@ -42,12 +41,12 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
         </Empty>
       )}
       {runs.length > 0 && (
-        <div class="compare">
+        <>
           <Legend runs={runs} ids={ids} />
           <Plots runs={runs} curves={curves ?? new Map()} query={query} />
           <Figures runs={runs} />
           <Specs runs={runs} />
-        </div>
+        </>
       )}
     </Page>
   );
@@ -91,7 +90,7 @@ function Plots({ runs, curves, query }: PlotsProps) {
     return own ? [{ name, colour: colourOf(place), dash: dashOf(place), curves: own }] : [];
   });
   return (
-    <Card id="curves" title={text.curves}>
+    <Card id="curves" kind="wide-curves" title={text.curves}>
       <CurveOptions look={look} />
       <Curves plots={overlayPlots(oneLinePerRun, drawn, look)} x={NO_X} look={look} />
     </Card>
@@ -101,6 +100,5 @@ function Plots({ runs, curves, query }: PlotsProps) {
 /** Each run has its own x values. */
 const NO_X: readonly number[] = [];
 
-/** One line a run. */
 const oneLinePerRun = (curves: Columns): Plot[] =>
   scoresOf(curves).map((plot) => ({ ...plot, series: plot.series.slice(0, 1) }));

@@ -54,14 +54,12 @@ export function Specs({ runs }: { runs: Compared[] }) {
 
 interface RunTableProps {
   runs: Compared[];
-  /** The title of the first column. */
   corner: string;
   rows: { title: string; values: string[] }[];
   /** True if the titles are paths of the spec. */
   code?: boolean;
 }
 
-/** A table with one column for each run. */
 function RunTable({ runs, corner, rows, code = false }: RunTableProps) {
   const columns = runs.map(({ name, place }, i) => ({
     title: (

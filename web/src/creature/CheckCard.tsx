@@ -19,15 +19,14 @@ interface Props {
 }
 
 export function CheckCard({ name, title, verdict, button, onStart, running, note, error, children }: Props) {
-  const head = (
-    <>
-      {verdict && <span class={`badge ${verdict[0]}`}>{verdict[1]}</span>}
-      <span class="spring" />
-      {button && <button onClick={onStart}>{button}</button>}
-    </>
-  );
   return (
-    <Card id={name} title={title} kind={name} head={head}>
+    <Card
+      id={name}
+      title={title}
+      kind={name}
+      note={verdict && <span class={`badge ${verdict[0]}`}>{verdict[1]}</span>}
+      actions={button && <button onClick={onStart}>{button}</button>}
+    >
       {running && !error && (
         <p class="quiet" role="status">
           {note ? text.retrying(note) : running}

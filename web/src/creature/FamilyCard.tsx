@@ -31,14 +31,11 @@ export function FamilyCard({ creature, query }: Props) {
     sharedSlug && !run ? null : pageUrl(`/creatures/${name}${run ? `?run=${run}` : ""}`);
   const credited = value ? creditOf(value[0].items, creature) : [];
   const lost = value?.[0].items.some(({ kept }) => !kept);
-  const head = value?.[0].more && back < FARTHEST && (
-    <>
-      <span class="spring" />
-      <button onClick={() => setQuery({ back: String(back + FURTHER) })}>{text.moreAncestors}</button>
-    </>
+  const more = value?.[0].more && back < FARTHEST && (
+    <button onClick={() => setQuery({ back: String(back + FURTHER) })}>{text.moreAncestors}</button>
   );
   return (
-    <Card id="family" title={sharedSlug ? text.ancestors : text.family} head={head}>
+    <Card id="family" title={sharedSlug ? text.ancestors : text.family} actions={more}>
       {error && (
         <p class="banner wrong">
           {error} {text.reload}

@@ -39,19 +39,16 @@ interface Props {
 
 export function SpaceTimeCard({ replay, query, moment }: Props) {
   const quantity = query.get("shape") === "lengths" ? "lengths" : "angles";
-  const head = (
-    <>
-      <span class="spring" />
-      <Segments
-        label={text.shapeView}
-        choices={TITLES}
-        value={quantity}
-        onChoose={(name) => setQuery({ shape: name === "angles" ? null : name })}
-      />
-    </>
+  const view = (
+    <Segments
+      label={text.shapeView}
+      choices={TITLES}
+      value={quantity}
+      onChoose={(name) => setQuery({ shape: name === "angles" ? null : name })}
+    />
   );
   return (
-    <Card id="shape" title={text.shape} head={head}>
+    <Card id="shape" title={text.shape} actions={view}>
       <SpaceTime {...{ replay, quantity, moment }} />
     </Card>
   );

@@ -1,18 +1,15 @@
 /** The base of the spec, the number of changes, and undo. */
 
-import { importCreature } from "../api/client";
 import type { Experiment } from "../api/types";
 import { formatCells } from "../store/cellRanges";
 import type { Base, ForkSource, Draft } from "../store/draft";
-import { showFailure } from "../store/toasts";
-import { navigate } from "../store/router";
 import { equalPreset } from "./form/changes";
+import { openCreature } from "../ui/DropTarget";
 import { count, short } from "../ui/format";
 import { titleOfBase } from "./sources";
 import type { DraftState } from "./draftState";
 import { text } from "./text";
 
-/** A creature from a file, which may be unknown to this server. */
 export interface CreatureFile {
   sha: string;
   text: string;
@@ -30,7 +27,7 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
   const { size } = draft.changed;
   const equal = size > 0 || base.kind !== "preset" ? equalPreset(spec, experiments) : null;
   return (
-    <p class="base-bar" role="status">
+    <p class="base-bar row" role="status">
       <span>
         {draft.restored && text.restoredDraft}
         {text.changes(size)} <BaseName base={base} />
@@ -38,7 +35,7 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
         {equal && text.equalPreset(equal.name)}.
       </span>
       {base.fork && (
-        <span class="base-fork">
+        <span class="row">
           <ForkSourceText fork={base.fork} />
           <button type="button" class="plain" onClick={draft.dropFork}>
             {text.startRandom}
@@ -51,7 +48,7 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
         </button>
       )}
       {file && base.name === file.sha && (
-        <button type="button" class="plain" onClick={() => void open(file)}>
+        <button type="button" class="plain" onClick={() => void openCreature(jsonFile(file.text))}>
           {text.openCreature}
         </button>
       )}
@@ -85,19 +82,12 @@ function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { for
   );
 }
 
+const jsonFile = (text: string) => new File([text], "", { type: "application/json" });
+
 const PAGES = { run: "runs", creature: "creatures" };
 
 function BaseName({ base }: { base: Base }) {
   const page = PAGES[base.kind as keyof typeof PAGES];
   if (!page || base.foreign) return <b>{titleOfBase(base)}</b>;
   return <a href={`/${page}/${base.name}`}>{titleOfBase(base)}</a>;
-}
-
-async function open(file: CreatureFile): Promise<void> {
-  try {
-    const { creature } = await importCreature(new Blob([file.text], { type: "application/json" }));
-    navigate(`/creatures/${creature}`);
-  } catch (error) {
-    showFailure(error);
-  }
 }

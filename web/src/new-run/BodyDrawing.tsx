@@ -6,18 +6,8 @@ import { GRID, branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
 import { count, words } from "../ui/format";
 import { text } from "./text";
 
-interface Props {
-  drawing: Drawing | null;
-}
-
-export function BodyDrawing({ drawing }: Props) {
-  if (!drawing) {
-    return (
-      <div class="body-drawing">
-        <p class="quiet">{text.noDrawing}</p>
-      </div>
-    );
-  }
+export function BodyDrawing({ drawing }: { drawing: Drawing | null }) {
+  if (!drawing) return <p class="body-drawing quiet">{text.noDrawing}</p>;
   const { width, height, bodies, pictures } = drawing;
   return (
     <figure class="body-drawing">
@@ -27,7 +17,7 @@ export function BodyDrawing({ drawing }: Props) {
         ))}
       </div>
       {pictures.length > 0 && (
-        <div class="targets" role="group" aria-label={text.targets}>
+        <div class="targets row" role="group" aria-label={text.targets}>
           {pictures.map((picture) => (
             <Target key={picture.name} picture={picture} />
           ))}
@@ -40,7 +30,7 @@ export function BodyDrawing({ drawing }: Props) {
 
 function World({ body, drawing }: { body: DrawnBody; drawing: Drawing }) {
   const { width, height, picture_size: side } = drawing;
-  // A thin line on the screen, in cells.
+  // Width of a thin line, in cells.
   const thin = (Math.max(width, height) / 300) * Math.min(2, drawing.bodies.length);
   const clip = `world-${body.name.replace(/\W/g, "-")}`;
   const label = `${words(body.name)}: ${caption(body)}`;
@@ -58,12 +48,9 @@ function World({ body, drawing }: { body: DrawnBody; drawing: Drawing }) {
         <rect class="water" width={width} height={height} />
         <rect width={width} height={height} fill={`url(#${clip}-grid)`} />
         {side > 0 && (
-          <rect
+          <path
             class="target-place"
-            x={(width - side) / 2}
-            y={(height - side) / 2}
-            width={side}
-            height={side}
+            d={`M${(width - side) / 2} ${(height - side) / 2}h${side}v${side}h-${side}z`}
             stroke-width={2 * thin}
             stroke-dasharray={`${6 * thin}`}
           />

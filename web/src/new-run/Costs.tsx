@@ -9,12 +9,10 @@ import { text } from "./text";
 
 interface Props {
   estimate: Estimate | SweepEstimate | null;
-  /** The number of runs. */
   runs?: number;
   problem: string | null;
 }
 
-/** The estimate in short, beside the start button. */
 export function Costs({ estimate, runs = 1, problem }: Props) {
   if (problem || !estimate) {
     return (
@@ -27,7 +25,7 @@ export function Costs({ estimate, runs = 1, problem }: Props) {
   const { queue, seconds } = estimate;
   const shared = runs > 1 && seconds !== null && queue.workers > 1;
   return (
-    <dl class="costs" aria-label={text.estimate}>
+    <dl class="costs row" aria-label={text.estimate}>
       <Cost name={runs > 1 ? text.timeOfRuns(count(runs)) : text.time}>
         {about(estimate) ?? text.unknown}
         {shared && <span class="quiet">{text.onWorkers(queue.workers, rough(seconds / queue.workers))}</span>}
@@ -57,7 +55,6 @@ function Cost({ name, wrong = false, children }: CostProps) {
   );
 }
 
-/** The estimate in full, with its basis. */
 export function CostDetails({ estimate }: { estimate: Estimate }) {
   const { memory_bytes, memory_limit_bytes, evaluations, cell_steps, speed } = estimate;
   const fits = memory_bytes <= memory_limit_bytes;
@@ -82,7 +79,6 @@ function Detail({ value, about, wrong = false }: { value: string; about: string;
   );
 }
 
-/** A rounded duration. */
 export function rough(seconds: number): string {
   if (seconds < 10) return "10 s";
   if (seconds < 90) return `${5 * Math.round(seconds / 5)} s`;
@@ -100,7 +96,6 @@ export function about({ seconds }: Pick<Estimate, "seconds">): string | null {
 /** The range is shown if the slowest and the fastest earlier run differ by this factor. */
 const WIDE = 1.5;
 
-/** The basis of the estimated time. */
 export function basis({ speed }: Estimate): string {
   if (!speed) return text.noPace;
   const [low, high] = [rough(speed.low), rough(speed.high)];
@@ -109,7 +104,6 @@ export function basis({ speed }: Estimate): string {
   return text.basis(speed.device, text.basedOn(speed.runs), range);
 }
 
-/** The reason why the run has to wait. */
 export function wait({ queue }: Estimate): string {
   const { runs_ahead, workers, idle_workers } = queue;
   if (workers === 0) return text.noWorker;

@@ -79,7 +79,6 @@ interface SpecProps extends Props {
   onProblem: (problem: string | null) => void;
 }
 
-/** The spec as a form or as JSON, and the switch between both. */
 function SpecView({ editor, illegible, onProblem, draft, current, view, show, take, replacing }: SpecProps) {
   const { form, state, forking, errors } = editor;
   const parts = useMemo(() => partsOf(form), [form]);
@@ -94,7 +93,7 @@ function SpecView({ editor, illegible, onProblem, draft, current, view, show, ta
           </button>
         )}
       </div>
-      {view === "form" && <SpecForm form={form} state={state} />}
+      {view === "form" && <SpecForm parts={parts} state={state} />}
       {view === "json" && (
         <JsonView
           key={draft.revision}
@@ -144,7 +143,7 @@ function SubmitBar({ editor, illegible, refusal }: SubmitProps) {
 
 const startLabel = (runs: number) => (runs <= 1 ? text.start : text.startRuns(runs.toLocaleString("en")));
 
-/** Control or Command with Enter submits, wherever the focus is. */
+/** Submit on Control or Command with Enter, wherever the focus is. */
 function useSubmitKey(form: { current: HTMLFormElement | null }): void {
   useEffect(() => {
     const press = (event: KeyboardEvent) => {

@@ -8,7 +8,6 @@ import { text } from "./text";
 interface Props {
   experiments: Experiment[];
   chosen: Experiment;
-  /** The preset that the spec started from, if any. */
   preset: Preset | null;
   estimates: ReadonlyMap<Preset, Estimate>;
   onExperiment: (experiment: Experiment) => void;

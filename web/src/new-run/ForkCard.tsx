@@ -24,7 +24,6 @@ export function useFork({ base, spec }: Draft): Fork {
   return { name: sent && name, onName, sent };
 }
 
-/** The request for a fork, with the changes of the spec. */
 export function forkOf({ base, spec }: Draft, name: string): Alternative | null {
   const { run = null, at = null } = base.fork ?? {};
   if (run === null) return null;
@@ -39,14 +38,13 @@ function fromOf({ creature, cells }: ForkSource): ForkRequest["from"] {
   return cells === null ? { archive: true } : { cells };
 }
 
-/** The name of a fork, and errors about its initial creatures. */
 export function ForkCard({ fork, errors }: { fork: Fork; errors: readonly FieldError[] }) {
   const wrong = errors.filter(({ field }) => isForkField(field)).map(({ message }) => message);
   return (
     <Card id="fork" kind="sweep-card" title={text.fork}>
       <p class="help">{text.forkAbout}</p>
       {fork.name !== null && (
-        <div class="sweep-entries">
+        <div class="sweep-entries row">
           <NameEntry title={text.runName} value={fork.name} onChange={fork.onName} />
         </div>
       )}
@@ -63,7 +61,7 @@ interface NameProps {
 
 export function NameEntry({ title, value, onChange }: NameProps) {
   return (
-    <label class="sweep-name-field">
+    <label class="sweep-name-field over">
       <span>{title}</span>
       <input
         type="text"

@@ -24,12 +24,7 @@ export function NewRunPage({ query }: { query: URLSearchParams }) {
   );
 }
 
-interface NewRunProps {
-  experiments: Experiment[];
-  query: URLSearchParams;
-}
-
-function NewRunForm({ experiments, query }: NewRunProps) {
+function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: URLSearchParams }) {
   const draft = useDraft(query, experiments);
   const { current } = draft;
   const [picked, setPicked] = useState<Experiment | null>(null);

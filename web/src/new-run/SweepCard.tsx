@@ -44,7 +44,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
         />
       ))}
       <Messages messages={[problems.total, ...complaintsOf(errors, "grid")]} />
-      <p class="sweep-foot">
+      <p class="sweep-foot row">
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
           {text.addAxis(axes.length === 0)}
         </button>
@@ -58,13 +58,12 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
   );
 }
 
-/** The number of seeds and the name of the sweep. */
 function Entries({ sweeping }: { sweeping: SweepForm }) {
   const { seeded, seeds, name, problems, change } = sweeping;
   return (
-    <div class="sweep-entries">
+    <div class="sweep-entries row">
       {seeded && (
-        <label class="sweep-seeds">
+        <label class="sweep-seeds over">
           <span>{text.seeds}</span>
           <input
             type="text"
@@ -88,7 +87,6 @@ export function goToSweep(): void {
   card?.querySelector<HTMLElement>("input, button")?.focus({ preventScroll: true });
 }
 
-/** The value of a field as a person would type it. */
 function textOf(value: Json): string {
   if (value === null || typeof value === "object") return "";
   return typeof value === "number" && Math.abs(value) < 1e-4 ? number(value, 6) : String(value);
@@ -98,7 +96,6 @@ interface RowProps {
   fields: readonly Leaf[];
   axis: Axis;
   messages: (string | null)[];
-  /** Paths of all axes. */
   taken: string[];
   onChange: (axis: Axis) => void;
   onRemove: () => void;

@@ -1,8 +1,7 @@
-/** The lines and dots of a body that is drawn, in cells. */
+/** Lines and dots of the drawing of a body, in cells. */
 
 import type { DrawnBody } from "../api/types";
 
-/** Cells between the lines of the grid. */
 export const GRID = 8;
 
 const at = ([x, y]: number[]) => `${x} ${y}`;
@@ -11,7 +10,7 @@ export function linesOf({ positions, edges }: DrawnBody): string {
   return edges.map(([a, b]) => `M${at(positions[a!]!)}L${at(positions[b!]!)}`).join("");
 }
 
-/** A dot at every node, where nodes lie far enough apart to be told from each other. */
+/** A dot at every node; none if nodes lie closer than `apart`. */
 export function dotsOf(body: DrawnBody, apart: number): string {
   const { positions, edges, nodes } = body;
   if (positions.length < nodes) return "";
@@ -19,7 +18,6 @@ export function dotsOf(body: DrawnBody, apart: number): string {
   return near ? "" : dots(positions);
 }
 
-/** A dot where three filaments or more meet. */
 export function branchesOf({ positions, edges }: DrawnBody): string {
   const degree = positions.map(() => 0);
   for (const edge of edges) for (const node of edge) degree[node]! += 1;
@@ -32,7 +30,7 @@ function distance([ax, ay]: number[], [bx, by]: number[]): number {
   return Math.hypot(ax! - bx!, ay! - by!);
 }
 
-/** Shifts by whole worlds in which some of the body is seen: the world is periodic. */
+/** Shifts by whole worlds that show a part of the body, because the world is periodic. */
 export function tilesOf({ positions }: DrawnBody, width: number, height: number): [number, number][] {
   const [left, right] = reach(
     positions.map(([x]) => x!),
@@ -49,7 +47,7 @@ export function tilesOf({ positions }: DrawnBody, width: number, height: number)
   return tiles;
 }
 
-/** The farthest worlds that are looked at: a tangle far outside would need ever more. */
+/** The largest shift; a tangle far outside would need ever more. */
 const FAR = 2;
 
 function reach(places: number[], side: number): [number, number] {

@@ -1,4 +1,4 @@
-/** The spec at hand, what it was begun from, and that neither is lost. */
+/** The draft of a spec: its source, its changes, and how both are kept. */
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
@@ -22,17 +22,17 @@ import { text } from "./text";
 
 export interface DraftState {
   current: Draft | null;
-  /** Where the spec differs from what it was begun from. */
+  /** Paths at which the spec differs from its source. */
   changed: ReadonlySet<string>;
-  /** Counts how often the whole spec was replaced. */
+  /** The number of times that the whole spec was replaced. */
   revision: number;
-  /** Whether a draft of before is shown. */
+  /** True if an earlier draft is shown. */
   restored: boolean;
   problem: string | null;
   change: (next: (spec: Spec) => Spec) => void;
   startFrom: (base: Base) => void;
   reset: () => void;
-  /** Begins from random creatures after all; what was changed stays. */
+  /** Start from random creatures; changes stay. */
   dropFork: () => void;
 }
 
@@ -87,7 +87,7 @@ function withoutFork({ base: { fork: _, ...base }, spec }: Draft): Draft {
   return { base: { ...base, spec: withInitial(base.spec, []) }, spec: withInitial(spec, []) };
 }
 
-/** Starts from what the address names, or from the usual preset, unless it is shown already. */
+/** Start from the source in the address, or from the first preset, unless it is shown already. */
 function useBase(
   wanted: Address | null,
   shown: { current: string | null },
@@ -97,7 +97,7 @@ function useBase(
   onProblem: (problem: string) => void,
 ): void {
   useEffect(() => {
-    // Without a name in it the address means whatever is at hand.
+    // An address without a source keeps the current draft.
     if (shown.current === String(wanted) || (begun && !wanted)) return;
     let wanting = true;
     const usual = ofPreset(experiments[0]!.presets[0]!, experiments[0]!);
@@ -116,7 +116,7 @@ function useBase(
   }, [String(wanted)]);
 }
 
-/** Keeps what was changed for this tab; an undo note leads nowhere from another page. */
+/** Keep changes in this tab; remove the undo note when the page is left. */
 function useKept(current: Draft | null, changed: ReadonlySet<string>): void {
   useEffect(() => () => dismissToast(undoToast), []);
   useEffect(() => {

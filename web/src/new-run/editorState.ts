@@ -55,7 +55,6 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
     drawing: drawing.current,
     sweepErrors: all.errors,
     estimate: many ? all.estimate : check.estimate,
-    /** The number of runs that the request starts. */
     runs: many ? sweep.total : 1,
   };
 }

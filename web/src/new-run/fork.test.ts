@@ -1,16 +1,16 @@
-/** Runs that begin from creatures: what is sent of them, and how the address names them. */
+/** Forks: their requests and addresses. */
 
-import { describe, expect, inject, it, vi } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import type { Json, Spec } from "../api/types";
 import { addressOf } from "../store/draft";
 import { forkOf, isForkField } from "./ForkCard";
 import { MAX_CREATURES, addressed, load } from "./sources";
+import { EXPERIMENTS, experiment } from "./form/presets.fixture";
 import { type Section, formOf } from "./form/fields";
 import { placesOf } from "./form/document";
 import { mergePatch, withInitial, withoutInitial } from "./initialCreatures";
 
-const EXPERIMENTS = inject("experiments");
-const SEARCH = EXPERIMENTS.find(({ experiment }) => experiment === "quality-diversity")!;
+const SEARCH = experiment("quality-diversity");
 const SPEC = SEARCH.presets[0]!.spec;
 const SHA = "ab".repeat(32);
 const RUN = "0190a6a0-0000-7000-8000-000000000001";
@@ -19,7 +19,7 @@ const RUNS: Record<string, Spec> = {
   [RUN]: withInitial(SPEC, [SHA]),
   table: { experiment: "gaits" },
 };
-/** All of a run, as they are. */
+/** All current elites of a run. */
 const ALL = { run: RUN, creature: null, cells: null, at: null, creatures: 3 };
 const ONE = { ...ALL, creature: SHA, creatures: 1 };
 
@@ -43,7 +43,7 @@ vi.mock("../api/client", () => ({
   readCreature: async () => CREATURE,
 }));
 
-/** As the server applies it. */
+/** Apply a patch as the server does. */
 function patched(document: Json | undefined, patch: Json): Json {
   if (patch === null || typeof patch !== "object" || Array.isArray(patch)) return patch;
   const object = document && typeof document === "object" && !Array.isArray(document);
@@ -57,28 +57,13 @@ function patched(document: Json | undefined, patch: Json): Json {
 
 describe("a merge patch", () => {
   it.each<[string, from: Spec, to: Spec, patch: Spec]>([
-    [
-      "says nothing of what is the same",
-      { a: 1, b: { c: [1, { d: null }] } },
-      { b: { c: [1, { d: null }] }, a: 1 },
-      {},
-    ],
-    [
-      "names only what differs within parts",
-      { a: { b: 1, c: 2 }, d: 3 },
-      { a: { b: 1, c: 4 }, d: 3 },
-      { a: { c: 4 } },
-    ],
-    ["takes away by null", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1 } }, { a: { c: null }, d: null }],
+    ["omits equal values", { a: 1, b: { c: [1, { d: null }] } }, { b: { c: [1, { d: null }] }, a: 1 }, {}],
+    ["names differing fields", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1, c: 4 }, d: 3 }, { a: { c: 4 } }],
+    ["removes by null", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1 } }, { a: { c: null }, d: null }],
     ["replaces lists whole", { a: [1, { b: 2 }] }, { a: [1, { b: 2 }, 3] }, { a: [1, { b: 2 }, 3] }],
-    [
-      "puts a part in the place of a value",
-      { a: null, b: [1] },
-      { a: { c: 1 }, b: { d: 2 } },
-      { a: { c: 1 }, b: { d: 2 } },
-    ],
+    ["makes values parts", { a: null, b: [1] }, { a: { c: 1 }, b: { d: 2 } }, { a: { c: 1 }, b: { d: 2 } }],
     ["empties a part", { a: { b: 1 } }, { a: {} }, { a: { b: null } }],
-    ["puts an empty part where there was none", { a: 1 }, { a: {} }, { a: {} }],
+    ["puts an empty part in place of a value", { a: 1 }, { a: {} }, { a: {} }],
   ])("%s", (_, from, to, patch) => {
     expect(mergePatch(from, to)).toEqual(patch);
     expect(patched(from, patch)).toEqual(to);
@@ -134,50 +119,22 @@ describe("a fork", () => {
   });
 
   it.each([
-    [`fork=${RUN}`, [["fork", RUN]], ALL],
-    [
-      `fork=${RUN}&creature=${SHA}`,
-      [
-        ["fork", RUN],
-        ["creature", SHA],
-      ],
-      ONE,
-    ],
-    [
-      `fork=${RUN}&cells=2-3,9`,
-      [
-        ["fork", RUN],
-        ["cells", "2-3,9"],
-      ],
-      { ...ALL, cells: [9, 2, 3] },
-    ],
-    [
-      `fork=${RUN}&at=0`,
-      [
-        ["fork", RUN],
-        ["at", "0"],
-      ],
-      { ...ALL, at: 0 },
-    ],
-    [`begin=${SHA}`, [["begin", SHA]], { ...ONE, run: null }],
-  ])("is named by the address %s", (text, address, fork) => {
-    expect(addressed(new URLSearchParams(text))).toEqual(address);
-    expect(addressOf({ ...base, fork })).toEqual(address);
+    [`fork=${RUN}`, ALL],
+    [`fork=${RUN}&creature=${SHA}`, ONE],
+    [`fork=${RUN}&cells=2-3,9`, { ...ALL, cells: [9, 2, 3] }],
+    [`fork=${RUN}&at=0`, { ...ALL, at: 0 }],
+    [`begin=${SHA}`, { ...ONE, run: null }],
+  ])("is named by the address %s", (text, fork) => {
+    const query = new URLSearchParams(text);
+    expect(addressed(query)).toEqual([...query]);
+    expect(addressOf({ ...base, fork })).toEqual([...query]);
   });
 
-  it.each(["from", "from.region.speed", "search.initial", "name", "generation"])(
-    "shows %s beside it",
-    (field) => {
-      expect(isForkField(field)).toBe(true);
-    },
-  );
-
-  it.each(["search.batch", "genome.max_nodes", "control", "search.generations"])(
-    "leaves %s in the form",
-    (field) => {
-      expect(isForkField(field)).toBe(false);
-    },
-  );
+  it("shows errors about its creatures and its name itself, others in the form", () => {
+    const own = ["from", "from.region.speed", "search.initial", "name", "generation"];
+    const others = ["search.batch", "genome.max_nodes", "control", "search.generations"];
+    expect([...own, ...others].filter(isForkField)).toEqual(own);
+  });
 });
 
 describe("what an address of a fork names", () => {
@@ -205,13 +162,8 @@ describe("what an address of a fork names", () => {
   });
 
   it("is the creature's own world where its run was no search", async () => {
-    const base = await load(
-      [
-        ["fork", "table"],
-        ["creature", SHA],
-      ],
-      EXPERIMENTS,
-    );
+    const address = [...new URLSearchParams(`fork=table&creature=${SHA}`)];
+    const base = await load(address, EXPERIMENTS);
     expect(base).toMatchObject({ kind: "creature", fork: { run: null, creature: SHA } });
     expect(base.spec).toMatchObject({ world: { width: 96 }, search: { initial: [SHA] } });
     await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("has no archive");

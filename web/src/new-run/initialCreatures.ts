@@ -1,19 +1,19 @@
-/** A run that begins from creatures: what its spec names, and how it differs from another's. */
+/** Initial creatures in specs and forms, and patches between specs. */
 
-import type { Json, Spec } from "../api/types";
+import type { Spec } from "../api/types";
+import { differences, isObject } from "../run/spec/difference";
 import type { Section } from "./form/fields";
-import { isObject } from "./readDocument";
 
-/** Whether runs of a spec fill an archive, and can begin from creatures. */
+/** True if runs of a spec fill an archive and can start from creatures. */
 export const isSearch = (spec: Spec): boolean => isObject(spec.search);
 
-/** The spec of a search that begins from the creatures of these names. */
+/** The spec of a search with these initial creatures. */
 export const withInitial = (spec: Spec, names: string[]): Spec => ({
   ...spec,
   search: { ...(spec.search as Spec), initial: names },
 });
 
-/** The form without the names of creatures, which are chosen elsewhere. */
+/** The form without initial creatures, which are chosen elsewhere. */
 export const withoutInitial = (form: Section): Section => ({
   ...form,
   fields: form.fields
@@ -21,29 +21,15 @@ export const withoutInitial = (form: Section): Section => ({
     .map((field) => (field.kind === "section" ? withoutInitial(field) : field)),
 });
 
-/** The merge patch (RFC 7396) that makes one document of another: null takes a member away. */
+/** The merge patch (RFC 7396) from one document to another; null removes a member. */
 export function mergePatch(from: Spec, to: Spec): Spec {
   const patch: Spec = {};
-  for (const key of Object.keys(from)) {
-    if (!(key in to)) patch[key] = null;
-  }
+  for (const key of Object.keys(from)) if (!(key in to)) patch[key] = null;
   for (const [key, value] of Object.entries(to)) {
     const before = from[key];
-    if (same(before, value)) continue;
-    // A patch's parts are merged into what is not there as into nothing.
+    if (before !== undefined && differences([{ value: before }, { value }]).length === 0) continue;
+    // A part of a patch that is missing in the document is merged into an empty one.
     patch[key] = isObject(value) ? mergePatch(isObject(before) ? before : {}, value) : value;
   }
   return patch;
-}
-
-/** Whether two values are the same, in whatever order their members stand. */
-function same(a: Json | undefined, b: Json | undefined): boolean {
-  if (isObject(a) && isObject(b)) {
-    const keys = Object.keys(a);
-    return keys.length === Object.keys(b).length && keys.every((key) => key in b && same(a[key], b[key]));
-  }
-  if (Array.isArray(a) && Array.isArray(b)) {
-    return a.length === b.length && a.every((item, i) => same(item, b[i]));
-  }
-  return a === b;
 }

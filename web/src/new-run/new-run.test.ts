@@ -1,13 +1,10 @@
-import { beforeEach, describe, expect, inject, it, vi } from "vitest";
+import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { DrawnBody, Estimate } from "../api/types";
 import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../store/draft";
+import { EXPERIMENTS, experiment } from "./form/presets.fixture";
 import { load, ofPreset, titleOfBase } from "./sources";
 import { branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
 import { about, basis, rough, wait } from "./Costs";
-
-const EXPERIMENTS = inject("experiments");
-
-const experiment = (name: string) => EXPERIMENTS.find((one) => one.experiment === name)!;
 
 describe("a draft", () => {
   const base = ofPreset(experiment("gaits").presets[0]!, experiment("gaits"));
@@ -91,21 +88,14 @@ describe("costs in words", () => {
   );
 });
 
+const pairs = (text: string) => text.split(", ").map((pair) => pair.split(" ").map(Number));
+
 describe("a body that is drawn", () => {
   const fork: DrawnBody = {
     name: "fork",
     nodes: 4,
-    positions: [
-      [0, 0],
-      [2, 0],
-      [4, 1],
-      [4, -1],
-    ],
-    edges: [
-      [0, 1],
-      [1, 2],
-      [1, 3],
-    ],
+    positions: pairs("0 0, 2 0, 4 1, 4 -1"),
+    edges: pairs("0 1, 1 2, 1 3"),
     whole: true,
   };
 
@@ -121,21 +111,9 @@ describe("a body that is drawn", () => {
   });
 
   it("is seen again on the other side of its periodic world", () => {
-    const within = {
-      ...fork,
-      positions: [
-        [1, 1],
-        [3, 3],
-      ],
-    };
+    const within = { ...fork, positions: pairs("1 1, 3 3") };
     expect(tilesOf(within, 10, 10).map(String)).toEqual(["0,0"]);
-    const across = {
-      ...fork,
-      positions: [
-        [8, 1],
-        [12, -1],
-      ],
-    };
+    const across = { ...fork, positions: pairs("8 1, 12 -1") };
     expect(tilesOf(across, 10, 10).map(String).sort()).toEqual(["-10,0", "-10,10", "0,0", "0,10"]);
   });
 });

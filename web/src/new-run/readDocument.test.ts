@@ -1,18 +1,11 @@
-import { describe, expect, inject, it } from "vitest";
+import { describe, expect, it } from "vitest";
 import type { Creature, Json, Spec } from "../api/types";
 import { ofFound, completeSpec } from "./sources";
+import { EXPERIMENTS, PRESETS, experiment } from "./form/presets.fixture";
 import { completed } from "./form/defaults";
 import { complaints } from "./form/document";
 import { formOf } from "./form/fields";
 import { readDocument, readText } from "./readDocument";
-
-const EXPERIMENTS = inject("experiments");
-
-const PRESETS = EXPERIMENTS.flatMap((one) =>
-  one.presets.map((preset) => [`${one.experiment}/${preset.name}`, one, preset] as const),
-);
-
-const experiment = (name: string) => EXPERIMENTS.find((one) => one.experiment === name)!;
 
 const creature = (genome: Spec, extra: Spec = {}) =>
   ({

@@ -1,6 +1,7 @@
 /** Read a pasted or dropped document: a spec, a run, or a creature. */
 
 import type { Creature, Json, Spec, Gait } from "../api/types";
+import { isObject } from "../run/spec/difference";
 import { text } from "./text";
 
 export type Found =
@@ -8,15 +9,9 @@ export type Found =
   | { kind: "run"; spec: Spec; id: string }
   | { kind: "creature"; spec: Spec; creature: Creature };
 
-export const TAKEN = text.accepted;
-
-const HDF5 = "\u0089HDF";
-
-/** Read a text; throw an `Error` that says what is accepted. */
+/** Read a text; throw an `Error` that names the accepted documents. */
 export function readText(document: string, refine = false): Found {
-  if (document.startsWith(HDF5) || document.startsWith("\ufffdHDF")) {
-    throw new Error(text.noHdf5(TAKEN));
-  }
+  if (/^[\u0089\ufffd]HDF/.test(document)) throw new Error(text.noHdf5);
   return readDocument(parsed(document), refine);
 }
 
@@ -24,13 +19,13 @@ function parsed(document: string): Json {
   try {
     return JSON.parse(document);
   } catch (error) {
-    throw new Error(text.noJson(TAKEN, (error as Error).message));
+    throw new Error(text.noJson((error as Error).message));
   }
 }
 
-/** Tell which kind a document is; a creature becomes the spec of a search or a refinement. */
+/** The kind and the spec of a document; a creature becomes a search or a refinement. */
 export function readDocument(document: Json, refine = false): Found {
-  if (!isObject(document)) throw new Error(text.notADocument(TAKEN, named(document)));
+  if (!isObject(document)) throw new Error(text.notADocument(named(document)));
   const { identity, spec, id } = document;
   if (isObject(identity)) {
     const creature = document as unknown as Creature;
@@ -43,17 +38,13 @@ export function readDocument(document: Json, refine = false): Found {
 
 function known(spec: Spec, field: string): Spec {
   if (typeof spec.experiment === "string") return spec;
-  throw new Error(text.noExperiment(field, named(spec.experiment), TAKEN));
+  throw new Error(text.noExperiment(field, named(spec.experiment)));
 }
 
 function named(value: Json | undefined): string {
   if (value === undefined) return text.nothing;
   if (Array.isArray(value)) return text.list;
   return value === null ? "null" : `${typeof value} ${JSON.stringify(value).slice(0, 40)}`;
-}
-
-export function isObject(value: Json | undefined): value is Spec {
-  return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
 /** Encodings with numeric genes, which NEAT's mutations do not vary. */

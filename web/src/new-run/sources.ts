@@ -11,7 +11,7 @@ import { type Found, specOf } from "./readDocument";
 import { count, short } from "../ui/format";
 import { text } from "./text";
 
-/** Creatures that a run can begin from; `search.initial` in the schemas has the same. */
+/** The largest number of initial creatures, as in the schema of `search.initial`. */
 export const MAX_CREATURES = 4096;
 
 export function addressed(query: URLSearchParams): Address | null {
@@ -97,7 +97,6 @@ function named(name: string, experiments: Experiment[]): Base {
   throw new Error(text.badPreset(known, name));
 }
 
-/** The spec with defaults for missing fields. */
 export function completeSpec(spec: Spec, experiments: Experiment[]): Spec {
   const own = experiments.find(({ experiment }) => experiment === spec.experiment);
   if (own) return completed(own.schema, spec);
@@ -105,7 +104,6 @@ export function completeSpec(spec: Spec, experiments: Experiment[]): Spec {
   throw new Error(text.badExperiment(known, String(spec.experiment)));
 }
 
-/** The source for a pasted or dropped document. */
 export function ofFound(found: Found, file: string, experiments: Experiment[]): Base {
   const given = { spec: completeSpec(found.spec, experiments), foreign: true };
   if (found.kind === "creature") return { ...given, kind: "creature", name: found.creature.sha256 };

@@ -9,7 +9,6 @@ import { navigate } from "../store/router";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
 import { refusalOf } from "./estimate";
 
-/** A request in place of a spec alone. */
 export type Alternative = { sweep: SweepRequest } | { fork: ForkRequest };
 
 type Refusal = ReturnType<typeof refusalOf> & { asked: Spec | Alternative };
@@ -37,7 +36,6 @@ export function useSubmission(spec: Spec, instead: Alternative | null) {
   return { start, busy, refusal: refusal?.asked === asked ? refusal : null };
 }
 
-/** Send a request; return the address of its page. */
 async function submit(spec: Spec, instead: Alternative | null, key: string): Promise<string> {
   if (instead && "sweep" in instead) return `/sweeps/${(await api.createSweep(instead.sweep, key)).id}`;
   const made = instead ? api.forkRun(instead.fork, key) : api.createRun(spec, key);

@@ -11,10 +11,8 @@ export interface SweepForm {
   seeds: string;
   axes: readonly Axis[];
   name: string;
-  /** Fields that a grid can run over. */
   fields: readonly Leaf[];
   problems: { seeds: string | null; axes: (string | null)[]; total: string | null };
-  /** The number of runs. */
   total: number;
   /** The request; null for a single run or invalid values. */
   sent: SweepRequest | null;
@@ -55,7 +53,7 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   return { seeded, fields, problems, total, sent };
 }
 
-/** True if more than one run is asked for, valid or not. */
+/** True if more than one run is asked for, even with invalid values. */
 export const isSweep = ({ seeds, axes }: SweepForm) => axes.length > 0 || seeds.trim() !== "1";
 
 /** Errors of the server for one field of the grid, or for the seeds. */

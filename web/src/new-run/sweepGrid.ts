@@ -1,4 +1,4 @@
-/** The values that a sweep gives to a field, as people type them. */
+/** Read the typed values of the fields of a sweep. */
 
 import type { Experiment, Json, Spec } from "../api/types";
 import { words } from "../ui/format";
@@ -6,19 +6,19 @@ import { complaint, leavesOf, typed } from "./form/document";
 import type { Leaf, Section } from "./form/fields";
 import { text } from "./text";
 
-/** One field of a grid, and what was typed for it. */
+/** One field of a grid, with the typed values. */
 export interface Axis {
   path: string;
   text: string;
 }
 
-/** Fields that a grid can run over; the seed has a place of its own. */
+/** Fields that a grid can run over; seeds have an entry of their own. */
 export function sweepable(form: Section, spec: Spec): Leaf[] {
   const leaves = leavesOf(form, spec) as Leaf[];
   return leaves.filter(({ kind, path }) => (kind as string) !== "constant" && path !== "seed");
 }
 
-/** A field by its section and its own name: “World: viscosity”. */
+/** Section and title of a field: “World: viscosity”. */
 export function nameOf({ path, title }: Leaf): string {
   const around = path.split(".").slice(0, -1).map(words);
   return around.length > 0 ? `${around.join(" ")}: ${title.toLowerCase()}` : title;
@@ -26,11 +26,11 @@ export function nameOf({ path, title }: Leaf): string {
 
 export interface Reading {
   values: Json[];
-  /** What is wrong with what was typed; null where nothing is. */
+  /** The error; null for valid values. */
   problem: string | null;
 }
 
-/** Values between commas or blanks; a JSON list stands for itself. */
+/** Values between commas or blanks, or a JSON list. */
 export function readValues(field: Leaf, input: string): Reading {
   const values = valuesOf(field, input.trim());
   if (values === null) return { values: [], problem: text.needsList };
@@ -89,7 +89,7 @@ function wrongWith(field: Leaf, value: Json): string | null {
 
 const same = (one: Json, other: Json) => JSON.stringify(one) === JSON.stringify(other);
 
-/** How many runs: a number of seeds, as typed, else what is wrong with it. */
+/** The typed number of seeds, or an error. */
 export function readSeeds(input: string): { seeds: number; problem: string | null } {
   const seeds = typed(input);
   const whole = typeof seeds === "number" && Number.isInteger(seeds);
@@ -97,9 +97,9 @@ export function readSeeds(input: string): { seeds: number; problem: string | nul
   return { seeds: 1, problem: text.needsSeeds(MOST.toLocaleString("en")) };
 }
 
-/** Runs that one request may ask for. */
+/** The largest number of runs in one request. */
 export const MOST = 1000;
 
-/** Whether anything is left to chance in an experiment. */
+/** True if an experiment depends on a random seed. */
 export const hasSeed = ({ schema }: Experiment) =>
   "seed" in ((schema.properties ?? {}) as Record<string, Json>);

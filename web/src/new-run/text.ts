@@ -1,5 +1,7 @@
 /** Texts of the form of a new run. */
 
+const ACCEPTED = "a spec, a run from the API, or a creature file, in JSON";
+
 export const text = {
   restoredDraft: "Restored draft: ",
   changes: (count: number) =>
@@ -95,14 +97,12 @@ export const text = {
   replaced: "Started over; your changes are discarded.",
   undone: "All changes undone.",
   random: "The run starts from random creatures.",
-  undo: "Undo",
   hasErrors: "Fix the highlighted fields.",
-  accepted: "a spec, a run from the API, or a creature file, in JSON",
-  noHdf5: (accepted: string) => `Archives and checkpoints (HDF5) cannot be read here. Use ${accepted}.`,
-  noJson: (accepted: string, reason: string) => `Not valid JSON (${reason}). Use ${accepted}.`,
-  notADocument: (accepted: string, got: string) => `Needs ${accepted}; got ${got}.`,
-  noExperiment: (field: string, got: string, accepted: string) =>
-    `“${field}” must name the experiment; got ${got}. Use ${accepted}.`,
+  noHdf5: `Archives and checkpoints (HDF5) cannot be read here. Use ${ACCEPTED}.`,
+  noJson: (reason: string) => `Not valid JSON (${reason}). Use ${ACCEPTED}.`,
+  notADocument: (got: string) => `Needs ${ACCEPTED}; got ${got}.`,
+  noExperiment: (field: string, got: string) =>
+    `“${field}” must name the experiment; got ${got}. Use ${ACCEPTED}.`,
   nothing: "nothing",
   list: "a list",
   badAddress: (word: string, name: string, reason: string) =>

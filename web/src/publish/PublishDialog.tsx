@@ -17,19 +17,7 @@ export interface Props {
   file?: Creature;
 }
 
-const LICENCES = [
-  ["CC-BY-4.0", text.ccBy],
-  ["CC-BY-SA-4.0", text.ccBySa],
-  ["CC-BY-NC-4.0", text.ccByNc],
-  ["CC0-1.0", text.cc0],
-] as const;
-const TERMS = [
-  ["never", text.never],
-  ["1", text.inADay],
-  ["7", text.inAWeek],
-  ["30", text.inAMonth],
-  ["date", text.onADate],
-] as const;
+const LICENCES = Object.entries(text.licences);
 
 /** The dialog opens whenever `opened` grows, with the values typed before. */
 export function PublishDialog({ opened, ...props }: Props & { opened: number }) {
@@ -51,10 +39,7 @@ export function PublishDialog({ opened, ...props }: Props & { opened: number }) 
   );
 }
 
-interface FormProps extends Props {
-  onDone: (share: Share) => void;
-  onEnd: () => void;
-}
+type FormProps = Props & { onDone: (share: Share) => void; onEnd: () => void };
 
 function PublishForm({ of, title, file, onDone, onEnd }: FormProps) {
   const { busy, error, onSubmit } = useSubmit(async (form) =>
@@ -86,34 +71,34 @@ function Fields({ title, file }: Pick<Props, "title" | "file">) {
   const [term, setTerm] = useState<string>("never");
   const licences = LICENCES.some(([name]) => name === (file?.licence ?? name))
     ? LICENCES
-    : [[file!.licence, text.licenceOfFile(file!.licence)] as const, ...LICENCES];
+    : [[file!.licence, text.licenceOfFile(file!.licence)] as [string, string], ...LICENCES];
   return (
     <>
-      <label>
+      <label class="over">
         {text.title}
         <input name="title" maxLength={200} defaultValue={title} placeholder={text.titleHint} />
       </label>
-      <label>
+      <label class="over">
         {text.credit}
         <input name="credit" maxLength={1000} placeholder={text.creditHint} />
       </label>
       {file?.credit && file.credit.length > 0 && (
         <p class="quiet small">{text.creditOfFile(file.credit.join(", "))}</p>
       )}
-      <label>
+      <label class="over">
         {text.licence}
-        <select name="licence" defaultValue={file?.licence ?? LICENCES[0][0]}>
+        <select name="licence" defaultValue={file?.licence ?? LICENCES[0]![0]}>
           <Options of={licences} />
         </select>
       </label>
-      <label>
+      <label class="over">
         {text.expires}
         <select name="term" value={term} onChange={(event) => setTerm(event.currentTarget.value)}>
-          <Options of={TERMS} />
+          <Options of={text.terms} />
         </select>
       </label>
       {term === "date" && (
-        <label>
+        <label class="over">
           {text.expiryDate}
           <input name="until" type="datetime-local" required />
         </label>
@@ -151,7 +136,7 @@ function Published({ share, onEnd }: { share: Share; onEnd: () => void }) {
   return (
     <div class="published">
       <h2 id="publish-title">{text.published}</h2>
-      <label>
+      <label class="over">
         {text.link}
         <input ref={address} readOnly value={share.url} onFocus={(event) => event.currentTarget.select()} />
       </label>

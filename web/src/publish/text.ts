@@ -2,15 +2,20 @@
 
 export const text = {
   publish: "Publish",
-  ccBy: "CC BY 4.0: attribution",
-  ccBySa: "CC BY-SA 4.0: attribution, share alike",
-  ccByNc: "CC BY-NC 4.0: attribution, non-commercial",
-  cc0: "CC0: no conditions",
-  never: "Never",
-  inADay: "In a day",
-  inAWeek: "In a week",
-  inAMonth: "In a month",
-  onADate: "On a date …",
+  licences: {
+    "CC-BY-4.0": "CC BY 4.0: attribution",
+    "CC-BY-SA-4.0": "CC BY-SA 4.0: attribution, share alike",
+    "CC-BY-NC-4.0": "CC BY-NC 4.0: attribution, non-commercial",
+    "CC0-1.0": "CC0: no conditions",
+  },
+  /** By days, or by another way to give the end. */
+  terms: [
+    ["never", "Never"],
+    ["1", "In a day"],
+    ["7", "In a week"],
+    ["30", "In a month"],
+    ["date", "On a date …"],
+  ] as const,
   licenceOfFile: (licence: string) => `${licence}: from the file`,
   about: (run: boolean) =>
     `Anyone with the link can see ${run ? "the current state of this archive" : "this creature"} and its ancestors without a token, and nothing else. You can revoke the link at any time.`,

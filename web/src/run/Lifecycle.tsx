@@ -5,6 +5,7 @@ import { useRefusal } from "../store/principal";
 import { extend, remove, restore } from "../store/commands";
 import { moment, short } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
+import { InlineForm } from "./InlineForm";
 import { text } from "./text";
 
 const ENDED = ["finished", "failed", "cancelled", "paused"];
@@ -33,17 +34,12 @@ function Extend({ run }: { run: Run }) {
       </button>
     );
   }
-  const send = async (event: Event) => {
-    event.preventDefault();
+  const send = async () => {
     const more = field.current?.valueAsNumber ?? NaN;
     if (more >= 1 && (await extend(run.id, more))) setOpen(false);
   };
   return (
-    <form
-      class="run-choice"
-      onSubmit={(event) => void send(event)}
-      onKeyDown={(event) => event.key === "Escape" && setOpen(false)}
-    >
+    <InlineForm onSubmit={() => void send()} onClose={() => setOpen(false)}>
       <label>
         {text.generationsToAdd}{" "}
         <input
@@ -56,14 +52,10 @@ function Extend({ run }: { run: Run }) {
         />
       </label>
       <button class="slim">{text.addGenerations}</button>
-      <button type="button" class="slim" onClick={() => setOpen(false)}>
-        {text.close}
-      </button>
-    </form>
+    </InlineForm>
   );
 }
 
-/** The run that a fork started from. */
 export function ForkedFrom({ run }: { run: Run }) {
   const from = run.forked_from;
   if (!from) return null;

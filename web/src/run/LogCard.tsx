@@ -1,32 +1,35 @@
 /** The log of a run, live. */
 
-import type { Run } from "../api/types";
+import type { LogEntry, Run } from "../api/types";
 import { useLog } from "../store/log";
 import { setQuery } from "../store/router";
 import { Select } from "../ui/Select";
-import { count } from "../ui/format";
-import { LEVELS, LogList, atLeast, textOf } from "./LogList";
+import { count, moment } from "../ui/format";
 import { Card } from "../ui/Page";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import "./log.css";
 
+type Level = LogEntry["level"];
+
+/** From the least severe one. */
+const LEVELS = Object.keys(text.levels) as Level[];
+
 export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
   const { value: entries, error, earlier } = useLog(run);
   const level = LEVELS.find((name) => name === query.get("level")) ?? "info";
   const shown = atLeast(entries ?? [], level);
-  const head = (
+  const note = shown.length > 0 && text.entries(count(shown.length), earlier !== null);
+  const actions = (
     <>
-      {shown.length > 0 && <span class="quiet">{text.entries(count(shown.length), earlier !== null)}</span>}
       {earlier && (
         <button class="slim" onClick={earlier}>
           {text.showEarlier}
         </button>
       )}
-      <span class="spring" />
       <Select
         title={text.show}
-        choices={LEVELS.map((name) => [name, text.levels[name]])}
+        choices={Object.entries(text.levels)}
         value={level}
         onChange={(name) => setQuery({ level: name === "info" ? null : name })}
       />
@@ -38,11 +41,11 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
     </>
   );
   return (
-    <Card id="log" title={text.log} head={head}>
+    <Card id="log" title={text.log} {...{ note, actions }}>
       {error && <p class="banner wrong">{error}</p>}
       {!entries && !error && <p class="quiet waiting">{text.loadingLog}</p>}
       {entries && shown.length === 0 && (
-        <p class="quiet">{entries.length === 0 ? text.logEmpty : text.noEntries[level]}</p>
+        <p class="quiet">{text.noEntries[entries.length === 0 ? "info" : level]}</p>
       )}
       {shown.length > 0 && (
         <div class="log-scroll" tabIndex={0} role="group" aria-label={text.logOrder}>
@@ -51,4 +54,58 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
       )}
     </Card>
   );
+}
+
+/** Entries of a level and of those above it. */
+export function atLeast(entries: readonly LogEntry[], level: Level): LogEntry[] {
+  const least = LEVELS.indexOf(level);
+  return entries.filter((entry) => LEVELS.indexOf(entry.level) >= least);
+}
+
+/** Entries as lines of text, oldest first. */
+export function textOf(entries: readonly LogEntry[]): string {
+  return entries
+    .map(({ at, level, attempt, text }) => `${at} ${level} [attempt ${attempt}] ${text}`)
+    .join("\n");
+}
+
+function LogList({ entries }: { entries: readonly LogEntry[] }) {
+  return (
+    <ol class="log" reversed>
+      {[...entries].reverse().map((entry) => (
+        <Line key={entry.id} {...entry} />
+      ))}
+    </ol>
+  );
+}
+
+function Line({ at, level, attempt, text: message }: LogEntry) {
+  const [first, ...more] = summaryOf(message);
+  return (
+    <li class={`log-${level}`}>
+      <time dateTime={at} title={moment(at)}>
+        {new Date(at).toLocaleTimeString(undefined, { hour12: false })}
+      </time>
+      <span class="quiet log-attempt">{attempt > 0 ? text.attempt(attempt) : ""}</span>
+      <div class="log-text">
+        {level !== "info" && <b>{level === "error" ? text.error : text.warning}: </b>}
+        {more.length === 0 ? (
+          first
+        ) : (
+          <details>
+            <summary>{first}</summary>
+            <pre>{more.join("\n")}</pre>
+          </details>
+        )}
+      </div>
+    </li>
+  );
+}
+
+/** The last line of a traceback as its summary, then all lines. */
+export function summaryOf(message: string): [string, ...string[]] {
+  const lines = message.trim().split("\n");
+  if (lines.length === 1) return [lines[0]!];
+  const [begin] = lines[0]!.split(":");
+  return [`${begin}: ${lines.at(-1)}`, ...lines];
 }

@@ -8,13 +8,11 @@ import { text } from "./text";
 interface NameProps {
   of: { name: string | null };
   title: string;
-  /** True if the name cannot be changed. */
   fixed: boolean;
   onName: (name: string | null) => void;
   children: ComponentChildren;
 }
 
-/** A name, and a button that makes it a field. */
 export function NameField({ of, title, fixed, onName, children }: NameProps) {
   const { open, setOpen, button } = useDisclosure();
   const done = (name: string | null) => {

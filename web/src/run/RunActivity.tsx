@@ -7,7 +7,6 @@ import { duration } from "../ui/format";
 import { text } from "./text";
 import "../replay/replay.css";
 
-/** A sentence; null once there are generations. */
 export function activityOf(run: Run): string | null {
   if (run.status === "queued") return run.waiting_reason ?? text.waitingForWorker;
   if (run.status !== "running" || run.generation > 0) return null;
@@ -29,7 +28,7 @@ export function RunActivity({ run }: { run: Run }) {
   useRunRefresh(run.id, run.status === "queued" || run.status === "running");
   if (!activity) return null;
   return (
-    <p class="activity">
+    <p class="activity row">
       <span class="ripple small-ripple" aria-hidden="true" />
       <span role="status">{activity}</span>
       {elapsed && <span class="quiet">{text.elapsed(run.status === "queued", elapsed)}</span>}

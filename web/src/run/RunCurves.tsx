@@ -16,7 +16,7 @@ import { Card } from "../ui/Page";
 import { RunPicker } from "./RunPicker";
 import { text } from "./text";
 
-/** More lines than this cannot be distinguished. */
+/** More lines cannot be distinguished. */
 const MAX_COMPARED = 4;
 
 interface Props {
@@ -48,20 +48,18 @@ export function CurvesCard({ run, curves, query, beside: { ids, others, error } 
   );
 }
 
-/** Work of the search, over the same axis and with the same runs. */
 export function SearchCard({ run, curves, query, beside }: Props & { curves: Columns }) {
   const look = curveViewOf(query);
   const plots = arrangePlots(workOf, curves, beside.others, look);
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
-    <Card id="search" kind="search-card" title={text.search}>
+    <Card id="search" kind="wide-curves" title={text.search}>
       <Curves plots={plots} x={placesOf(curves, look)} look={look} />
       <DivergedTable run={run} reasons={divergedBy(curves)} />
     </Card>
   );
 }
 
-/** Reasons for which evaluations diverged. */
 function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, count: number][] }) {
   const known = reasons.reduce((sum, [, number]) => sum + number, 0);
   const unknown = run.diverged - known;
@@ -87,7 +85,7 @@ function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, c
 
 const placesOf = (curves: Columns, { over }: CurveView) => curves[over] as readonly number[];
 
-/** The runs to compare that the address names, without duplicates and the run itself. */
+/** The runs to compare from the address, without duplicates and the run itself. */
 export function useComparedRuns(query: URLSearchParams, id: string): ComparedRuns {
   const asked = (query.get("with") ?? "").split(",").filter((other) => other && other !== id);
   const ids = [...new Set(asked)].slice(0, MAX_COMPARED);
@@ -130,12 +128,7 @@ function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: O
   );
 }
 
-interface ChipProps {
-  colour: string;
-  children: ComponentChildren;
-}
-
-function Chip({ colour, children }: ChipProps) {
+function Chip({ colour, children }: { colour: string; children: ComponentChildren }) {
   return (
     <span class="chip">
       <i style={{ background: `var(${colour})` }} />

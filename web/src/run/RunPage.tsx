@@ -37,12 +37,7 @@ const PopulationCards = lazy(
 );
 const ScalingRun = lazy(async () => (await import("./scaling/ScalingRun")).ScalingRun, "section");
 
-interface Props {
-  id: string;
-  query: URLSearchParams;
-}
-
-export function RunPage({ id, query }: Props) {
+export function RunPage({ id, query }: { id: string; query: URLSearchParams }) {
   const { error } = useRunDetail(id);
   const run = useStore((state) => state.runs.get(id));
   const detail = useStore((state) => state.details.get(id));
@@ -118,7 +113,7 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
       {run.experiment === "neuroevolution" && (
         <PopulationCards run={run} elites={detail?.elites ?? NO_ELITES} />
       )}
-      <div class="run-columns run-record">
+      <div class="run-columns even">
         <div class="stack">
           <LogCard run={run} query={query} />
           <FilesCard run={run} about={text.filesAbout(hasArchive(run), moment(run.created_at), run)} />
@@ -131,7 +126,6 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
 
 const NO_ELITES: Elites = new Map();
 
-/** Links to the cards of the page. */
 function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
   const search = "search" in spec;
   const sections = [
@@ -145,7 +139,7 @@ function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
     ["files", text.files],
   ].filter((section) => section !== false);
   return (
-    <nav class="sections" aria-label={text.sections}>
+    <nav class="sections row small" aria-label={text.sections}>
       {sections.map(([id, name]) => (
         <a key={id} href={`#${id}`}>
           {name}

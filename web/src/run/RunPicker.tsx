@@ -1,15 +1,15 @@
-/** A button that turns into a choice of another run. */
+/** A button that opens a choice of another run. */
 
 import { useEffect, useRef } from "preact/hooks";
 import type { Run } from "../api/types";
 import { useExperiments, useRunChoices } from "../store/fetch";
 import { moment, short, titleOf } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
+import { InlineForm } from "./InlineForm";
 import { text } from "./text";
 
 interface Props {
   run: Run;
-  /** What the button says. */
   label: string;
   fits: (other: Run) => boolean;
   onChoose: (id: string) => void;
@@ -33,15 +33,14 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
   const fitting = value?.filter(fits) ?? [];
   const none = error ?? (value && fitting.length === 0 ? text.noOtherRun : null);
   useEffect(() => (select.current ?? close.current)?.focus(), [none, value === null]);
-  const choose = (event: Event) => {
-    event.preventDefault();
+  const choose = () => {
     const id = select.current?.value;
     if (!id) return select.current?.focus();
     onClose();
     onChoose(id);
   };
   return (
-    <form class="run-choice" onSubmit={choose} onKeyDown={(event) => event.key === "Escape" && onClose()}>
+    <InlineForm onSubmit={choose} onClose={onClose} closeButton={close}>
       {none ? (
         <span class={error ? "wrong-text" : "quiet"} role="status">
           {none}
@@ -61,9 +60,6 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
           </button>
         </>
       )}
-      <button ref={close} type="button" class="slim" onClick={onClose}>
-        {text.close}
-      </button>
-    </form>
+    </InlineForm>
   );
 }

@@ -9,10 +9,8 @@ import "./run.css";
 
 export const STATES = ["queued", "running", "paused", "finished", "failed", "cancelled"] as const;
 
-const REQUESTED = { paused: text.pausing, cancelled: text.cancelling };
-
 export function StatusBadge({ run }: { run: Run }) {
-  const status = run.requested_state ? REQUESTED[run.requested_state] : run.status;
+  const status = run.requested_state ? text.requested[run.requested_state] : run.status;
   return <span class={`badge ${run.status}`}>{status}</span>;
 }
 
@@ -23,7 +21,6 @@ export const RunProgress = ({ run }: { run: Run }) => (
 /** Generations before the time left is shown; the first ones include compilation. */
 const MIN_GENERATIONS = 3;
 
-/** The time left of a run, or its duration. */
 export function timeOf(run: Run): { label: string; text: string } {
   if (run.status === "running") {
     const left = run.generation < MIN_GENERATIONS ? null : run.eta_seconds;
@@ -36,12 +33,11 @@ export function timeOf(run: Run): { label: string; text: string } {
 
 interface CommandProps {
   run: Run;
-  /** The name of the run in notes, and in labels of buttons. */
+  /** Name in notes, and in labels of buttons. */
   title: string;
   name: string;
 }
 
-/** Buttons for the commands that the status allows. */
 export function CommandButtons({ run, title, name }: CommandProps) {
   const { id, status, requested_state } = run;
   const alive = ["queued", "running", "paused"].includes(status);

@@ -10,7 +10,7 @@ const LIMITS: Record<string, (limit: number) => string> = {
   fitness: (limit) => text.fitnessReached(number(limit)),
 };
 
-/** A sentence; what was decided is told as `evaluations after generation 12`. */
+/** A sentence from `summary.ended`, such as `evaluations after generation 12`. */
 export function endReasonOf({ summary, spec, generations }: Run): string {
   const told = typeof summary?.ended === "string" ? summary.ended : "";
   const [, name, generation] = /^(\w+) after generation (\d+)$/.exec(told) ?? [];

@@ -20,7 +20,6 @@ const summaryOf = (run: Run, name: string) => {
   return typeof value === "number" ? value : null;
 };
 
-/** The figures on the page of a run. */
 export function figuresOf(run: Run): Figure[] {
   const value = (name: string) => summaryOf(run, name);
   const memory = value("peak_memory_bytes");
@@ -55,7 +54,6 @@ export function figuresOf(run: Run): Figure[] {
 /** Positions of the figure that lists show; the first one for other experiments. */
 const KEYS: Record<string, number> = { refinement: 1, neuroevolution: 2 };
 
-/** The figure of a run in a list. */
 export function keyFigureOf(run: Run): Figure {
   // Small measurements have no exponent: the list shows their memory.
   const small = run.experiment === "scaling" && summaryOf(run, "exponent") === null;
@@ -63,12 +61,6 @@ export function keyFigureOf(run: Run): Figure {
   return [name === text.qdScore ? name : name.toLowerCase(), value];
 }
 
-const GENERATIONS: Record<string, string> = {
-  gaits: text.strokes,
-  scaling: text.sizes,
-  folding: text.updates,
-  refinement: text.steps,
-};
-
 /** The name of a generation of a run. */
-export const generationsOf = (run: Run) => GENERATIONS[run.experiment] ?? text.generation;
+export const generationsOf = ({ experiment }: Run) =>
+  (text.generations as Record<string, string>)[experiment] ?? text.generation;

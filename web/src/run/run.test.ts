@@ -1,7 +1,8 @@
 import { describe, expect, it } from "vitest";
 import type { LogEntry, Run } from "../api/types";
+import { endReasonOf } from "./endReason";
 import { activityOf, elapsedOf } from "./RunActivity";
-import { atLeast, summaryOf, textOf } from "./LogList";
+import { atLeast, summaryOf, textOf } from "./LogCard";
 
 describe("a log", () => {
   const entry = (id: number, level: LogEntry["level"], text: string): LogEntry => ({
@@ -52,5 +53,19 @@ describe("what a run is doing before its figures tell", () => {
     const now = Date.parse("2026-01-01T00:01:42Z");
     expect(elapsedOf(run, now)).toBe("42 s");
     expect(elapsedOf(queued, now)).toBe("12 s");
+  });
+});
+
+describe("why a run ended", () => {
+  const run = { generations: 50, spec: { search: { stop: { evaluations: 5000 } } } } as unknown as Run;
+  it.each([
+    [null, "Completed all 50 generations."],
+    [
+      "evaluations after generation 12",
+      "Ended after generation 12: it used its budget of 5,000 evaluations.",
+    ],
+    ["device_hours after generation 3", "Ended early: device hours after generation 3."],
+  ])("%j is told as %j", (ended, sentence) => {
+    expect(endReasonOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
   });
 });

@@ -30,7 +30,7 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
   useDebounced(typed, SETTLE_MS, find);
   return (
     <form
-      class="filters"
+      class="filters row"
       role="search"
       aria-label={text.runs}
       onSubmit={(event) => {

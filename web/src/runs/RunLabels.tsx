@@ -11,13 +11,11 @@ import "./labels.css";
 interface Props {
   run: Run;
   name: string;
-  /** True if the labels cannot be changed. */
   fixed: boolean;
 }
 
 const MAX_TAGS = 20;
 
-/** The tags; `known` is the id of the `datalist` of known tags. */
 export function TagList({ run, name, fixed, known }: Props & { known: string }) {
   const { open, setOpen, button } = useDisclosure();
   const done = (tag: string | null) => {

@@ -74,7 +74,6 @@ interface PartProps {
   title: string;
   /** The title with the run's id. */
   name: string;
-  /** True if the run cannot be changed. */
   fixed: boolean;
 }
 

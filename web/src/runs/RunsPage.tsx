@@ -12,7 +12,7 @@ import { showFailure } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { wasGuided } from "../archive/guide";
 import { Empty, Page } from "../ui/Page";
-import { Term } from "../ui/Term";
+import { Heading } from "../ui/Table";
 import { Filters } from "./Filters";
 import { NO_FILTERS, WITHOUT_SWEEP, ariaSort, groupsSweeps, isFiltered, nextSort, queryOf } from "./runQuery";
 import { RunRow } from "./RunRow";
@@ -110,15 +110,12 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
             <span class="unseen">{text.compare}</span>
           </th>
           {COLUMNS.map(({ title, key, falling = false }) => (
-            <th key={title} scope="col" aria-sort={key ? ariaSort(query.sort, key) : undefined}>
-              <Term name={title}>
-                {key && (
-                  <button class="sort" onClick={() => setQuery({ sort: nextSort(query.sort, key, falling) })}>
-                    {title}
-                  </button>
-                )}
-              </Term>
-            </th>
+            <Heading
+              key={title}
+              title={title}
+              order={key ? ariaSort(query.sort, key) : undefined}
+              onSort={key ? () => setQuery({ sort: nextSort(query.sort, key, falling) }) : undefined}
+            />
           ))}
           <th scope="col">
             <span class="unseen">{text.actions}</span>
@@ -143,7 +140,7 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
 
 function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   return (
-    <p class="chosen" role="status">
+    <p class="chosen row" role="status">
       <span>
         {text.selected(ids.length)}
         {ids.length === 1 && text.selectAnother}
@@ -160,7 +157,6 @@ function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   );
 }
 
-/** A link to the sweep whose runs are listed. */
 function SweepBanner({ sweep }: { sweep: string }) {
   if (sweep === WITHOUT_SWEEP) return null;
   return (
@@ -191,7 +187,6 @@ function NothingListed({ query }: { query: RunQuery }) {
   );
 }
 
-/** An invitation to the tour, shown on the first visit. */
 function Welcome() {
   const demonstration = useStore((state) => [...state.runs.values()].find((run) => run.demonstration));
   if (wasGuided() || !demonstration) return null;

@@ -8,7 +8,7 @@ import "./sweepRows.css";
 
 interface Props {
   page: SweepPage;
-  /** Null where no more are shown. */
+  /** Null if all are shown. */
   onMore: (() => void) | null;
 }
 

@@ -3,27 +3,14 @@
 import type { RunQuery } from "../api/types";
 import { STATES } from "../run/RunStatus";
 import { isUuid } from "../store/router";
+import type { SortOrder } from "../ui/Table";
 import { text } from "./text";
 
 export const NEWEST = "-created";
 
-/** The orders of the menu. */
-export const ORDERS: [sort: NonNullable<RunQuery["sort"]>, title: string][] = [
-  [NEWEST, text.newest],
-  ["created", text.oldest],
-  ["name", text.name],
-  ["-name", text.nameFalling],
-  ["status", text.stateRising],
-  ["-status", text.stateFalling],
-  ["-progress", text.mostProgress],
-  ["progress", text.leastProgress],
-  ["-evaluations", text.mostEvaluations],
-  ["evaluations", text.fewestEvaluations],
-  ["-qd_score", text.highestQdScore],
-  ["qd_score", text.lowestQdScore],
-  ["-best", text.highestFitness],
-  ["best", text.lowestFitness],
-];
+type Sort = NonNullable<RunQuery["sort"]>;
+
+export const ORDERS = Object.entries(text.orders) as [sort: Sort, title: string][];
 
 /** The query of an address; unknown values are ignored. */
 export function queryOf(address: URLSearchParams): RunQuery {
@@ -42,7 +29,6 @@ export function queryOf(address: URLSearchParams): RunQuery {
   };
 }
 
-/** Removes all filters. */
 export const NO_FILTERS = { q: null, status: null, experiment: null, tag: null, sweep: null };
 
 /** In place of a sweep id: runs outside sweeps. */
@@ -50,10 +36,9 @@ export const WITHOUT_SWEEP = "none";
 
 const listOf = (address: URLSearchParams, key: string) => (address.get(key) ?? "").split(",").filter(Boolean);
 
-/** True if any filter is set. */
 export const isFiltered = ({ sort: _, deleted: __, ...filters }: RunQuery) => Object.keys(filters).length > 0;
 
-/** What to ask the server for: as long as nothing is asked of them, runs of sweeps stand as one. */
+/** True if each sweep is shown as one row: while the address asks for nothing. */
 export const groupsSweeps = (query: RunQuery) => Object.keys(query).length === 0;
 
 /** The order after a click on a column: by the column, then reversed, then the default. */
@@ -63,7 +48,7 @@ export function nextSort(sort: string | undefined, key: string, falling: boolean
   return sort === second ? null : first;
 }
 
-export function ariaSort(sort: string | undefined, key: string) {
+export function ariaSort(sort: string | undefined, key: string): SortOrder {
   if (sort === key) return "ascending";
   return sort === `-${key}` ? "descending" : "none";
 }

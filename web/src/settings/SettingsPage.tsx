@@ -15,37 +15,28 @@ export function SettingsPage() {
   return (
     <Page title={text.settings} error={error} loading={!value && text.loading}>
       {value && (
-        <div class="settings">
+        <>
           <PrincipalCard principal={value} />
           {value.scope === "admin" && <Tokens own={value.token} />}
-        </div>
+        </>
       )}
     </Page>
   );
 }
 
-/** The port of this page. */
 const PORT = globalThis.location?.port || "80";
-
-const SCOPE_TEXT = {
-  read: text.scopeRead,
-  write: text.scopeWrite,
-  admin: text.scopeAdmin,
-};
 
 function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { principal: Principal }) {
   const leave = () => void signOut().then(() => location.reload(), showFailure);
-  const head = (
-    <>
-      <span class="badge">{scope}</span>
-      <span class="spring" />
-      {needed && <button onClick={leave}>{text.signOut}</button>}
-    </>
-  );
   return (
-    <Card id="you" title={needed ? name : text.thisMachine} head={head}>
+    <Card
+      id="you"
+      title={needed ? name : text.thisMachine}
+      note={<span class="badge">{scope}</span>}
+      actions={needed && <button onClick={leave}>{text.signOut}</button>}
+    >
       <p>
-        {SCOPE_TEXT[scope]}
+        {text.allowed[scope]}
         {expires_at && text.validUntil(day(expires_at))}
       </p>
       {!needed && (

@@ -17,7 +17,7 @@ export function SignInPage() {
       <form class="card sign-in" onSubmit={onSubmit}>
         <h1>{text.signIn}</h1>
         <p class="quiet">{text.signInHint}</p>
-        <label>
+        <label class="over">
           {text.token}
           <input
             type="password"

@@ -11,7 +11,7 @@ import { Select } from "../ui/Select";
 import { type Column, Table } from "../ui/Table";
 import { copyText } from "../ui/clipboard";
 import { useSubmit } from "../ui/submit";
-import { TERMS, day, endOf, isExpired, tokenStatus } from "./tokenText";
+import { day, endOf, isExpired, tokenStatus } from "./tokenText";
 import { text } from "./text";
 
 export function Tokens({ own }: { own: string | null }) {
@@ -44,8 +44,8 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
     setName("");
   });
   return (
-    <form class="new-token" onSubmit={onSubmit}>
-      <label>
+    <form class="new-token row" onSubmit={onSubmit}>
+      <label class="over">
         {text.owner}
         <input
           value={name}
@@ -58,11 +58,11 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
       </label>
       <Select
         title={text.scope}
-        choices={SCOPES}
+        choices={text.scopes}
         value={scope}
         onChange={(name) => setScope(name as TokenScope)}
       />
-      <Select title={text.validFor} choices={LIFETIMES} value={days} onChange={setDays} />
+      <Select title={text.validFor} choices={text.terms} value={days} onChange={setDays} />
       <button class="primary" disabled={busy || !name.trim()}>
         {text.create}
       </button>
@@ -74,13 +74,6 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
     </form>
   );
 }
-
-const SCOPES = [
-  ["read", text.readOnly],
-  ["write", text.readAndWrite],
-  ["admin", text.admin],
-] as const;
-const LIFETIMES = TERMS.map(([title, days]) => [String(days), title.toLowerCase()] as const);
 
 /** The secret of a new token, which is shown once. */
 function Secret({ made, onDone }: { made: CreatedToken; onDone: () => void }) {

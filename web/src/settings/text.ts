@@ -3,9 +3,11 @@
 export const text = {
   settings: "Settings",
   loading: "Loading …",
-  scopeRead: "You can read everything and change nothing.",
-  scopeWrite: "You can read everything, create runs, and change your own.",
-  scopeAdmin: "You can read and change everything, and create tokens for others.",
+  allowed: {
+    read: "You can read everything and change nothing.",
+    write: "You can read everything, create runs, and change your own.",
+    admin: "You can read and change everything, and create tokens for others.",
+  },
   thisMachine: "This machine",
   signOut: "Sign out",
   validUntil: (day: string) => ` Your token is valid until ${day}.`,
@@ -20,9 +22,11 @@ export const text = {
   owner: "Owner",
   ownerHint: "alice, laptop",
   scope: "Scope",
-  readOnly: "Read",
-  readAndWrite: "Read and write",
-  admin: "Admin",
+  scopes: [
+    ["read", "Read"],
+    ["write", "Read and write"],
+    ["admin", "Admin"],
+  ] as const,
   validFor: "Valid for",
   create: "Create token",
   secretOf: "Token of ",
@@ -42,9 +46,12 @@ export const text = {
   revokedOn: (day: string) => `Revoked on ${day}`,
   until: (day: string) => `Until ${day}`,
   noExpiry: "No expiry",
-  week: "A week",
-  month: "A month",
-  threeMonths: "Three months",
-  year: "A year",
-  forever: "No limit",
+  /** By days; 0 is no limit. */
+  terms: [
+    ["7", "a week"],
+    ["30", "a month"],
+    ["90", "three months"],
+    ["365", "a year"],
+    ["0", "no limit"],
+  ] as const,
 };

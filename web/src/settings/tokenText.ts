@@ -17,13 +17,5 @@ export function tokenStatus(token: Token, now = Date.now()): string {
 export const isExpired = (token: Token, now = Date.now()) =>
   token.revoked_at !== null || (token.expires_at !== null && Date.parse(token.expires_at) <= now);
 
-export const TERMS = [
-  [text.week, 7],
-  [text.month, 30],
-  [text.threeMonths, 90],
-  [text.year, 365],
-  [text.forever, 0],
-] as const;
-
 /** When a token for this number of days expires; null for no expiry. */
 export const endOf = (days: number, now = Date.now()) => (days > 0 ? inDays(days, now) : null);

@@ -64,7 +64,6 @@ export function headingOf({ run, title }: Share, creature: string | null, inside
   return [heading, id && heading.includes(id) ? null : id] as const;
 }
 
-/** Credit, licence and expiry of a share. */
 function Terms({ share: { credit, licence, expires_at, created_at } }: { share: Share }) {
   const url = LICENCE_URLS[licence];
   return (
@@ -108,18 +107,12 @@ function SharedCreature({ share, id, query }: PartProps) {
   );
 }
 
-/** How to import a shared creature into another installation. */
 function ImportHint({ share, sha }: { share: Share; sha: string }) {
   const file = new URL(creatureFileUrl(sha), share.url).href;
   const command = `curl -sf -H '${SHARE_HEADER}: ${share.slug}' '${file}' | curl -sf -H 'Content-Type: application/json' --data-binary @- http://127.0.0.1:8000/api/v1/creatures`;
-  const head = (
-    <>
-      <span class="spring" />
-      <button onClick={() => void copyText(command, text.commandCopied)}>{text.copyCommand}</button>
-    </>
-  );
+  const copy = <button onClick={() => void copyText(command, text.commandCopied)}>{text.copyCommand}</button>;
   return (
-    <Card id="import" kind="import-hint" title={text.importTitle} head={head}>
+    <Card id="import" title={text.importTitle} actions={copy}>
       <p>{text.importHint}</p>
       <pre class="command" tabIndex={0}>
         {command}

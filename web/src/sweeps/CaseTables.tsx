@@ -71,15 +71,13 @@ export function Finals({ cases, generation }: { cases: ShownCase[]; generation: 
       cell: ({ summary }: ShownCase) => <Figure spread={summary.finals[name]} write={write} />,
     })),
   ];
-  const head = <span class="quiet small">{text.figuresAbout(generation)}</span>;
   return (
-    <Card id="finals" title={text.figures} head={head}>
+    <Card id="finals" title={text.figures} note={text.figuresAbout(generation)}>
       <Table label={text.figuresOfCases} columns={columns} rows={cases} keyOf={({ place }) => place} />
     </Card>
   );
 }
 
-/** The number of finished runs of a case. */
 function doneOf(members: Member[]): string {
   const done = members.filter(({ status }) => status === "finished").length;
   return done === members.length ? count(done) : text.finished(done, members.length);
@@ -96,7 +94,6 @@ function Figure({ spread, write }: { spread: Spread | undefined; write: Write })
   );
 }
 
-/** A run of a case. */
 interface Row {
   shown: ShownCase;
   member: Member;
@@ -104,7 +101,6 @@ interface Row {
   i: number;
 }
 
-/** Every run with its own figures. */
 export function Members({ cases }: { cases: ShownCase[] }) {
   const rows = cases.flatMap((shown) =>
     shown.summary.members.map((member, i): Row => ({ shown, member, i })),

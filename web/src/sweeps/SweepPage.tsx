@@ -26,12 +26,7 @@ import { CurveBar, Check } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
 import { text } from "./text";
 
-interface Props {
-  id: string;
-  query: URLSearchParams;
-}
-
-export function SweepPage({ id, query }: Props) {
+export function SweepPage({ id, query }: { id: string; query: URLSearchParams }) {
   const each = query.get("each") === "1";
   const { value, error } = useSweep(id, each);
   const title = value ? sweepTitle(value.sweep) : text.sweep;
@@ -57,12 +52,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
         <SweepProgress sweep={sweep} />
         <SweepStates sweep={sweep} />
       </section>
-      <Card
-        id="curves"
-        kind="sweep-curves"
-        title={text.curves}
-        head={<span class="quiet small">{text.curvesAbout}</span>}
-      >
+      <Card id="curves" kind="wide-curves" title={text.curves} note={text.curvesAbout}>
         <CurveBar log={query.get("log") === "1"}>
           <Check title={text.eachRun} name="each" on={each} />
         </CurveBar>
@@ -83,7 +73,7 @@ const shownOf = (summary: CaseSummary, place: number): ShownCase => ({
   dash: dashOf(place),
 });
 
-/** The cases that the address asks for, else the first ones. */
+/** The cases in the address, or the first ones. */
 function chosenOf(query: URLSearchParams, count: number): number[] {
   const all = [...Array(count).keys()];
   const asked = query.get("cases");

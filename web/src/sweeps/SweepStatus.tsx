@@ -23,10 +23,9 @@ export function SweepProgress({ sweep }: { sweep: Sweep }) {
   return <Progress label={text.progress} share={sweep.progress} kind={kind} />;
 }
 
-/** How many runs are in each state. */
 export function SweepStates({ sweep }: { sweep: Sweep }) {
   return (
-    <span class="sweep-states">
+    <span class="sweep-states row">
       {STATES.filter((state) => sweep.status_counts[state]).map((state) => (
         <span key={state} class={`badge ${state}`}>
           {sweep.status_counts[state]} {state}

@@ -32,7 +32,6 @@ export function bandsOf(cases: readonly ShownCase[], curves: SweepCurves | null)
   });
 }
 
-/** Upper edge, lower edge, median. */
 function bandOf({ summary, name, colour, dash }: ShownCase, figure: Score): Series[] {
   const { high, low, median } = summary[figure];
   const common = { colour, x: summary.generation, other: true };
@@ -56,7 +55,7 @@ function linesOf({ summary, colour }: ShownCase, figure: Score, curves: SweepCur
   }));
 }
 
-/** The name of a case: its values, with the last part of each field's path where that is unique. */
+/** The values of a case, with the last part of each path if it is unique. */
 export function caseName(values: CaseValues): string {
   const paths = Object.keys(values);
   const last = (path: string) => path.split(".").at(-1)!;

@@ -8,12 +8,12 @@ import { showToast } from "../store/toasts";
 import { navigate } from "../store/router";
 import { text } from "./text";
 
-async function open(file: File): Promise<void> {
+export async function openCreature(file: File): Promise<void> {
   try {
     const { creature } = await importCreature(file);
     navigate(`/creatures/${creature}`);
   } catch (error) {
-    showToast({ kind: "wrong", text: `${file.name}: ${messageOf(error)}` });
+    showToast({ kind: "wrong", text: [file.name, messageOf(error)].filter(Boolean).join(": ") });
   }
 }
 
@@ -24,7 +24,7 @@ interface DropHandler {
 
 const OPEN_CREATURE: DropHandler = {
   prompt: text.dropCreature,
-  take: (file) => void open(file),
+  take: (file) => void openCreature(file),
 };
 
 let handler = OPEN_CREATURE;

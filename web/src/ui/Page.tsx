@@ -56,18 +56,22 @@ interface CardProps {
   /** CSS classes. */
   kind?: string;
   /** Beside the title. */
-  head?: ComponentChildren;
+  note?: ComponentChildren;
+  /** At the right end of the title. */
+  actions?: ComponentChildren;
   children?: ComponentChildren;
 }
 
-export function Card({ id, title, kind = "", head, children }: CardProps) {
+export function Card({ id, title, kind = "", note, actions, children }: CardProps) {
   const heading = <h2 id={`${id}-title`}>{title}</h2>;
   return (
     <section class={`card ${kind}`} id={id} aria-labelledby={`${id}-title`} tabIndex={-1}>
-      {head ? (
+      {note || actions ? (
         <div class="card-head">
           {heading}
-          {head}
+          {note && <span class="quiet small">{note}</span>}
+          <span class="spring" />
+          {actions}
         </div>
       ) : (
         heading

@@ -1,4 +1,4 @@
-/** A table that scrolls sideways where its columns need more room. */
+/** A table that scrolls sideways if it is too wide, and headings that sort tables. */
 
 import type { ComponentChildren } from "preact";
 import { Term } from "./Term";
@@ -54,4 +54,30 @@ export function Table<Row>({ label, columns, rows, keyOf, kind = "", rowKind }: 
 function Cell<Row>({ title, unseen, cell, row, first }: Column<Row> & { row: Row; first: boolean }) {
   if (first) return <th scope="row">{cell(row)}</th>;
   return <td data-label={typeof title === "string" && !unseen ? title : undefined}>{cell(row)}</td>;
+}
+
+export type SortOrder = "ascending" | "descending" | "none";
+
+interface HeadingProps {
+  title: string;
+  unit?: string;
+  numeric?: boolean;
+  order?: SortOrder;
+  /** Without it the column cannot be sorted by. */
+  onSort?: () => void;
+}
+
+export function Heading({ title, unit, numeric = false, order, onSort }: HeadingProps) {
+  return (
+    <th scope="col" aria-sort={order} class={numeric ? "numeric" : ""}>
+      <Term name={title}>
+        {onSort && (
+          <button type="button" class="sort" onClick={onSort}>
+            {title}
+          </button>
+        )}
+      </Term>
+      {unit && <span class="unit">{unit}</span>}
+    </th>
+  );
 }

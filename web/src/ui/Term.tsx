@@ -13,9 +13,9 @@ interface Props {
   children?: ComponentChildren;
 }
 
-/** Plurals and units in a title are ignored: “Evaluations/s” is explained as “evaluation”. */
+/** Additions, plurals and units are ignored: “Evaluations/s” is explained as “evaluation”. */
 export function Term({ name, children }: Props) {
-  const about = define(name) ?? define(name.replace(/s?(\/s)?$/, ""));
+  const about = define(name) ?? define(name.replace(/ (of|\().*$/, "").replace(/s?(\/s)?$/, ""));
   const [place, setPlace] = useState<{ left: number; top: number } | null>(null);
   const id = useId();
   if (!about) return <>{children ?? name}</>;

@@ -94,7 +94,6 @@ function Meter({ title, share, reading }: { title: string; share: number | null;
   );
 }
 
-/** Plug-ins of a worker, and modules that failed to load. */
 function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
   return (
     <>
@@ -120,7 +119,7 @@ function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
   );
 }
 
-/** The run of a worker; events update its progress earlier than the list of workers. */
+/** The run of a worker; events update its progress before the list of workers does. */
 function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
   const live = useStore((state) => (current_run ? state.runs.get(current_run.id) : undefined));
   if (!current_run) {

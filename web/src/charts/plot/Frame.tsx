@@ -1,5 +1,6 @@
 /** Axes, grid and titles of a plot. */
 
+import { Term } from "../../ui/Term";
 import type { Axis } from "./Plot";
 import { place, ticksOf } from "./scale";
 
@@ -10,7 +11,7 @@ export interface Room {
   bottom: number;
 }
 
-/** A second axis above, named at places of the first one. */
+/** A second axis above, with labels at values of the first one. */
 export interface Upper {
   title: string;
   ticks: { at: number; text: string }[];
@@ -24,14 +25,13 @@ interface Props {
   shaded: boolean;
 }
 
-/** Pixels that a named value needs along each axis. */
+/** Pixels per label along each axis. */
 const [WIDE, HIGH] = [52, 44];
 
 export function Frame({ x, y, room, upper, shaded }: Props) {
   const { left, right, top, bottom } = room;
   const across = (value: number) => left + place(x.scale, value) * (right - left);
   const up = (value: number) => bottom - place(y.scale, value) * (bottom - top);
-  const middle = (left + right) / 2;
   return (
     <g class="xy-frame">
       <rect x={left} y={top} width={right - left} height={bottom - top} class={shaded ? "shaded" : ""} />
@@ -52,20 +52,35 @@ export function Frame({ x, y, room, upper, shaded }: Props) {
         </g>
       ))}
       <path class="base" d={`M${left} ${bottom}H${right}`} />
-      <text class="title" x={middle} y={bottom + 40}>
-        {x.title}
-      </text>
-      <text class="title" transform={`translate(14 ${(top + bottom) / 2}) rotate(-90)`}>
-        {y.title}
-      </text>
-      {upper && <UpperAxis {...upper} {...{ across, room, middle }} />}
+      {upper && <UpperTicks ticks={upper.ticks} {...{ across, room }} />}
     </g>
   );
 }
 
-type UpperProps = Upper & { across: (value: number) => number; room: Room; middle: number };
+/** Names of the axes, over the drawing: their definitions need elements that can have the focus. */
+export function AxisTitles({ x, y, room, upper }: Omit<Props, "shaded">) {
+  const { left, right, top, bottom } = room;
+  const across = { left, width: right - left };
+  return (
+    <>
+      {upper && (
+        <span class="axis-title" style={{ ...across, top: top - 46 }}>
+          <Term name={upper.title} />
+        </span>
+      )}
+      <span class="axis-title" style={{ ...across, top: bottom + 26 }}>
+        <Term name={x.title} />
+      </span>
+      <span class="axis-title upright" style={{ top, height: bottom - top }}>
+        <Term name={y.title} />
+      </span>
+    </>
+  );
+}
 
-function UpperAxis({ title, ticks, across, room, middle }: UpperProps) {
+type UpperProps = Pick<Upper, "ticks"> & { across: (value: number) => number; room: Room };
+
+function UpperTicks({ ticks, across, room }: UpperProps) {
   return (
     <g>
       {apart(ticks, across).map(({ at, text }) => (
@@ -76,14 +91,11 @@ function UpperAxis({ title, ticks, across, room, middle }: UpperProps) {
           </text>
         </g>
       ))}
-      <text x={middle} y={room.top - 31}>
-        {title}
-      </text>
     </g>
   );
 }
 
-/** From the last one down, those that have room beside the one before. */
+/** The ticks with enough room, from the last one down. */
 function apart(ticks: Upper["ticks"], across: (value: number) => number): Upper["ticks"] {
   return ticks.reduceRight<Upper["ticks"]>((kept, tick) => {
     const crowded = kept[0] && across(kept[0].at) - across(tick.at) < WIDE;

@@ -10,18 +10,15 @@ import { text } from "./text";
 
 export interface FormState {
   document: Json;
-  /** The values before any change. */
+  /** The values before all changes. */
   original: Json;
-  /** Paths of changed values. */
   changed: ReadonlySet<string>;
   messages: ReadonlyMap<string, string[]>;
   change: (path: string, value: Json) => void;
-  /** Paths of collapsed sections. */
   closed: ReadonlySet<string>;
   close: (path: string, closed: boolean) => void;
 }
 
-/** Kinds of values that need more room than a number. */
 const WIDE = ["list", "several", "nested"];
 
 export function Entry({ field, state }: { field: Leaf; state: FormState }) {
@@ -54,11 +51,9 @@ interface NameProps {
   path: string;
   title: string;
   state: FormState;
-  /** Id of the control that the name labels. */
   target?: string;
 }
 
-/** The name of a field, and a button that resets a changed value. */
 export function EntryName({ path, title, state, target }: NameProps) {
   const Label = target ? "label" : "span";
   return (

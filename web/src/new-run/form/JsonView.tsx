@@ -1,4 +1,4 @@
-/** A spec as JSON, to be read, changed or replaced by what is pasted. */
+/** A spec as JSON, which can be edited or replaced. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { FieldError, Spec } from "../../api/types";
@@ -7,11 +7,11 @@ import { text } from "./text";
 interface Props {
   spec: Spec;
   errors: FieldError[];
-  /** Takes what was written; answers what is wrong with it, if anything. */
+  /** Take the written text; return its error, or null. */
   take: (text: string) => string | null;
-  /** Tells whether what is written can be used. */
+  /** Called with the error of the text, or null. */
   onProblem: (problem: string | null) => void;
-  /** Whether all of it is chosen at first, so that pasting replaces it. */
+  /** True if all text is selected at first, so that pasting replaces it. */
   replace: boolean;
 }
 
@@ -25,7 +25,7 @@ export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
     onProblem(found);
   };
   useEffect(() => {
-    // What came of one's own typing must not be rewritten; what others changed must.
+    // Changes from outside rewrite the text; its own changes do not.
     const typing = own.current !== null;
     own.current = null;
     if (typing) return;

@@ -11,11 +11,6 @@ import type { Field, Rows, Section, Union } from "./fields";
 import { Entry, EntryName, type FormState, Messages } from "./Entry";
 import { text } from "./text";
 
-interface Props {
-  form: Section;
-  state: FormState;
-}
-
 /** Sections of a form; the first one holds the values outside all others. */
 export function partsOf(form: Section): (Section | Union)[] {
   const whole = (field: Field) => field.kind === "section" || field.kind === "union";
@@ -24,8 +19,7 @@ export function partsOf(form: Section): (Section | Union)[] {
   return [general, ...(form.fields.filter(whole) as (Section | Union)[])];
 }
 
-export function SpecForm({ form, state }: Props) {
-  const parts = partsOf(form);
+export function SpecForm({ parts, state }: { parts: (Section | Union)[]; state: FormState }) {
   return (
     <div class={`spec-form ${parts.length < 3 ? "few" : ""}`}>
       {parts.map((part) => (

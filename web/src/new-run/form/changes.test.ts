@@ -1,16 +1,9 @@
-import { describe, expect, inject, it } from "vitest";
+import { describe, expect, it } from "vitest";
 import type { Spec } from "../../api/types";
 import { countWithin, changedPaths, equalPreset } from "./changes";
 import { type NumberField, type Section, formOf } from "./fields";
+import { EXPERIMENTS, PRESETS, experiment } from "./presets.fixture";
 import { rangeText } from "./Entry";
-
-const EXPERIMENTS = inject("experiments");
-
-const PRESETS = EXPERIMENTS.flatMap((one) =>
-  one.presets.map((preset) => [`${one.experiment}/${preset.name}`, one, preset] as const),
-);
-
-const experiment = (name: string) => EXPERIMENTS.find((one) => one.experiment === name)!;
 
 describe("differences", () => {
   it("are paths of values, and of parts and lists that are made otherwise", () => {

@@ -1,10 +1,10 @@
-/** What of a spec was changed in the form, and which preset it equals. */
+/** Changes of a spec, and the preset that it equals. */
 
 import type { Experiment, Json, Preset, Spec } from "../../api/types";
-import { isObject } from "../readDocument";
+import { isObject } from "../../run/spec/difference";
 import { join } from "./schema";
 
-/** Paths of values that differ; of parts and lists that are made otherwise, their own. */
+/** Paths of differing values; parts and lists of another shape differ as a whole. */
 export function changedPaths(a: Json, b: Json, path = ""): string[] {
   if (isObject(a) && isObject(b) && sameKeys(a, b)) {
     return keysOf(a, b).flatMap((key) => changedPaths(a[key] ?? null, b[key] ?? null, join(path, key)));
@@ -26,12 +26,12 @@ function sameKeys(a: Spec, b: Spec): boolean {
   return keysOf(a, b).every((key) => OF_PLUGINS.includes(key) || (key in a && key in b));
 }
 
-/** How many of the paths lie in a part of the spec. */
+/** The number of paths in a part of the spec. */
 export function countWithin(paths: Iterable<string>, part: string): number {
   return [...paths].filter((path) => path === part || path.startsWith(`${part}.`)).length;
 }
 
-/** The preset that a spec equals, its seed aside. */
+/** The preset with the same spec, whatever the seed. */
 export function equalPreset(spec: Spec, experiments: Experiment[]): Preset | null {
   const own = experiments.find(({ experiment }) => experiment === spec.experiment);
   const same = (preset: Preset) => changedPaths(spec, preset.spec).every((path) => path === "seed");

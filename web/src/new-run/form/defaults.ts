@@ -1,8 +1,8 @@
-/** A spec with everything that was left out of it, as its schema has it by default. */
+/** Defaults of a schema for the missing fields of a spec. */
 
 import type { Json, Schema, Spec } from "../../api/types";
 import { tagOf } from "./fields";
-import { isObject } from "../readDocument";
+import { isObject } from "../../run/spec/difference";
 import { defaultOf, notNull, resolve } from "./schema";
 
 export function completed(schema: Schema, spec: Spec): Spec {
@@ -15,7 +15,7 @@ function latest(value: Json): Json {
   if (!isObject(value)) return value;
   if (typeof value.source === "string" && isObject(value.settings)) return { settings: value.settings };
   const parts = Object.entries(value);
-  // A creature is what it is.
+  // A creature never changes.
   return Object.fromEntries(parts.map(([key, part]) => [key, key === "creature" ? part : latest(part)]));
 }
 
@@ -37,7 +37,7 @@ function filledProperties(schema: Schema, root: Schema, value: Spec): Spec {
   return { ...value, ...Object.fromEntries(inside) };
 }
 
-/** The part that is named; where none is, the one that is there by default. */
+/** The named part with its defaults, or the default part. */
 function filledUnion(schema: Schema, root: Schema, value: Spec): Json {
   const parts = (schema.oneOf as Schema[]).map((part) => resolve(part, root));
   const tag = tagOf(parts);

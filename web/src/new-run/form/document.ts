@@ -14,7 +14,7 @@ export function valueAt(document: Json, path: string): Json {
   }, document);
 }
 
-/** The document with another value at the path; nothing is changed in place. */
+/** A copy of the document with another value at the path. */
 export function withValue(document: Json, path: string, value: Json): Json {
   if (path === "") return value;
   const [key, ...rest] = path.split(".") as [string, ...string[]];
@@ -25,7 +25,7 @@ export function withValue(document: Json, path: string, value: Json): Json {
   return { ...parts, [key]: withValue(parts[key] ?? null, rest.join("."), value) };
 }
 
-/** What a person typed into a number field: a number, null for empty, else the text itself. */
+/** A typed number; null for empty text, and other text as it is. */
 export function typed(text: string): Json {
   const trimmed = text.trim();
   if (trimmed === "") return null;
@@ -33,7 +33,7 @@ export function typed(text: string): Json {
   return Number.isFinite(value) ? value : text;
 }
 
-/** What is wrong with a number, as far as the schema alone can say; else null. */
+/** The error of a number by the schema alone; null for a valid one. */
 export function complaint(field: NumberField, value: Json): string | null {
   if (value === null) return field.nullable ? null : text.needsNumber;
   if (typeof value !== "number") return text.notANumber(String(value));
@@ -64,7 +64,7 @@ export function messagesByPath(errors: FieldError[], form: Section, document: Js
   return messages;
 }
 
-/** What a person typed into a field for several numbers; what is none stays text. */
+/** A typed list of numbers; other words stay text. */
 export function typedList(text: string): Json[] {
   return text
     .split(/[\s,;]+/)
@@ -72,7 +72,7 @@ export function typedList(text: string): Json[] {
     .map(typed);
 }
 
-/** What a person typed as JSON; where it is none, the text itself. */
+/** Typed JSON; other text as it is. */
 export function typedJson(text: string): Json {
   try {
     return JSON.parse(text);
@@ -81,7 +81,7 @@ export function typedJson(text: string): Json {
   }
 }
 
-/** What the schema alone finds wrong with the values of a document. */
+/** Errors of a document by the schema alone. */
 export function complaints(form: Section, document: Json): FieldError[] {
   return leavesOf(form, document).flatMap((field) => {
     const message = wrongWith(field, valueAt(document, field.path));
@@ -110,12 +110,11 @@ function severalComplaint({ least }: Several, value: Json): string | null {
   return chosen < least ? text.selectMore(least) : null;
 }
 
-/** The part of a union that a document has. */
 export function partOf(union: Union, document: Json): Section | null {
   return union.parts.get(String(valueAt(document, `${union.path}.${union.tag}`))) ?? null;
 }
 
-/** The document with another value; what follows from a changed choice is left out again. */
+/** The document with another value; values that follow from a changed choice are removed. */
 export function withChoice(document: Json, section: Section, field: Field, value: Json): Json {
   const next = withValue(document, field.path, value);
   const following = section.following.map((name) => join(section.path, name));
@@ -132,17 +131,16 @@ function withPlugin(document: Json, { path, settings }: Section, field: Field, v
   return withValue(document, plugin, fresh ?? null);
 }
 
-/** Whether a field belongs to what a document has chosen. */
+/** True if a field belongs to the choices of a document. */
 export function isThere({ when }: Field, document: Json): boolean {
   return when === undefined || valueAt(document, when.path) === when.is;
 }
 
-/** Whether a section that can be switched off is. */
 export function isOff(section: Section, document: Json): boolean {
   return section.fresh !== undefined && valueAt(document, section.path) === null;
 }
 
-/** What a document has of a field: the fields of a part, of the one chosen, of each row. */
+/** Fields within a field, as far as the document has them. */
 function insideOf(field: Field, document: Json): Field[] {
   return within(field, document).filter((each) => isThere(each, document));
 }
@@ -162,7 +160,7 @@ export function leavesOf(field: Field, document: Json): Field[] {
   return insideOf(field, document).flatMap((each) => leavesOf(each, document));
 }
 
-/** Every path at which a form can show a message; the whole form's is empty. */
+/** Every path at which a form can show a message; that of the whole form is empty. */
 export function placesOf(field: Field, document: Json): string[] {
   if (field.kind === "constant") return [];
   const inside = insideOf(field, document).flatMap((each) => placesOf(each, document));

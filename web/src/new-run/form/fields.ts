@@ -15,11 +15,9 @@ interface Common {
   when?: { path: string; is: string };
 }
 
-/** A plug-in among the options of a choice. */
 export interface PluginOption {
   title: string;
   about: string;
-  /** Names of the workers that offer it. */
   workers: string[];
 }
 
@@ -68,7 +66,6 @@ export interface Choice extends Common {
   plugins?: Record<string, PluginOption>;
 }
 
-/** A list of numbers. */
 export interface List extends Common {
   kind: "list";
   item: NumberField;
@@ -76,7 +73,6 @@ export interface List extends Common {
   most: number;
 }
 
-/** A selection of several options. */
 export interface Several extends Common {
   kind: "several";
   options: Json[];

@@ -56,7 +56,7 @@ function SeveralInput({ field, value, onChange, id, "aria-invalid": invalid }: P
   const turn = (option: Json, on: boolean) =>
     onChange(field.options.filter((each) => (each === option ? on : chosen.includes(each))));
   return (
-    <div class="several" role="group" aria-labelledby={`${id}-label`}>
+    <div class="several row" role="group" aria-labelledby={`${id}-label`}>
       {field.options.map((option) => (
         <label key={String(option)}>
           <input

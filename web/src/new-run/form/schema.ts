@@ -9,7 +9,7 @@ export interface Range {
   highOpen?: boolean;
 }
 
-/** A reference followed; words beside it (a default, a description) win. */
+/** Follow a reference; fields beside it (a default, a description) win. */
 export function resolve(schema: Schema, root: Schema): Schema {
   const reference = schema.$ref ?? only(schema.allOf)?.$ref;
   if (typeof reference !== "string") return schema;
@@ -25,7 +25,7 @@ function only(list: Json | undefined): Schema | undefined {
   return Array.isArray(list) && list.length === 1 ? (list[0] as Schema) : undefined;
 }
 
-/** What a value can be besides null; the schema itself where null is not allowed. */
+/** The schema without null; the schema itself if null is not allowed. */
 export function notNull(schema: Schema, root: Schema): Schema {
   if (!Array.isArray(schema.anyOf)) return schema;
   const rest = (schema.anyOf as Schema[]).filter((option) => option.type !== "null");
@@ -55,7 +55,7 @@ export function defaultOf(schema: Schema, root: Schema): Json {
   return Object.fromEntries(properties.map(([key, part]) => [key, defaultOf(part, root)]));
 }
 
-/** As few items as there must be: numbers that count up, pairs that make a zigzag. */
+/** The fewest allowed items: numbers that count up, pairs that make a zigzag. */
 function sampleOf(schema: Schema, root: Schema): Json {
   const item = resolve((schema.items ?? {}) as Schema, root);
   const whole = (item.prefixItems as Schema[] | undefined)?.[0]?.type === "integer";

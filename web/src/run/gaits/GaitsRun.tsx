@@ -9,7 +9,9 @@ import { Plot, type Point } from "../../charts/plot/Plot";
 import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
-import { MarkReplay, useLastMark } from "./MarkReplay";
+import { ReplayLoop } from "../../replay/Loop";
+import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { useDebounced } from "../../store/timing";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import { text } from "./text";
 import "./gaits.css";
@@ -31,7 +33,7 @@ export function GaitsRun({ run, query }: ResultsProps) {
         id="displacement"
         kind="plot-card"
         title={text.title}
-        head={forms.length > 1 && <Forms forms={forms} chosen={asked} />}
+        actions={forms.length > 1 && <Forms forms={forms} chosen={asked} />}
       >
         {missing ? (
           <p class="quiet waiting">{missing}</p>
@@ -55,15 +57,12 @@ export function GaitsRun({ run, query }: ResultsProps) {
 function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
   const choices = forms.map((form): [string, string] => [form, formOf(form).title]);
   return (
-    <>
-      <span class="spring" />
-      <Segments
-        label={text.form}
-        choices={[...choices, [REPLAYS, text.sideBySide]]}
-        value={chosen}
-        onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
-      />
-    </>
+    <Segments
+      label={text.form}
+      choices={[...choices, [REPLAYS, text.sideBySide]]}
+      value={chosen}
+      onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
+    />
   );
 }
 
@@ -82,7 +81,7 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
   const peers = all.filter((row) => formOf(String(row.form)).free === free);
   return (
     <div class="sweep">
-      <p class="sweep-title">
+      <p class="sweep-title row">
         <b>{title}</b> <span class="quiet">{about}</span> {!free && <NotForceFree />}
       </p>
       <Plot
@@ -97,12 +96,11 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
   );
 }
 
-/** The meaning of the kinds of marks that are shown. */
 function Key({ rows }: { rows: ResultRow[] }) {
   const doubtful = rows.some((row) => row.status === "ok" && (row.limited || row.warnings));
   const failed = rows.some((row) => row.status !== "ok");
   return (
-    <p class="quiet small marks">
+    <p class="quiet small marks row">
       <span>{text.marks}</span>
       {doubtful && (
         <span>
@@ -117,3 +115,42 @@ function Key({ rows }: { rows: ResultRow[] }) {
     </p>
   );
 }
+
+/** A moving pointer passes marks that are not meant. */
+const SETTLE_MS = 120;
+
+/** The last mark under a resting pointer; leaving it keeps its replay. */
+function useLastMark(near: Point | null): Point | null {
+  const [last, setLast] = useState<Point | null>(null);
+  useDebounced(near?.href ? near : null, SETTLE_MS, setLast);
+  return last;
+}
+
+function MarkReplay({ point }: { point: Point | null }) {
+  return (
+    <aside class="mark-replay" aria-label={text.replay}>
+      {point ? <Playing key={point.href} point={point} /> : <p class="quiet small">{text.pointAtMark}</p>}
+    </aside>
+  );
+}
+
+function Playing({ point }: { point: Point }) {
+  const rendering = useReplays([shaOf(point.href!)]);
+  const replay = rendering.replays?.[0];
+  const [name, ...figures] = point.says;
+  return (
+    <>
+      <RecordingStatus {...rendering} what={text.simulating} />
+      {replay && <ReplayLoop replay={replay} name={text.swimming(name)} />}
+      <p class="small">
+        <b>{name}</b>
+        <br />
+        <span class="quiet">{figures.join(", ")}</span>
+        <br />
+        <a href={point.href}>{text.openCreature}</a>
+      </p>
+    </>
+  );
+}
+
+const shaOf = (href: string) => href.split("/").at(-1)!.split("?")[0]!;

@@ -7,7 +7,7 @@ import type { Axis, Line, Point } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
 import { text } from "./text";
 
-/** In the order of the paper, so that a swimmer has the same colour in every run. */
+/** The order of the paper gives each swimmer the same colour in every run. */
 const SWIMMERS = ["worm", "tadpole", "ray", "cilia", "jellyfish"];
 
 type Href = (creature: string) => string;
@@ -19,7 +19,7 @@ const measure = (row: ResultRow, name: string) =>
 
 export const formsOf = (spec: Spec) => strings(spec.forms);
 
-/** The same for all forms whose rows are given, so that they can be compared. */
+/** Common axes of several forms make them comparable. */
 export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
   const ways = rows.filter(finished).map((row) => Number(row.displacement));
   const write = (value: number) => number(value, 2);
@@ -44,10 +44,10 @@ export function sweepLines(spec: Spec, rows: readonly ResultRow[], hrefOf: Href)
   }));
 }
 
-/** Whether the simulation ended as it should, so that its figures count. */
+/** True if the simulation completed, so that its figures count. */
 const finished = (row: ResultRow) => row.status === "ok" && measure(row, "displacement") !== null;
 
-/** Whether something reduces the worth of a point's figures. */
+/** True if warnings or active limits make a point doubtful. */
 const doubtful = (row: ResultRow) => Number(row.limited) > 0 || Boolean(row.warnings);
 
 function doubtsOf(row: ResultRow): string[] {
@@ -74,7 +74,7 @@ function pointOf(row: ResultRow, hrefOf: Href): Point {
   };
 }
 
-/** One swimmer's Reynolds numbers at its viscosities: the worm's where it swims. */
+/** The Reynolds numbers of the first swimmer that completed, above its viscosities. */
 export function reynoldsAxis(rows: readonly ResultRow[]): Upper | null {
   const known = rows.filter((row) => finished(row) && Number(row.reynolds) > 0);
   const swimmer = SWIMMERS.find((name) => known.some((row) => row.swimmer === name));

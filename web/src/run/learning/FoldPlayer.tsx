@@ -1,4 +1,4 @@
-/** A filament that folds over its picture: to play and scrub, and moments of it in a row. */
+/** A player for a filament that folds over its picture, with pictures of its moments. */
 
 import { useMemo, useState } from "preact/hooks";
 import type { Target } from "../../api/types";
@@ -11,9 +11,9 @@ import { type Fold, drawFold, pictureOf } from "./fold";
 import { chainsOf } from "../../replay/motion";
 import { text } from "./text";
 
-/** Seconds that a whole life takes, and those for which its end is looked at. */
+/** Seconds of playback, and of rest at the end. */
 const [LIFE_S, REST_S] = [4, 1.5];
-/** Shares of a life that are shown beside each other. */
+/** Shares of the simulation that are shown as pictures. */
 const MOMENTS = [0, 0.1, 0.4, 1];
 
 const INK = {

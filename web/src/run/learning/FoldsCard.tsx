@@ -49,7 +49,7 @@ function Pictures({ run, targets, rows, chosen }: PicturesProps) {
     return typeof loss === "number" ? text.loss(number(loss)) : text.noLoss;
   };
   return (
-    <div class="fold-choice" role="group" aria-label={text.pictures}>
+    <div class="fold-choice row" role="group" aria-label={text.pictures}>
       {targets.map((target) => (
         <button
           key={target.name}

@@ -1,4 +1,4 @@
-/** A filament over the picture that it folds into, at a moment of its life. */
+/** Draw a filament over its target picture at a moment of the simulation. */
 
 import type { Target } from "../../api/types";
 import { type Size, prepare } from "../../ui/canvas";
@@ -10,12 +10,12 @@ export interface Fold {
   picture: OffscreenCanvas;
   target: Target;
   chains: number[][];
-  /** How much of the picture is seen, from 0 to 1. */
+  /** Opacity of the picture, from 0 to 1. */
   shown: number;
   ink: { body: string; halo: string };
 }
 
-/** The ink of a picture in one colour, paper left free. */
+/** A picture in one colour on a transparent ground. */
 export function pictureOf({ width, height, pixels }: Target, rgb: readonly number[]): OffscreenCanvas {
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext("2d")!;
@@ -28,12 +28,12 @@ export function pictureOf({ width, height, pixels }: Target, rgb: readonly numbe
   return canvas;
 }
 
-/** Where a picture lies on the lattice: left, top (upwards), width and height, in cells. */
+/** Place of a picture on the lattice: left, top (upwards), width and height, in cells. */
 export function placeOf(target: Target, [width, height]: readonly [number, number]) {
   const scale = target.size / Math.max(target.width, target.height);
   const [wide, high] = [Math.round(scale * target.width), Math.round(scale * target.height)];
   const [left, bottom] = [Math.floor((width - wide) / 2), Math.floor((height - high) / 2)];
-  // A cell's value stands at its middle, which is a whole coordinate.
+  // The centre of a cell is a whole coordinate.
   return { left: left - 0.5, top: bottom + high - 0.5, wide, high };
 }
 

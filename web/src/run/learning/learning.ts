@@ -1,4 +1,4 @@
-/** Runs that learn by gradients: what falls, or rises, from step to step. */
+/** Curves of runs that learn by gradients. */
 
 import type { Run } from "../../api/types";
 import type { Curves } from "../../store/curves";
@@ -7,7 +7,7 @@ import type { Axis, Line } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
 import { text } from "./text";
 
-/** Marks of a line; between them nothing would be seen. */
+/** The largest number of marks on a line. */
 const MARKS = 120;
 const LOSS = "loss of ";
 
@@ -18,7 +18,7 @@ export interface Course {
   lines: Line[];
 }
 
-/** How far a folding's filaments are from their pictures, or how fit a creature has become. */
+/** The loss of each filament, or the fitness of a creature, by step. */
 export function courseOf(run: Run, curves: Curves): Course {
   const folds = run.experiment === "folding";
   // A refinement measures its creature before the first step.
@@ -59,7 +59,7 @@ function lineOf(column: string, curves: Curves, before: number, k: number): Line
   };
 }
 
-/** Room for values that need not begin at zero. */
+/** A linear scale that need not start at zero. */
 function around(values: number[]): Axis["scale"] {
   if (values.length === 0) return fromZero([1]);
   const [low, high] = [Math.min(...values), Math.max(...values)];
@@ -67,6 +67,6 @@ function around(values: number[]): Axis["scale"] {
   return { log: false, low: low - beside, high: high + beside };
 }
 
-/** Digits by which values that are named on the axis differ. */
+/** Digits that tell the ticks of an axis apart. */
 const digitsOf = ({ low, high }: Axis["scale"]) =>
   2 + Math.max(0, Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low))));

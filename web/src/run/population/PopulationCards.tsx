@@ -15,7 +15,7 @@ import "./population.css";
 
 export function PopulationCards({ run, elites }: { run: Run; elites: Elites }) {
   return (
-    <div class="population">
+    <div class="run-columns even">
       <SpeciesCard run={run} />
       <BestNetwork run={run} elites={elites} />
     </div>
@@ -42,16 +42,16 @@ function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
   const { value, error } = useFetched(async () => (sha ? await api.readCreature(sha) : null), [sha]);
   const genome = value?.identity.genome;
   const network = useMemo(() => (genome && isNetwork(genome) ? networkOf(genome) : null), [genome]);
-  const head = best && (
-    <span class="quiet">
+  const note = best && (
+    <>
       {text.bestOf(number(best.fitness, 4), best.generation)}{" "}
       <a href={`/creatures/${best.creature}?run=${run.id}`}>
         <code>{short(best.creature)}</code>
       </a>
-    </span>
+    </>
   );
   return (
-    <Card id="network" title={text.bestNetwork} head={head}>
+    <Card id="network" title={text.bestNetwork} note={note}>
       {error && <p class="wrong-text small">{error}</p>}
       {!best && <p class="quiet waiting">{text.noBest}</p>}
       {network && <NetworkGraph network={network} />}

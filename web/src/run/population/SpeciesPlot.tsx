@@ -1,60 +1,64 @@
-/** Sizes of species over the generations, stacked; a pointer or the arrow keys read them. */
+/** A stacked plot of species sizes over the generations, read by pointer or arrow keys. */
 
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { SpeciesHistory } from "../../api/types";
 import { type Size, useSize } from "../../ui/canvas";
 import { count } from "../../ui/format";
-import { ticksOf } from "../../charts/plot/scale";
+import { AxisTitles, Frame, type Room } from "../../charts/plot/Frame";
+import type { Axis } from "../../charts/plot/Plot";
+import { place } from "../../charts/plot/scale";
 import { type Stack, colourOf, pathOf, speciesAt, stackOf } from "./speciesStack";
 import { text } from "./text";
 
-const [LEFT, RIGHT, TOP, BOTTOM] = [44, 8, 8, 26];
-
 interface Place {
   i: number;
-  /** Members below the pointer; null where a key chose the generation alone. */
+  /** Members below the pointer; null if a key selected the generation. */
   height: number | null;
 }
 
-interface Scales {
-  last: number;
-  x: (i: number) => number;
-  y: (members: number) => number;
-  placeAt: (x: number, y: number) => Place;
-}
+const whole = (value: number) => (Number.isInteger(value) ? count(value) : "");
 
-function scalesOf({ generation, size }: Stack, width: number, height: number): Scales {
-  const last = generation.length - 1;
-  const [wide, high] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
+function axesOf({ generation, size }: Stack): { x: Axis; y: Axis } {
+  const [first, last] = [generation[0]!, generation.at(-1)!];
+  const generations = { log: false, low: first, high: Math.max(last, first + 1) };
   return {
-    last,
-    x: (i) => LEFT + (last === 0 ? wide / 2 : (i / last) * wide),
-    y: (members) => TOP + high * (1 - members / size),
-    placeAt: (x, y) => ({
-      i: within(Math.round(((x - LEFT) / wide) * last), last),
-      height: size * (1 - (y - TOP) / high),
-    }),
+    x: { title: text.generation, scale: generations, write: whole },
+    y: { title: text.members, scale: { log: false, low: 0, high: size }, write: whole },
   };
 }
 
-const within = (i: number, last: number) => Math.min(last, Math.max(0, i));
+const roomOf = ({ width, height }: Size): Room => ({
+  left: 78,
+  right: width - 14,
+  top: 8,
+  bottom: height - 48,
+});
+
+/** The generation and the members at a point of the plot. */
+function placeAt(stack: Stack, room: Room, left: number, top: number): Place {
+  const { generation, size } = stack;
+  const { low, high } = axesOf(stack).x.scale;
+  const value = low + ((left - room.left) / (room.right - room.left)) * (high - low);
+  const distance = (i: number) => Math.abs(generation[i]! - value);
+  const i = [...generation.keys()].reduce((best, i) => (distance(i) < distance(best) ? i : best));
+  return { i, height: (size * (room.bottom - top)) / (room.bottom - room.top) };
+}
 
 export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
   const host = useRef<HTMLDivElement>(null);
   const size = useSize(host);
   const stack = useMemo(() => stackOf(history), [history]);
   const [place, setPlace] = useState<Place | null>(null);
-  const scales = scalesOf(stack, size.width, size.height);
-  const { last } = scales;
+  const last = stack.generation.length - 1;
   const follow = (event: PointerEvent) => {
     const box = host.current!.getBoundingClientRect();
-    setPlace(scales.placeAt(event.clientX - box.left, event.clientY - box.top));
+    setPlace(placeAt(stack, roomOf(size), event.clientX - box.left, event.clientY - box.top));
   };
   const walk = (event: KeyboardEvent) => {
     const by = { ArrowLeft: -1, ArrowRight: 1, Home: -last, End: last }[event.key];
     if (by === undefined) return;
     event.preventDefault();
-    setPlace((old) => ({ i: within((old?.i ?? last) + by, last), height: null }));
+    setPlace((old) => ({ i: Math.min(last, Math.max(0, (old?.i ?? last) + by)), height: null }));
   };
   const shown = place && place.i <= last ? place : null;
   const reading = shown && readingOf(stack, shown);
@@ -73,7 +77,12 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
         onKeyDown={walk}
         onBlur={() => setPlace(null)}
       >
-        {size.width > 0 && <Areas {...{ stack, size, scales, shown }} lit={reading?.number ?? null} />}
+        {size.width > 0 && (
+          <>
+            <Areas {...{ stack, size, shown }} lit={reading?.number ?? null} />
+            <AxisTitles {...axesOf(stack)} room={roomOf(size)} upper={null} />
+          </>
+        )}
       </div>
       <figcaption id="species-reading" class="small" aria-live="polite">
         {reading ? reading.text : summaryOf(stack)}
@@ -85,80 +94,51 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
 interface AreasProps {
   stack: Stack;
   size: Size;
-  scales: Scales;
   shown: Place | null;
-  /** The species that is pointed at. */
   lit: number | null;
 }
 
-function Areas({ stack, size: { width, height }, scales: { x, y }, shown, lit }: AreasProps) {
+function Areas({ stack, size, shown, lit }: AreasProps) {
+  const room = roomOf(size);
+  const axes = axesOf(stack);
+  const x = (i: number) => room.left + place(axes.x.scale, stack.generation[i]!) * (room.right - room.left);
+  const y = (members: number) => room.bottom - place(axes.y.scale, members) * (room.bottom - room.top);
   return (
-    <svg width={width} height={height} aria-hidden="true">
-      <Axes {...{ stack, width, x, y }} />
+    <svg width={size.width} height={size.height} aria-hidden="true">
+      <Frame {...axes} room={room} upper={null} shaded={false} />
       {stack.areas.map((area) => (
         <path
           key={area.number}
           d={pathOf(area, x, y)}
-          class={lit === area.number ? "lit" : ""}
+          class={`species-area ${lit === area.number ? "lit" : ""}`}
           style={{ fill: colourOf(area.number) }}
         />
       ))}
-      {shown && <path class="cursor" d={`M${x(shown.i)} ${TOP}V${height - BOTTOM}`} />}
+      {shown && <path class="cursor" d={`M${x(shown.i)} ${room.top}V${room.bottom}`} />}
     </svg>
   );
 }
 
-interface AxesProps {
-  stack: Stack;
-  width: number;
-  x: (i: number) => number;
-  y: (members: number) => number;
-}
+const livingIn = ({ areas }: Stack, i: number) => areas.filter(({ from, to }) => to[i]! > from[i]!);
 
-function Axes({ stack: { generation, size }, width, x, y }: AxesProps) {
-  const last = generation.length - 1;
-  const shown = [...new Set([0, Math.round(last / 2), last])];
-  return (
-    <g class="species-axes">
-      {ticksOf({ log: false, low: 0, high: size }, 5).map((value) => (
-        <g key={value}>
-          <path d={`M${LEFT} ${y(value)}H${width - RIGHT}`} />
-          <text x={LEFT - 7} y={y(value) + 4} class="end">
-            {count(value)}
-          </text>
-        </g>
-      ))}
-      {shown.map((i) => (
-        <text key={i} x={x(i)} y={y(0) + 18} class={i === 0 ? "" : i === last ? "end" : "middle"}>
-          {i === 0 ? text.generation(generation[i]) : generation[i]}
-        </text>
-      ))}
-    </g>
-  );
-}
-
-function summaryOf({ generation, areas, size }: Stack): string {
-  const last = generation.length - 1;
-  const living = areas.filter(({ from, to }) => to[last]! > from[last]!).length;
-  const arose = `${count(areas.length)} in all`;
-  return `${living} ${living === 1 ? "species lives" : "species live"} in generation ${generation[last]}, ${arose}; a population of ${count(size)}`;
+function summaryOf(stack: Stack): string {
+  const last = stack.generation.length - 1;
+  const [living, all] = [livingIn(stack, last).length, stack.areas.length];
+  return text.summary(living, stack.generation[last]!, count(all), count(stack.size));
 }
 
 function readingOf(stack: Stack, { i, height }: Place): { number: number | null; text: string } {
-  const living = stack.areas.filter(({ from, to }) => to[i]! > from[i]!);
-  const when = `Generation ${stack.generation[i]}`;
+  const living = livingIn(stack, i);
+  const generation = stack.generation[i]!;
   const found = height === null ? null : speciesAt(stack, i, height);
   if (found) {
     const [number, size] = found;
-    return {
-      number,
-      text: `${when}: species ${number}, ${count(size)} members, of ${living.length} species`,
-    };
+    return { number, text: text.oneSpecies(generation, number, count(size), living.length) };
   }
   const sizes = living
     .map(({ number, from, to }): [number, number] => [number, to[i]! - from[i]!])
     .sort((a, b) => b[1] - a[1])
     .slice(0, 5)
-    .map(([number, size]) => `species ${number} ${count(size)}`);
-  return { number: null, text: `${when}: ${living.length} species; largest: ${sizes.join(", ")}` };
+    .map(([number, size]) => text.sizeOf(number, count(size)));
+  return { number: null, text: text.allSpecies(generation, living.length, sizes.join(", ")) };
 }

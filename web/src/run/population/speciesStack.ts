@@ -1,11 +1,11 @@
-/** Species over the generations as areas upon each other. */
+/** Species over the generations as stacked areas. */
 
 import type { SpeciesHistory } from "../../api/types";
 import { css, viridis } from "../../ui/colours";
 
 export interface Area {
   number: number;
-  /** Where its area begins and ends in each generation, from 0 to the population's size. */
+  /** Lower and upper edge in each generation, from 0 to the size of the population. */
   from: number[];
   to: number[];
 }
@@ -29,21 +29,21 @@ export function stackOf({ generation, number, members }: SpeciesHistory): Stack 
   return { generation, areas, size: Math.max(1, ...tops) };
 }
 
-/** Share of the golden section: neighbours in number are far apart in lightness. */
+/** The golden section makes the lightness of successive species differ most. */
 const GOLDEN = 0.61803398875;
 
-/** Of viridis, which all eyes see alike; the same species always has the same. */
+/** The viridis colour of a species, which stays the same in every plot. */
 export function colourOf(number: number): string {
   return css(viridis(0.08 + 0.88 * ((number * GOLDEN) % 1)));
 }
 
-/** The species at a height in a generation, and its size there. */
+/** Number and size of the species at a height in a generation. */
 export function speciesAt(stack: Stack, i: number, height: number): [number, number] | null {
   const area = stack.areas.find(({ from, to }) => height >= from[i]! && height < to[i]!);
   return area ? [area.number, area.to[i]! - area.from[i]!] : null;
 }
 
-/** An outline in a box: there along the top and back along the bottom, where it has members. */
+/** The outline of an area, along its upper edge and back along its lower edge. */
 export function pathOf({ from, to }: Area, x: (i: number) => number, y: (v: number) => number): string {
   const [first, last] = lifeOf({ from, to });
   const there = range(first, last).map((i) => `${x(i).toFixed(1)} ${y(to[i]!).toFixed(1)}`);
@@ -51,7 +51,7 @@ export function pathOf({ from, to }: Area, x: (i: number) => number, y: (v: numb
   return `M${there.join("L")}L${back.reverse().join("L")}Z`;
 }
 
-/** From the generation before its first to the one after its last: it grows from nothing. */
+/** First and last generation of the outline: one before the species and one after. */
 export function lifeOf({ from, to }: Pick<Area, "from" | "to">): [first: number, last: number] {
   const alive = to.map((top, i) => top > from[i]!);
   return [Math.max(0, alive.indexOf(true) - 1), Math.min(to.length - 1, alive.lastIndexOf(true) + 1)];

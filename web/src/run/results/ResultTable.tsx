@@ -1,12 +1,12 @@
-/** All figures of a run's result, in the order that one wants. */
+/** The results of a run as a sortable table. */
 
-import { Fragment } from "preact";
 import type { ResultRow, Value } from "../../api/types";
 import { short } from "../../ui/format";
+import { Heading, type SortOrder } from "../../ui/Table";
 import { type Column, type Order, columnsOf, sortRows } from "./columns";
 import { text } from "./text";
 
-/** What is doubtful about a row. */
+/** The column of warnings. */
 const NOTE = "warnings";
 
 interface Props {
@@ -17,48 +17,30 @@ interface Props {
 }
 
 export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
-  const columns = columnsOf(rows);
-  // Warnings are sentences and have a line of their own; one form alone is named above the plot.
-  const shown = columns.filter(({ name }) => name !== NOTE && (name !== "form" || several(rows, name)));
-  const watchable = rows.some((row) => row.creature !== null);
+  // Warnings have a line of their own; a single form is named above the plot.
+  const columns = columnsOf(rows).filter(
+    ({ name }) => name !== NOTE && (name !== "form" || new Set(rows.map(({ form }) => form)).size > 1),
+  );
+  const linked = rows.some((row) => row.creature !== null);
   return (
     <div class="scroll">
       <table class="results">
         <thead>
           <tr>
-            {watchable && <th scope="col">{text.replay}</th>}
-            {shown.map((column) => (
-              <Heading key={column.name} {...{ column, order, onOrder }} />
+            {linked && <th scope="col">{text.replay}</th>}
+            {columns.map((column) => (
+              <Heading
+                key={column.name}
+                {...column}
+                order={orderOf(column.name, order)}
+                onSort={() => onOrder({ by: column.name, down: order.by === column.name && !order.down })}
+              />
             ))}
           </tr>
         </thead>
         <tbody>
           {sortRows(rows, order).map((row, i) => (
-            <Fragment key={row.creature ?? i}>
-              <tr class={rowClass(row)}>
-                {watchable && (
-                  <td>
-                    {row.creature && (
-                      <a href={hrefOf(row.creature)}>
-                        <code>{short(row.creature)}</code>
-                      </a>
-                    )}
-                  </td>
-                )}
-                {shown.map((column) => (
-                  <td key={column.name} class={column.numeric ? "numeric" : ""}>
-                    <Cell column={column} value={row[column.name] ?? null} />
-                  </td>
-                ))}
-              </tr>
-              {row[NOTE] && (
-                <tr class="note">
-                  <td colSpan={shown.length + Number(watchable)}>
-                    <span class="warning-text">{row[NOTE]}</span>
-                  </td>
-                </tr>
-              )}
-            </Fragment>
+            <Row key={row.creature ?? i} {...{ row, columns, linked, hrefOf }} />
           ))}
         </tbody>
       </table>
@@ -66,40 +48,54 @@ export function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
   );
 }
 
-function Heading({ column, order, onOrder }: { column: Column } & Pick<Props, "order" | "onOrder">) {
-  const mine = order.by === column.name;
-  const sorted = mine ? (order.down ? "descending" : "ascending") : "none";
-  const next = { by: column.name, down: mine ? !order.down : false };
+function orderOf(name: string, { by, down }: Order): SortOrder {
+  if (by !== name) return "none";
+  return down ? "descending" : "ascending";
+}
+
+interface RowProps {
+  row: ResultRow;
+  columns: Column[];
+  /** True if the rows have creatures. */
+  linked: boolean;
+  hrefOf: (creature: string) => string;
+}
+
+function Row({ row, columns, linked, hrefOf }: RowProps) {
+  const { creature, status, [NOTE]: note } = row;
+  const failed = status !== undefined && status !== "ok";
   return (
-    <th scope="col" aria-sort={sorted} class={column.numeric ? "numeric" : ""}>
-      <button type="button" class="plain" onClick={() => onOrder(next)}>
-        {column.title}
-        <span class="arrow" aria-hidden="true">
-          {mine ? (order.down ? "▾" : "▴") : ""}
-        </span>
-      </button>
-      {column.unit && <span class="unit">{column.unit}</span>}
-    </th>
+    <>
+      <tr class={`${failed ? "failed" : ""} ${note ? "noted" : ""}`}>
+        {linked && (
+          <td>
+            {creature && (
+              <a href={hrefOf(creature)}>
+                <code>{short(creature)}</code>
+              </a>
+            )}
+          </td>
+        )}
+        {columns.map(({ name, numeric, write }) => (
+          <td key={name} class={numeric ? "numeric" : ""}>
+            <span class={markOf(name, row[name] ?? null)}>{write(row[name] ?? null)}</span>
+          </td>
+        ))}
+      </tr>
+      {note && (
+        <tr class="note">
+          <td colSpan={columns.length + Number(linked)}>
+            <span class="warning-text">{note}</span>
+          </td>
+        </tr>
+      )}
+    </>
   );
 }
 
-function several(rows: ResultRow[], name: string): boolean {
-  return new Set(rows.map((row) => row[name])).size > 1;
-}
-
-function Cell({ column, value }: { column: Column; value: Value }) {
-  const written = column.write(value);
-  const mark = markOf(column.name, value);
-  return mark ? <span class={`mark-word ${mark}`}>{written}</span> : <>{written}</>;
-}
-
-/** Values that people should not overlook. */
-function markOf(name: string, value: Value): "wrong" | "warned" | null {
-  if (name === "status" && value !== "ok") return "wrong";
+/** The classes of a value that is highlighted. */
+function markOf(name: string, value: Value): string {
+  if (name === "status" && value !== "ok") return "mark-word wrong";
   const doubtful = (name === "force_free" && value === false) || (name === "limited" && Number(value) > 0);
-  return doubtful ? "warned" : null;
-}
-
-function rowClass({ status, [NOTE]: note }: ResultRow): string {
-  return `${status !== undefined && status !== "ok" ? "failed" : ""} ${note ? "noted" : ""}`;
+  return doubtful ? "mark-word warned" : "";
 }

@@ -1,4 +1,4 @@
-/** What the columns of results mean, with their units, and how their values are written. */
+/** The columns of results: titles, units and formats. */
 
 import type { ResultRow, Value } from "../../api/types";
 import { formOf } from "../../ui/coupling";
@@ -27,35 +27,25 @@ const KNOWN: Record<string, Partial<Column>> = {
   viscosity: { unit: "cells²/step" },
   displacement: { unit: "cells/cycle" },
   direction: { unit: "rad" },
-  reynolds: { title: "Reynolds" },
-  sperm: { title: "Sperm" },
-  mach: { title: "Mach" },
-  limited: { title: text.limited, unit: text.ofNodeSteps, write: as(percent) },
-  impulse: { title: text.impulse, unit: text.latticeUnits, write: as((x) => number(x, 2)) },
-  force_free: { title: text.forceFree },
+  limited: { unit: text.ofNodeSteps, write: as(percent) },
+  impulse: { unit: text.latticeUnits, write: as((x) => number(x, 2)) },
   nodes: { write: as(count) },
-  steps: { title: text.stepsTimed, write: as(count) },
-  seconds: { title: text.all, ...seconds },
+  steps: { write: as(count) },
+  seconds,
   fluid: seconds,
   coupling: seconds,
   constraints: seconds,
   steric: seconds,
-  first: { title: text.firstLoss },
-  last: { title: text.lastLoss },
-  least: { title: text.leastLoss },
-  empty: { title: text.emptyLoss },
-  failed: { title: text.failedUpdates, write: as(count) },
-  slope: { title: text.slope },
-  agreement: { title: text.gain },
-  memory_bytes: { title: text.memory, write: as(bytes) },
+  failed: { write: as(count) },
+  memory_bytes: { write: as(bytes) },
 };
 
-/** The columns of some rows, in their order; the creature is none of them. */
+/** The columns of rows without the creature, in their order. */
 export function columnsOf(rows: readonly ResultRow[]): Column[] {
   const names = [...new Set(rows.flatMap(Object.keys))].filter((name) => name !== "creature");
   return names.map((name) => ({
     name,
-    title: words(name),
+    title: (text.titles as Record<string, string>)[name] ?? words(name),
     unit: "",
     write: plain,
     numeric: rows.some((row) => typeof row[name] === "number"),
@@ -68,7 +58,7 @@ export interface Order {
   down: boolean;
 }
 
-/** Rows in order of a column; those without a value come last, equal ones stay as they are. */
+/** Rows sorted by a column; rows without a value come last, equal rows keep their order. */
 export function sortRows(rows: readonly ResultRow[], { by, down }: Order): ResultRow[] {
   if (by === null) return [...rows];
   return [...rows].sort((a, b) => {

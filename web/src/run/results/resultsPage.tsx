@@ -33,17 +33,13 @@ export const hrefOf = (run: Run) => (creature: string) => `/creatures/${creature
 export function TableCard({ run, query, rows }: ResultsProps & { rows: ResultRow[] }) {
   const order: Order = { by: query.get("sort"), down: query.get("order") === "down" };
   const turn = ({ by, down }: Order) => setQuery({ sort: by, order: down ? "down" : null });
-  const head = (
-    <>
-      <span class="quiet">{text.rows(rows.length)}</span>
-      <span class="spring" />
-      <a class="button" href={resultsUrl(run.id)}>
-        {text.download}
-      </a>
-    </>
+  const download = (
+    <a class="button" href={resultsUrl(run.id)}>
+      {text.download}
+    </a>
   );
   return (
-    <Card id="table" kind="table-card" title={text.table} head={head}>
+    <Card id="table" kind="table-card" title={text.table} note={text.rows(rows.length)} actions={download}>
       <ResultTable rows={rows} order={order} onOrder={turn} hrefOf={hrefOf(run)} />
     </Card>
   );

@@ -22,7 +22,7 @@ export function ScalingRun({ run, query }: ResultsProps) {
   const x = nodesAxis(run.spec);
   return (
     <>
-      <div class="run-columns scaling">
+      <div class="run-columns">
         <Card id="time" kind="plot-card" title={text.wallTime}>
           <Plot
             title={text.wallTimePlot}

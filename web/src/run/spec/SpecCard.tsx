@@ -1,4 +1,4 @@
-/** What a run was asked to do: readable, as JSON, and beside another run's. */
+/** The spec of a run: as sections, as JSON, and compared with another run. */
 
 import { useMemo } from "preact/hooks";
 import * as api from "../../api/client";
@@ -8,7 +8,9 @@ import { useStore } from "../../store/store";
 import { setQuery } from "../../store/router";
 import { short, titleOf, words } from "../../ui/format";
 import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
-import { differences } from "./difference";
+import { Card } from "../../ui/Page";
+import { type Column, Table } from "../../ui/Table";
+import { type Difference, differences } from "./difference";
 import { copyText } from "../../ui/clipboard";
 import { RunPicker } from "../RunPicker";
 import { text } from "./text";
@@ -18,31 +20,31 @@ export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
   const against = query.get("against");
   const json = useMemo(() => JSON.stringify(run.spec, null, 2), [run.spec]);
   const href = `data:application/json;charset=utf-8,${encodeURIComponent(json)}`;
+  const actions = (
+    <>
+      <RunPicker
+        run={run}
+        label={text.compareSpec}
+        fits={() => true}
+        onChoose={(id) => setQuery({ against: id })}
+      />
+      <button class="slim" onClick={() => copyText(json, text.copied)}>
+        {text.copyJson}
+      </button>
+      <a class="button slim" href={href} download={`${short(run.id)}-spec.json`}>
+        spec.json
+      </a>
+    </>
+  );
   return (
-    <section class="card spec-card" id="spec" aria-labelledby="spec-title" tabIndex={-1}>
-      <div class="card-head">
-        <h2 id="spec-title">{text.spec}</h2>
-        <span class="spring" />
-        <RunPicker
-          run={run}
-          label={text.compareSpec}
-          fits={() => true}
-          onChoose={(id) => setQuery({ against: id })}
-        />
-        <button class="slim" onClick={() => copyText(json, text.copied)}>
-          {text.copyJson}
-        </button>
-        <a class="button slim" href={href} download={`${short(run.id)}-spec.json`}>
-          spec.json
-        </a>
-      </div>
+    <Card id="spec" kind="spec-card" title={text.spec} actions={actions}>
       {against && <DifferenceTo key={against} run={run} id={against} />}
       <Sections run={run} />
       <details>
         <summary>{text.json}</summary>
         <pre tabIndex={0}>{json}</pre>
       </details>
-    </section>
+    </Card>
   );
 }
 
@@ -90,6 +92,12 @@ function sentenceOf(preset: string, changed: number): string {
   return changed === 1 ? text.oneChange(words(preset)) : text.changes(changed, words(preset));
 }
 
+const COLUMNS: Column<Difference>[] = [
+  { title: text.field, cell: ({ path }) => <span title={path}>{nameOf(path.split("."))}</span> },
+  { title: text.thisRun, cell: ({ values }) => brief(values[0]) },
+  { title: text.otherRun, cell: ({ values }) => brief(values[1]) },
+];
+
 function DifferenceTo({ run, id }: { run: Run; id: string }) {
   const known = useStore((state) => state.runs.get(id));
   const { value, error } = useFetched(() => api.readRun(id), [id]);
@@ -98,40 +106,21 @@ function DifferenceTo({ run, id }: { run: Run; id: string }) {
   const rows = useMemo(() => (other ? differences([run.spec, other.spec]) : []), [other?.spec, run.spec]);
   const close = () => setQuery({ against: null });
   return (
-    <div class="spec-difference" role="region" aria-label={text.difference}>
+    <div class="spec-difference">
       {error && !other && <p class="wrong-text small">{error}</p>}
       {!other && !error && <p class="quiet">{text.loading}</p>}
       {other && (
-        <table class="plain-table">
-          <caption>
+        <>
+          <p class="quiet">
             {rows.length === 0 ? text.noDifference : text.differences(rows.length)}
             <a href={`/runs/${id}`}>
               {titleOf(other, experiments)} <code>{short(id)}</code>
             </a>
-          </caption>
+          </p>
           {rows.length > 0 && (
-            <>
-              <thead>
-                <tr>
-                  <th scope="col">{text.field}</th>
-                  <th scope="col">{text.thisRun}</th>
-                  <th scope="col">{text.otherRun}</th>
-                </tr>
-              </thead>
-              <tbody>
-                {rows.map(({ path, values }) => (
-                  <tr key={path}>
-                    <th scope="row" title={path}>
-                      {nameOf(path.split("."))}
-                    </th>
-                    <td>{brief(values[0])}</td>
-                    <td>{brief(values[1])}</td>
-                  </tr>
-                ))}
-              </tbody>
-            </>
+            <Table label={text.difference} columns={COLUMNS} rows={rows} keyOf={({ path }) => path} />
           )}
-        </table>
+        </>
       )}
       <button class="slim" onClick={close}>
         {text.close}

@@ -1,51 +1,46 @@
-/** What differs between specs: flat paths, and the value that each spec has there. */
+/** Differences between specs: paths, and the value of each spec. */
 
 import type { Json, Spec } from "../../api/types";
 import { DASH, number } from "../../ui/format";
+import { text } from "./text";
 
 export interface Difference {
-  /** As errors of the server name it: `descriptors.0.bins`. */
+  /** As in errors of the server: `descriptors.0.bins`. */
   path: string;
   /** One for each spec, in their order; undefined where a spec has no such field. */
   values: (Json | undefined)[];
 }
 
-/** Only the fields in which the specs are not all the same, in the order of the specs. */
+/** The fields whose values differ between specs. */
 export function differences(specs: readonly Spec[]): Difference[] {
   const flat = specs.map((spec) => new Map(leavesOf(spec, "")));
   const paths = [...new Set(flat.flatMap((leaves) => [...leaves.keys()]))];
   return paths
     .map((path) => ({ path, values: flat.map((leaves) => leaves.get(path)) }))
-    .filter(({ values }) => values.some((value) => !same(value, values[0])));
+    .filter(({ values }) => values.some((value) => JSON.stringify(value) !== JSON.stringify(values[0])));
 }
 
 /** A value as a table shows it. */
 export function written(value: Json | undefined): string {
   if (value === undefined) return DASH;
-  if (value === null) return "none";
-  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (value === null || (Array.isArray(value) && value.length === 0)) return text.none;
+  if (typeof value === "boolean") return value ? text.yes : text.no;
   if (typeof value === "number") return number(value, 9);
   if (typeof value === "string") return value;
-  if (Array.isArray(value)) return value.length === 0 ? "none" : value.map(written).join(", ");
-  return JSON.stringify(value);
+  return Array.isArray(value) ? value.map(written).join(", ") : JSON.stringify(value);
 }
 
-/** Lists of plain values are one value: their items mean nothing alone. */
+/** Lists of plain values are one value. */
 function leavesOf(value: Json, path: string): [path: string, value: Json][] {
   if (Array.isArray(value) && value.some(isParted)) {
     return value.flatMap((item, i) => leavesOf(item, `${path}.${i}`));
   }
-  if (!isRecord(value) || Object.keys(value).length === 0) return [[path, value]];
+  if (!isObject(value) || Object.keys(value).length === 0) return [[path, value]];
   const inside = (key: string) => (path ? `${path}.${key}` : key);
   return Object.entries(value).flatMap(([key, part]) => leavesOf(part, inside(key)));
 }
 
 const isParted = (value: Json) => value !== null && typeof value === "object";
 
-function isRecord(value: Json): value is Spec {
-  return value !== null && typeof value === "object" && !Array.isArray(value);
-}
-
-/** Leaves are plain, or lists of what is plain. */
-const same = (one: Json | undefined, other: Json | undefined) =>
-  JSON.stringify(one) === JSON.stringify(other);
+export const isObject = (value: Json | undefined): value is Spec =>
+  value !== undefined && isParted(value) && !Array.isArray(value);

@@ -1,4 +1,4 @@
-/** A spec as people read it: sections of fields, and which of them are not as usual. */
+/** A spec as sections of fields, with their differences from a preset. */
 
 import type { Json, Preset, Spec } from "../../api/types";
 import { words } from "../../ui/format";
@@ -12,7 +12,7 @@ export interface Field {
   path: string;
   name: string;
   text: string;
-  /** The preset's value, where that is another. */
+  /** The value of the preset; null if it is the same. */
   usual: string | null;
 }
 
@@ -21,7 +21,7 @@ export interface Section {
   fields: Field[];
 }
 
-/** The preset that a spec is nearest to, whatever its seed, and what differs from it. */
+/** The preset with the fewest differences from a spec, whatever the seed. */
 export function nearestPreset(
   spec: Spec,
   presets: readonly Preset[],

@@ -20,4 +20,7 @@ export const text = {
   otherRun: "Other run",
   close: "Close differences",
   run: "Run",
+  none: "none",
+  yes: "yes",
+  no: "no",
 };

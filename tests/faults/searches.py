@@ -1,0 +1,270 @@
+"""Searches at full size, compared with each other, as tables and figures."""
+
+import statistics
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from drive import Installation
+from matplotlib.figure import Figure
+from rich.console import Console
+from rich.table import Table
+
+from microcosmos.naming import decode, encode, name
+from microcosmos.spec import parse
+
+SEEDS = (0, 1, 2, 3, 4)
+CarryOut = Callable[[Installation, dict, str], dict]
+"""Carries out a spec under a title; returns the finished run."""
+
+METHODS = {
+    "random": {"search": {"emitters": [{"operator": "random"}]}},
+    "NEAT": {"experiment": "neuroevolution"},
+    "MAP-Elites, NEAT": {"search": {"emitters": [{"operator": "neat"}]}},
+    "MAP-Elites, iso+line, direct": {
+        "control": {"encoding": "direct"},
+        "search": {"emitters": [{"operator": "iso+line"}]},
+    },
+}
+"""Differences between the searches; everything else is the default of the spec."""
+BARS = {
+    ("MAP-Elites, NEAT", "qd_score"): 1.3,
+    ("MAP-Elites, NEAT", "best"): 1.2,
+    ("NEAT", "best"): 1.0,
+}
+"""Least ratios of medians to those of random search."""
+FIGURES = {"best": "best fitness (cells)", "coverage": "coverage", "qd_score": "QD score"}
+PURE = 0.9
+"""Least share of a gait's power in one harmonic for a sinusoidal gait."""
+
+SLOPE_METHODS = {
+    "NEAT": ("cppn", {"operator": "neat"}, 200),
+    "NEAT that learns": ("cppn", {"operator": "lamarckian", "lessons": 1, "step": 0.5}, 50),
+    "iso+line, direct": ("direct", {"operator": "iso+line"}, 200),
+    "CMA-MEGA, direct": ("direct", {"operator": "cma-mega"}, 120),
+}
+"""Encoding, emitter and generations, so that all take about as long."""
+PAIRS = (("NEAT that learns", "NEAT"), ("CMA-MEGA, direct", "iso+line, direct"))
+"""With derivatives, and without."""
+
+FORAGERS = (0, 1, 2)
+"""Seeds of the searches for energy."""
+SENSOR = 3
+"""The input of the CPPN for energy, after position, sine and cosine."""
+
+
+def written(spec: dict[str, Any]) -> dict[str, Any]:
+    """The whole spec, with its defaults."""
+    return parse({"experiment": "quality-diversity", **spec}).model_dump(mode="json")
+
+
+def spec(seed: int, method: str) -> dict:
+    """32 nodes, 64 × 64 cells, 500 steps, 20 × 20 cells, 50 generations of 64."""
+    chosen = METHODS[method]
+    search = {**chosen.get("search", {}), "generations": 50, "batch": 64}
+    return written({**chosen, "seed": seed, "search": search})
+
+
+def compare(runs: dict[str, list[dict]], console: Console) -> bool:
+    """Print medians and ranges; tell whether medians reach their bars."""
+    found = {n: [[run[f] for run in some] for f in FIGURES] for n, some in runs.items()}
+    console.print(table("median (range)", FIGURES.values(), found))
+    good = True
+    for (method, figure), bar in BARS.items():
+        own, other = (statistics.median(r[figure] for r in runs[n]) for n in (method, "random"))
+        good &= own / other > bar
+        console.print(f"{method}, {figure}: {own / other:.2f} × random search (bar {bar})")
+    return good
+
+
+def table(title: str, columns: Sequence[str], found: Mapping[str, list[list[float]]]) -> Table:
+    """Medians and ranges of lists of values: a row for each name."""
+    rows = Table(title, *columns)
+    for method, lists in found.items():
+        rows.add_row(method, *map(_summary, lists))
+    return rows
+
+
+def _summary(values: list[float]) -> str:
+    digits = 3 if max(values) <= 1 else 2
+    low, middle, high = min(values), statistics.median(values), max(values)
+    return f"{middle:.{digits}f} ({low:.{digits}f}–{high:.{digits}f})"
+
+
+def draw(runs: dict[str, list[dict]], path: Path) -> None:
+    """A panel for each figure, a point for each seed, a bar at the median."""
+    figure = Figure(figsize=(10, 3.2), layout="constrained")
+    for axes, (key, title) in zip(figure.subplots(1, 3), FIGURES.items(), strict=True):
+        for place, found in enumerate(runs.values()):
+            values = [run[key] for run in found]
+            axes.plot([place] * len(values), values, "o", alpha=0.5, color=f"C{place}")
+            middle = statistics.median(values)
+            axes.plot([place - 0.3, place + 0.3], [middle] * 2, color=f"C{place}", lw=2)
+        labels = [method.replace(", ", ",\n") for method in runs]
+        axes.set_xticks(range(len(runs)), labels, fontsize=7)
+        axes.set_title(title, fontsize=10)
+        axes.set_ylim(bottom=0)
+        axes.spines[["top", "right"]].set_visible(False)
+    figure.savefig(path, dpi=150)
+
+
+def fittest(place: Installation, run: str, count: int) -> list[dict]:
+    """The creature files of a run's fittest elites."""
+    archive = place.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
+    order = np.argsort(archive["fitness"])[::-1][:count]
+    addresses = [f"/api/v1/creatures/{archive['creature'][i]}" for i in order]
+    return [place.http.get(address).raise_for_status().json() for address in addresses]
+
+
+def sinusoidal(place: Installation, runs: dict[str, list[dict]], console: Console) -> None:
+    """Print the share of the fittest creatures that move by sinusoidal gaits."""
+    for method, found in runs.items():
+        files = [file for run in found for file in fittest(place, run["id"], 10)]
+        purities = [purity(file) for file in files]
+        console.print(
+            f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the ten fittest of each "
+            f"seed are sinusoidal (median {statistics.median(purities):.0%} of the power in "
+            "one harmonic)"
+        )
+
+
+def purity(file: dict) -> float:
+    """The share of one harmonic in the power of all joints' rest angles."""
+    import jax
+    import jax.numpy as jnp
+
+    from microcosmos import search
+    from microcosmos.archive import creature
+    from microcosmos.build import build_task
+    from microcosmos.viz.replay import actuator_of
+
+    scene = creature.scene_of(creature.parse(file))
+    task = build_task(scene, room=creature.room(file))
+    actuator = jax.tree.map(jnp.asarray, actuator_of(file, scene))
+    angle = np.asarray(search.drive(task, actuator).inputs.angle, float)
+    period = round(scene.control.period)
+    whole = (len(angle) - period) // period * period
+    power = (np.abs(np.fft.rfft(angle[-whole:], axis=0)) ** 2).sum(1)[1:]
+    return float(power.max() / power.sum()) if power.sum() > 0 else 0.0
+
+
+def slope_spec(seed: int, method: str) -> dict:
+    """16 nodes, 32 × 32 cells, 100 steps, 20 × 20 cells."""
+    encoding, emitter, generations = SLOPE_METHODS[method]
+    control = {"encoding": encoding, "period": 50, "angle_scale": 0.3, "length_scale": 0.2}
+    search = {"generations": generations, "batch": 32, "emitters": [emitter]}
+    size = {"world": {"width": 32, "height": 32}, "body": {"nodes": 16}, "task": {"steps": 100}}
+    return written({**size, "seed": seed, "control": control, "search": search})
+
+
+def compare_slopes(
+    place: Installation, carry_out: CarryOut, console: Console, path: Path
+) -> None:
+    """Compare searches with derivatives and without, by evaluations and by device-seconds."""
+    curves = {
+        method: [
+            curve(place, carry_out(place, slope_spec(s, method), f"{method}, seed {s}"))
+            for s in SEEDS
+        ]
+        for method in SLOPE_METHODS
+    }
+    most = [min(one[axis][-1] for runs in curves.values() for one in runs) for axis in (0, 1)]
+    found = {
+        method: [[at(one, axis, most[axis]) for one in runs] for axis in (0, 1)]
+        for method, runs in curves.items()
+    }
+    columns = ("equal evaluations", "equal device-seconds")
+    console.print(table("median QD score (range)", columns, found))
+    console.print(f"at {most[0]:.0f} evaluations, and at {most[1]:.1f} device-seconds")
+    for pair in PAIRS:
+        with_slopes, without = ([statistics.median(v) for v in found[n]] for n in pair)
+        ratios = [a / b for a, b in zip(with_slopes, without, strict=True)]
+        console.print(
+            f"{pair[0]}: {ratios[0]:.2f} × {pair[1]} at equal evaluations, "
+            f"{ratios[1]:.2f} × at equal device-seconds"
+        )
+    draw_slopes(curves, path)
+
+
+def curve(place: Installation, run: dict) -> np.ndarray:
+    """Evaluations, device-seconds without compilation, and QD score, (3, generation)."""
+    found = place.http.get(f"/api/v1/runs/{run['id']}/generations").raise_for_status().json()
+    seconds = np.array(found["summary"]["device_seconds"], float)
+    seconds[0] = 0.0  # The first generation compiles the programs.
+    return np.array([found["evaluations"], np.cumsum(seconds), found["qd_score"]])
+
+
+def at(one: np.ndarray, axis: int, most: float) -> float:
+    """The QD score of the last generation that ended by then."""
+    return float(one[2, np.searchsorted(one[axis], most, side="right") - 1])
+
+
+def draw_slopes(curves: dict[str, list[np.ndarray]], path: Path) -> None:
+    """QD score against evaluations and against device-seconds, a line for each seed."""
+    figure = Figure(figsize=(10, 3.6), layout="constrained")
+    panels = figure.subplots(1, 2, sharey=True)
+    for axis, label in enumerate(("evaluations", "device-seconds")):
+        for place, (method, runs) in enumerate(curves.items()):
+            for number, one in enumerate(runs):
+                once = method if number == 0 else f"_{method}"
+                style = {"color": f"C{place}", "lw": 1, "alpha": 0.8, "label": once}
+                panels[axis].plot(one[axis], one[2], **style)
+        panels[axis].set(xlabel=label, ylim=(0, None))
+        panels[axis].spines[["top", "right"]].set_visible(False)
+    panels[0].set_ylabel("QD score")
+    panels[0].legend(fontsize=8, frameon=False)
+    figure.savefig(path, dpi=150)
+
+
+def forage_spec(seed: int, fitness: str) -> dict:
+    """NEAT among packets of energy, which networks sense; 1 : 1 as in the paper.
+
+    Bodies are small beside the distance of packets, and a life is long enough to reach one.
+    Packets lie elsewhere in each of four worlds, so only sensing finds them.
+    """
+    energy = {"packets": 5, "width": 3.0, "placements": 4}
+    control = {"sense_energy": True, "period": 50, "angle_scale": 0.3, "length_scale": 0.2}
+    parts = {
+        "experiment": "neuroevolution",
+        "world": {"width": 48, "height": 48, "energy": energy},
+        "body": {"builder": "chain", "nodes": 16},
+        "task": {"fitness": fitness, "energy_weight": 1.0, "steps": 800},
+        "search": {"generations": 24, "batch": 64},
+    }
+    return written({**parts, "seed": seed, "control": control})
+
+
+def forage(place: Installation, carry_out: CarryOut, console: Console) -> bool:
+    """Tell whether selection for energy collects more, and blindness less, as medians."""
+    found: dict[str, list[float]] = {"displacement+energy": [], "displacement": [], "blind": []}
+    for seed in FORAGERS:
+        for fitness in ("displacement+energy", "displacement"):
+            run = carry_out(place, forage_spec(seed, fitness), f"{fitness}, seed {seed}")
+            (best,) = fittest(place, run["id"], 1)
+            found[fitness].append(best["measured"]["measures"]["energy"])
+            if fitness == "displacement+energy":
+                found["blind"].append(collected(blinded(best)))
+    middle = {kind: statistics.median(values) for kind, values in found.items()}
+    for kind, values in found.items():
+        listed = ", ".join(f"{value:.0f}" for value in values)
+        console.print(f"energy collected by {kind}: median {middle[kind]:.0f} ({listed})")
+    return middle["displacement+energy"] > max(middle["displacement"], middle["blind"])
+
+
+def blinded(file: dict) -> dict:
+    """The same creature with no weight on what it senses."""
+    identity = file["identity"]
+    connections = identity["genome"]["connections"]
+    weights = decode(connections["weight"]).copy()
+    weights[[source == SENSOR for source in connections["source"]]] = 0.0
+    genome = {**identity["genome"], "connections": {**connections, "weight": encode(weights)}}
+    changed = {**identity, "genome": genome}
+    return {**file, "identity": changed, "sha256": name(changed)}
+
+
+def collected(file: dict) -> float:
+    """The energy that a creature collects, measured again."""
+    from microcosmos.audit.reproducibility import check
+
+    return check(file).repeated["energy"]
