@@ -38,7 +38,7 @@ def make(services: Services, creature: str, kind: str) -> bytes:
 
 def _replay(services: Services, creature: str) -> bytes:
     """Return the stored replay; make and store it if there is none."""
-    data = renderings.kept(services, creature, REPLAY)
+    data = renderings.existing(services, creature, REPLAY)
     if data is None:
         data = make(services, creature, REPLAY)
         renderings.save(services, creature, REPLAY, data)

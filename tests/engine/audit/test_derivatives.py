@@ -25,7 +25,7 @@ def file():
     scene = spec.Scene.model_validate(SCENE)
     encoding = build_encoding(scene, (8, 8))
     newcomer = jax.tree.map(np.asarray, encoding.newcomer(key=jax.random.key(1)))
-    return creature.document(identity(frame(scene), encoding, newcomer), None, None)
+    return creature.document(identity(frame(scene), newcomer), None, None)
 
 
 @pytest.mark.long

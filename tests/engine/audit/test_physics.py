@@ -9,7 +9,7 @@ from microcosmos import bodies, neat, spec
 from microcosmos.archive import creature
 from microcosmos.audit.physics import audit
 from microcosmos.audit.variants import reciprocal, refine
-from microcosmos.build import build_encoding, build_stroke, build_task, frame
+from microcosmos.build import build_stroke, build_task, frame
 from microcosmos.experiments.lineage import identity
 from microcosmos.filaments import Rest
 
@@ -48,11 +48,7 @@ def test_creatures_with_networks_are_audited_too(senses):
     )
     inputs = len(scene.control.inputs)
     network = neat.minimal(jax.random.key(0), inputs, 2, 8, 16)
-    found = audit(
-        creature.document(
-            identity(frame(scene), build_encoding(scene, (8, 16)), network), None, None
-        )
-    )
+    found = audit(creature.document(identity(frame(scene), network), None, None))
     assert {row["name"] for row in found["rows"]} >= {"refined", "delta", "reciprocal"}
     assert all(row["value"] is not None for row in found["rows"])
 

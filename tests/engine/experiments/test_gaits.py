@@ -108,7 +108,7 @@ def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
 
 def test_the_spacing_that_warns_is_the_widest(sweep):
     strokes = build_strokes(parse(json.loads(sweep.spec)))
-    assert all(stroke.spacing <= units.WIDEST for stroke in strokes)
+    assert all(stroke.spacing <= units.MAX_SPACING for stroke in strokes)
 
 
 @pytest.mark.fast

@@ -35,7 +35,7 @@ def test_places_are_uncorrelated_and_so_are_keys(drawn):
 def test_what_a_draw_leaves_is_a_draw_again(drawn):
     for low, high in ((0.0, 0.25), (0.25, 0.9)):
         inside = drawn[(drawn >= low) & (drawn < high)]
-        rest = np.asarray(rng.left(jnp.asarray(inside), low, high))
+        rest = np.asarray(rng.rescaled(jnp.asarray(inside), low, high))
         assert rest.mean() == pytest.approx(0.5, abs=4 * 0.29 / len(rest) ** 0.5)
         assert rest.std() == pytest.approx(12**-0.5, rel=0.01)
 

@@ -219,7 +219,7 @@ def test_shared_fitness_allots_children_by_the_mean_of_each_species(settings):
     """Two species of 2 and 4 with means 3 and 1 get three quarters and one quarter."""
     species = _two_species(settings)
     fitness = jnp.array([2.0, 4.0, 1.0, 1.0, 0.5, 1.5])
-    now = offspring.standing(species, fitness)
+    now = offspring.ranking(species, fitness)
     share = offspring.shares(species.alive, fitness, species, now, settings)
     np.testing.assert_allclose(share, [0.75, 0.25, 0.0], rtol=1e-6)
 
@@ -228,7 +228,7 @@ def test_a_species_that_does_not_improve_has_no_children_but_the_best_has(settin
     species = _two_species(settings)
     fitness = jnp.array([2.0, 4.0, 1.0, 1.0, 0.5, 1.5])
     for generation, expected in ((3, [True, True]), (4, [True, False])):
-        now = offspring.standing(species, fitness)
+        now = offspring.ranking(species, fitness)
         noted = offspring.recorded(species, now, jnp.asarray(0))
         able, _ = offspring.allowed(noted, now, settings, jnp.asarray(generation))
         np.testing.assert_array_equal(able[:2], expected)

@@ -233,7 +233,9 @@ def test_who_only_lacks_measures_can_still_be_watched(course, module, monkeypatc
 def test_a_measure_that_is_no_number_is_refused_by_name():
     axes = {"descriptors": [{"name": "extra.broken", "bins": 2}]}
     experiment = build(parse({**SPEC, "archive": axes}))
-    with pytest.raises(plugins.Broken, match=r"extra\.broken must give one number, got shape"):
+    with pytest.raises(
+        plugins.Broken, match=r"extra\.broken must return one number, got shape"
+    ):
         experiment.advance(experiment.init())
 
 

@@ -52,7 +52,7 @@ def file(request):
         "device": device_kind(),
     }
     one = genomes.take(alone, 0)
-    return creature.document(identity(frame(scene), encoding, one), measured, None)
+    return creature.document(identity(frame(scene), one), measured, None)
 
 
 @pytest.mark.optimised

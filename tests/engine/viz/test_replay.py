@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import fields, search
+from microcosmos import fields, genomes, search
 from microcosmos.archive import creature
 from microcosmos.audit.reproducibility import check, measurement
 from microcosmos.build import build, build_encoding, build_task
@@ -137,7 +137,9 @@ def test_a_replay_holds_the_rest_shapes_as_they_were_applied(best):
     scene = creature.scene_of(best)
     encoding = build_encoding(scene, creature.room(best))
     task = build_task(scene)
-    genotype = jax.tree.map(jnp.asarray, encoding.read(best["identity"]["genome"]))
+    genotype = jax.tree.map(
+        jnp.asarray, genomes.read(best["identity"]["genome"], encoding.room)
+    )
     rest = search.drive(task, genotype).inputs
     steps = np.maximum(np.arange(film.frames) * film.header["every"] - 1, 0)
     np.testing.assert_allclose(film.drive.angles, rest.angle[steps], atol=1e-6)

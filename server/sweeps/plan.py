@@ -1,4 +1,4 @@
-"""From a request for a sweep to the specs of its runs, all of them proved before any is."""
+"""Plan a sweep: check the specs of all its runs before any run is created."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ from ..creatures import initial
 from ..runs.submission import TOO_LARGE, too_large
 from ..specs.parsing import Parse
 from . import fields
-from .grid import TOLD, Case, cases_of, combination, concerned, moved, refused, run_name
-from .schemas import MOST, SweepSent
+from .grid import MAX_ERRORS, Case, cases_of, combination, concerned, moved, refused, run_name
+from .schemas import MAX_RUNS, SweepCreate
 
 FIXED = {
-    "seed": "`seed` is not for a grid: `seeds` says which there are",
-    "experiment": "all runs of a sweep are of one experiment",
+    "seed": "a grid cannot contain `seed`; use `seeds`",
+    "experiment": "a grid cannot contain `experiment`: all runs of a sweep share one",
 }
 
 
@@ -40,17 +40,17 @@ class Plan:
     def total(self) -> int:
         return len(self.cases) * max(1, len(self.seeds))
 
-    def runs(self) -> Iterator[tuple[str | None, dict[str, Any]]]:
-        """Their names and specs: every case with the first seed, then with the next."""
+    def runs(self) -> Iterator[tuple[str | None, Spec, dict[str, Any]]]:
+        """Yield name, spec and document: all cases with the first seed, then with the next."""
         documents = [case.spec.model_dump(mode="json") for case in self.cases]
         for seed in self.seeds or [None]:
             for case, document in zip(self.cases, documents, strict=True):
                 seeded = document if seed is None else {**document, "seed": seed}
-                yield run_name(self.name, case.values, seed), seeded
+                yield run_name(self.name, case.values, seed), case.spec, seeded
 
 
-def plan(sent: SweepSent, parse: Parse) -> Plan:
-    """The runs that are asked for; `ProblemError` where any of them could not be."""
+def plan(sent: SweepCreate, parse: Parse) -> Plan:
+    """Return the plan of a request; raise `ProblemError` if any of its runs is invalid."""
     base = _base(sent.spec, parse)
     document = base.model_dump(mode="json")
     _refuse_paths(document, sent.grid)
@@ -70,7 +70,6 @@ def _base(document: Mapping[str, Any], parse: Parse) -> Spec:
 
 
 def _refuse_paths(document: dict[str, Any], asked: Mapping[str, Sequence[Any]]) -> None:
-    """Fields that are none, or that a grid cannot run over."""
     errors = [error for path in asked if (error := _wrong_path(document, path, asked))]
     if errors:
         raise refused(errors)
@@ -93,14 +92,14 @@ def _wrong_path(
     return None
 
 
-def _seeds(sent: SweepSent, document: dict[str, Any], parse: Parse) -> list[int]:
-    """Those asked for; none where the experiment leaves nothing to chance."""
+def _seeds(sent: SweepCreate, document: dict[str, Any], parse: Parse) -> list[int]:
+    """Return the seeds; none if the experiment has no seed."""
     if "seed" not in document:
         if sent.seeds == 1:
             return []
         message = (
-            f"a run of `{document['experiment']}` has no seed, so that all would be the same; "
-            "leave `seeds` out"
+            f"a run of `{document['experiment']}` has no seed, so all runs would be the same; "
+            "omit `seeds`"
         )
         raise refused([FieldError(field="seeds", message=message, got=brief(sent.seeds))])
     if isinstance(sent.seeds, list):
@@ -115,32 +114,33 @@ def _seeds(sent: SweepSent, document: dict[str, Any], parse: Parse) -> list[int]
     return list(range(first, last + 1))
 
 
-def _refuse_many(sent: SweepSent, seeds: int) -> None:
+def _refuse_many(sent: SweepCreate, seeds: int) -> None:
     lengths = [len(values) for values in sent.grid.values()]
     total = prod(lengths) * seeds
-    if total <= MOST:
+    if total <= MAX_RUNS:
         return
     factors = " x ".join(f"{count}" for count in (*lengths, seeds))
-    message = f"needs at most {MOST:,} runs in all; got {factors} = {total:,}"
+    message = f"needs at most {MAX_RUNS:,} runs in all; got {factors} = {total:,}"
     field = "grid" if sent.grid else "seeds"
-    raise refused([FieldError(field=field, message=message, needed=f"{MOST}", got=total)])
+    raise refused([FieldError(field=field, message=message, needed=f"{MAX_RUNS}", got=total)])
 
 
 def refuse_too_large(plan: Plan, limit: int) -> None:
-    """Raise `ProblemError` where no worker has the memory for one of the runs."""
+    """Raise `ProblemError` if no worker has the memory for one of the runs."""
     errors: dict[str, FieldError] = {}
     for case in plan.cases:
         if found := too_large(case.spec, limit):
             placed = _placed(found, case)
             errors.setdefault(placed.field, placed)
     if errors:
-        told = list(errors.values())[:TOLD]
-        raise ProblemError(422, TOO_LARGE, "; ".join(error.message for error in told), told)
+        some = list(errors.values())[:MAX_ERRORS]
+        raise ProblemError(422, TOO_LARGE, "; ".join(error.message for error in some), some)
 
 
-def refuse_origins(session: Session, plan: Plan) -> None:
-    """Raise `ProblemError` where one of the runs cannot begin from what it names."""
-    alike = {case.spec.model_dump_json(include=initial.DECISIVE): case for case in plan.cases}
+def refuse_initial(session: Session, plan: Plan) -> None:
+    """Raise `ProblemError` if one of the runs cannot start from its initial creatures."""
+    include = initial.COMPATIBILITY_FIELDS
+    alike = {case.spec.model_dump_json(include=include): case for case in plan.cases}
     for case in alike.values():
         try:
             initial.check(session, case.spec)
@@ -150,8 +150,7 @@ def refuse_origins(session: Session, plan: Plan) -> None:
 
 
 def _placed(found: FieldError, case: Case) -> FieldError:
-    """An error of a case's spec, where it was asked for."""
-    own = concerned(found.field, case.values)
-    field = case.field(own[0]) if own else f"spec.{found.field}"
-    told = f"with {combination(case.values)}: " if case.values else ""
-    return moved(found, field, told)
+    """Move an error of a case's spec to the field of the request."""
+    concerning = concerned(found.field, case.values)
+    field = case.field(concerning[0]) if concerning else f"spec.{found.field}"
+    return moved(found, field, f"with {combination(case.values)}: " if case.values else "")
