@@ -17,19 +17,10 @@ from .auth.authorize import MAY_READ, PUBLIC
 from .auth.capability import HEADER
 from .auth.middleware import PrincipalMiddleware
 from .auth.tokens import watch
-<<<<<<< HEAD
-from .core import errors, nowhere, page, request_log
-from .core.openapi import PROBLEMS, describe
-from .core.security_headers import Discretion
-from .core.shutdown import on_shutdown
-from .creatures import network_routes as networks_api
-from .creatures import routes as creatures_api
-=======
 from .core import api, errors, page
 from .core.processes import on_stop_signal
 from .core.security_headers import SecurityHeaders, redact_request_log
 from .creatures import routes as creatures
->>>>>>> main
 from .creatures.sandbox import sandbox
 from .deletion import routes as deletion
 from .estimates import routes as queue
@@ -112,11 +103,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     close = partial(asyncio.get_running_loop().call_soon_threadsafe, fanout.close)
     app.state.end_streams = close
     await asyncio.to_thread(sandbox().start)
-<<<<<<< HEAD
-    with reconciling(services), on_shutdown(app.state.end_streams):
-=======
     with reconciling(services), on_stop_signal(close):
->>>>>>> main
         yield
     fanout.close()
     for task in tasks:

@@ -41,13 +41,8 @@ def alive(services: Services, part: str, host: str) -> bool:
     return any(True for _ in services.redis.scan_iter(keys))
 
 
-<<<<<<< HEAD
 def answers(port: int, path: str, host: str = "127.0.0.1") -> bool:
     """Tell whether the server answers a request with 200."""
-=======
-def answers(port: int, path: str) -> bool:
-    """Return whether the server on this machine answers a request with 200."""
->>>>>>> main
     try:
         connection = HTTPConnection(host, port, timeout=5)
         connection.request("GET", path)
