@@ -1,4 +1,4 @@
-"""An audit tells swimming by the fluid from swimming by the way it is computed."""
+"""Audits tell swimming by the fluid from artefacts; gradients agree with finite differences."""
 
 import jax
 import jax.numpy as jnp
@@ -7,6 +7,7 @@ import pytest
 
 from microcosmos import bodies, neat, spec
 from microcosmos.archive import creature
+from microcosmos.audit.derivatives import gradient, gradient_health
 from microcosmos.audit.physics import audit
 from microcosmos.audit.variants import reciprocal, refine
 from microcosmos.build import build_stroke, build_task, frame
@@ -38,7 +39,7 @@ def test_a_ray_that_pushes_itself_does_not():
     assert "it pushes itself: this form of the coupling lets it" in verdict["reasons"]
 
 
-@pytest.mark.parametrize("senses", [False, True])
+@pytest.mark.parametrize("senses", [pytest.param(False, marks=pytest.mark.long), True])
 def test_creatures_with_networks_are_audited_too(senses):
     scene = spec.Scene(
         world=spec.World(width=32, height=32, energy=spec.Energy() if senses else None),
@@ -88,8 +89,41 @@ def test_refinement_keeps_the_body_the_gait_and_the_dimensionless_numbers():
     )
 
 
-def test_what_diverges_or_takes_too_long_is_refused():
+def test_an_audit_that_takes_too_long_is_refused():
     scene = GAITS.scene("ours", "worm", 0.5)
     longer = scene.model_copy(update={"task": spec.Task(steps=1_000_000)})
     with pytest.raises(creature.CreatureError, match=r"task\.steps"):
         audit(creature.document(frame(longer), None, None))
+
+
+STEPS = 60
+SCENE = {
+    "world": {"width": 24, "height": 24, "viscosity": 0.1},
+    "body": {"nodes": 8},
+    "control": {"encoding": "direct", "period": 30, "terms": 1},
+    "task": {"steps": STEPS},
+}
+
+
+@pytest.fixture(scope="module")
+def file():
+    scene = spec.Scene.model_validate(SCENE)
+    encoding = build_encoding(scene, (8, 8))
+    newcomer = jax.tree.map(np.asarray, encoding.newcomer(key=jax.random.key(1)))
+    return creature.document(identity(frame(scene), newcomer), None, None)
+
+
+@pytest.mark.long
+def test_the_report_agrees_with_finite_differences_and_tells_of_time_and_starts(file):
+    report = gradient_health(file, starts=3)
+    assert report.errors["float64"] <= 1e-6
+    assert report.errors["float32"] <= 1e-2
+    assert list(report.norms) == [15, 30, 60]
+    assert 0 <= report.sign_agreement <= 1
+    assert -1 <= report.cosine <= 1
+    assert report.limited == 0
+
+
+def test_a_derivative_by_absent_genes_is_refused(file):
+    with pytest.raises(ValueError, match="`by` must be of"):
+        gradient(file, by=("weights",))
