@@ -13,11 +13,11 @@ HEADER = "Microcosmos-Share"
 
 
 class SharedView(Protocol):
-    """The rows that a share shows, as it shows them. `shares` implements it."""
+    """Read access to what a share shows. The package `shares` implements it."""
 
     @property
     def listed(self) -> bool:
-        """Whether search engines may list the share's page."""
+        """Search engines may list the share's page."""
         ...
 
     def run(self, session: Session, run_id: UUID) -> Run:
@@ -38,7 +38,7 @@ class SharedView(Protocol):
 
 
 async def shared_view(request: Request) -> SharedView | None:
-    """Return what the share of the request shows; None for a request without one."""
+    """Return the view of the share of the request, if it names one."""
     return request.state.share
 
 

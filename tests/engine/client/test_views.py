@@ -1,4 +1,4 @@
-"""How a run looks where it is watched."""
+"""Views of a run in terminals and notebooks."""
 
 import re
 import sys
@@ -50,7 +50,7 @@ def test_a_step_is_drawn_without_a_gap():
     }  # fmt: skip
 
 
-def test_what_is_unknown_is_a_gap_and_what_is_constant_a_line():
+def test_unknown_values_are_gaps_and_constants_a_line():
     assert dots(drawing.braille([2.0, None, 2.0, 2.0], 2, 1)) == {(0, 0), (2, 0), (3, 0)}
     assert drawing.braille([None], 3, 1) == ["⠀⠀⠀"]
     assert drawing.polyline([None, 1.0, 3.0], 10, 4) == "5.0,4.0 10.0,0.0"
@@ -74,7 +74,7 @@ def test_a_terminal_shows_how_it_stands(record):
     assert max(map(len, narrow.splitlines())) <= 40
 
 
-def test_how_far_and_how_long_stand_on_one_line_of_a_usual_terminal(record):
+def test_progress_and_time_left_share_a_line_of_80_columns(record):
     (line,) = (one for one in shown(RunState(record), 80).splitlines() if "50 %" in one)
     assert "1 min 15 s left" in line
 
@@ -97,14 +97,10 @@ def test_a_table_shows_its_summary(record):
 
 
 def test_plain_lines_come_when_something_changes(record, capsys):
-    view = views.Lines()
-    for progress, status in (
-        (0.5, "running"),
-        (0.51, "running"),
-        (0.6, "running"),
-        (1, "failed"),
-    ):
-        view.show(RunState(record | {"progress": progress, "status": status, "error": "why"}))
+    states = ((0.5, "running"), (0.51, "running"), (0.6, "running"), (1, "failed"))
+    with views.lines() as show:
+        for progress, status in states:
+            show(RunState(record | {"progress": progress, "status": status, "error": "why"}))
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 3
     assert "failed: why" in lines[-1]
@@ -129,12 +125,11 @@ def ipython(monkeypatch):
 
 
 def test_a_notebook_brings_one_display_up_to_date(ipython, record):
-    view = views.choose()
-    assert isinstance(view, notebook.Notebook)
+    assert views.choose() is notebook.notebook
     named = record | {"name": "<script>"}
-    with view:
-        view.show(RunState(named, CURVES))
-        view.show(RunState(named | {"status": "finished"}, CURVES))
+    with notebook.notebook() as show:
+        show(RunState(named, CURVES))
+        show(RunState(named | {"status": "finished"}, CURVES))
     first, last = ipython[0]._repr_html_(), ipython[-1]._repr_html_()
     assert first.count("<polyline") == 3
     assert "<script>" not in first
@@ -144,9 +139,9 @@ def test_a_notebook_brings_one_display_up_to_date(ipython, record):
 
 def test_without_a_terminal_or_notebook_there_are_lines(monkeypatch):
     monkeypatch.delitem(sys.modules, "IPython", raising=False)
-    assert isinstance(views.choose(), views.Lines)
+    assert views.choose() is views.lines
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
-    assert isinstance(views.choose(), terminal.Terminal)
+    assert views.choose() is terminal.terminal
 
 
 def test_columns_are_arrays_with_gaps_as_nan():
