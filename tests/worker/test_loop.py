@@ -17,9 +17,9 @@ from server.local import process_tree
 from server.renderings.storage import RenderingFailed, order
 from server.tables import CANCELLED, Run, Worker
 from server.workers import registry
-from worker import loop, process, renderer, supervisor
+from worker import loop, process_setup, renderer, supervisor
 from worker.device import Device
-from worker.pulse import PATIENCE, Pulse
+from worker.heartbeats import HEARTBEATS_AFTER_END, Heartbeats
 from worker.renderer import retry_interrupted
 from worker.supervisor import Supervisor
 
@@ -63,7 +63,7 @@ def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
 
     def turn(worker):
         turns.append(worker)
-        monkeypatch.setattr(process, "_stop_requested", len(turns) > 2)
+        monkeypatch.setattr(process_setup, "_stop_requested", len(turns) > 2)
         raise redis.ResponseError("MISCONF Errors writing to the AOF file")
 
     monkeypatch.setattr(loop, "take_one", turn)
@@ -125,7 +125,7 @@ def test_a_long_rendering_counts_as_alive_for_all_its_time(services, begin):
     assert ends - time.time() > job.timeout
 
 
-ENGINE_FREE = ("supervisor", "pulse", "loop", "job_process")
+ENGINE_FREE = ("supervisor", "heartbeats", "loop", "job_process")
 
 
 def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
@@ -139,7 +139,7 @@ def busy(services):
     """A supervisor whose job can be replaced by another process."""
     worker = Supervisor([services.jobs.runs], "worker", serializer=JSONSerializer)
     worker.services, worker.lease, worker.environment = services, 20, {}
-    worker.pulse = Pulse(services.sessions, "worker", Device("a device", 1, {}), 20.0)
+    worker.heartbeats = Heartbeats(services.sessions, "worker", Device("a device", 1, {}), 20.0)
     worker.register_birth()
     return worker
 
@@ -157,7 +157,7 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
         claim(services, run_id, busy.name)
         busy.stop_job()
 
-    monkeypatch.setattr(supervisor, "PATIENCE", 0.0)
+    monkeypatch.setattr(supervisor, "STOP_SECONDS", 0.0)
     monkeypatch.setattr(supervisor, "STOP_CHECK_SECONDS", 0.05)
     monkeypatch.setattr(busy, "start", start)
     busy.execute_job(services.jobs.find(str(run_id)), services.jobs.runs)
@@ -166,12 +166,12 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
 
 
 def test_a_job_is_stopped_before_its_supervisor_is_killed():
-    assert supervisor.PATIENCE + 2 * supervisor.STOP_CHECK_SECONDS < process_tree.GRACE
+    assert supervisor.STOP_SECONDS + 2 * supervisor.STOP_CHECK_SECONDS < process_tree.GRACE
 
 
 @pytest.fixture
-def pulse(services):
-    return Pulse(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
+def heartbeat(services):
+    return Heartbeats(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
 
 
 @pytest.fixture
@@ -184,10 +184,10 @@ def change(services, **values):
         session.execute(update(Run).values(**values))
 
 
-def test_a_heartbeat_reports_device_memory_and_run(services, pulse, run_id, killed):
+def test_a_heartbeat_reports_device_memory_and_run(services, heartbeat, run_id, killed):
     claim(services, run_id, "worker")
-    pulse.watch(run_id, lambda: killed.append(run_id))
-    pulse.beat()
+    heartbeat.watch(run_id, lambda: killed.append(run_id))
+    heartbeat.beat()
     with services.sessions.read() as session:
         found = registry.live(session, 20)[0]
     assert (found.name, found.device, found.memory_bytes) == ("worker", "some device", 8 << 30)
@@ -195,44 +195,44 @@ def test_a_heartbeat_reports_device_memory_and_run(services, pulse, run_id, kill
     assert not killed
 
 
-def test_a_beat_renews_the_lease(services, pulse, run_id, row, killed):
+def test_a_beat_renews_the_lease(services, heartbeat, run_id, row, killed):
     claim(services, run_id, "worker")
     change(services, heartbeat_at=None)
-    pulse.watch(run_id, lambda: killed.append(run_id))
-    pulse.beat()
+    heartbeat.watch(run_id, lambda: killed.append(run_id))
+    heartbeat.beat()
     assert row().heartbeat_at is not None
 
 
-def test_the_job_of_a_lost_run_is_killed(services, pulse, run_id, killed):
+def test_the_job_of_a_lost_run_is_killed(services, heartbeat, run_id, killed):
     claim(services, run_id, "worker")
-    pulse.watch(run_id, lambda: killed.append(run_id))
-    pulse.beat()
+    heartbeat.watch(run_id, lambda: killed.append(run_id))
+    heartbeat.beat()
     change(services, worker="another")
-    pulse.beat()
+    heartbeat.beat()
     assert killed == [run_id]
 
 
-def test_a_job_that_outlives_its_run_is_killed(services, pulse, run_id, killed):
+def test_a_job_that_outlives_its_run_is_killed(services, heartbeat, run_id, killed):
     claim(services, run_id, "worker")
-    pulse.watch(run_id, lambda: killed.append(run_id))
-    pulse.beat()
+    heartbeat.watch(run_id, lambda: killed.append(run_id))
+    heartbeat.beat()
     change(services, status=CANCELLED, worker=None)
-    for _ in range(PATIENCE):
-        pulse.beat()
+    for _ in range(HEARTBEATS_AFTER_END):
+        heartbeat.beat()
     assert not killed
-    pulse.beat()
+    heartbeat.beat()
     assert killed == [run_id]
 
 
-def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(pulse, run_id, killed):
-    pulse.watch(run_id, lambda: killed.append(run_id))
-    for _ in range(PATIENCE + 2):
-        pulse.beat()
+def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(heartbeat, run_id, killed):
+    heartbeat.watch(run_id, lambda: killed.append(run_id))
+    for _ in range(HEARTBEATS_AFTER_END + 2):
+        heartbeat.beat()
     assert not killed
 
 
-def test_an_ended_worker_is_not_listed(services, pulse):
-    pulse.start()
-    pulse.end()
+def test_an_ended_worker_is_not_listed(services, heartbeat):
+    heartbeat.start()
+    heartbeat.end()
     with services.sessions.read() as session:
         assert not session.scalars(select(Worker)).all()
