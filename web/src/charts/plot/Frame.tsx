@@ -3,6 +3,7 @@
 import { Term } from "../../ui/Term";
 import type { Axis } from "./Plot";
 import { place, ticksOf } from "./scale";
+import "./plot.css";
 
 export interface Room {
   left: number;
