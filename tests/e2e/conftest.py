@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 from browser import executable, launched, overhear
 from databases import own_redis
-from drive import QUICK, ROOT, Installation
+from drive import QUICK, ROOT, Installation, running
 from playwright.sync_api import Browser, Page
 from small import submit_small_runs
 
@@ -84,11 +84,8 @@ def common() -> dict[str, str]:
 @pytest.fixture
 def product(chromium: str, common: dict[str, str], tmp_path: Path) -> Iterator[Installation]:
     """The whole product over an empty data folder."""
-    place = Installation(tmp_path / "data", common)
-    place.start(PATIENCE_S)
-    yield place
-    place.end()
-    place.close()
+    with running(tmp_path / "data", common) as place:
+        yield place
 
 
 @pytest.fixture
@@ -102,11 +99,8 @@ def shared(
     chromium: str, common: dict[str, str], tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Shared]:
     """One product for most tests, which computes a run of each kind."""
-    place = Installation(tmp_path_factory.mktemp("shared") / "data", common)
-    place.start(PATIENCE_S)
-    yield Shared(place, submit_small_runs(place))
-    place.end()
-    place.close()
+    with running(tmp_path_factory.mktemp("shared") / "data", common) as place:
+        yield Shared(place, submit_small_runs(place))
 
 
 @pytest.fixture(scope="package")
@@ -122,18 +116,25 @@ def idle(
     folder = tmp_path_factory.mktemp("idle")
     with own_redis(folder) as url:
         environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": url}
-        place = Installation(folder / "data", common | environment)
-        place.start(PATIENCE_S)
-        services = connect(Settings(data=folder / "data", redis_url=url))
-        yield Idle(place, services)
-        services.close()
-        place.end()
-        place.close()
+        with running(folder / "data", common | environment) as place:
+            services = connect(Settings(data=folder / "data", redis_url=url))
+            yield Idle(place, services)
+            services.close()
 
 
 @pytest.fixture
 def shared_address(shared: Shared) -> str:
     return shared.product.url
+
+
+@pytest.fixture
+def stranger(browser: Browser) -> Iterator[Page]:
+    """A page in another browser, without cookies or stored data."""
+    context = browser.new_context(viewport=WINDOW)
+    page = context.new_page()
+    page.set_default_timeout(300_000)
+    yield page
+    context.close()
 
 
 @pytest.fixture

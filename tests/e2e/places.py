@@ -1,11 +1,12 @@
 """Every page there is to see of a product, and when it has come to rest."""
 
+import re
 import time
 from collections.abc import Collection, Iterator
 from typing import Any, NamedTuple
 
 import httpx
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 NOWHERE = "Page not found"
 UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
@@ -109,6 +110,21 @@ def settle(page: Page, seconds: float) -> None:
         if page.locator(UNREST).count():
             calm_since = time.monotonic()
     page.evaluate("document.fonts.ready")
+
+
+def pixels(page: Page) -> str:
+    """The picture of a creature's stage."""
+    return page.evaluate("document.querySelector('.stage canvas').toDataURL()")
+
+
+def see_it_swim(page: Page, seconds: float) -> None:
+    """Wait for the creature, and see that its picture changes."""
+    canvas = page.get_by_role("img", name=re.compile("The swimming creature"))
+    expect(canvas).to_be_visible(timeout=1000 * seconds)
+    page.wait_for_timeout(300)
+    before = pixels(page)
+    page.wait_for_timeout(600)
+    assert pixels(page) != before
 
 
 def hold_still(page: Page) -> None:

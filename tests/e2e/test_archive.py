@@ -4,12 +4,12 @@ import re
 from typing import Any
 
 import pytest
+from places import GUIDED
 from playwright.sync_api import Page, expect
 from small import CENTROIDS
 from written import Written
 
 FAST, SLOW = 10_000, 120_000
-GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
 
 FLASH_MS = 1200
 WHERE_DRAWN_DIFFERENTLY = """before => {

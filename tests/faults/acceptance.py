@@ -17,7 +17,7 @@ from pathlib import Path
 
 import malformed_hdf5
 from databases import Missing, services
-from drive import Installation, interrupt, kill_job, pause_and_resume, stop_worker
+from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from left_open import leave_open
 from rich.console import Console
 from searches import METHODS, SEEDS, compare, compare_slopes, draw, forage, sinusoidal, spec
@@ -105,16 +105,11 @@ def databases(place: Installation) -> bool:
 
 def elsewhere(folder: Path, settings: dict[str, str], document: dict, embedded: bytes) -> bool:
     """Whether an installation on other services comes to these bytes, kept from it or not."""
-    other = Installation(folder, SETTINGS | settings)
-    other.start()
-    try:
+    with running(folder, SETTINGS | settings) as other:
         found = carry_out(other, document, "PostgreSQL, Redis server")
         same = other.archive(found["id"]) == embedded
         console.print(f"{len(embedded)} bytes: {'identical' if same else 'DIFFERENT'}")
         return same and disturb(other, embedded)
-    finally:
-        other.end()
-        other.close()
 
 
 def uploads(place: Installation) -> bool:
@@ -147,14 +142,11 @@ def main(names: list[str]) -> None:
     """All parts, or those of the names."""
     if unknown := set(names) - PARTS.keys():
         sys.exit(f"parts must be of {', '.join(PARTS)}, got {', '.join(sorted(unknown))}")
-    with tempfile.TemporaryDirectory() as folder:
-        place = Installation(Path(folder) / "data", SETTINGS)
-        place.start()
-        try:
-            good = [PARTS[name](place) for name in names or PARTS]
-        finally:
-            place.end()
-            place.close()
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        running(Path(folder) / "data", SETTINGS) as place,
+    ):
+        good = [PARTS[name](place) for name in names or PARTS]
     sys.exit(not all(good))
 
 

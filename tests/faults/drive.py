@@ -239,6 +239,20 @@ class Installation:
             process.send_signal(sent)
 
 
+@contextmanager
+def running(
+    folder: Path, environment: dict[str, str], seconds: float = 120
+) -> Iterator[Installation]:
+    """An installation that is started, and ended at the end."""
+    place = Installation(folder, environment)
+    try:
+        place.start(seconds)
+        yield place
+        place.end()
+    finally:
+        place.close()
+
+
 JOB, SUPERVISOR = "worker.job_process", "worker.supervisor"
 RENDERER, REDIS = "worker.renderer", "redis-server"
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from drive import Installation
+from drive import Installation, running
 from looks import faults, violations
 from playwright.sync_api import Browser, Page, expect
 from small import TINY
@@ -18,26 +18,15 @@ SECRET = re.compile(r"mc_[\w-]{43}")
 def guarded(chromium: str, common: dict[str, str], tmp_path: Path) -> Iterator[Installation]:
     """A product for which even this machine needs a token; nobody computes there."""
     needed = {"MICROCOSMOS_AUTH": "required", "WORKERS": "0"}
-    place = Installation(tmp_path / "data", common | needed)
-    place.start(120)
-    yield place
-    place.end()
-    place.close()
-
-
-@pytest.fixture
-def alice(browser: Browser) -> Iterator[Page]:
-    """Somebody else, with a browser of her own."""
-    context = browser.new_context()
-    yield context.new_page()
-    context.close()
+    with running(tmp_path / "data", common | needed) as place:
+        yield place
 
 
 @pytest.mark.e2e
 def test_an_admin_signs_in_and_manages_tokens(
-    guarded: Installation, browser: Browser, alice: Page
+    guarded: Installation, browser: Browser, stranger: Page
 ):
-    first = told_at_the_start(guarded)
+    alice, first = stranger, told_at_the_start(guarded)
     context = browser.new_context(viewport={"width": 1280, "height": 900})
     admin = context.new_page()
     try:
