@@ -1,4 +1,4 @@
-"""A creature and an archive are published, seen by strangers, and taken back."""
+"""A creature and an archive are published, viewed by others, and revoked."""
 
 import re
 from urllib.parse import urlsplit
@@ -103,7 +103,7 @@ def stay_within(link: str, asked: list[tuple[str, str | None]]) -> None:
 
 
 def tell_other_sites(stranger: Page, link: str) -> None:
-    """What a site finds that is given the link: a title, and a picture that is there."""
+    """Other sites find a title, and a picture that exists."""
     text = stranger.request.get(link).text()
     assert 'property="og:title" content="An eel &lt;b&gt;&amp;"' in text
     found = re.search('property="og:image" content="([^"]+)"', text)

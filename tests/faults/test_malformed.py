@@ -1,4 +1,4 @@
-"""Files of strangers: refused with the reason, and nobody else's bytes are read for them."""
+"""Malformed files are refused with the reason, and no other file is read."""
 
 import re
 import signal
@@ -18,7 +18,7 @@ FEW, MANY = 64, 8
 
 @pytest.fixture
 def canary(tmp_path):
-    """Another file of this machine, which would do if it were read."""
+    """Another valid file of this machine, which must not be read."""
     path = tmp_path / "canary.h5"
     path.write_bytes(malformed_hdf5.whole())
     return path
@@ -61,7 +61,7 @@ DEEDS = {
     "h5py.File(stored)['a'][()]": "Too many open files|external",
     "bytearray(1 << 30)": "MemoryError",
 }
-"""What a sandbox may not do, and the error with which the kernel refuses it."""
+"""Actions that the kernel refuses a sandbox, with the error."""
 
 
 def test_the_kernel_keeps_sandboxes_from_files_and_memory(canary):

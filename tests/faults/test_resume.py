@@ -91,7 +91,7 @@ SWEEP = {
 
 @pytest.fixture
 def result(place):
-    """All that people get of a run: its table, as JSON and CSV, and its file."""
+    """The results of a run: its table, as JSON and CSV, and its file."""
 
     def read(run):
         whole = place.http.get(f"/api/v1/runs/{run}/results").raise_for_status().json()

@@ -1,4 +1,4 @@
-"""What keeps an installation from starting, and from ending badly."""
+"""Reasons for which an installation does not start, and how it ends."""
 
 import os
 import re
@@ -12,7 +12,7 @@ from drive import ROOT, free_port, wait_until
 
 @pytest.fixture
 def refused(tmp_path):
-    """Starts what `make run` starts, which refuses: what it says."""
+    """Runs `python -m server.local`, which must refuse; returns its message."""
 
     def start(**environment):
         settings = {"MICROCOSMOS_DATA": str(tmp_path / "data"), **environment}

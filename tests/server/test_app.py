@@ -121,7 +121,7 @@ def test_sigterm_ends_a_server_with_open_streams_at_once(services, tmp_path, eve
                 list(lines)
             process.wait()
         finally:
-            process.kill()  # Where it came too late, nobody waits for it for ever.
+            process.kill()  # In case it never answered.
     assert time.monotonic() - begun < 4, "uvicorn alone would wait for 5 s"
 
 

@@ -1,4 +1,4 @@
-"""How renderings are made, with an engine that only says what it was asked for."""
+"""Renderings, with an engine that only records its calls."""
 
 import json
 import sys
@@ -52,7 +52,7 @@ def known(services):
 
 @pytest.fixture
 def asked(monkeypatch):
-    """What the engine was asked for, in order."""
+    """The calls of the engine, in order."""
     calls = []
 
     def record(file):

@@ -33,7 +33,7 @@ class Laptop:
         self.environment = {**os.environ, **environment}
 
     def run(self, *arguments: str) -> str:
-        """What the command prints; it has to end well."""
+        """Run a command, which must succeed, and return its output."""
         done = subprocess.run(
             [sys.executable, "-P", "-m", "microcosmos.cli", *arguments],
             cwd=self.folder,

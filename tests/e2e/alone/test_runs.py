@@ -64,7 +64,7 @@ def tag_and_filter_by_mouse(page: Page, tagged: str, other: str) -> None:
 
 
 def see_only_what_matches(page: Page, product: Installation, named: str) -> None:
-    """What comes to be meanwhile appears only where it is asked for."""
+    """New runs appear only if they match the search."""
     page.get_by_role("searchbox").fill("short")
     expect(page.locator("table.runs tbody tr")).to_have_count(1, timeout=FAST)
     third = submit(product, 3, 100_000)

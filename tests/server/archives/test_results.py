@@ -109,7 +109,7 @@ def test_a_generation_written_twice_after_an_outage_has_its_rows_once(
     services, sweep_id, table, count
 ):
     attempt = claim(services, sweep_id, "worker")
-    for _ in range(2):  # Whether the first was committed nobody knew.
+    for _ in range(2):  # The answer to the first commit was lost.
         attempt.record(table(1, WORM, RAY), 1.0)
     assert count(Result) == 2
 

@@ -161,7 +161,7 @@ def test_the_cookie_is_named_after_the_port_that_the_browser_knows(serve):
 
 
 def test_other_sites_cannot_frame_or_read_our_pages(api, address):
-    """Where no token is needed, a frame would be as good as a token."""
+    """Without tokens, a frame would have all rights."""
     for path in ("/", "/runs", "/settings", "/api/v1/runs", "/api/v1/nothing", "/metrics"):
         headers = httpx.get(address + path).headers
         assert "frame-ancestors 'none'" in headers["content-security-policy"], path

@@ -26,7 +26,7 @@ def test_a_request_whose_answer_is_lost_is_repeated_safely(relay, services, spec
     client = Client(relay.url)
     list(client.runs())
     relay.cut()
-    relay.allowance = [1]  # The run is queued, and nobody is told.
+    relay.allowance = [1]  # The run is queued, but the answer is lost.
     run = client.submit(spec)
     assert [one.id for one in client.runs()] == [run.id]
     sent = [ask for ask in relay.asked if ask.startswith(b"POST")]
@@ -163,7 +163,7 @@ def test_loopback_requests_bypass_the_proxy(address, monkeypatch):
 
 @pytest.fixture
 def archive(services, run_id, report) -> bytes:
-    """What the run's checkpoint holds, larger than a relay hands on at once."""
+    """The run's checkpoint, larger than one packet of the relay."""
     content = os.urandom(3_000_000)
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1), 1.0)
