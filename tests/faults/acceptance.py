@@ -21,7 +21,7 @@ from drive import Installation, interrupt, kill_job, pause_and_resume, running, 
 from left_open import leave_open
 from rich.console import Console
 from searches import METHODS, SEEDS, compare, compare_slopes, draw, forage, sinusoidal, spec
-from strangers import all_cases, send, watched
+from uploads import all_cases, send, watched
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}

@@ -61,4 +61,4 @@ def undisturbed(place, spec):
     """The archive of an undisturbed run, and the API's account of it."""
     run = place.submit(spec)
     place.wait(run, "finished", seconds=300)  # It has to compile.
-    return SimpleNamespace(archive=place.archive(run), told=place.told(run))
+    return SimpleNamespace(archive=place.archive(run), account=place.account(run))

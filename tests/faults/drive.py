@@ -153,7 +153,7 @@ class Installation:
         """The file that people download."""
         return self.http.get(f"/api/v1/runs/{run}/archive.h5").raise_for_status().content
 
-    def told(self, run: str) -> dict[str, Any]:
+    def account(self, run: str) -> dict[str, Any]:
         """Curves and archive of a run in the API, without wall times."""
         curves = self.http.get(f"/api/v1/runs/{run}/generations").raise_for_status().json()
         archive = self.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()

@@ -10,7 +10,7 @@ import malformed
 import malformed_hdf5
 import pytest
 from drive import ROOT
-from strangers import LIES, all_cases, lie, send, watched
+from uploads import LIES, all_cases, lie, send, watched
 
 FEW, MANY = 64, 8
 """One in so many of about three thousand files; `make acceptance` sends all."""

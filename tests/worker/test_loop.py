@@ -42,18 +42,12 @@ def ask(services):
     return enqueue
 
 
-def test_a_job_is_taken_and_carried_out(worker, ask):
-    job = ask("abc")
-    loop.take_one(worker)
-    assert job.is_finished
-
-
-def test_a_worker_registers_again_after_redis_was_emptied(services, worker, ask):
-    loop.take_one(worker)
-    services.redis.flushdb()
-    job = ask("abc")
-    loop.take_one(worker)
-    assert job.is_finished
+def test_jobs_are_carried_out_also_after_redis_was_emptied(services, worker, ask):
+    for empty in (lambda: None, services.redis.flushdb):
+        empty()
+        job = ask("abc")
+        loop.take_one(worker)
+        assert job.is_finished
     assert services.redis.exists(worker.key)
 
 

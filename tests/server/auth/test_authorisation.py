@@ -42,7 +42,7 @@ OPEN = {
     "GET /{path:path}",
 }
 """Public paths outside of the API."""
-STRANGERS = {"GET /shares/{slug}", "GET /commons", "POST /session", "DELETE /session"}
+OPEN_API = {"GET /shares/{slug}", "GET /commons", "POST /session", "DELETE /session"}
 """Public paths of the API."""
 SHARED = ("/runs/{run_id}", "/creatures/{sha}")
 """Beginnings of the paths that the holder of a share may read."""
@@ -113,7 +113,7 @@ def test_only_harmless_routes_need_no_write_scope(route):
     need = need_of(route)
     shared = path == "/shares/{slug}/preview.png"
     assert need != SHARE or (method == "GET" and path.startswith(SHARED))
-    assert (need == PUBLIC) == (f"{method} {path}" in STRANGERS or shared)
+    assert (need == PUBLIC) == (f"{method} {path}" in OPEN_API or shared)
     if method != "GET" and f"{method} {path}" not in HARMLESS:
         theirs = any(f"{{{name}}}" in path for name in OWNED) and not path.endswith("/fork")
         assert need in ((OWNER,) if theirs else (WRITE, OWNER, ADMIN))
