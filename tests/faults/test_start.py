@@ -37,13 +37,10 @@ def refused(tmp_path):
     return start
 
 
-def test_a_taken_port_is_named_with_a_free_one(place, refused):
+def test_a_taken_port_and_a_taken_data_folder_are_named(place, refused):
     said = refused(PORT=str(place.port))
     assert f"PORT must be one that is free on 127.0.0.1; got {place.port}" in said
     assert f"PORT={place.port + 1}" in said
-
-
-def test_two_never_share_a_data_folder(place, refused):
     said = refused(MICROCOSMOS_DATA=str(place.folder))
     assert f"The data folder {place.folder} is in use by another Microcosmos" in said
 
