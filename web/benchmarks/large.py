@@ -1,7 +1,6 @@
-"""Archives as large as wanted, of creatures that a small search has found.
+"""Write finished runs with large archives, made of the creatures of a small search.
 
-A finished run is written beside the one that was carried out: its rows are as those of a run,
-but one creature may stand in many cells, and fitness is a smooth hill with noise on it.
+A creature may be in many cells, and the fitness is a smooth hill with noise.
 """
 
 from datetime import timedelta
@@ -23,11 +22,11 @@ def connect(data: str) -> Services:
 
 
 def write_run(place: Services, of: str, side: int, filled: int, creatures: list[str]) -> str:
-    """A run with an archive of side × side cells, so many of them filled: its id."""
+    """Write a run with an archive of side × side cells, some of them filled; return its id."""
     draw = np.random.default_rng(side)
     cells = np.sort(draw.choice(side * side, filled, replace=False))
     fitness = hill(cells, side) + draw.normal(0, 0.03, filled)
-    born = np.sort(draw.integers(1, GENERATIONS + 1, filled))
+    entered = np.sort(draw.integers(1, GENERATIONS + 1, filled))
     with place.sessions.write.begin() as session:
         run = copied(session.get_one(Run, UUID(of)), side, fitness)
         session.add(run)
@@ -43,11 +42,11 @@ def write_run(place: Services, of: str, side: int, filled: int, creatures: list[
                 "creature": creatures[i % len(creatures)],
             }
             for i, (cell, value, generation) in enumerate(
-                zip(cells, fitness, born, strict=True)
+                zip(cells, fitness, entered, strict=True)
             )
         ]
         session.execute(insert(Elite), rows)
-        session.execute(insert(Generation), curves(run, fitness, born))
+        session.execute(insert(Generation), curves(run, fitness, entered))
         return str(run.id)
 
 
@@ -57,7 +56,7 @@ def hill(cells: np.ndarray, side: int) -> np.ndarray:
 
 
 def middle(cell: int, side: int, ends: list[tuple[float, float]]) -> list[float]:
-    """A cell's middle, on logarithmic axes."""
+    """The middle of a cell on logarithmic axes."""
     parts = [(part + 0.5) / side for part in divmod(cell, side)]
     return [
         float(low * (high / low) ** part) for part, (low, high) in zip(parts, ends, strict=True)
@@ -86,10 +85,10 @@ def copied(run: Run, side: int, fitness: np.ndarray) -> Run:
     )
 
 
-def curves(run: Run, fitness: np.ndarray, born: np.ndarray) -> list[dict]:
-    """What the archive had come to after each generation."""
+def curves(run: Run, fitness: np.ndarray, entered: np.ndarray) -> list[dict]:
+    """The curves of a run from the generations of its elites."""
     side = run.spec["archive"]["descriptors"][0]["bins"]
-    found = [fitness[born <= generation] for generation in range(1, GENERATIONS + 1)]
+    found = [fitness[entered <= generation] for generation in range(1, GENERATIONS + 1)]
     return [
         {
             "run_id": run.id,
@@ -108,7 +107,7 @@ def curves(run: Run, fitness: np.ndarray, born: np.ndarray) -> list[dict]:
 
 
 def creatures_of(place: Services, run: str) -> list[str]:
-    """All that have been elites of a run, the newest first."""
+    """All elites of a run, newest first."""
     mine = select(Elite.creature).where(Elite.run_id == UUID(run))
     with place.sessions.read() as session:
         found = session.scalars(mine.order_by(Elite.generation.desc(), Elite.cell))

@@ -1,9 +1,8 @@
-"""How fast the page is, in Chromium on two cores. Prints a table and asserts nothing.
+"""The speed of the page in Chromium on two cores; prints a table and asserts nothing.
 
-A small search is carried out; archives of 10,000 and 65,536 cells are filled with what it has
-found, and 100 creatures are rendered beforehand. What is timed is what the page says itself:
-the mark `map` when the archive has been drawn, the measure `map-draw` around each drawing, the
-mark `inset` at the first frame of a replay under the pointer.
+A small search finds creatures, which fill archives of 10,000 and 65,536 cells; 100 of them are
+rendered beforehand. The page reports times: the mark `map` after the archive is drawn, the
+measure `map-draw` around each drawing, the mark `inset` at the first frame of a replay.
 """
 
 import gzip
@@ -11,34 +10,32 @@ import os
 import statistics
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
 
 from browser import launched
 from drive import ROOT, Installation, wait_until
 from large import connect, creatures_of, write_run
-from playwright.sync_api import Browser, Page, Response
+from playwright.sync_api import Browser, Page, Response, ViewportSize
 from playwright.sync_api import TimeoutError as Late
 from rich.console import Console
 from rich.table import Table
 
 CORES = 2
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "false"}
-WINDOW = {"width": 1280, "height": 900}
-WALL = {"width": 1600, "height": 1600}
-"""A window in which a hundred creatures are visible at once."""
+WINDOW: ViewportSize = {"width": 1280, "height": 900}
+WALL: ViewportSize = {"width": 1600, "height": 1600}
 TIMES = 5
 REDRAWS = 60
 HOVERS = 30
 TILE = 56
-"""Pixels of a creature's tile, so that a hundred are visible at once."""
+"""Side of a tile in pixels; a hundred creatures are visible in the window of the gallery."""
 PATIENCE_MS = 20_000
-SMALL = bool(os.environ.get("SMALL"))
-CREATURES = 10 if SMALL else 100
-NOT_THERE = "not there"
+CREATURES = 10 if os.environ.get("SMALL") else 100
 
 NOTES = """
 window.noted = [];
@@ -50,33 +47,23 @@ new PerformanceObserver((list) => {
 addEventListener("pointermove", ({ timeStamp }) => (window.moved = timeStamp), true);
 """
 FRAMES = """
-(seconds) => new Promise((resolve) => {
-  const times = [];
-  requestAnimationFrame(function step(now) {
-    times.push(now);
-    if (now - times[0] < 1000 * seconds) requestAnimationFrame(step);
-    else resolve(times);
-  });
-})
-"""
-SWEEP = """
-(seconds) => new Promise((resolve) => {
-  const map = document.querySelector("[role=application]");
-  const { left, top, width, height } = map.getBoundingClientRect();
+([seconds, moving]) => new Promise((resolve) => {
+  const map = moving && document.querySelector("[role=application]");
+  const { left, top, width, height } = map ? map.getBoundingClientRect() : {};
   const times = [];
   requestAnimationFrame(function step(now) {
     const turn = times.length / 40;
     const clientX = left + width * (0.5 + 0.4 * Math.cos(turn));
     const clientY = top + height * (0.5 + 0.4 * Math.sin(1.3 * turn));
     const event = { clientX, clientY, bubbles: true, pointerType: "mouse" };
-    map.dispatchEvent(new PointerEvent("pointermove", event));
+    if (map) map.dispatchEvent(new PointerEvent("pointermove", event));
     times.push(now);
     if (now - times[0] < 1000 * seconds) requestAnimationFrame(step);
-    else resolve(times);
+    else resolve(1000 * (times.length - 1) / (now - times[0]));
   });
 })
 """
-"""Points at another cell with every frame of the screen."""
+"""Frames per second over some seconds, with the pointer at another cell in each if it moves."""
 BLOCKS = """
 (side) => [...document.querySelectorAll("[data-gallery] canvas")].flatMap((canvas) => {
   const { width, height } = canvas;
@@ -93,70 +80,57 @@ BLOCKS = """
   return words;
 })
 """
-"""A number for each block of the wall, which changes with its pixels."""
-
-
-class Runs(NamedTuple):
-    """Runs by what is measured on them."""
-
-    ten_thousand: str
-    largest: str
-    hundred: str
+"""A hash of each block of the gallery."""
 
 
 def main() -> None:
-    cores = sorted(os.sched_getaffinity(0))[:CORES]
-    os.sched_setaffinity(0, cores)
-    console = Console(width=110)
+    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:CORES])
     with tempfile.TemporaryDirectory() as folder:
         place = Installation(Path(folder) / "data", SETTINGS)
         place.start()
         try:
             runs = prepare(place)
             with launched() as browser:
-                console.print(table(browser, place, runs, len(cores)))
+                Console(width=110).print(table(browser, place, runs))
         finally:
             place.end()
             place.close()
 
 
-def prepare(place: Installation) -> Runs:
+def prepare(place: Installation) -> tuple[str, str, str]:
     """Carry out a search, fill archives with what it found, and have replays rendered."""
     found = searched(place)
     services = connect(str(place.folder))
     creatures = creatures_of(services, found)[:CREATURES]
     side = round(len(creatures) ** 0.5)
-    runs = Runs(
+    runs = (
         write_run(services, found, 100, 10_000, creatures),
         write_run(services, found, 256, 65_536, creatures),
         write_run(services, found, side, side**2, creatures),
     )
     services.close()
     for creature in creatures:
-        render(place, creature)
+        ready = partial(is_ready, place, f"/api/v1/creatures/{creature}/replay")
+        wait_until(ready, 300, f"creature {creature} is rendered")
     return runs
 
 
+def is_ready(place: Installation, path: str) -> bool:
+    return place.http.get(path).raise_for_status().status_code == 200
+
+
 def searched(place: Installation) -> str:
-    """The demonstration's run, long enough for a hundred creatures."""
+    """A run of the demonstration, long enough for a hundred creatures."""
     experiments = place.http.get("/api/v1/experiments").raise_for_status().json()
-    of_search = next(one for one in experiments if one["experiment"] == "quality-diversity")
-    spec = of_search["presets"][0]["spec"]
+    search = next(one for one in experiments if one["experiment"] == "quality-diversity")
+    spec = search["presets"][0]["spec"]
     spec["search"]["generations"] = 40
     run = place.submit(spec)
     place.wait(run, "finished", seconds=600)
     return run
 
 
-def render(place: Installation, creature: str) -> None:
-    def there() -> bool:
-        answer = place.http.get(f"/api/v1/creatures/{creature}/replay").raise_for_status()
-        return answer.status_code == 200
-
-    wait_until(there, 300, f"creature {creature} is rendered")
-
-
-def table(browser: Browser, place: Installation, runs: Runs, cores: int) -> Table:
+def table(browser: Browser, place: Installation, runs: tuple[str, str, str]) -> Table:
     first, largest, hundred = (f"{place.url}/runs/{run}" for run in runs)
     wall = f"{hundred}?view=gallery&tile={TILE}"
     measures: list[tuple[str, str, Callable[[], str]]] = [
@@ -166,159 +140,135 @@ def table(browser: Browser, place: Installation, runs: Runs, cores: int) -> Tabl
         ("playing their history", "", lambda: play(browser, largest)),
         ("pointer on a cell to its first frame", "≤ 100 ms", lambda: hover(browser, hundred)),
         (f"gallery of {CREATURES}", "≥ 30 frames/s", lambda: gallery(browser, wall)),
-        ("script of a page, gzipped", "≤ 100 kB", lambda: script(browser, place, runs.hundred)),
+        ("script of a page, gzipped", "≤ 100 kB", lambda: script(browser, place, runs[2])),
     ]
-    rows = Table("", "bar", "found", title=f"The page in Chromium on {cores} cores")
+    rows = Table("", "bar", "found", title=f"The page in Chromium on {CORES} cores")
     for name, bar, measure in measures:
         rows.add_row(name, bar, measured(measure))
     return rows
 
 
 def measured(measure: Callable[[], str]) -> str:
-    """What a measure finds, or that a page has nothing to measure."""
+    """The result of a measurement, or the part of the page that is missing."""
     try:
         return measure()
     except Late as error:
-        return f"{NOT_THERE}: {error.message.splitlines()[0]}"
+        return f"not there: {error.message.splitlines()[0]}"
 
 
-def opened(browser: Browser, url: str, window: dict[str, int] = WINDOW) -> Page:
-    page = browser.new_context(viewport=window).new_page()
-    page.add_init_script(NOTES)
-    page.set_default_timeout(PATIENCE_MS)
-    page.goto(url)
-    return page
+@contextmanager
+def opened(browser: Browser, url: str, window: ViewportSize = WINDOW) -> Iterator[Page]:
+    """Open a page in a new context, in which nothing is cached."""
+    with browser.new_context(viewport=window) as context:
+        page = context.new_page()
+        page.add_init_script(NOTES)
+        page.set_default_timeout(PATIENCE_MS)
+        page.goto(url)
+        yield page
 
 
-def noted(page: Page, name: str) -> list[dict[str, float]]:
-    return page.evaluate("(name) => window.noted.filter((one) => one.name === name)", name)
-
-
-def until_noted(page: Page, name: str, after: float = 0.0) -> dict[str, float] | None:
-    """The first note by a name after a moment of the page, if it comes."""
+def until_noted(page: Page, name: str, after: float = 0.0) -> float:
+    """The time of the first mark of a name after another time."""
     script = (
         "([name, after]) => window.noted.find((n) => n.name === name && n.startTime > after)"
     )
-    try:
-        return page.wait_for_function(script, arg=[name, after]).json_value()
-    except Late:
-        return None
+    return page.wait_for_function(script, arg=[name, after]).json_value()["startTime"]
+
+
+def until_elites(page: Page, count: str) -> None:
+    page.get_by_text(f"{count} elites").first.wait_for()
 
 
 def paint(browser: Browser, url: str) -> str:
-    """From the navigation to the map with its cells, in new contexts: nothing is cached."""
+    """Time from the navigation to the drawn map."""
     times = []
     for _ in range(TIMES):
-        page = opened(browser, url)
-        page.get_by_text("10,000 elites").first.wait_for()
-        mark = until_noted(page, "map")
-        if mark is None:
-            return f"{NOT_THERE}: no mark `map`"
-        times.append(mark["startTime"] / 1000)
-        page.context.close()
+        with opened(browser, url) as page:
+            until_elites(page, "10,000")
+            times.append(until_noted(page, "map") / 1000)
     return f"{statistics.median(times):.2f} s, slowest {max(times):.2f} s, of {TIMES}"
 
 
 def redraw(browser: Browser, url: str) -> str:
-    """The drawing itself, each time that the theme changes."""
-    page = opened(browser, url)
-    page.get_by_text("65,536 elites").first.wait_for()
-    if until_noted(page, "map") is None:
-        return f"{NOT_THERE}: no mark `map`"
-    page.evaluate("window.noted.length = 0")
-    for k in range(REDRAWS):
-        page.emulate_media(color_scheme=("dark", "light")[k % 2])
-        page.wait_for_timeout(50)
-    times = [note["duration"] for note in noted(page, "map-draw")]
-    page.context.close()
+    """Time of a drawing, repeated by changes of the theme."""
+    with opened(browser, url) as page:
+        until_elites(page, "65,536")
+        until_noted(page, "map")
+        page.evaluate("window.noted.length = 0")
+        for k in range(REDRAWS):
+            page.emulate_media(color_scheme=("dark", "light")[k % 2])
+            page.wait_for_timeout(50)
+        drawings = "window.noted.filter((n) => n.name === 'map-draw').map((n) => n.duration)"
+        times = page.evaluate(drawings)
     if len(times) < 2:
-        return f"{NOT_THERE}: no measures `map-draw`"
+        return "not there: no measures `map-draw`"
     tenth = statistics.quantiles(times, n=10)[-1]
     return f"{statistics.median(times):.1f} ms, one in ten over {tenth:.1f} ms, of {len(times)}"
 
 
 def sweep(browser: Browser, url: str) -> str:
-    """Frames a second while the pointer is at another of 65,536 cells with each of them."""
-    page = opened(browser, url)
-    page.get_by_text("65,536 elites").first.wait_for()
-    frames = page.evaluate(SWEEP, 5)
-    page.context.close()
-    return f"{rate(frames):.0f} frames/s"
+    """Frames per second while the pointer moves over 65,536 cells."""
+    with opened(browser, url) as page:
+        until_elites(page, "65,536")
+        return f"{page.evaluate(FRAMES, [5, True]):.0f} frames/s"
 
 
 def play(browser: Browser, url: str) -> str:
-    """Frames a second while the history of 65,536 cells is played."""
-    page = opened(browser, url)
-    page.get_by_text("65,536 elites").first.wait_for()
-    button = page.get_by_role("button", name="Play the history")
-    if not button.count():
-        return f"{NOT_THERE}: no button `Play the history`"
-    button.click()
-    page.get_by_text("65,536 elites").first.wait_for(state="detached")
-    frames = page.evaluate(FRAMES, 3)
-    page.context.close()
-    return f"{rate(frames):.0f} frames/s"
+    """Frames per second while the history of 65,536 cells is played."""
+    with opened(browser, url) as page:
+        until_elites(page, "65,536")
+        page.get_by_role("button", name="Play the history").click()
+        page.get_by_text("65,536 elites").first.wait_for(state="detached")
+        return f"{page.evaluate(FRAMES, [3, False]):.0f} frames/s"
 
 
 def hover(browser: Browser, url: str) -> str:
-    """From the pointer's event to the replay's first frame, over cells one after another."""
-    page = opened(browser, url)
-    if until_noted(page, "map") is None:
-        return f"{NOT_THERE}: no mark `map`"
-    box = page.get_by_role("application").first.bounding_box()
-    assert box
+    """Time from a pointer event to the first frame of the replay, over several cells."""
     side = round(CREATURES**0.5)
     times = []
-    for k in range(min(HOVERS, side**2)):
-        i, j = divmod((7 * k) % side**2, side)
-        x, y = ((part + 0.5) / side for part in (i, j))
-        page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"])
-        moved = page.evaluate("window.moved")
-        mark = until_noted(page, "inset", moved)
-        if mark is None:
-            return f"{NOT_THERE}: no mark `inset`"
-        times.append(mark["startTime"] - moved)
-        page.wait_for_timeout(200)
-    page.context.close()
+    with opened(browser, url) as page:
+        until_noted(page, "map")
+        box = page.get_by_role("application").first.bounding_box()
+        assert box
+        for k in range(min(HOVERS, side**2)):
+            x, y = ((part + 0.5) / side for part in divmod((7 * k) % side**2, side))
+            page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"])
+            moved = page.evaluate("window.moved")
+            times.append(until_noted(page, "inset", moved) - moved)
+            page.wait_for_timeout(200)
     return f"{statistics.median(times):.0f} ms, slowest {max(times):.0f} ms, of {len(times)}"
 
 
 def gallery(browser: Browser, url: str) -> str:
-    """Frames a second while all of it is visible and moves."""
-    page = opened(browser, url, WALL)
+    """Frames per second while all creatures are visible and move."""
     fetched: set[str] = set()
-    page.on("response", lambda answer: note_motion(answer, fetched))
-    page.reload()
-    try:
-        page.locator("[data-gallery] canvas").first.wait_for()
-    except Late:
-        return f"{NOT_THERE}: nothing in [data-gallery]"
-    page.locator("[data-gallery] canvas").first.scroll_into_view_if_needed()
-    page.wait_for_timeout(8000)  # What moves is fetched.
-    frames = page.evaluate(FRAMES, 5)
+
+    def note_motion(answer: Response) -> None:
+        if answer.url.endswith(("/motion", "/replay")) and answer.status == 200:
+            fetched.add(answer.url)
+
     side = round(CREATURES**0.5)
-    before = page.evaluate(BLOCKS, side)
-    page.wait_for_timeout(700)
-    after = page.evaluate(BLOCKS, side)
-    page.context.close()
+    with opened(browser, url, WALL) as page:
+        page.on("response", note_motion)
+        page.reload()
+        canvas = page.locator("[data-gallery] canvas").first
+        canvas.wait_for()
+        canvas.scroll_into_view_if_needed()
+        page.wait_for_timeout(8000)  # The motions are fetched.
+        rate = page.evaluate(FRAMES, [5, False])
+        before = page.evaluate(BLOCKS, side)
+        page.wait_for_timeout(700)
+        after = page.evaluate(BLOCKS, side)
     moving = sum(one != other for one, other in zip(before, after, strict=False))
-    return f"{rate(frames):.0f} frames/s, {len(fetched)} of them there, {moving} tiles moving"
-
-
-def note_motion(answer: Response, fetched: set[str]) -> None:
-    if answer.url.endswith(("/motion", "/replay")) and answer.status == 200:
-        fetched.add(answer.url)
-
-
-def rate(frames: list[float]) -> float:
-    """Frames a second, from when each was."""
-    return 1000 * (len(frames) - 1) / (frames[-1] - frames[0])
+    return f"{rate:.0f} frames/s, {len(fetched)} of them there, {moving} tiles moving"
 
 
 def script(browser: Browser, place: Installation, run: str) -> str:
-    """What opening each page loads of all scripts that there are."""
+    """Size of the scripts that each page loads, gzipped."""
     built = ROOT / "web" / "dist"
-    sizes = {file.name: zipped(file) / 1000 for file in built.rglob("*.js")}
+    sizes = {
+        file.name: len(gzip.compress(file.read_bytes())) / 1000 for file in built.rglob("*.js")
+    }
     archive = place.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
     paths = {
         "a run": f"/runs/{run}",
@@ -336,20 +286,14 @@ def script(browser: Browser, place: Installation, run: str) -> str:
 
 
 def scripts(browser: Browser, url: str) -> set[str]:
-    """The names of the files that a page has loaded once it has come to rest, to its end."""
-    page = opened(browser, url)
-    page.get_by_role("main").wait_for()
-    for _ in range(10):  # What is far below may come when it is in sight.
-        page.mouse.wheel(0, 900)
-        page.wait_for_timeout(300)
-    names = "performance.getEntriesByType('resource').map(({ name }) => name)"
-    found = {Path(name).name for name in page.evaluate(names)}
-    page.context.close()
-    return found
-
-
-def zipped(file: Path) -> int:
-    return len(gzip.compress(file.read_bytes()))
+    """Names of the files that a page loads, scrolled to its end."""
+    with opened(browser, url) as page:
+        page.get_by_role("main").wait_for()
+        for _ in range(10):  # Parts far below are loaded when they become visible.
+            page.mouse.wheel(0, 900)
+            page.wait_for_timeout(300)
+        names = "performance.getEntriesByType('resource').map(({ name }) => name)"
+        return {Path(name).name for name in page.evaluate(names)}
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 import "./lineStyle.css";
 
-/** As many lines as can be told apart at a glance. */
+/** More lines cannot be told apart. */
 export const MAX_LINES = 8;
 
 const SOLID_LINES = 4;

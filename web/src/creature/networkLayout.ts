@@ -1,17 +1,8 @@
-/** Where the nodes of a network stand: columns by depth, spread by forces within them. */
+/** Layout of a network: columns by depth, ordered by the mean position of connected nodes. */
 
-import {
-  type SimulationLinkDatum,
-  type SimulationNodeDatum,
-  forceCollide,
-  forceLink,
-  forceSimulation,
-  forceX,
-  forceY,
-} from "d3-force";
 import type { Network, Neuron } from "../decode/network";
 
-export interface Spot extends SimulationNodeDatum {
+export interface Spot {
   neuron: Neuron;
   x: number;
   y: number;
@@ -23,43 +14,48 @@ export interface Layout {
   spots: Map<number, Spot>;
 }
 
-const WIDEST = 130;
-const NARROWEST = 84;
+const [MIN_PITCH, MAX_PITCH] = [84, 130];
 const ROW = 58;
 const MARGIN = { x: 92, y: 36 };
-const TICKS = 240;
+const SWEEPS = 12;
 
 export function layoutOf({ neurons, links, depth }: Network): Layout {
-  const pitch = Math.max(NARROWEST, Math.min(WIDEST, (3.5 * WIDEST) / depth));
-  const columns = Array.from({ length: depth + 1 }, (_, layer) =>
-    neurons.filter((neuron) => neuron.depth === layer),
+  const pitch = Math.max(MIN_PITCH, Math.min(MAX_PITCH, (3.5 * MAX_PITCH) / depth));
+  const layers = Array.from({ length: depth + 1 }, (_, layer) =>
+    neurons.filter((one) => one.depth === layer),
   );
-  const height = Math.max(2 * ROW, ROW * Math.max(...columns.map((column) => column.length)));
-  const spots = columns.flatMap((column) =>
-    column.map((neuron, i): Spot => {
-      const y = (height * (i + 0.5)) / column.length;
-      // Inputs and outputs keep their order; what is between finds its own.
-      const fixed = neuron.role === "hidden" ? null : y;
-      return { neuron, x: pitch * neuron.depth, y, fx: pitch * neuron.depth, fy: fixed };
-    }),
+  const height = ROW * Math.max(2, ...layers.map((layer) => layer.length));
+  const columns = layers.map((layer) =>
+    layer.map((neuron, i): Spot => ({
+      ...{ neuron, x: pitch * neuron.depth + MARGIN.x },
+      y: (height * (i + 0.5)) / layer.length + MARGIN.y,
+    })),
   );
-  const byId = new Map(spots.map((spot) => [spot.neuron.id, spot]));
-  const springs: SimulationLinkDatum<Spot>[] = links
-    .filter(({ source, target }) => byId.has(source) && byId.has(target))
-    .map(({ source, target }) => ({ source: byId.get(source)!, target: byId.get(target)! }));
-  forceSimulation(spots)
-    .force("link", forceLink(springs).distance(pitch).strength(0.05))
-    .force(
-      "column",
-      forceX<Spot>((spot) => pitch * spot.neuron.depth),
-    )
-    .force("middle", forceY<Spot>(height / 2).strength(0.02))
-    .force("apart", forceCollide(ROW / 2))
-    .stop()
-    .tick(TICKS);
-  for (const spot of spots) {
-    spot.x += MARGIN.x;
-    spot.y = Math.min(height, Math.max(0, spot.y)) + MARGIN.y;
+  const spots = new Map(columns.flat().map((spot) => [spot.neuron.id, spot]));
+  const connected = new Map<Spot, Spot[]>([...spots.values()].map((spot) => [spot, []]));
+  for (const { source, target } of links) {
+    const [from, to] = [spots.get(source), spots.get(target)];
+    if (!from || !to || from === to) continue;
+    connected.get(from)!.push(to);
+    connected.get(to)!.push(from);
   }
-  return { width: pitch * depth + 2 * MARGIN.x, height: height + 2 * MARGIN.y, spots: byId };
+  // Inputs and outputs keep their order.
+  const free = columns.filter((column) => column.every(({ neuron }) => neuron.role === "hidden"));
+  for (let sweep = 0; sweep < SWEEPS; sweep++) {
+    for (const column of free) arrange(column, connected, height);
+  }
+  return { width: pitch * depth + 2 * MARGIN.x, height: height + 2 * MARGIN.y, spots };
+}
+
+/** Move nodes to the mean of their neighbours, then apart within the height. */
+function arrange(column: Spot[], connected: Map<Spot, Spot[]>, height: number): void {
+  for (const spot of column) {
+    const near = connected.get(spot)!;
+    if (near.length > 0) spot.y = near.reduce((sum, { y }) => sum + y, 0) / near.length;
+  }
+  column.sort((a, b) => a.y - b.y);
+  let limit = MARGIN.y + ROW / 2;
+  for (const spot of column) limit = (spot.y = Math.max(spot.y, limit)) + ROW;
+  limit = MARGIN.y + height - ROW / 2;
+  for (const spot of column.toReversed()) limit = (spot.y = Math.min(spot.y, limit)) - ROW;
 }

@@ -17,11 +17,11 @@ export function InlineText({ label, value, limit, long = false, list, onDone }: 
   const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null);
   const over = useRef(false);
   useLayoutEffect(() => {
-    field.current!.focus(); // Before anything else is typed.
+    field.current!.focus(); // Before the user types.
     field.current!.select();
   }, []);
   const end = (take: boolean) => {
-    if (over.current || !field.current) return; // What is taken away loses the focus too.
+    if (over.current || !field.current) return; // A removed field loses the focus too.
     over.current = true;
     onDone(take ? field.current.value.trim() : null);
   };

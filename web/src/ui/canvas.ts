@@ -1,4 +1,4 @@
-/** Sharp canvases: their pixels follow the size on the page and the screen's density. */
+/** Canvases with the resolution of the screen. */
 
 import type { RefObject } from "preact";
 import { useEffect, useState } from "preact/hooks";
@@ -8,7 +8,7 @@ export interface Size {
   height: number;
 }
 
-/** The size of an element in CSS pixels; zero until it is known. */
+/** The size of an element in CSS pixels; zero at first. */
 export function useSize(element: RefObject<HTMLElement | null>): Size {
   const [size, setSize] = useState<Size>({ width: 0, height: 0 });
   useEffect(() => {
@@ -22,7 +22,7 @@ export function useSize(element: RefObject<HTMLElement | null>): Size {
   return size;
 }
 
-/** A context that is drawn on in CSS pixels, cleared. */
+/** Clear a canvas and return its context, in CSS pixels. */
 export function prepare(canvas: HTMLCanvasElement, size: Size): CanvasRenderingContext2D {
   const density = window.devicePixelRatio || 1;
   const [width, height] = [size.width, size.height].map((side) => Math.round(side * density));

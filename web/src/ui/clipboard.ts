@@ -19,7 +19,7 @@ async function writeClipboard(content: string): Promise<void> {
   const area = document.createElement("textarea");
   area.value = content;
   area.style.cssText = "position: fixed; top: 0; opacity: 0";
-  (focused?.closest("dialog") ?? document.body).append(area); // Beside a dialog nothing can be selected.
+  (focused?.closest("dialog") ?? document.body).append(area); // Outside an open dialog nothing can be selected.
   area.select();
   const copied = document.execCommand("copy");
   area.remove();

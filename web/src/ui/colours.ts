@@ -1,12 +1,13 @@
-/** Colour maps: perceptually uniform for magnitudes, diverging around zero for vorticity. */
+/** Colour maps: sequential for magnitudes, diverging for signed values. */
+
+import type { Theme } from "./theme";
 
 export type Rgb = [number, number, number];
 
 /**
- * Seventeen even samples of matplotlib's maps (CC0), which grow evenly lighter to the eye, those
- * of most colour-blind people too: viridis and magma (S. van der Walt and N. Smith, 2015), the
- * latter without its black, which is a cell's ground on a dark page; cividis (Nuñez, Anderton
- * and Renslow, PLoS ONE 13, e0199239, 2018).
+ * Seventeen even samples of perceptually uniform maps of matplotlib (CC0): viridis and magma
+ * (S. van der Walt and N. Smith, 2015), the latter without black, the ground of a dark page;
+ * cividis (Nuñez, Anderton and Renslow, PLoS ONE 13, e0199239, 2018).
  */
 const SAMPLES = {
   viridis:
@@ -29,22 +30,10 @@ function anchorsOf(hex: string): Rgb[] {
   return Array.from({ length: numbers.length / 3 }, (_, i) => numbers.slice(3 * i, 3 * i + 3) as Rgb);
 }
 
-/** From the most negative to the most positive, evenly spaced; blue against red-orange. */
-const DIVERGING: Record<"light" | "dark", Rgb[]> = {
-  light: [
-    [20, 66, 138],
-    [92, 152, 206],
-    [246, 248, 249],
-    [228, 126, 98],
-    [146, 24, 34],
-  ],
-  dark: [
-    [148, 206, 255],
-    [44, 110, 178],
-    [11, 20, 26],
-    [178, 72, 48],
-    [255, 190, 148],
-  ],
+/** From negative blue to positive red-orange. */
+const DIVERGING: Record<Theme, Rgb[]> = {
+  light: anchorsOf("14428a5c98cef6f8f9e47e62921822"),
+  dark: anchorsOf("94ceff2c6eb20b141ab24830ffbe94"),
 };
 
 /** From 0, dark, to 1, light. */
@@ -54,12 +43,12 @@ export function sequential(t: number, palette: Palette): Rgb {
 
 export const viridis = (t: number): Rgb => sequential(t, "viridis");
 
-/** From −1 over 0, the ground, to 1. */
-export function diverging(t: number, theme: "light" | "dark"): Rgb {
+/** From −1 over 0, the background, to 1. */
+export function diverging(t: number, theme: Theme): Rgb {
   return between(DIVERGING[theme], (t + 1) / 2);
 }
 
-/** The colour at a place from 0 to 1 along evenly spaced ones. */
+/** The colour at a position from 0 to 1 along evenly spaced colours. */
 function between(anchors: Rgb[], t: number): Rgb {
   const place = Math.min(1, Math.max(0, t)) * (anchors.length - 1);
   const i = Math.min(anchors.length - 2, Math.floor(place));
@@ -73,12 +62,12 @@ export function css([red, green, blue]: Rgb): string {
   return `rgb(${red} ${green} ${blue})`;
 }
 
-/** `colour(t)` for `count` values of t over [low, high], packed as canvas pixels (ABGR). */
+/** `colour(t)` for `count` values of t over [low, high], packed as canvas pixels. */
 export function table(colour: (t: number) => Rgb, count: number, [low, high]: [number, number]): Uint32Array {
   return Uint32Array.from({ length: count }, (_, i) => pixel(colour(low + ((high - low) * i) / (count - 1))));
 }
 
-/** A colour as a canvas' image has it. */
+/** A colour as a canvas pixel (ABGR). */
 export function pixel([red, green, blue]: Rgb, alpha = 1): number {
   return ((Math.round(255 * alpha) << 24) | (blue << 16) | (green << 8) | red) >>> 0;
 }

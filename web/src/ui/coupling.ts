@@ -4,35 +4,10 @@ import type { Json, Spec } from "../api/types";
 import { number } from "./format";
 import { text } from "./text";
 
-export interface Form {
-  title: string;
-  about: string;
-  free: boolean;
-}
-
-/** The forms of a sweep, by their names in a spec. */
-export const FORMS: Record<string, Form> = {
-  ours: {
-    title: text.ours,
-    about: text.oursAbout,
-    free: true,
-  },
-  strong: {
-    title: text.tireless,
-    about: text.tirelessAbout,
-    free: true,
-  },
-  paper: {
-    title: text.paper,
-    about: text.paperAbout,
-    free: false,
-  },
-};
-
-export const NOT_FREE = text.notForceFreeAbout;
-
-export function formOf(name: string): Form {
-  return FORMS[name] ?? { title: name, about: "", free: true };
+/** Title and description of a form of coupling, by its name in a spec. */
+export function formOf(name: string) {
+  const [title, about] = text.forms[name] ?? [name, ""];
+  return { title, about, free: name !== "paper" };
 }
 
 const part = (value: Json | undefined): Spec =>

@@ -2,10 +2,10 @@ import { describe, expect, it, vi } from "vitest";
 import type { Experiment, Run } from "../api/types";
 import { labelOf, titleOf } from "./format";
 
-describe("what a run is called", () => {
+describe("the title of a run", () => {
   const run = { name: null, experiment: "quality-diversity", demonstration: false };
 
-  it("is its name before anything else", () => {
+  it("is its name, if it has one", () => {
     expect(labelOf({ ...run, name: "Mine", demonstration: true })).toBe("Mine");
     expect(titleOf({ ...run, name: "Mine" } as Run, [])).toBe("Mine");
     expect([labelOf(run), labelOf({ ...run, demonstration: true })]).toEqual([
@@ -14,7 +14,7 @@ describe("what a run is called", () => {
     ]);
   });
 
-  it("is its preset's name whatever its seed, and the spec is read once", () => {
+  it("is its preset's name for any seed, and the spec is read once", () => {
     const reads = vi.fn();
     const spec = {
       experiment: "gaits",

@@ -1,4 +1,4 @@
-/** Numbers, times and names as people read them. */
+/** Formats of numbers, times and names. */
 
 import type { Experiment, Json, Run, Spec } from "../api/types";
 import { text } from "./text";
@@ -69,7 +69,7 @@ export function words(name: string): string {
   return spaced.charAt(0).toUpperCase() + spaced.slice(1);
 }
 
-/** A run's name, else the preset that it was started from, its seed aside, else its experiment. */
+/** The name of a run, or of its preset with any seed, or of its experiment. */
 export function titleOf(run: Run, experiments: Experiment[]): string {
   if (run.name) return run.name;
   const presets = experiments.find(({ experiment }) => experiment === run.experiment)?.presets;
@@ -77,7 +77,7 @@ export function titleOf(run: Run, experiments: Experiment[]): string {
   if (run.demonstration) return text.demonstration;
   const kind = words(run.experiment.replaceAll("-", " "));
   if (!preset) return kind;
-  // Most runs are searches: those are known by their presets alone.
+  // Most runs are searches, for which the preset alone is enough.
   return run.experiment === "quality-diversity" ? words(preset.name) : `${kind}, ${preset.name}`;
 }
 

@@ -22,12 +22,11 @@ export const text = {
   partlyNotForceFree: "partly not force-free",
   notForceFree: "not force-free",
   noClipboard: "The browser refused to copy. Select the text and copy it with Ctrl + C.",
-  ours: "Ours",
-  oursAbout: "Force- and torque-free; every actuator has the same strength.",
-  tireless: "Ours, tireless",
-  tirelessAbout: "Force- and torque-free; actuators have unlimited strength.",
-  paper: "Paper",
-  paperAbout: "Two layers and free edge angles, as in the paper.",
+  forms: {
+    ours: ["Ours", "Force- and torque-free; every actuator has the same strength."],
+    strong: ["Ours, tireless", "Force- and torque-free; actuators have unlimited strength."],
+    paper: ["Paper", "Two layers and free edge angles, as in the paper."],
+  } as Record<string, [title: string, about: string]>,
   notForceFreeAbout:
     "The body and the fluid need not exert equal and opposite forces in this coupling. Part of the swimming can be an artefact of the solver.",
   freedOfNothing: "nothing (not force-free)",

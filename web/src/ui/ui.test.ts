@@ -4,7 +4,7 @@ import { diverging, viridis } from "./colours";
 import { bytes, duration, number, titleOf } from "./format";
 
 describe("colours", () => {
-  it("of viridis begin dark violet, end yellow, and grow lighter all the way", () => {
+  it("of viridis go from dark violet to yellow and get lighter", () => {
     const lightness = Array.from({ length: 33 }, (_, i) => {
       const [red, green, blue] = viridis(i / 32);
       return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
@@ -22,7 +22,7 @@ describe("colours", () => {
   });
 });
 
-describe("words for people", () => {
+describe("formats", () => {
   it.each([
     [0, "0"],
     [0.012345, "0.0123"],
@@ -35,7 +35,7 @@ describe("words for people", () => {
     expect(number(value)).toBe(text);
   });
 
-  it("keep times and sizes short", () => {
+  it("of times and sizes are short", () => {
     expect([0.2, 59, 61, 3700, 90000].map(duration)).toEqual([
       "under 1 s",
       "59 s",
@@ -46,7 +46,7 @@ describe("words for people", () => {
     expect(bytes(15_100_000)).toBe("15.1 MB");
   });
 
-  it("name a run after its preset whatever its seed, else after its experiment", () => {
+  it("of a run name its preset for any seed, or its experiment", () => {
     const spec: Spec = { seed: 0, world: { width: 32, height: 32 } };
     const presets = [{ name: "demo", title: "", spec }];
     const known = [{ experiment: "quality-diversity", title: "", schema: {}, presets }];

@@ -1,9 +1,9 @@
-/** How curves are drawn, as the address holds it. */
+/** Options of curves, in the address. */
 
 import type { ComponentChildren } from "preact";
 import { setQuery } from "../../store/router";
 import { Check as Toggle, Select } from "../../ui/Select";
-import { AXES, type CurveView, OVER, WINDOWS } from "./look";
+import { AXES, type CurveView, WINDOWS } from "./look";
 import { text } from "./text";
 import "./curves.css";
 
@@ -17,7 +17,7 @@ export function CurveOptions({ look: { over, smooth, log } }: { look: CurveView 
     <CurveBar log={log}>
       <Select
         title={text.axis}
-        choices={AXES.map((name) => [name, OVER[name]])}
+        choices={AXES.map((name) => [name, text.over[name]])}
         value={over}
         onChange={(name) => setQuery({ over: name === "generation" ? null : name })}
       />
@@ -31,7 +31,7 @@ export function CurveOptions({ look: { over, smooth, log } }: { look: CurveView 
   );
 }
 
-/** What can be chosen for all curves, beside what only some have. */
+/** A bar of options, which ends with the scale. */
 export function CurveBar({ log, children }: { log: boolean; children: ComponentChildren }) {
   return (
     <div class="row curve-choices" role="group" aria-label={text.options}>
@@ -41,7 +41,7 @@ export function CurveBar({ log, children }: { log: boolean; children: ComponentC
   );
 }
 
-/** Something that is so or not: `1` under its name in the address. */
+/** A checkbox for a parameter of the address. */
 export function Check({ title, name, on }: { title: string; name: string; on: boolean }) {
   return <Toggle title={title} on={on} onChange={(checked) => setQuery({ [name]: checked ? "1" : null })} />;
 }

@@ -1,10 +1,10 @@
-/** Lines and dots over the generations, the evaluations, or the time that a run took. */
+/** Curves over the generations, the evaluations or the time of a run. */
 
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import { useSize } from "../../ui/canvas";
 import { useTheme } from "../../ui/theme";
-import { type CurveView, OVER, tableOf } from "./look";
+import { type CurveView, tableOf } from "./look";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";
 import { text } from "./text";
@@ -63,16 +63,16 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
     plot.current?.setData(table);
   }, [table, ...changed]);
 
-  const told = series.filter(({ faint, edge }) => !faint && !edge);
-  const now = told.map(({ name, y }) => [...(told.length > 1 ? [name] : []), write(newest(y))]);
-  const label = `${title} over ${OVER[over]}: now ${now.map((each) => each.join(" ")).join(", ")}`;
+  const lines = series.filter(({ faint, edge }) => !faint && !edge);
+  const now = lines.map(({ name, y }) => [...(lines.length > 1 ? [name] : []), write(newest(y))]);
+  const label = text.label(title, text.over[over], now.map((each) => each.join(" ")).join(", "));
   return (
     <figure class="curve">
       <figcaption>
         <span>
           <Term name={title} />
         </span>
-        <Keys series={told} write={write} />
+        <Keys series={lines} write={write} />
       </figcaption>
       <div ref={host} class="plot" role="img" aria-label={label} />
       {!series.some(({ y }) => y.some((value) => value !== null && (!log || value > 0))) && (
@@ -95,7 +95,7 @@ const inkOf =
 /** The columns that a table of curves depends on. */
 const partsOf = ({ x, y }: Series) => [x, y];
 
-/** The newest values; other runs are named where they are chosen. */
+/** The newest values; other runs are named elsewhere. */
 function Keys({ series, write }: { series: Series[]; write: Plot["write"] }) {
   if (series.every(({ other }) => other)) return null;
   const several = series.filter(({ other }) => !other).length > 1;

@@ -6,7 +6,7 @@ describe("curves", () => {
   const figures = { qd_score: [1], coverage: [0.5], best: [2] };
   const bare = { generation: [1], evaluations: [16], seconds: [2], ...figures, summary: {} };
 
-  it("have what was told beside them, and nothing where nothing was", () => {
+  it("have re-evaluations and work if they were reported", () => {
     expect(scoresOf(bare).map(({ series }) => series.length)).toEqual([1, 1, 1]);
     expect(workOf(bare)).toEqual([]);
     const told: Curves = {

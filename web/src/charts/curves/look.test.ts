@@ -10,17 +10,17 @@ const curvesOf = (qd_score: (number | null)[], batch = 16, summary = {}): Curves
   return { generation, evaluations, qd_score, ...rest };
 };
 
-describe("how curves are looked at", () => {
+describe("the view of curves", () => {
   const plain = curveViewOf(new URLSearchParams());
 
-  it("is in the address, and what is no choice there is none", () => {
+  it("is in the address; unknown values are ignored", () => {
     expect(plain).toEqual({ over: "generation", log: false, smooth: 1 });
     const asked = new URLSearchParams("over=seconds&log=1&smooth=20");
     expect(curveViewOf(asked)).toEqual({ over: "seconds", log: true, smooth: 20 });
     expect(curveViewOf(new URLSearchParams("over=moons&log=yes&smooth=7"))).toEqual(plain);
   });
 
-  it("smooths by the mean of so many generations, of what was told in them", () => {
+  it("smooths by the mean of known values in a window of generations", () => {
     expect(runningMean([1, 2, 3, 4], [1, 2, 3, 4], 1)).toEqual([1, 2, 3, 4]);
     expect(runningMean([1, 2, 3, 4], [1, 2, 3, 4], 3)).toEqual([1, 1.5, 2, 3]);
     expect(runningMean([4, null, 8], [1, 2, 3], 5)).toEqual([4, null, 6]);
@@ -28,7 +28,7 @@ describe("how curves are looked at", () => {
     expect(runningMean([1, 3, 5], [10, 20, 30], 20)).toEqual([1, 2, 4]);
   });
 
-  it("keeps what was measured faintly behind the smooth line", () => {
+  it("keeps measured values faintly behind the smooth line", () => {
     const [score] = arrangePlots(scoresOf, curvesOf([1, 3]), [], { ...plain, smooth: 5 });
     expect(score!.series.map(({ faint }) => faint ?? false)).toEqual([true, false]);
     expect(score!.series.map(({ y }) => y)).toEqual([
@@ -37,7 +37,7 @@ describe("how curves are looked at", () => {
     ]);
   });
 
-  it("puts other runs beside, each in its colour and at its own places", () => {
+  it("adds other runs in their colours, with their own x values", () => {
     const others = [{ name: "Demo 12", colour: "--series-2", curves: curvesOf([5, 6], 32) }];
     const look = { ...plain, over: "evaluations" } as const;
     const [score] = arrangePlots(scoresOf, curvesOf([1, 2]), others, look);
@@ -50,7 +50,7 @@ describe("how curves are looked at", () => {
     ]);
   });
 
-  it("leaves out on a log scale what is not above zero", () => {
+  it("omits values that are not positive on a log scale", () => {
     const series = [{ name: "a", colour: "", y: [0, -1, 2] }];
     expect(tableOf(series, [1, 2, 3], true)).toEqual([
       [1, 2, 3],
@@ -63,7 +63,7 @@ describe("how curves are looked at", () => {
 describe("diverged evaluations", () => {
   const summary = { "diverged: supersonic": [null, 2, 1], "diverged: non-finite": [4, null, 3] };
 
-  it("are counted for each reason, most first, and drawn as sums", () => {
+  it("are counted by reason, most frequent first, and drawn as sums", () => {
     const curves = curvesOf([1, 2, 3], 16, summary);
     expect(divergedBy(curves)).toEqual([
       ["non-finite", 7],
@@ -76,7 +76,7 @@ describe("diverged evaluations", () => {
     ]);
   });
 
-  it("are not lost where a long history is thinned out", () => {
+  it("are not lost if a long history is thinned out", () => {
     let curves = NO_CURVES;
     const length = 2 * MAX_POINTS + 3;
     for (let generation = 1; generation <= length; generation++) {

@@ -1,20 +1,13 @@
-/** How curves are looked at: over what, on which scale, how smooth, beside which runs. */
+/** The view of curves: x axis, scale, smoothing, and other runs for comparison. */
 
 import { type Column, type Curves, NO_CURVES } from "../../store/curves";
 import type { Plot, Series } from "./plots";
 
-/** Generations that a running mean is taken over; 1: none is. */
+/** Windows of the running mean, in generations; 1 for no smoothing. */
 export const WINDOWS = [1, 5, 20, 100] as const;
 
 export const AXES = ["generation", "evaluations", "seconds"] as const;
 export type Axis = (typeof AXES)[number];
-
-/** What the axes are called. */
-export const OVER: Record<Axis, string> = {
-  generation: "generations",
-  evaluations: "evaluations",
-  seconds: "seconds",
-};
 
 export interface CurveView {
   over: Axis;
@@ -28,16 +21,16 @@ export function curveViewOf(query: URLSearchParams): CurveView {
   return { over, log: query.get("log") === "1", smooth };
 }
 
-/** Another run whose curves stand beside. */
+/** Another run for comparison. */
 export interface OtherRun {
   name: string;
   colour: string;
-  /** Where there are more runs than colours. */
+  /** If there are more runs than colours. */
   dash?: number[];
   curves: Curves;
 }
 
-/** Plots of a run as they are looked at; `plotsOf` makes those of the others. */
+/** The plots of a run, with the curves of other runs. */
 export function arrangePlots(
   plotsOf: (curves: Curves) => Plot[],
   curves: Curves,
@@ -48,24 +41,24 @@ export function arrangePlots(
   return plotsOf(curves).map((plot) => {
     const own = others.length > 0 ? plot.series.map(inOneColour) : plot.series;
     const mine = own.flatMap((each) => faded({ ...each, x: curves[look.over] }, curves, look));
-    return { ...plot, series: [...mine, ...alike(plot, beside)] };
+    return { ...plot, series: [...mine, ...sameTitle(plot, beside)] };
   });
 }
 
-/** Plots of several runs of which none is the first. */
+/** The plots of several equal runs. */
 export function overlayPlots(
   plotsOf: (curves: Curves) => Plot[],
   runs: readonly OtherRun[],
   look: CurveView,
 ): Plot[] {
   const plots = runs.map((run) => besideOf(plotsOf, run, look));
-  return plotsOf(NO_CURVES).map((plot) => ({ ...plot, series: alike(plot, plots) }));
+  return plotsOf(NO_CURVES).map((plot) => ({ ...plot, series: sameTitle(plot, plots) }));
 }
 
-const alike = ({ title }: Plot, plots: Plot[][]) =>
+const sameTitle = ({ title }: Plot, plots: Plot[][]) =>
   plots.flatMap((each) => each.find((other) => other.title === title)?.series ?? []);
 
-/** Another run's plots in its own colour, at its own places. */
+/** The plots of another run, in its colour and with its own x values. */
 function besideOf(plotsOf: (curves: Curves) => Plot[], other: OtherRun, look: CurveView): Plot[] {
   const { name, colour, dash, curves } = other;
   return plotsOf(curves).map((plot) => ({
@@ -82,12 +75,12 @@ function besideOf(plotsOf: (curves: Curves) => Plot[], other: OtherRun, look: Cu
   }));
 }
 
-/** Where a colour stands for a run, its lines differ by their dashes. */
+/** If colours distinguish runs, the lines of a run differ by their dashes. */
 function inOneColour(series: Series, k: number): Series {
   return { ...series, colour: "--series-1", ...(k > 0 && { dash: [6, 2 + 2 * k] }) };
 }
 
-/** The smooth line, and what was measured faintly behind it. */
+/** The smooth line, and the measured one faintly behind it. */
 function faded(series: Series, curves: Curves, { smooth }: CurveView): Series[] {
   if (smooth === 1 || series.dots) return [series];
   const mean = smoothed(series, curves.generation, smooth);
@@ -100,7 +93,7 @@ function faded(series: Series, curves: Curves, { smooth }: CurveView): Series[] 
 const smoothed = ({ y, dots }: Series, generation: readonly number[], window: number) =>
   dots || window === 1 ? y : runningMean(y, generation, window);
 
-/** At each place the mean of what was told in so many generations up to there. */
+/** The mean of the values in a window of generations that ends at each point. */
 export function runningMean(y: Column, generation: readonly number[], window: number): Column {
   let [sum, count, first] = [0, 0, 0];
   return y.map((value, i) => {
@@ -115,10 +108,7 @@ export function runningMean(y: Column, generation: readonly number[], window: nu
 
 type Cell = number | null | undefined;
 
-/**
- * Columns over one axis, as uPlot wants them: undefined where nothing is told, which a line
- * passes over, and null where a log scale has no place for a value, which breaks it.
- */
+/** Columns for uPlot: undefined without a value, which a line skips; null if a log scale cannot show it, which breaks the line. */
 export function tableOf(
   series: readonly Series[],
   x: readonly number[],

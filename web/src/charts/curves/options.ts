@@ -1,4 +1,4 @@
-/** How uPlot draws curves: axes, scales, lines, and the values under the pointer. */
+/** Options of uPlot: axes, scales, lines, and the values under the pointer. */
 
 import uPlot from "uplot";
 import { count, number } from "../../ui/format";
@@ -6,7 +6,7 @@ import { ticksOf } from "../plot/scale";
 import type { Axis } from "./look";
 import { type Band, type Plot, type Series, valueAt } from "./plots";
 
-/** Steps between ticks of what is whole. */
+/** Steps between ticks of integers. */
 const WHOLE = Array.from({ length: 13 }, (_, power) => [1, 2, 5].map((k) => k * 10 ** power)).flat();
 const SYNC = "generations";
 
@@ -30,7 +30,7 @@ export function optionsOf({ series, bands, write, over, log, ink }: Drawing): uP
   };
   const named = over === "generation" ? {} : { values: mapped((value) => number(value)) };
   return {
-    width: 1, // Both follow at once, from the element's own size.
+    width: 1, // The size of the element follows.
     height: 1,
     legend: { show: false },
     cursor: { sync: { key: SYNC }, y: false, drag: { x: false, y: false } },
@@ -56,7 +56,7 @@ const mapped =
   (_, values) =>
     values.map(write);
 
-/** uPlot's own begin wherever the scale does; of ours all are named. */
+/** Round ticks, all labelled; those of uPlot start at the end of the scale. */
 const LOG_TICKS: Pick<uPlot.Axis, "splits" | "filter"> = {
   splits: (_plot, _axis, low, high) => ticksOf({ log: true, low, high }, 5),
   filter: (_plot, ticks) => ticks,
@@ -74,7 +74,7 @@ function lookOf(series: Series, ink: Ink, alone: boolean): uPlot.Series {
   return { ...look, ...(dash && { dash }), points: { show: lonely }, ...fill };
 }
 
-/** From zero, so that curves can be compared by eye. */
+/** From zero, so that curves can be compared. */
 function fromZero(_: uPlot, low: number | null, high: number | null): [number, number] {
   return [Math.min(0, low ?? 0), Math.max(0, high ?? 1) * 1.06 || 1];
 }
@@ -86,7 +86,7 @@ function aroundPositive(_: uPlot, low: number | null, high: number | null): [num
   return [from / beside, to * beside];
 }
 
-/** The values under the pointer, and under the pointer's place on the other plots. */
+/** A tooltip with the values under the pointer, synchronised between plots. */
 function tooltip(series: Series[], write: Plot["write"], over: Axis): uPlot.Plugin {
   const box = document.createElement("div");
   box.className = "curve-tip";
@@ -95,11 +95,11 @@ function tooltip(series: Series[], write: Plot["write"], over: Axis): uPlot.Plug
       init: (plot) => void plot.over.append(box),
       setCursor: (plot) => {
         const { idx, left = -1 } = plot.cursor;
-        const told = idx == null ? [] : readingOf(plot, series, write, idx);
-        box.hidden = told.length === 0 || left < 0;
-        if (told.length === 0) return;
-        const between = told.length > 2 ? "\n" : ", ";
-        box.textContent = `${placeOf(plot.data[0][idx!]!, over)}: ${told.join(between)}`;
+        const values = idx == null ? [] : readingOf(plot, series, write, idx);
+        box.hidden = values.length === 0 || left < 0;
+        if (values.length === 0) return;
+        const between = values.length > 2 ? "\n" : ", ";
+        box.textContent = `${placeOf(plot.data[0][idx!]!, over)}: ${values.join(between)}`;
         box.classList.toggle("flip", left > plot.over.clientWidth / 2);
         box.style.left = `${left}px`;
       },
@@ -111,14 +111,14 @@ function readingOf(plot: uPlot, series: Series[], write: Plot["write"], idx: num
   return series.flatMap(({ name, faint, dots, edge }, i) => {
     const column = plot.data[i + 1] as (number | null | undefined)[];
     if (faint || edge || column[idx] === null) return [];
-    // Between two of its own places a line has the value of the one before.
-    const value = dots ? column[idx] : valueAt(plot.data[0] as number[], told(column), idx);
+    // Between two points a line has the earlier value.
+    const value = dots ? column[idx] : valueAt(plot.data[0] as number[], withNulls(column), idx);
     if (value == null) return [];
     return [series.length > 1 ? `${name} ${write(value)}` : write(value)];
   });
 }
 
-const told = (column: (number | null | undefined)[]) => column.map((value) => value ?? null);
+const withNulls = (column: (number | null | undefined)[]) => column.map((value) => value ?? null);
 
 const placeOf = (at: number, over: Axis) =>
   over === "seconds" ? `${number(at)} s` : over === "evaluations" ? count(at) : String(at);

@@ -11,7 +11,7 @@ describe("curves over one axis", () => {
   };
   const [small, large] = [curves([16, 32, 48], [1, 2, 3]), curves([32, 64], [10, null])];
 
-  it("stand where each run told its values, all in their own colours", () => {
+  it("are at the x values of their runs, in their colours", () => {
     const runs = [small, large].map((curves, i) => {
       return { name: `run ${i}`, colour: `--series-${i}`, ...(i === 1 && { dash: [7, 4] }), curves };
     });
@@ -31,7 +31,7 @@ describe("curves over one axis", () => {
     expect(overlayPlots(scoresOf, [], look).map(({ series }) => series)).toEqual([[], [], []]);
   });
 
-  it("have a value at every place between a run's first and last", () => {
+  it("have a value at every point between the first and the last", () => {
     const x = [1, 2, 3, 4];
     const column = [null, 5, null, 6];
     expect(x.map((_, i) => valueAt(x, column, i))).toEqual([null, 5, 5, 6]);

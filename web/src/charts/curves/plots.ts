@@ -1,4 +1,4 @@
-/** What is plotted of a run over its generations. */
+/** The plots of a run over its generations. */
 
 import { type Column, type Curves, DIVERGED } from "../../store/curves";
 import { number, percent } from "../../ui/format";
@@ -6,23 +6,23 @@ import { text } from "./text";
 
 export interface Series {
   name: string;
-  /** A variable of the style sheet. */
+  /** A CSS variable. */
   colour: string;
   y: Column;
-  /** Measured now and then: dots rather than a line. */
+  /** Dots in place of a line, for rare values. */
   dots?: boolean;
-  /** Its own places along the axis, where it has such. */
+  /** Its own x values, if it has any. */
   x?: Column;
   dash?: number[];
-  /** What was measured, behind its smooth line. */
+  /** Measured values behind a smooth line. */
   faint?: boolean;
-  /** Of another run. */
+  /** A series of another run. */
   other?: boolean;
-  /** Nothing but the edge of a band. */
+  /** The edge of a band. */
   edge?: boolean;
 }
 
-/** What lies between two of the series, by their places. */
+/** The area between two series, by their indices. */
 export interface Band {
   high: number;
   low: number;
@@ -36,19 +36,19 @@ export interface Plot {
   bands?: readonly Band[];
 }
 
-const again = (curves: Curves, name: string): Series[] => {
+const reevaluated = (curves: Curves, name: string): Series[] => {
   const y = curves.summary[name];
   return y ? [{ name: text.reevaluated, colour: "--series-3", y, dots: true }] : [];
 };
 
-/** How good the archive is; beside it, what is left when its elites are evaluated again. */
+/** Quality of the archive, as found and after re-evaluation of its elites. */
 export function scoresOf(curves: Curves): Plot[] {
   const { qd_score, coverage, best } = curves;
   const score = { name: text.asFound, colour: "--curve-1", y: qd_score };
   const share = { name: text.asFound, colour: "--curve-2", y: coverage };
   return [
-    { title: text.qdScore, write: number, series: [score, ...again(curves, "corrected_qd_score")] },
-    { title: text.coverage, write: percent, series: [share, ...again(curves, "corrected_coverage")] },
+    { title: text.qdScore, write: number, series: [score, ...reevaluated(curves, "corrected_qd_score")] },
+    { title: text.coverage, write: percent, series: [share, ...reevaluated(curves, "corrected_coverage")] },
     {
       title: text.bestFitness,
       write: number,
@@ -57,7 +57,7 @@ export function scoresOf(curves: Curves): Plot[] {
   ];
 }
 
-/** What the search is doing: its emitters' success, its luck, its time. */
+/** Work of the search: insertions by emitter, re-evaluations, time, diverged evaluations. */
 export function workOf(curves: Curves): Plot[] {
   const plots: Plot[] = [
     { title: text.inserted, write: number, series: ofEmitters(curves, ": inserted") },
@@ -77,13 +77,13 @@ export function workOf(curves: Curves): Plot[] {
   return plots.filter(({ series }) => series.length > 0);
 }
 
-/** Why an evaluation does not count, in words; the engine's own names are the keys. */
+/** Descriptions of the reasons of the engine for divergence. */
 export const REASONS: Record<string, string> = {
   "non-finite": text.nonFinite,
   supersonic: text.supersonic,
 };
 
-/** How many evaluations diverged for each reason that was told, most first. */
+/** Diverged evaluations by reason, most frequent first. */
 export function divergedBy({ summary }: Curves): [reason: string, count: number][] {
   return Object.entries(summary)
     .filter(([name]) => name.startsWith(DIVERGED))
@@ -116,21 +116,20 @@ function one({ summary }: Curves, name: string, colour: string, dots: boolean): 
   return y ? [{ name, colour, y, dots }] : [];
 }
 
-/** The first generation has the compiling in it, beside which the others would be nothing. */
+/** The first generation includes compilation, which would dwarf all others. */
 function withoutFirst(curves: Curves): Curves {
   const later = (column: Column) => column.map((value, i) => (curves.generation[i]! > 1 ? value : null));
   const columns = Object.entries(curves.summary).map(([name, column]) => [name, later(column)]);
   return { ...curves, summary: Object.fromEntries(columns) };
 }
 
-/** What a run had come to at a place: its newest value until then; null after its end. */
+/** The newest value up to an index; null after the last value. */
 export function valueAt(x: readonly number[], y: Column, i: number): number | null {
   const last = y.findLastIndex((value) => value !== null);
   if (i > last || x.length === 0) return null;
   return y.slice(0, i + 1).findLast((value) => value !== null) ?? null;
 }
 
-/** The newest value that there is. */
 export function newest(column: Column): number | null {
   return column.findLast((value) => value !== null) ?? null;
 }

@@ -1,7 +1,10 @@
-/** Texts of curves. */
+/** Texts of curves and plots. */
 
 export const text = {
   none: "none",
+  clickToWatch: "Click to watch",
+  over: { generation: "generations", evaluations: "evaluations", seconds: "seconds" },
+  label: (title: string, over: string, values: string) => `${title} over ${over}: now ${values}`,
   window: (size: number) => `over ${size}`,
   axis: "X axis",
   smooth: "Smoothing",

@@ -11,7 +11,7 @@ export interface Room {
   bottom: number;
 }
 
-/** A second axis above, named at places of the first one. */
+/** A second axis above, with labels at values of the first one. */
 export interface Upper {
   title: string;
   ticks: { at: number; text: string }[];
@@ -25,7 +25,7 @@ interface Props {
   shaded: boolean;
 }
 
-/** Pixels that a named value needs along each axis. */
+/** Pixels per label along each axis. */
 const [WIDE, HIGH] = [52, 44];
 
 export function Frame({ x, y, room, upper, shaded }: Props) {
@@ -95,7 +95,7 @@ function UpperTicks({ ticks, across, room }: UpperProps) {
   );
 }
 
-/** From the last one down, those that have room beside the one before. */
+/** The ticks with enough room, from the last one down. */
 function apart(ticks: Upper["ticks"], across: (value: number) => number): Upper["ticks"] {
   return ticks.reduceRight<Upper["ticks"]>((kept, tick) => {
     const crowded = kept[0] && across(kept[0].at) - across(tick.at) < WIDE;

@@ -1,14 +1,14 @@
-/** One point of a plot: a link where there is something to see, and what is said of it. */
+/** A point of a plot with its tooltip; a link if it has a replay. */
 
 import type { Line, Point } from "./Plot";
+import { text } from "../curves/text";
 
 interface MarkProps {
   point: Point;
   line: Line;
   spot: [number, number];
-  /** Pointed at, or of a line that is not. */
   look: string;
-  /** Whether what it says stands to the left of it. */
+  /** True if the tooltip is to the left. */
   flip: boolean;
   onNear: (point: Point | null) => void;
 }
@@ -29,19 +29,19 @@ export function Mark({ point, line, spot, look, flip, onNear }: MarkProps) {
       {figures.map((figure) => (
         <span key={figure}>{figure}</span>
       ))}
-      {point.href && <i>Click to watch</i>}
+      {point.href && <i>{text.clickToWatch}</i>}
     </span>
   );
-  if (!point.href) {
+  if (point.href) {
     return (
-      <span role="img" tabIndex={0} {...common}>
+      <a href={point.href} {...common}>
         {tip}
-      </span>
+      </a>
     );
   }
   return (
-    <a href={point.href} {...common}>
+    <span role="img" tabIndex={0} {...common}>
       {tip}
-    </a>
+    </span>
   );
 }

@@ -1,4 +1,4 @@
-/** Lines of marked points over two axes; a mark with something to see is a link to it. */
+/** Lines with marked points over two axes; marks can be links. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { useSize } from "../../ui/canvas";
@@ -10,11 +10,11 @@ import "./plot.css";
 
 export interface Point {
   x: number;
-  /** Null where there is no value: the point is a cross at the top. */
+  /** Null without a value: the point is a cross at the top. */
   y: number | null;
   hollow?: boolean;
   href?: string;
-  /** What is said of it: a name, then figures. */
+  /** Tooltip: a name, then figures. */
   says: [name: string, ...figures: string[]];
 }
 
@@ -23,7 +23,7 @@ export interface Line {
   colour: string;
   dash?: string;
   width?: number;
-  /** The exponent of the law that it follows, of the x axis. */
+  /** The exponent of its power law in x. */
   power?: number | null;
   points: Point[];
 }
@@ -41,7 +41,7 @@ interface Props {
   lines: Line[];
   upper?: Upper | null;
   shaded?: boolean;
-  /** Told of the mark that is pointed at or has the focus. */
+  /** Called with the mark under the pointer or with the focus. */
   onNear?: (point: Point | null) => void;
 }
 
@@ -95,7 +95,7 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
   );
 }
 
-/** Where a point is drawn; without a value at the top, a line's crosses below those of the others. */
+/** The position of a point; crosses are at the top, one row per line. */
 function spotOf(point: Point, k: number, x: Axis, y: Axis, room: Room): [number, number] {
   const { left, right, top, bottom } = room;
   return [
@@ -136,10 +136,10 @@ interface Drawn {
   spots: [number, number][];
 }
 
-/** Pixels within which a point counts as pointed at. */
+/** Maximal distance of the pointer from a point, in pixels. */
 const REACH = 22;
 
-/** The point that a pointer means where several lie close together. */
+/** The point nearest to the pointer. */
 function nearest(drawn: Drawn[], x: number, y: number): Point | null {
   let [found, least]: [Point | null, number] = [null, REACH];
   for (const { line, spots } of drawn) {

@@ -2,25 +2,25 @@ import { describe, expect, it } from "vitest";
 import { fromZero, logAround, place, ticksOf, valueAt } from "./scale";
 
 describe("an axis", () => {
-  it("has a decade everywhere the same length where it is logarithmic", () => {
+  it("has decades of equal length on a log scale", () => {
     const scale = { log: true, low: 0.01, high: 100 };
     expect([0.01, 0.1, 1, 100].map((value) => place(scale, value))).toEqual([0, 0.25, 0.5, 1]);
     expect(place({ log: false, low: -1, high: 3 }, 0)).toBe(0.25);
   });
 
-  it("has room for all values and begins at zero unless some are below", () => {
+  it("has room for all values and starts at zero unless some are negative", () => {
     expect(fromZero([1, 4])).toMatchObject({ low: 0 });
     expect(fromZero([-1, 4]).low).toBeLessThan(-1);
     const { low, high } = logAround([0.001, 2, 0]);
     expect([low > 0, low < 0.001, high > 2]).toEqual([true, true, true]);
   });
 
-  it("has names within less than a decade too", () => {
+  it("has ticks within less than a decade", () => {
     expect(ticksOf(logAround([0.3]), 8)).toEqual([0.24, 0.26, 0.28, 0.3, 0.32, 0.34, 0.36]);
     expect(ticksOf({ log: true, low: 8, high: 11 }, 3)).toEqual([8, 9, 10, 11]);
   });
 
-  it("names as many round values as there is room for", () => {
+  it("has as many round ticks as there is room for", () => {
     const wide = { log: true, low: 0.0009, high: 2.2 };
     expect(ticksOf(wide, 12)).toEqual([0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2]);
     expect(ticksOf(wide, 5)).toEqual([0.001, 0.01, 0.1, 1]);
