@@ -30,7 +30,6 @@ LEFT = {
     "server/creatures/initial.py:DECISIVE",
     "server/deletion/garbage.py:AT_ONCE",
     "server/deletion/purge.py:AT_ONCE",
-    "server/queue/jobs.py:KEPT",
     "server/runs/curves.py:told",
     "server/runs/lifecycle.py:KEPT",
     "server/runs/overview.py:forked",
