@@ -208,27 +208,22 @@ def test_an_abandoned_download_is_continued_later(relay, run_id, archive, tmp_pa
     assert f"bytes={had}-".encode() in b"".join(relay.asked)
 
 
-def test_a_changed_file_is_downloaded_from_the_start(client, run_id, archive, tmp_path):
-    old = hashlib.sha256(b"an older checkpoint").hexdigest()
+def test_partial_files_are_used_only_if_they_are_sound(client, run_id, archive, tmp_path):
+    run, to = client.run(str(run_id)), tmp_path / "run.h5"
+    old, name = (hashlib.sha256(one).hexdigest() for one in (b"an older checkpoint", archive))
     (tmp_path / f".run.h5.{old}.part").write_bytes(b"an older")
-    run = client.run(str(run_id))
-    assert run.pull(tmp_path / "run.h5").read_bytes() == archive
+    assert run.pull(to).read_bytes() == archive, "a changed file is downloaded from the start"
     assert list(tmp_path.glob("*.part")) + list(tmp_path.glob(".*.part")) == []
-
-
-def test_a_complete_partial_file_is_moved_into_place(client, run_id, archive, tmp_path):
-    name = hashlib.sha256(archive).hexdigest()
-    (tmp_path / f".run.h5.{name}.part").write_bytes(archive)
-    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
-
-
-def test_a_damaged_part_is_not_kept(client, run_id, archive, tmp_path):
-    name = hashlib.sha256(archive).hexdigest()
-    (tmp_path / f".run.h5.{name}.part").write_bytes(b"x" * 100)
+    to.unlink()
+    part = tmp_path / f".run.h5.{name}.part"
+    part.write_bytes(b"x" * 100)
     with pytest.raises(ServerError, match="damaged on its way"):
-        client.run(str(run_id)).pull(tmp_path / "run.h5")
-    assert not (tmp_path / "run.h5").exists()
-    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
+        run.pull(to)
+    assert not to.exists()
+    assert run.pull(to).read_bytes() == archive
+    to.unlink()
+    part.write_bytes(archive)
+    assert run.pull(to).read_bytes() == archive, "a complete part is moved into place"
 
 
 def test_a_download_without_a_length_succeeds(no_sleep, tmp_path):
