@@ -6,132 +6,108 @@ from contextlib import asynccontextmanager
 from functools import partial
 
 from fastapi import APIRouter, FastAPI
-from fastapi.responses import JSONResponse
 
 from microcosmos.version import VERSION
 
-from .archives import result_routes as results_api
-from .archives import routes as archives_api
+from .archives import routes as archives
 from .auth import bootstrap
-from .auth import routes as tokens_api
+from .auth import routes as tokens
 from .auth.authenticate import Authenticator
 from .auth.authorize import MAY_READ, PUBLIC
 from .auth.capability import HEADER
 from .auth.middleware import PrincipalMiddleware
 from .auth.tokens import watch
-from .core import errors, nowhere, page, request_log
-from .core.openapi import PROBLEMS, describe
-from .core.security_headers import Discretion
-from .core.shutdown import told_to_stop
-from .creatures import network_routes as networks_api
-from .creatures import routes as creatures_api
+from .core import api, errors, page
+from .core.processes import on_stop_signal
+from .core.security_headers import SecurityHeaders, redact_request_log
+from .creatures import routes as creatures
 from .creatures.sandbox import sandbox
-from .deletion import routes as deletion_api
-from .estimates import routes as queue_api
-from .events import routes as events_api
-from .events.fanout import Hub
-from .forks import routes as forks_api
-from .maintenance import routes as health_api
+from .deletion import routes as deletion
+from .estimates import routes as queue
+from .events import routes as events
+from .events.fanout import Fanout
+from .forks import routes as forks
+from .maintenance import routes as health
 from .maintenance.metrics import CountRequests, Metrics
 from .maintenance.reconcile import reconciling
-from .renderings import measurement_routes as measurements_api
-from .renderings import routes as renderings_api
-from .runs import detail_routes as details_api
-from .runs import routes as runs_api
+from .renderings import routes as renderings
+from .runs import detail_routes as details
+from .runs import routes as runs
 from .services.services import Services, connect
 from .settings import Settings
 from .shares import page as share_page
-from .shares import routes as shares_api
+from .shares import routes as shares
 from .shares.capability import open_share
-from .specs import routes as experiments_api
-from .sweeps import routes as sweeps_api
+from .specs import routes as experiments
+from .sweeps import routes as sweeps
 from .tables import migrations
-from .workers import routes as workers_api
+from .workers import routes as workers
+
+ROUTES = (
+    *(experiments, runs, forks, deletion, sweeps, details, archives, creatures, renderings),
+    *(shares, events, workers, queue, tokens, health),
+)
 
 
 def create() -> FastAPI:
-    """What uvicorn starts: the application as the environment wants it."""
+    """Return the application for uvicorn, with the settings of the environment."""
     return create_app(connect(Settings()))
 
 
 def create_app(services: Services) -> FastAPI:
-    """The application over services, which it closes when it ends."""
+    """Return the application over services, which it closes at its end."""
     app = FastAPI(
         title="Microcosmos",
         version=VERSION,
         openapi_url=None,
         docs_url=None,
         redoc_url=None,
-        lifespan=_life,
+        lifespan=_lifespan,
     )
     app.state.services = services
+    app.state.authenticator = Authenticator(services)
+    app.state.metrics = Metrics(services)
     errors.install(app)
-    request_log.install()
-    describe(app)
-    app.state.authenticator = authenticator = Authenticator(services)
+    redact_request_log()
+    api.describe(app)
     app.add_middleware(
         PrincipalMiddleware,
-        authenticator=authenticator,
+        authenticator=app.state.authenticator,
         open_share=partial(open_share, services),
     )
-    app.add_middleware(Discretion, share_header=HEADER)
-    app.state.metrics = metrics = Metrics(services)
-    app.add_middleware(CountRequests, metrics=metrics)
-    api = APIRouter(prefix="/api/v1", responses=PROBLEMS)
-    for noun in (
-        experiments_api,
-        runs_api,
-        forks_api,
-        deletion_api,
-        sweeps_api,
-        details_api,
-        archives_api,
-        results_api,
-        creatures_api,
-        networks_api,
-        renderings_api,
-        measurements_api,
-        shares_api,
-        events_api,
-        workers_api,
-        queue_api,
-        tokens_api,
-        health_api,
-    ):
-        api.include_router(noun.router)
-    api.include_router(_description(app))
-    api.include_router(nowhere.router, dependencies=[MAY_READ])
-    app.include_router(api)
-    app.include_router(health_api.outside)
+    app.add_middleware(SecurityHeaders, share_header=HEADER)
+    app.add_middleware(CountRequests, metrics=app.state.metrics)
+    router = APIRouter(prefix="/api/v1", responses=api.PROBLEMS)
+    for package in ROUTES:
+        router.include_router(package.router)
+    router.include_router(api.fallback, dependencies=[MAY_READ])
+    app.include_router(router)
+    app.include_router(health.outside)
     for public in (share_page.router, page.router):
         app.include_router(public, dependencies=[PUBLIC])
     return app
 
 
-def _description(app: FastAPI) -> APIRouter:
-    """Return the route of the OpenAPI document, which needs a token as the others do."""
-    router = APIRouter(include_in_schema=False, dependencies=[MAY_READ])
-    router.add_api_route("/openapi.json", lambda: JSONResponse(app.openapi()))
-    return router
-
-
 @asynccontextmanager
-async def _life(app: FastAPI) -> AsyncIterator[None]:
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     services: Services = app.state.services
     await asyncio.to_thread(migrations.upgrade, services.sessions)
     await asyncio.to_thread(bootstrap.refuse_without_admin, services)
-    app.state.hub = hub = Hub(services.settings.redis_url, services.events.stream)
-    await hub.begin()
+    fanout = Fanout(services.settings.redis_url, services.events.stream)
+    app.state.fanout = fanout
+    await fanout.start()
     tasks = [
-        asyncio.create_task(task) for task in (hub.run(), watch(services, hub.tokens, hub.end))
+        asyncio.create_task(task)
+        for task in (fanout.run(), watch(services, fanout.tokens, fanout.end))
     ]
-    app.state.end_streams = partial(asyncio.get_running_loop().call_soon_threadsafe, hub.close)
+    close = partial(asyncio.get_running_loop().call_soon_threadsafe, fanout.close)
+    app.state.end_streams = close
     await asyncio.to_thread(sandbox().start)
-    with reconciling(services), told_to_stop(app.state.end_streams):
+    with reconciling(services), on_stop_signal(close):
         yield
-    hub.close()
+    fanout.close()
     for task in tasks:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
-    await hub.redis.aclose()
+    await fanout.redis.aclose()
     services.close()

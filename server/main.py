@@ -10,8 +10,7 @@ from .services.services import connect
 from .settings import Settings
 from .tables import migrations
 
-GRACE = 5
-"""Seconds that open connections have to end."""
+SHUTDOWN_SECONDS = 5
 
 
 def main() -> None:
@@ -24,17 +23,17 @@ def main() -> None:
         factory=True,
         host=settings.host,
         port=settings.port,
-        timeout_graceful_shutdown=GRACE,
+        timeout_graceful_shutdown=SHUTDOWN_SECONDS,
     )
 
 
 def _prepare(settings: Settings) -> None:
-    """Before anybody is answered there is a token, which is told where it is new."""
+    """Create the first token, if there is none, and print it."""
     services = connect(settings)
     try:
         migrations.upgrade(services.sessions)
-        if secret := bootstrap.begin(services):
-            print(bootstrap.told(settings, secret), flush=True)
+        if secret := bootstrap.create_first_token(services):
+            print(bootstrap.announcement(settings, secret), flush=True)
     except ValueError as error:
         sys.exit(str(error))
     finally:

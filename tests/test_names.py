@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import typer
 
+from microcosmos.cli import app
 from server.tables import Base
 
 pytestmark = pytest.mark.fast
@@ -23,25 +25,6 @@ OLD = {
     *("device_leave", "forked", "standing", "left", "chance", "reach"),
     *("beginning", "keeping", "following", "most", "KEPT", "AT_ONCE", "DECISIVE"),
 }
-LEFT = {
-    "engine/microcosmos/neat/offspring.py:standing",
-    "engine/microcosmos/neat/rng.py:left",
-    "server/auth/bootstrap.py:told",
-    "server/creatures/initial.py:DECISIVE",
-    "server/deletion/garbage.py:AT_ONCE",
-    "server/deletion/purge.py:AT_ONCE",
-    "server/runs/curves.py:told",
-    "server/runs/lifecycle.py:KEPT",
-    "server/runs/overview.py:forked",
-    "server/runs/submission.py:DECISIVE",
-    "server/shares/routes.py:told",
-    "server/specs/stored.py:needs",
-    "server/sweeps/planning.py:planning",
-    "server/sweeps/steering.py:AT_ONCE",
-    "server/sweeps/summary.py:Told",
-    "server/sweeps/summary.py:told",
-}
-"""Old names that are still there; this list may only shrink."""
 
 
 def sources() -> list[Path]:
@@ -72,17 +55,44 @@ def test_no_module_or_public_identifier_has_an_old_name():
         for name in public(path)
         if name in OLD
     }
-    assert found <= LEFT
+    assert not found
 
 
 def test_no_table_or_column_has_an_old_name():
     tables = Base.metadata.tables
     names = {*tables, *(column.name for table in tables.values() for column in table.columns)}
-    assert not names & OLD - LEFT
+    assert not names & OLD
 
 
 def test_no_field_of_the_api_has_an_old_name():
     document = json.loads((ROOT / "web" / "openapi.json").read_text())
     schemas = document["components"]["schemas"].values()
     fields = {name for schema in schemas for name in schema.get("properties", {})}
-    assert not fields & OLD - LEFT
+    assert not fields & OLD
+
+
+def parameters(command, path: str) -> Iterator[str]:
+    """Yield the options and arguments of a command and of those below it."""
+    for parameter in command.params:
+        yield from (f"{path} {name.lstrip('-')}" for name in (parameter.name, *parameter.opts))
+    for name, inner in getattr(command, "commands", {}).items():
+        yield f"{path} {name}"
+        yield from parameters(inner, f"{path} {name}")
+
+
+def test_no_command_or_option_has_an_old_name():
+    found = set(parameters(typer.main.get_command(app), "microcosmos"))
+    assert len(found) > 50
+    assert not {name for name in found if name.rpartition(" ")[2].replace("-", "_") in OLD}
+
+
+def test_routes_are_imported_by_the_application_alone():
+    importing = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "server").rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ImportFrom)
+        for name in (*(node.module or "").split("."), *(one.name for one in node.names))
+        if name == "routes" or name.endswith("_routes")
+    }
+    assert importing == {"server/app.py"}

@@ -37,7 +37,7 @@ def make(services: Services, creature: str, kind: str) -> bytes:
 
 def _replay(services: Services, creature: str) -> bytes:
     """The replay that is kept, made first if need be."""
-    data = renderings.kept(services, creature, REPLAY)
+    data = renderings.existing(services, creature, REPLAY)
     if data is None:
         data = record(renderings.creature(services, creature))
         renderings.save(services, creature, REPLAY, data)

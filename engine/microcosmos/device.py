@@ -1,6 +1,6 @@
-"""The device that computes: how it is prepared, and what kind it is.
+"""Preparation of the computing device, and its kind.
 
-Numbers of one kind of device repeat bit for bit; those of another may round differently.
+Results repeat bit for bit on one kind of device; another kind may round differently.
 """
 
 import os
@@ -21,12 +21,11 @@ GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
 
 
 def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) -> None:
-    """Settings that make results repeatable; to be called before JAX is first used.
+    """Configure JAX for repeatable results; call this before JAX is first used.
 
-    On a CPU, one device a core (or `devices` of them) lets every core have a block of its
-    own; results do not depend on how many. Where JAX has started already it keeps those it
-    has, with a warning. Compiled programs are kept where
-    JAX_COMPILATION_CACHE_DIR says, else in `cache`.
+    On a CPU, one device per core (or `devices`) gives every core its own block; results do not
+    depend on the number. If JAX has started, it keeps its devices, with a warning. Compiled
+    programs are cached in JAX_COMPILATION_CACHE_DIR, or in `cache`.
     """
     flags = os.environ.get("XLA_FLAGS", "")
     if Path("/proc/driver/nvidia").exists() and "xla_gpu_deterministic_ops" not in flags:
@@ -38,20 +37,20 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
         warnings.warn(_STARTED.format(jax.local_device_count()), stacklevel=2)
     if cache and not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
         jax.config.update("jax_compilation_cache_dir", os.fspath(cache))
-    # Even small programs are worth keeping: a resumed run then starts within a second.
+    # Cache small programs too, so that a resumed run starts within a second.
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
 
 
 def _cores() -> int:
-    """Those that this process may use, as far as the system tells."""
+    """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 def device_kind() -> str:
-    """Platform, model and software, on which the bits of a result depend."""
+    """Return platform, model and software, on which the bits of a result depend."""
     device = jax.local_devices()[0]
     model = _processor() if device.platform == "cpu" else device.device_kind
     software = f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib_version}"
@@ -61,7 +60,7 @@ def device_kind() -> str:
 
 
 def _processor() -> str:
-    """The processor's model and widest vector instructions, which decide how loops round."""
+    """Return the processor's model and widest vector instructions, which affect rounding."""
     info = Path("/proc/cpuinfo")
     if not info.exists():
         return platform.processor() or platform.machine()
@@ -73,8 +72,8 @@ def _processor() -> str:
 
 
 def compiler_options() -> dict[str, object]:
-    """Options of every simulation program on the present device."""
+    """Return the compiler options of every simulation program on this device."""
     if jax.default_backend() != "cpu":
         return {}
-    # A block is one thread's work: splitting its small loops costs more than it gives.
+    # One thread computes a block: splitting its small loops costs more than it gains.
     return {"xla_cpu_multi_thread_eigen": False, "xla_cpu_prefer_vector_width": 512}

@@ -1,4 +1,4 @@
-"""Which body each node belongs to, and sums over bodies."""
+"""Groups of nodes by body, and sums over bodies."""
 
 import equinox as eqx
 import jax
@@ -7,34 +7,34 @@ from jaxtyping import Array, Float, Int
 
 
 class Groups(eqx.Module):
-    """Nodes in ascending order of their group; groups are the bodies of a world."""
+    """The body of each node, in ascending order."""
 
     member: Int[Array, "node"]
     count: int = eqx.field(static=True)
 
     def total(self, values: Float[Array, "node *rest"]) -> Float[Array, "group *rest"]:
-        """The sum over the nodes of each group."""
+        """Return the sum over the nodes of each group."""
         if self.count == 1:
             return jnp.sum(values, 0, keepdims=True)
         return jax.ops.segment_sum(values, self.member, self.count, indices_are_sorted=True)
 
     def largest(self, values: Float[Array, "node"]) -> Float[Array, "group"]:
-        """The largest value in each group."""
+        """Return the largest value in each group."""
         if self.count == 1:
             return jnp.max(values, keepdims=True)
         return jax.ops.segment_max(values, self.member, self.count, indices_are_sorted=True)
 
     def each(self, values: Float[Array, "group *rest"]) -> Float[Array, "node *rest"]:
-        """For every node the value of its group."""
+        """Return, for every node, the value of its group."""
         if self.count == 1:
             return jnp.broadcast_to(values, (len(self.member), *values.shape[1:]))
         return values[self.member]
 
     def repeated(self, times: int) -> "Groups":
-        """The groups of `times` points for every node, side by side."""
+        """Return the groups of `times` adjacent points per node."""
         return Groups(jnp.repeat(self.member, times), self.count)
 
 
 def one(nodes: int) -> Groups:
-    """All nodes are of one body."""
+    """Return one group of all nodes."""
     return Groups(jnp.zeros(nodes, jnp.int32), 1)

@@ -1,4 +1,4 @@
-"""Canonical bytes of creatures: JSON by RFC 8785, SHA-256 names, arrays as base64."""
+"""Canonical bytes and names of creatures: JSON by RFC 8785, SHA-256, arrays as base64."""
 
 from base64 import b64decode, b64encode
 from collections.abc import Iterable, Mapping
@@ -12,27 +12,17 @@ from .version import VERSION
 
 FORMAT = "microcosmos-creature/1"
 LICENCE = "CC-BY-4.0"
-ACTIVATIONS = (
-    "identity",
-    "sigmoid",
-    "tanh",
-    "relu",
-    "sin",
-    "cos",
-    "gaussian",
-    "abs",
-    "square",
-)
+ACTIVATIONS = ("identity", "sigmoid", "tanh", "relu", "sin", "cos", "gaussian", "abs", "square")
 """Activations, in the order of their numbers in genomes."""
 
 
 def encode(values: np.ndarray) -> str:
-    """Little-endian float32 as base64, −0 as 0."""
+    """Encode little-endian float32 as base64, with −0 as 0."""
     return b64encode((np.asarray(values, "<f4") + np.float32(0)).tobytes()).decode()
 
 
 def decode(text: str) -> np.ndarray:
-    """The float32 values in base64; raises `ValueError` for anything else."""
+    """Decode float32 values in base64; raise `ValueError` for anything else."""
     data = b64decode(text, validate=True)
     if len(data) % 4:
         raise ValueError(f"needs whole float32 values, got {len(data)} bytes")
@@ -40,12 +30,12 @@ def decode(text: str) -> np.ndarray:
     if not np.all(np.isfinite(values)):
         raise ValueError("needs finite values, got NaN or infinity")
     if encode(values) != text:
-        raise ValueError("needs the canonical encoding, got another (−0 is written as 0)")
+        raise ValueError("needs the canonical encoding, got another (write −0 as 0)")
     return values
 
 
 def canonical(identity: Mapping[str, Any]) -> bytes:
-    """Return the canonical JSON (RFC 8785), over which the name is computed."""
+    """Return the canonical JSON (RFC 8785), whose SHA-256 is the name."""
     return rfc8785.dumps(dict(identity))
 
 
@@ -73,7 +63,7 @@ def document(
 def provenance(
     operator: str, *, generation: int = 0, parents: Iterable[str] = (), seed: int = 0
 ) -> dict[str, Any]:
-    """Return how a creature came to be, in this version."""
+    """Return the provenance of a creature made by this version."""
     return {
         "parents": list(parents),
         "operator": operator,

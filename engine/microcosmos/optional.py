@@ -1,11 +1,11 @@
-"""Import of optional libraries, which draw and encode."""
+"""Import of optional libraries for drawing and encoding."""
 
 from importlib import import_module
 from typing import Any
 
 
 def require(module: str) -> Any:
-    """Import a module of an optional library; say what installs it if it is missing."""
+    """Import a module of an optional library; an error names the command that installs it."""
     try:
         return import_module(module)
     except ImportError as error:

@@ -1,7 +1,7 @@
-"""Between lattice and physical units, and the numbers that decide how a swimmer swims.
+"""Conversion between lattice and physical units, and the dimensionless numbers of swimming.
 
-Inside, everything is in lattice units: cells, steps, and a density of 1. A creature is
-something physical once its length and the viscosity of its fluid are known.
+Lattice units are cells and steps, with a density of 1. The length of a creature and the
+viscosity of its fluid fix the physical units.
 """
 
 from dataclasses import dataclass
@@ -12,21 +12,21 @@ WATER = 1.0e-6
 """Kinematic viscosity of water at 20 °C, m²/s."""
 
 SOUND_SPEED = 3**-0.5
-"""Of the D2Q9 lattice, cells a step."""
+"""Speed of sound of the D2Q9 lattice, in cells per step."""
 
-FASTEST = 0.17
-"""Mach number up to which errors of compressibility, of its square, stay below 3 %."""
+MAX_MACH = 0.17
+"""Mach number up to which errors of compressibility, its square, stay below 3 %."""
 
-LIMITED = 1e-3
-"""Share of node steps in which a limit may act unnoticed."""
+MAX_LIMITED = 1e-3
+"""Largest share of node steps at a limit without a warning."""
 
-WIDEST = 2.0
-"""Node spacing in cells from which fluid leaks between the nodes."""
+MAX_SPACING = 2.0
+"""Node spacing in cells above which fluid leaks between the nodes."""
 
 
 @dataclass(frozen=True)
 class Scales:
-    """What a cell and a step are, in metres and seconds."""
+    """The size of a cell in metres and of a step in seconds."""
 
     cell: float
     step: float
@@ -35,9 +35,9 @@ class Scales:
     def of(
         cls, length: float, cells: float, viscosity: float, fluid: float = WATER
     ) -> "Scales":
-        """A body `length` metres long over `cells` cells, in a fluid of `fluid` m²/s.
+        """Scale a body of `cells` cells to `length` metres, in a fluid of `fluid` m²/s.
 
-        The lattice's `viscosity` in cells² a step fixes the step.
+        The lattice's `viscosity` in cells²/step fixes the step.
         """
         if min(length, cells, viscosity, fluid) <= 0:
             raise ValueError(
@@ -53,23 +53,23 @@ class Scales:
     def seconds(self, steps: float) -> float:
         return steps * self.step
 
-    def speed(self, cells_a_step: float) -> float:
-        """Metres a second."""
-        return cells_a_step * self.cell / self.step
+    def speed(self, cells_per_step: float) -> float:
+        """Convert a speed to metres per second."""
+        return cells_per_step * self.cell / self.step
 
 
 def reynolds(speed: Any, length: Any, viscosity: Any) -> Any:
-    """Inertia against viscosity, U L / ν, with the mean speed of the nodes as U."""
+    """Return the Reynolds number U L / ν, with the mean speed of the nodes as U."""
     return speed * length / viscosity
 
 
 def mach(speed: Any) -> Any:
-    """Against the lattice's speed of sound."""
+    """Return the Mach number."""
     return speed / SOUND_SPEED
 
 
 def relaxation(joints: int, bend: float, sweeps: int) -> float:
-    """Steps in which the slowest bend of a chain of joints relaxes to 1/e.
+    """Return the steps in which the slowest bend of a chain of joints relaxes to 1/e.
 
     A sweep with stiffness k changes the errors C of a chain of J joints by
     k/2 (C₋ − 2 C + C₊), red joints before black ones, with no error beyond the ends. The
@@ -89,22 +89,22 @@ def relaxation(joints: int, bend: float, sweeps: int) -> float:
 
 
 def sperm(period: float, relaxation: float) -> float:
-    """Effective sperm number, (ω t)^(1/4) with the time t in which bending relaxes.
+    """Return the effective sperm number (ω t)^(1/4), with the relaxation time t of bending.
 
-    Of an elastic filament it is L (ζ ω / B)^(1/4) (Machin, J. Exp. Biol. 35, 796, 1958):
+    For an elastic filament it is L (ζ ω / B)^(1/4) (Machin, J. Exp. Biol. 35, 796, 1958):
     the fourth root of frequency times relaxation time up to a constant. Constraint
-    projection knows no modulus B; how fast its sweeps relax a bend stands in its place.
+    projection has no modulus B; the relaxation rate of a bend replaces it.
     """
     return (2 * pi * relaxation / period) ** 0.25
 
 
 def warnings(*, mach: float, limited: float, spacing: float) -> list[str]:
-    """Why a simulation may have left the range in which the method is sound."""
+    """Return the reasons why a simulation may have left the method's range of validity."""
     found = []
-    if mach > FASTEST:
-        found.append(f"Mach {mach:.2f} is above {FASTEST}: the flow is compressible")
-    if limited > LIMITED:
+    if mach > MAX_MACH:
+        found.append(f"Mach {mach:.2f} is above {MAX_MACH}: the flow is compressible")
+    if limited > MAX_LIMITED:
         found.append(f"limits acted on {100 * limited:.1f} % of node steps")
-    if spacing > WIDEST:
-        found.append(f"nodes are {spacing:.2g} cells apart, above {WIDEST:g}: fluid leaks")
+    if spacing > MAX_SPACING:
+        found.append(f"nodes are {spacing:.2g} cells apart, above {MAX_SPACING:g}: fluid leaks")
     return found

@@ -1,5 +1,7 @@
-"""The archive of a run: as columns, now or as it was, and as files."""
+"""Routes of results: the archive or the table of a run, as columns and as files."""
 
+import csv
+import io
 from collections.abc import Sequence
 from typing import Annotated, Any
 
@@ -11,22 +13,21 @@ from sqlalchemy.orm import Session
 from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
-from ..auth.authorize import MAY_READ_SHARED
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED
 from ..auth.capability import SharedViewDep
-from ..core.errors import ProblemError
+from ..core.errors import ProblemError, invalid_field
 from ..runs.deps import RunDep
 from ..services.deps import ServicesDep, SessionDep
 from ..storage import ranges
-from ..tables import Artifact, Elite, Run
+from ..tables import Artifact, Elite, Result, Run
 from . import elites
-from . import measures as of_elites
-from .schemas import ArchiveRead, CentroidsRead, HistoryRead, Measure
+from . import measures as recorded_measures
+from .schemas import ArchiveRead, CentroidsRead, HistoryRead, Measure, ResultsRead
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
-binary: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"application/octet-stream": {}}},
-    404: {},
-}
+Answers = dict[int | str, dict[str, Any]]
+binary: Answers = {200: {"content": {"application/octet-stream": {}}}, 404: {}}
+table: Answers = {200: {"content": {"text/csv": {}}}}
 
 HISTORY_ENTRIES = 400_000
 """About 50 MB."""
@@ -40,23 +41,22 @@ def read_archive(
     measures: str = "",
     after: Annotated[int | None, Query(ge=0)] = None,
 ) -> ArchiveRead:
-    """The elite of each cell, now or as of a generation.
+    """Return the elite of each cell, now or as of a generation.
 
-    With `measures`, names with commas between them, what was recorded of the elites under
-    those names too: an archive can be looked at along any of them. With `after`, a generation,
-    only the elites that entered later, for who knows the others.
+    `measures` names recorded measures, separated by commas, to return with the elites. With
+    `after`, a generation, only the elites that entered later are returned.
     """
-    _refuse_without(run)
+    _refuse_table(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
-    recorded = of_elites.recorded(session, run)
-    names = _asked(measures, recorded)
+    recorded = recorded_measures.recorded(session, run)
+    names = _requested(measures, recorded)
     known = -1 if after is None else min(after, run.generation)
-    kind, cells = of_elites.kind(run)
+    kind, cells = recorded_measures.kind(run)
     return ArchiveRead(
         generation=as_of,
         kind=kind,
         cells=cells,
-        axes=of_elites.axes(run),
+        axes=recorded_measures.axes(run),
         recorded=recorded,
         **_columns(session.execute(elites.at(run, as_of, names, known)).all(), names),
     )
@@ -64,21 +64,21 @@ def read_archive(
 
 @router.get("/archive/history", dependencies=[MAY_READ_SHARED])
 def read_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
-    """Every elite that ever entered: the archive of each generation can be told from it."""
-    _refuse_without(run)
-    names = _asked(measures, of_elites.recorded(session, run))
-    _refuse_too_long(session, run)
-    ordered = elites.ever(run, names).order_by(Elite.generation, Elite.cell)
+    """Return every elite that ever entered, from which each generation's archive follows."""
+    _refuse_table(run)
+    names = _requested(measures, recorded_measures.recorded(session, run))
+    _refuse_long_history(session, run)
+    ordered = elites.all_time(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
     return HistoryRead(generation=run.generation, **columns)
 
 
 @router.get("/archive/centroids", dependencies=[MAY_READ_SHARED])
 def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> CentroidsRead:
-    """The cells of a CVT archive; null until its first checkpoint is there."""
-    _refuse_without(run)
-    if of_elites.kind(run)[0] != "cvt":
-        detail = "The cells of this archive are a grid's: its axes say where they are."
+    """Return the centroids of a CVT archive; null before its first checkpoint."""
+    _refuse_table(run)
+    if recorded_measures.kind(run)[0] != "cvt":
+        detail = "The archive is a grid and has no centroids; its axes define its cells."
         raise ProblemError(404, "No centroids", detail)
     first = last_checkpoint(session, run.id)
     if first is None:
@@ -87,23 +87,23 @@ def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> C
     return CentroidsRead(centroids=found.tolist())
 
 
-def _refuse_too_long(session: Session, run: Run) -> None:
-    """A history is sent whole, and has to find room in a page."""
-    mine = select(func.count()).select_from(Elite).where(elites.until_now(run))
-    entries = session.execute(mine).scalar_one()
+def _refuse_long_history(session: Session, run: Run) -> None:
+    counted = select(func.count()).select_from(Elite).where(elites.until_now(run))
+    entries = session.execute(counted).scalar_one()
     if entries > HISTORY_ENTRIES:
         detail = (
-            f"The history of this archive has {entries:,} entries, of which at most "
-            f"{HISTORY_ENTRIES:,} are sent at once; single generations are at "
+            f"The history of this archive has {entries:,} entries, more than the "
+            f"{HISTORY_ENTRIES:,} that one answer holds. Read single generations at "
             f"/api/v1/runs/{run.id}/archive?generation=."
         )
-        raise ProblemError(422, "Too long a history", detail)
+        raise ProblemError(422, "History too long", detail)
 
 
-def _asked(measures: str, recorded: Sequence[Measure]) -> list[str]:
-    """Names of measures with commas between them; `ProblemError` where one was not recorded."""
+def _requested(measures: str, recorded: Sequence[Measure]) -> list[str]:
     names = list(dict.fromkeys(filter(None, measures.split(","))))
-    of_elites.refuse_unknown(names, recorded)
+    existing = [measure.name for measure in recorded]
+    if wrong := [name for name in names if name not in existing]:
+        raise invalid_field("measures", f"names among {', '.join(existing)}", ", ".join(wrong))
     return names
 
 
@@ -121,10 +121,10 @@ def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _refuse_without(run: Run) -> None:
-    if not of_elites.searched(run):
+def _refuse_table(run: Run) -> None:
+    if not recorded_measures.has_archive(run):
         detail = (
-            f"A run of `{run.experiment}` fills no archive; its result is at "
+            f"A run of `{run.experiment}` has no archive; its result is the table at "
             f"/api/v1/runs/{run.id}/results."
         )
         raise ProblemError(404, "No archive", detail)
@@ -140,26 +140,23 @@ def download_archive(
     session: SessionDep,
     services: ServicesDep,
 ) -> Response:
-    """The last checkpoint's file; of a run without an archive it holds the table."""
+    """Return the file of the last checkpoint; it contains the archive or the table."""
     artifact = share.archive(session) if share else _checkpoint(session, run)
     headers = {**attachment(run, "h5"), "Cache-Control": "no-cache"}
     return ranges.file(request, services.artifacts, artifact, headers)
 
 
 @router.get(
-    "/archive.csv",
-    response_class=Response,
-    responses={200: {"content": {"text/csv": {}}}},
-    dependencies=[MAY_READ_SHARED],
+    "/archive.csv", response_class=Response, responses=table, dependencies=[MAY_READ_SHARED]
 )
-def download_table(
+def download_archive_csv(
     run: RunDep, share: SharedViewDep, session: SessionDep, services: ServicesDep
 ) -> Response:
-    """The last checkpoint's archive in the columns of pyribs."""
-    _refuse_without(run)
+    """Return the archive of the last checkpoint in the columns of pyribs."""
+    _refuse_table(run)
     artifact = share.archive(session) if share else _checkpoint(session, run)
-    table = export.csv(services.artifacts.read(artifact.path))
-    return Response(table, headers=attachment(run, "csv"), media_type="text/csv")
+    text = export.csv(services.artifacts.read(artifact.path))
+    return Response(text, headers=attachment(run, "csv"), media_type="text/csv")
 
 
 def _checkpoint(session: Session, run: Run) -> Artifact:
@@ -171,6 +168,42 @@ def _checkpoint(session: Session, run: Run) -> Artifact:
 
 
 def attachment(run: Run, ending: str) -> dict[str, str]:
-    kind = "archive" if of_elites.searched(run) else run.experiment
+    kind = "archive" if recorded_measures.has_archive(run) else run.experiment
     name = f"{kind}-{str(run.id)[:8]}.{ending}"
     return {"Content-Disposition": f'attachment; filename="{name}"'}
+
+
+@router.get("/results", dependencies=[MAY_READ])
+def read_results(run: RunDep, session: SessionDep) -> ResultsRead:
+    """Return all rows so far, in the order in which they were measured."""
+    return ResultsRead(generation=run.generation, summary=run.summary, rows=_rows(session, run))
+
+
+@router.get("/results.csv", response_class=Response, responses=table, dependencies=[MAY_READ])
+def download_results(run: RunDep, session: SessionDep) -> Response:
+    """Return the rows as CSV."""
+    if recorded_measures.has_archive(run):
+        detail = (
+            f"A run of `{run.experiment}` has no table; its result is the archive at "
+            f"/api/v1/runs/{run.id}/archive."
+        )
+        raise ProblemError(404, "No table", detail)
+    rows = _rows(session, run)
+    if not rows:
+        detail = f"Run {run.id} has no results yet; it is {run.status}."
+        raise ProblemError(404, "No results yet", detail)
+    return Response(_csv(rows), headers=attachment(run, "csv"), media_type="text/csv")
+
+
+def _rows(session: Session, run: Run) -> list[dict[str, Any]]:
+    mine = select(Result).where(Result.run_id == run.id).order_by(Result.number)
+    return [{**row.values, "creature": row.creature} for row in session.scalars(mine)]
+
+
+def _csv(rows: list[dict[str, Any]]) -> str:
+    columns = list(dict.fromkeys(name for row in rows for name in row if name != "creature"))
+    text = io.StringIO()
+    writer = csv.DictWriter(text, [*columns, "creature"], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()

@@ -1,4 +1,4 @@
-"""Archives: who is in which cell, now and before."""
+"""Wire types of archives and of results that are tables."""
 
 from typing import Any, Literal
 
@@ -14,7 +14,7 @@ class Axis(Wire):
 
 
 class Measure(Wire):
-    """What is recorded of every elite, and where an axis of it begins and ends by default."""
+    """A measure that is recorded of every elite, with the default ends of an axis."""
 
     name: str
     title: str
@@ -22,27 +22,6 @@ class Measure(Wire):
     low: float | None
     high: float | None
     scale: Literal["log10", "linear"]
-
-
-class ArchiveRead(Wire):
-    """Columns, one entry per filled cell.
-
-    The cells of a grid are numbered in C order over the bins of its axes; those of a CVT in
-    the order of their centroids, and the bins of its axes are none.
-    """
-
-    generation: int
-    kind: Literal["grid", "cvt"]
-    cells: int
-    axes: list[Axis]
-    recorded: list[Measure]
-    cell: list[int]
-    fitness: list[float]
-    descriptors: list[list[float]]
-    elite_generation: list[int]
-    creature: list[str]
-    measures: dict[str, list[float | None]]
-    """Columns of the measures that were asked for."""
 
 
 class HistoryRead(Wire):
@@ -55,11 +34,24 @@ class HistoryRead(Wire):
     elite_generation: list[int]
     creature: list[str]
     measures: dict[str, list[float | None]]
-    """Columns of the measures that were asked for."""
+    """Columns of the requested measures."""
+
+
+class ArchiveRead(HistoryRead):
+    """Columns, one entry per filled cell.
+
+    The cells of a grid are numbered in C order over the bins of its axes. Those of a CVT are in
+    the order of their centroids, and its axes have no bins.
+    """
+
+    kind: Literal["grid", "cvt"]
+    cells: int
+    axes: list[Axis]
+    recorded: list[Measure]
 
 
 class CentroidsRead(Wire):
-    """Where the cells of a CVT archive are, from 0 to 1 along each axis on its own scale.
+    """Centroids of a CVT archive, from 0 to 1 along each axis on its own scale.
 
     Null before the first checkpoint.
     """

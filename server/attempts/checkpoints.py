@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from ..creatures.insertion import mark_garbage, named
+from ..creatures.storage import creatures_of, mark_garbage
 from ..services.services import Services
 from ..storage.artifacts import Stored, superfluous
 from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
@@ -91,7 +91,9 @@ def rewind(session: Session, run: Run) -> bool:
     last = run.checkpoint_generation
     if run.generation <= last:
         return False
-    mark_garbage(session, run.id, *(named(run.id, table, last) for table in (Elite, Result)))
+    for table in (Elite, Result):
+        later = (table.run_id == run.id, table.generation > last)
+        mark_garbage(session, run.id, creatures_of(table).where(*later))
     for table in (Elite, Result, Generation):
         session.execute(delete(table).where(table.run_id == run.id, table.generation > last))
     kept = session.get(Generation, (run.id, last))

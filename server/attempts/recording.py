@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 from microcosmos.archive.creature import LICENCE
 from microcosmos.archive.report import Report
 
-from ..creatures.insertion import creature_columns, insert_and_lock, link
+from ..creatures.storage import creature_columns, insert_and_lock, link
 from ..services.event_stream import finite
 from ..tables import Elite, Generation, Result
 

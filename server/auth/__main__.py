@@ -30,13 +30,13 @@ def main(words: list[str] | None = None) -> None:
 def _arguments() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m server.auth", description=__doc__)
     actions = parser.add_subparsers(required=True, metavar="create | list | revoke")
-    create = actions.add_parser("create", help="make a token; its secret is shown once")
+    create = actions.add_parser("create", help="create a token; its secret is shown once")
     create.add_argument("name")
     create.add_argument("--scope", choices=SCOPES, default="write")
-    create.add_argument("--days", type=float, help="for how long it is good (for ever)")
+    create.add_argument("--days", type=float, help="days until it expires (default: never)")
     create.set_defaults(act=_create)
-    actions.add_parser("list", help="all tokens").set_defaults(act=_list)
-    revoke = actions.add_parser("revoke", help="end a token now")
+    actions.add_parser("list", help="list all tokens").set_defaults(act=_list)
+    revoke = actions.add_parser("revoke", help="revoke a token now")
     revoke.add_argument("name")
     revoke.set_defaults(act=_revoke)
     return parser
@@ -56,7 +56,7 @@ def _list(services: Services, asked: argparse.Namespace) -> None:
 
 
 def _revoke(services: Services, asked: argparse.Namespace) -> None:
-    """On this machine also the last one of an admin: who sits here can make another."""
+    """Revoke a token, even the last admin token: this command can create another."""
     tokens.revoke(services, _named(services, asked.name), last=True)
 
 

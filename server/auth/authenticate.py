@@ -9,7 +9,7 @@ from . import tokens
 from .principal import ENVIRONMENT, LOCAL, Principal
 from .ratelimit import RateLimit
 
-TOKEN_NEEDED = "A token is needed, as `Authorization: Bearer` or by signing in at /settings."
+TOKEN_NEEDED = "A token is needed: send it as `Authorization: Bearer`, or sign in at /settings."
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class Authenticator:
 
 def _too_many(wait: int) -> ProblemError:
     detail = (
-        f"This server does not know the token, and many such tokens came from your address: "
-        f"try the next one in {wait} s. A valid one need not wait."
+        "This server does not know the token, and your address has sent many unknown ones. "
+        f"Try again in {wait} s. A valid token is accepted at once."
     )
     headers = {"Retry-After": str(wait)}
     return ProblemError(429, "Too many wrong tokens", detail, headers=headers)

@@ -1,4 +1,4 @@
-"""The first token: made where others can reach the server and nobody could use it yet."""
+"""The first token, created where others can reach the server and no token exists."""
 
 import os
 from pathlib import Path
@@ -17,39 +17,39 @@ NAME = "admin"
 FILE = "admin-token"
 
 
-def begin(services: Services) -> str | None:
-    """At the first start the token of an admin, its secret kept in the data folder too.
+def create_first_token(services: Services) -> str | None:
+    """Create an admin token, write its secret to the data folder and return it.
 
-    None where no token is needed or one is there. Raises `ValueError` where tokens were made
-    and none of an admin lives: a server that makes itself new ones could not be closed.
+    Return None if no token is needed or one exists. Raise `ValueError` if tokens exist but no
+    live one of an admin: a server that created another could not be closed to the public.
     """
     settings = services.settings
     if not settings.needs_token or settings.token:
         return None
     with services.sessions.read() as session:
-        begun = session.scalar(select(exists().select_from(Token)))
-    if begun:
+        exist = session.scalar(select(exists().select_from(Token)))
+    if exist:
         refuse_without_admin(services)
         return None
     try:
         made = create(services, NAME, ADMIN)
-    except ProblemError:  # Another server, that started beside us, was first.
+    except ProblemError:  # Another server, started at the same time, was faster.
         return None
-    _keep(settings.data / FILE, made.secret)
+    _write_private(settings.data / FILE, made.secret)
     return made.secret
 
 
-def told(settings: Settings, secret: str) -> str:
-    """The first token in words, for the terminal that started the server."""
-    kept = settings.data.resolve() / FILE
+def announcement(settings: Settings, secret: str) -> str:
+    """Return the text about the first token for the terminal."""
+    file = settings.data.resolve() / FILE
     return (
-        f"{secret} is the token of an admin, shown once and kept in {kept}. Sign in with it at "
-        "/settings, where others can be made."
+        f"{secret} is the admin token. It is shown once and kept in {file}. Sign in with it at "
+        "/settings, where you can create more tokens."
     )
 
 
 def refuse_without_admin(services: Services) -> None:
-    """Raise `ValueError` where tokens are needed and nobody holds one of an admin."""
+    """Raise `ValueError` if tokens are needed and no live admin token exists."""
     settings = services.settings
     if not settings.needs_token or settings.token:
         return
@@ -57,14 +57,12 @@ def refuse_without_admin(services: Services) -> None:
         found = has_admin(session)
     if not found:
         raise ValueError(
-            "A server that others can reach needs the token of an admin, and none is live: "
-            "make one with `python -m server.auth create NAME --scope admin`, or set "
-            "MICROCOSMOS_TOKEN"
+            "A server that others can reach needs an admin token, and none is live: create one "
+            "with `python -m server.auth create NAME --scope admin`, or set MICROCOSMOS_TOKEN"
         )
 
 
-def _keep(path: Path, secret: str) -> None:
-    """Readable by nobody else, from the moment on at which it is there."""
+def _write_private(path: Path, secret: str) -> None:
     private(path.parent)
     path.unlink(missing_ok=True)
     with os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as file:

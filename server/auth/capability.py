@@ -13,7 +13,7 @@ HEADER = "Microcosmos-Share"
 
 
 class SharedView(Protocol):
-    """The rows that a share shows, as it shows them. `shares` implements it."""
+    """Read access to what a share shows. The package `shares` implements it."""
 
     @property
     def listed(self) -> bool:
@@ -38,7 +38,7 @@ class SharedView(Protocol):
 
 
 async def shared_view(request: Request) -> SharedView | None:
-    """Return what the share of the request shows; None for a request without one."""
+    """Return the view of the share of the request, if it names one."""
     return request.state.share
 
 

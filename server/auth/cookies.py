@@ -1,4 +1,4 @@
-"""The cookie of the page: an event stream cannot be asked for with an Authorization header."""
+"""The cookie of the page: browsers open event streams without an Authorization header."""
 
 from datetime import UTC, datetime
 
@@ -7,26 +7,25 @@ from starlette.responses import Response
 
 COOKIE = "microcosmos_token"
 DAYS = 90
-"""For how long a browser keeps it, unless its token expires before."""
+"""Lifetime of the cookie, unless its token expires earlier."""
 
 
 def name(asked: HTTPConnection) -> str:
-    """Browsers keep the cookies of all ports of a host together: two servers need two names.
+    """Return the name of the cookie; browsers share cookies among the ports of a host.
 
-    The port is the one that the browser knows, which `ssh -L` may have made another.
+    The port is the one that the browser uses, which `ssh -L` may have changed.
     """
     return f"{COOKIE}_{asked.url.port}" if asked.url.port else COOKIE
 
 
 def remembered(asked: HTTPConnection) -> str | None:
-    """The token that a browser keeps for us."""
     return asked.cookies.get(name(asked))
 
 
 def remember(
     response: Response, asked: HTTPConnection, token: str, expires_at: datetime | None
 ) -> None:
-    """Keep a token out of reach of scripts, and of requests that other sites cause."""
+    """Set a cookie that neither scripts nor requests from other sites can use."""
     left = (expires_at - datetime.now(UTC)).total_seconds() if expires_at else DAYS * 86_400
     response.set_cookie(
         name(asked),

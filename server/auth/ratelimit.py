@@ -29,7 +29,7 @@ class RateLimit:
             now = self._clock()
             paid = max(now, self._paid.pop(network, now))
             wait = max(0, ceil(paid + INTERVAL - now - BURST * INTERVAL))
-            # An impatient address is refused again, but its wait does not grow.
+            # A refused attempt does not make the wait longer.
             self._paid[network] = paid if wait else paid + INTERVAL
             if len(self._paid) > ADDRESSES:
                 self._paid.popitem(last=False)

@@ -14,15 +14,15 @@ from hashlib import sha256
 from typing import cast
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, func, or_, select, update
+from sqlalchemy import func, select, update
 from sqlalchemy.exc import IntegrityError, OperationalError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from ..core.database import clock
+from ..core.database import clock, now
 from ..core.errors import ProblemError
-from ..core.schemas import FieldError
 from ..services.services import Services
 from ..tables import Token
+from ..tables.base import refuse_past
 from .principal import ADMIN, Principal, Scope
 
 PREFIX = "mc_"
@@ -67,10 +67,9 @@ def create(
     secret = PREFIX + secrets.token_urlsafe(BYTES)
     try:
         with services.sessions.write.begin() as session:
-            now = _now(session)
-            _refuse_past(expires_at, now)
+            refuse_past(session, expires_at)
             # An expired token frees its name.
-            expired = (Token.name == name, Token.revoked_at.is_(None), Token.expires_at <= now)
+            expired = (Token.name == name, Token.revoked_at.is_(None), ~Token.live())
             session.execute(update(Token).where(*expired).values(revoked_at=Token.expires_at))
             token = Token(
                 name=name,
@@ -82,36 +81,28 @@ def create(
             session.add(token)
             session.flush()
     except IntegrityError:
-        detail = f"A token named {name!r} is there already. Revoke it, or choose another name."
+        detail = (
+            f"The name {name!r} is taken by a live token. Revoke it, or choose another name."
+        )
         raise ProblemError(409, "Name taken", detail) from None
     return NewToken(token, secret)
-
-
-def _refuse_past(expires_at: datetime | None, now: datetime) -> None:
-    if expires_at is not None and expires_at <= now:
-        needed = f"a moment after now, {now:%Y-%m-%d %H:%M} UTC"
-        message = f"needs {needed}; got {expires_at.isoformat()}"
-        error = FieldError(
-            field="expires_at", message=message, needed=needed, got=expires_at.isoformat()
-        )
-        raise ProblemError(422, "Invalid input", f"expires_at: {message}", [error])
 
 
 def principal_of(services: Services, secret: str) -> Principal:
     """Return the holder of a token; raise `UnknownToken`, or `ProblemError` if it has ended."""
     with services.sessions.read() as session:
-        now = _now(session)
         mine = select(Token).where(Token.secret_sha256 == hashed(secret))
         token = session.scalars(mine).one_or_none()
-    if token is None:
-        raise UnknownToken()
-    if token.revoked_at is not None:
-        raise _ended(f"The token `{token.name}` was revoked.")
-    if token.expires_at is not None and token.expires_at <= now:
-        raise _ended(
-            f"The token `{token.name}` expired at {token.expires_at:%Y-%m-%d %H:%M} UTC."
-        )
-    if token.last_used_at is None or now - token.last_used_at > LAST_USED_INTERVAL:
+        if token is None:
+            raise UnknownToken()
+        if token.revoked_at is not None:
+            raise _ended(f"The token `{token.name}` was revoked.")
+        if token.expired(session):
+            moment = f"{token.expires_at:%Y-%m-%d %H:%M} UTC"
+            raise _ended(f"The token `{token.name}` expired at {moment}.")
+        used = token.last_used_at
+        stale = used is None or now(session) - used > LAST_USED_INTERVAL
+    if stale:
         _note_use(services, token.id)
     return Principal(token.name, cast(Scope, token.scope), token.id, token.expires_at)
 
@@ -132,14 +123,11 @@ def known(session: Session) -> Sequence[Token]:
     return session.scalars(select(Token).order_by(Token.created_at.desc(), Token.id)).all()
 
 
-def live(session: Session, tokens: Collection[UUID]) -> set[UUID]:
-    """Return those tokens that are neither revoked nor expired."""
-    return set(session.scalars(select(Token.id).where(Token.id.in_(tokens), *_live())))
-
-
 def has_admin(session: Session, except_for: UUID | None = None) -> bool:
     """Return whether a live admin token exists, other than `except_for`."""
-    others = select(func.count()).where(Token.scope == ADMIN, Token.id != except_for, *_live())
+    others = select(func.count()).where(
+        Token.scope == ADMIN, Token.id != except_for, Token.live()
+    )
     return session.execute(others).scalar_one() > 0
 
 
@@ -152,9 +140,7 @@ def revoke(services: Services, token: UUID, last: bool = False) -> Token:
         if found.revoked_at is None:
             if not last:
                 _refuse_last(services, session, found)
-            now = _now(session)
-            expired = found.expires_at is not None and found.expires_at <= now
-            found.revoked_at = found.expires_at if expired else now
+            found.revoked_at = found.expires_at if found.expired(session) else now(session)
     return found
 
 
@@ -168,16 +154,6 @@ def _refuse_last(services: Services, session: Session, token: Token) -> None:
             "or nobody can create tokens."
         )
         raise ProblemError(409, "The last admin", detail)
-
-
-def _live() -> tuple[ColumnElement[bool], ...]:
-    return Token.revoked_at.is_(None), or_(
-        Token.expires_at.is_(None), Token.expires_at > clock()
-    )
-
-
-def _now(session: Session) -> datetime:
-    return session.execute(select(clock())).scalar_one()
 
 
 def names(session: Session, owners: Iterable[UUID | None]) -> dict[UUID | None, str]:
@@ -202,13 +178,13 @@ async def watch(
         await asyncio.sleep(CHECK_SECONDS)
         if used := tokens():
             try:
-                valid = await asyncio.to_thread(_still_live, services, used)
+                valid = await asyncio.to_thread(_live, services, used)
             except SQLAlchemyError as error:
                 log.warning("The tokens of event streams cannot be looked up: %s", error)
             else:
                 end(used - valid)
 
 
-def _still_live(services: Services, tokens: Collection[UUID]) -> set[UUID]:
+def _live(services: Services, tokens: Collection[UUID]) -> set[UUID]:
     with services.sessions.read() as session:
-        return live(session, tokens)
+        return set(session.scalars(select(Token.id).where(Token.id.in_(tokens), Token.live())))

@@ -1,4 +1,4 @@
-"""The database: an engine with the settings that were measured, sessions, its clock."""
+"""The database: engine, sessions, its clock, and inserts that tolerate existing rows."""
 
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime, timedelta
@@ -18,7 +18,7 @@ TIMEOUT_MS = 15_000
 
 
 class Moment(TypeDecorator[datetime]):
-    """A point in time, aware and in UTC on every database."""
+    """A point in time, in UTC on every database."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
@@ -33,7 +33,7 @@ class Moment(TypeDecorator[datetime]):
 
 
 class clock(FunctionElement[datetime]):
-    """The database's own clock, which all leases go by."""
+    """The clock of the database, which decides all leases and expiries."""
 
     type = Moment()
     inherit_cache = True
@@ -49,9 +49,13 @@ def _postgresql_clock(element: clock, compiler: Any, **_: Any) -> str:
     return "clock_timestamp()"
 
 
+def now(session: Session) -> datetime:
+    return session.execute(select(clock())).scalar_one()
+
+
 def ago(session: Session, seconds: float) -> datetime:
-    """The moment so many seconds before the database's now."""
-    return session.execute(select(clock())).scalar_one() - timedelta(seconds=seconds)
+    """Return the moment so many seconds before now."""
+    return now(session) - timedelta(seconds=seconds)
 
 
 def insert_missing(session: Session, table: Any, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -80,8 +84,8 @@ def _insert(session: Session, table: Any) -> Any:
 class Sessions:
     """Sessions that read, and sessions that write: `with sessions.write.begin() as session:`.
 
-    On SQLite a writer takes the lock when it begins, since a reader that turns into a
-    writer can be refused at once where another has written meanwhile.
+    On SQLite a writer takes the lock at its start: a reader that turns into a writer is refused
+    where another has written meanwhile.
     """
 
     def __init__(self, engine: Engine):
@@ -91,7 +95,7 @@ class Sessions:
 
 
 def connect(url: str) -> Sessions:
-    """Open the database that a URL names; SQLite's folder is made where it is missing."""
+    """Open a database; create the folder of an SQLite file."""
     parsed = make_url(url)
     if parsed.get_backend_name() == "sqlite":
         return Sessions(_sqlite(parsed))
@@ -99,7 +103,7 @@ def connect(url: str) -> Sessions:
 
 
 def _postgresql(url: Any) -> Engine:
-    # A writer whose machine freezes must not keep its rows locked for the rest.
+    # A writer whose machine freezes must not keep its rows locked.
     idle = f"-c idle_in_transaction_session_timeout={2 * TIMEOUT_MS}"
     limits = f"-c statement_timeout={4 * TIMEOUT_MS} -c lock_timeout={TIMEOUT_MS} {idle}"
     return create_engine(
@@ -120,7 +124,7 @@ def _sqlite(url: Any) -> Engine:
 
 def _prepare_sqlite(connection: Any, _: Any) -> None:
     connection.isolation_level = None  # The driver begins nothing by itself.
-    # SQLite's own knows no letters but ASCII's.
+    # SQLite's own `lower` handles ASCII alone.
     connection.create_function("lower", 1, _lower, deterministic=True)
     for pragma in (
         f"busy_timeout={TIMEOUT_MS}",

@@ -1,4 +1,4 @@
-"""Every error as a problem (RFC 9457): which field, what was needed, what came."""
+"""Errors, answered as problems (RFC 9457): the field, what is needed, what came."""
 
 import logging
 import re
@@ -20,14 +20,14 @@ from .schemas import FieldError, Problem
 
 log = logging.getLogger(__name__)
 MOST_ERRORS = 50
-"""Most errors in one answer: a document may have as many as it has values."""
+"""Limit on the errors in one answer: a document may have one for each of its values."""
 RETRY = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
 NAMED = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
 
 
 class ProblemError(Exception):
-    """Base class of the errors that packages raise and that are answered as problems."""
+    """Base class of the errors that packages raise. The API answers them as problems."""
 
     def __init__(
         self,
@@ -60,7 +60,7 @@ def install(app: FastAPI) -> None:
         return answer(error.problem, error.headers)
 
     @app.exception_handler(ValidationError)
-    def unsound(_: Request, error: ValidationError) -> JSONResponse:
+    def invalid_document(_: Request, error: ValidationError) -> JSONResponse:
         return answer(invalid(error))
 
     @app.exception_handler(RequestValidationError)
@@ -70,7 +70,7 @@ def install(app: FastAPI) -> None:
         return answer(invalid_input(_fields(found)))
 
     @app.exception_handler(CreatureError)
-    def no_creature(_: Request, error: CreatureError) -> JSONResponse:
+    def invalid_creature(_: Request, error: CreatureError) -> JSONResponse:
         return answer(bad_creature(error))
 
     @app.exception_handler(HTTPException)
@@ -81,11 +81,11 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(OperationalError)
     @app.exception_handler(TimeoutError)
     @app.exception_handler(RedisError)
-    def away(_: Request, error: SQLAlchemyError | RedisError) -> JSONResponse:
+    def no_answer(_: Request, error: SQLAlchemyError | RedisError) -> JSONResponse:
         return unavailable(error)
 
     @app.exception_handler(Exception)
-    def unforeseen(_: Request, error: Exception) -> JSONResponse:
+    def internal(_: Request, error: Exception) -> JSONResponse:
         detail = "The server failed; its log says why."
         return answer(Problem(title="Internal server error", status=500, detail=detail))
 
@@ -98,8 +98,12 @@ def unavailable(error: SQLAlchemyError | RedisError) -> JSONResponse:
 
 
 def invalid(error: ValidationError) -> Problem:
-    """What is wrong with a document, as far as anybody reads on."""
     return invalid_input(field_errors(error))
+
+
+def invalid_field(field: str, needed: str, got: Any) -> ProblemError:
+    """Return the error of one field of a request."""
+    return ProblemError.of(invalid_input([_needs(field, needed, brief(got))]))
 
 
 def bad_creature(error: CreatureError) -> Problem:
@@ -125,7 +129,7 @@ def _fields(errors: Sequence[Mapping[str, Any]]) -> list[FieldError]:
 
 
 def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Errors without those that only say that an item, whose own error is there, is lacking."""
+    """Return the errors without those that repeat the error of an item as a lack of items."""
 
     def echoes(error: Mapping[str, Any]) -> bool:
         place = error["loc"]
@@ -149,13 +153,16 @@ def _field_error(error: Mapping[str, Any], path: str) -> FieldError:
         needed = "an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427"
     if error["type"] == "missing":
         needed, got = "a value", "nothing"
-    return FieldError(
-        field=path, message=f"needs {needed}; got {got!r}", needed=needed, got=got
-    )
+    return _needs(path, needed, got)
+
+
+def _needs(field: str, needed: str, got: Any) -> FieldError:
+    message = f"needs {needed}; got {got!r}"
+    return FieldError(field=field, message=message, needed=needed, got=got)
 
 
 def brief(value: Any) -> Any:
-    """What came, unless it is long."""
+    """Return a value as JSON can hold it, long ones shortened."""
     if value is None or isinstance(value, bool | int | float):
         return value if abs(value or 0) < 1e308 else str(value)
     text = value if isinstance(value, str) else repr(value)

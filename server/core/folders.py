@@ -1,14 +1,11 @@
-"""The data folder, which holds everything that anybody made here."""
+"""Folders that other users of the machine cannot read."""
 
 import stat
 from pathlib import Path
 
 
 def private(folder: Path) -> None:
-    """Make a folder into which no other user of this machine can look.
-
-    One that is there stays as it is: somebody may have opened it to a group.
-    """
+    """Create a folder that no other user can read; leave an existing one as it is."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
 
 

@@ -1,4 +1,4 @@
-"""The page and the documentation, as `make` has built them."""
+"""Serve the page and the documentation, as `make` has built them."""
 
 import gzip
 from functools import lru_cache
@@ -13,11 +13,10 @@ from starlette.exceptions import HTTPException
 ROOT = Path(__file__).parents[2]
 BUILT = ROOT / "web" / "dist"
 HELP = ROOT / "docs" / "_build"
-"""The documentation, where `make docs` has built it."""
 MISSING = """<!doctype html><html lang="en"><title>Microcosmos</title>
 <p>The page has not been built yet: <code>make</code> in the checkout builds it.
 The API is at <a href="/api/v1/openapi.json">/api/v1</a>."""
-FOR_EVER = {"Cache-Control": "public, max-age=31536000, immutable"}
+IMMUTABLE = {"Cache-Control": "public, max-age=31536000, immutable"}
 FRESH = {"Cache-Control": "no-cache"}
 
 router = APIRouter(include_in_schema=False)
@@ -25,7 +24,7 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/{path:path}")
 def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
-    """A built file, else the page itself, which knows what its paths mean."""
+    """Return a built file, else the page itself, which reads its path."""
     if path == "help":
         return RedirectResponse("/help/")  # Relative links need the slash.
     if path.startswith("help/"):
@@ -49,8 +48,8 @@ def _documentation(path: str) -> Response:
 
 
 def _asset(file: Path, compressed: bool) -> Response:
-    """Script or style; their names change with their content, so both can be kept."""
-    headers = {**FOR_EVER, "Vary": "Accept-Encoding"}
+    """Return a script or a style. Their names change with their content."""
+    headers = {**IMMUTABLE, "Vary": "Accept-Encoding"}
     if not compressed:
         return FileResponse(file, headers=headers)
     media_type, _ = guess_type(file.name)

@@ -1,14 +1,18 @@
-"""Child processes that cannot outlive their parent."""
+"""Child processes that cannot outlive their parent, and the signals that stop the server."""
 
 import ctypes
 import os
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from threading import current_thread, main_thread
+from types import FrameType
 
 PR_SET_PDEATHSIG = 1
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
@@ -49,7 +53,7 @@ def spawn(
 
 
 def tail(log: Path, lines: int = 5) -> str:
-    """The last lines of a log, for a message about what went wrong."""
+    """Return the last lines of a log, for an error message."""
     if not log.exists():
         return ""
     with log.open("rb") as file:
@@ -58,5 +62,32 @@ def tail(log: Path, lines: int = 5) -> str:
 
 
 def ending(code: int) -> str:
-    """An exit status in words."""
+    """Return an exit status in words."""
     return f"signal {signal.Signals(-code).name}" if code < 0 else f"exit status {code}"
+
+
+@contextmanager
+def on_stop_signal(stop: Callable[[], object]) -> Iterator[None]:
+    """Call `stop` at a signal to stop, then the handler that was installed before.
+
+    Uvicorn itself waits for open connections first, which event streams keep open.
+    """
+    if current_thread() is not main_thread():  # Signals do not come here.
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        stop()
+        earlier = before[signal.Signals(number)]
+        if callable(earlier):
+            earlier(number, frame)
+
+    for number in STOP_SIGNALS:
+        signal.signal(number, handle)
+    try:
+        yield
+    finally:
+        for number, earlier in before.items():
+            if signal.getsignal(number) is handle:
+                signal.signal(number, earlier)

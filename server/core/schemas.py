@@ -1,11 +1,11 @@
-"""What all wire types are, and what every error is."""
+"""Base class of wire types, and the wire type of errors."""
 
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
-MOST_ROWS = (1 << 31) - 1
-"""Largest integer of a column: PostgreSQL refuses to compare larger ones."""
+MAX_INTEGER = (1 << 31) - 1
+"""Largest integer of a column; PostgreSQL refuses to compare larger ones."""
 
 
 class Wire(BaseModel):

@@ -1,25 +1,29 @@
-"""How carefully answers are given: to strangers, and to the pages of other sites."""
+"""Security headers, and redaction of the request log."""
 
+import logging
 import re
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 SHARED = re.compile(r"(/s/|/api/v1/shares/).+")
-PAGE = (
+POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
     "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 )
-"""What a page of ours may load and run, and that no other page may hold it in a frame: where no
-token is needed, its visitors could be made to click on what they do not see."""
+"""No other site may show the page in a frame: where no token is needed, it could make visitors
+click on what they do not see."""
+SLUG = re.compile(r"(?<=/s/)[^/]+|(?<=/shares/)[^/]+")
+SLUG_PREVIEW = 4
+"""Characters of a slug in the log, by which requests for the same share are recognised."""
 
 
-class Discretion:
-    """Says what browsers may do with an answer.
+class SecurityHeaders:
+    """Middleware: tell browsers what they may do with an answer.
 
-    Addresses that were told in confidence stay with those who were told them; nothing of what
-    was shared is kept without asking again, so that what is revoked is gone at once. What was
-    not shared is of no use to other sites, not even as a picture that loads or does not.
+    The address of a share is a secret, so it is sent to no other site. Answers about a share
+    are revalidated each time, so that revoking it takes effect at once. Other answers cannot be
+    embedded by other sites, not even as pictures.
     """
 
     def __init__(self, app: ASGIApp, share_header: str):
@@ -32,10 +36,10 @@ class Discretion:
         path, named = scope["path"], Headers(scope=scope).get(self.header) is not None
         shared = named or SHARED.fullmatch(path) is not None
 
-        async def discreetly(message: Message) -> None:
+        async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
-                headers.setdefault("Content-Security-Policy", PAGE)
+                headers.setdefault("Content-Security-Policy", POLICY)
                 headers["X-Content-Type-Options"] = "nosniff"
                 headers["Cross-Origin-Resource-Policy"] = (
                     "cross-origin" if shared else "same-origin"
@@ -43,20 +47,33 @@ class Discretion:
                 if path.startswith("/api/"):
                     headers.add_vary_header(self.header)
                 if shared:
-                    _confide(headers, _listed(scope))
+                    headers["Cache-Control"] = "no-cache"
+                    headers["Referrer-Policy"] = "no-referrer"
+                    if not _listed(scope):
+                        headers["X-Robots-Tag"] = "noindex"
             await send(message)
 
-        await self.app(scope, receive, discreetly)
+        await self.app(scope, receive, send_with_headers)
 
 
 def _listed(scope: Scope) -> bool:
-    """Return whether the share of a request is listed for everybody."""
     state = scope.get("state", {})
     return state.get("listed", False) or getattr(state.get("share"), "listed", False)
 
 
-def _confide(headers: MutableHeaders, listed: bool) -> None:
-    headers["Cache-Control"] = "no-cache"
-    headers["Referrer-Policy"] = "no-referrer"
-    if not listed:
-        headers["X-Robots-Tag"] = "noindex"
+def redact_request_log() -> None:
+    """Have uvicorn log requests without query parameters and without the slugs of shares."""
+    logging.getLogger("uvicorn.access").addFilter(_redact)
+
+
+def _redact(record: logging.LogRecord) -> bool:
+    if isinstance(record.args, tuple):
+        record.args = tuple(
+            _redacted(one) if isinstance(one, str) else one for one in record.args
+        )
+    return True
+
+
+def _redacted(argument: str) -> str:
+    path = argument.partition("?")[0]
+    return SLUG.sub(lambda slug: f"{slug[0][:SLUG_PREVIEW]}…", path)

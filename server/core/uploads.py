@@ -15,15 +15,15 @@ from .errors import ProblemError
 
 DEPTH = 32
 VALUES = 100_000
-"""More than the largest creature has: each may become an error with words to it."""
+"""Limit on commas, above those of the largest creature: each value may cause an error."""
 NUL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
-"""As JSON is written: escaped, and the escape itself not escaped."""
+"""An escaped NUL, whose escape is not itself escaped."""
 
 
 def json_route(limit: int) -> type[APIRoute]:
     """Return a class of routes that take JSON objects of at most so many bytes.
 
-    FastAPI would read a body of any length, and JSON that other readers refuse.
+    FastAPI itself reads bodies of any length, and JSON that other readers refuse.
     """
 
     class JSONRoute(APIRoute):
@@ -66,9 +66,8 @@ async def limited(request: Request, limit: int) -> bytes:
     async for chunk in request.stream():
         body += chunk
         if len(body) > limit:
-            raise ProblemError(
-                413, "Too large", f"At most {limit:,} bytes are taken; more came."
-            )
+            detail = f"The body has more than the {limit:,} bytes that are allowed."
+            raise ProblemError(413, "Too large", detail)
     return bytes(body)
 
 
@@ -78,10 +77,11 @@ def parse(body: bytes) -> Any:
     Refused are NaN, infinities, repeated names, deep nesting, lone surrogates and NUL.
     """
     if body.count(b",") > VALUES:
-        raise ProblemError(413, "Too large", f"At most {VALUES:,} values are taken; more came.")
+        detail = f"The body has more than the {VALUES:,} values that are allowed."
+        raise ProblemError(413, "Too large", detail)
     try:
         document = json.loads(
-            body.decode(),  # JSON between programs is UTF-8, without a mark that says so.
+            body.decode(),  # JSON is UTF-8 without a byte order mark (RFC 8259).
             parse_constant=_refuse_constant,
             parse_float=_finite,
             object_pairs_hook=_distinct,
@@ -95,7 +95,7 @@ def parse(body: bytes) -> Any:
 
 
 def _place(error: ValueError) -> str:
-    """Return where a body stops to be JSON, without the parser's words."""
+    """Return the place of the error, without the parser's words."""
     if isinstance(error, json.JSONDecodeError):
         return f"the body is not JSON at line {error.lineno}, column {error.colno}"
     if isinstance(error, UnicodeDecodeError):
@@ -104,7 +104,7 @@ def _place(error: ValueError) -> str:
 
 
 def refuse_unkeepable(document: Any) -> None:
-    """Raise `ProblemError` for what databases and other readers of JSON cannot hold."""
+    """Raise `ProblemError` for values that databases or other readers of JSON cannot hold."""
     _refuse_depth(document)
     _refuse_text(document)
 
@@ -155,6 +155,5 @@ def _refuse_text(document: Any) -> None:
 
 
 def _too_deep() -> ProblemError:
-    return ProblemError(
-        422, "Nested too deeply", f"At most {DEPTH} levels are taken; more came."
-    )
+    detail = f"The body nests more than the {DEPTH} levels that are allowed."
+    return ProblemError(422, "Nested too deeply", detail)

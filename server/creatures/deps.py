@@ -14,7 +14,7 @@ from ..tables import Creature
 Sha = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
 
 
-def find_creature(session: Session, sha: str, share: SharedView | None) -> Creature:
+def find_creature(session: Session, sha: str, share: SharedView | None = None) -> Creature:
     """Return the row; raise `ProblemError` where it is missing or not in the share."""
     if share:
         share.refuse_unless_holds(session, sha)
@@ -30,7 +30,7 @@ def creature(sha: Sha, session: SessionDep, share: SharedViewDep) -> Creature:
 
 @dataclass(frozen=True)
 class Identity:
-    """The identity of a creature, read with a connection that is closed again."""
+    """The identity of a creature, read over a connection that is closed again."""
 
     sha256: str
     json: bytes

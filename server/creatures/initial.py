@@ -1,4 +1,4 @@
-"""Creatures that a run begins from: there, fit for its spec, and kept as long as the run is."""
+"""Initial creatures of a run: check that they fit its spec, and keep them while it exists."""
 
 from collections.abc import Container, Sequence
 from typing import Any
@@ -15,58 +15,63 @@ from ..core.database import insert_missing
 from ..tables import Creature, InitialCreature
 from .storage import document
 
-DECISIVE: Any = {"control": True, "genome": True, "body": True, "search": {"initial"}}
-"""The parts of a spec that decide whether it can begin from creatures."""
+COMPATIBILITY_FIELDS: Any = {
+    "control": True,
+    "genome": True,
+    "body": True,
+    "search": {"initial"},
+}
+"""The parts of a spec that decide whether it can start from creatures."""
 
 
 def check(session: Session, spec: Spec) -> None:
-    """Raise `CreatureError` where a spec cannot begin from what it names.
+    """Raise `CreatureError` if a spec cannot start from the creatures that it names.
 
-    Creatures never change: nobody who wants to write has to wait for it.
+    Creatures never change, so this needs no transaction that writes.
     """
     if isinstance(spec, Evolution) and spec.search.initial:
         rows = {row["sha256"]: row for row in files(session, spec.search.initial)}
-        _refuse_lacking(spec, rows)
+        _refuse_missing(spec, rows)
         genes_of(spec, [rows[name] for name in spec.search.initial])
 
 
 def keep(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> None:
-    """Note what new runs begin from, which stays as long as they do; by spec, all at once.
+    """Note the initial creatures of new runs, given by spec, so that nothing deletes them.
 
-    Raises `CreatureError` where it is gone.
+    Raise `CreatureError` if one is gone.
     """
-    held = _hold(session, sorted({name for spec, _ in runs for name in named(spec)}))
+    held = _lock(session, sorted({name for spec, _ in runs for name in initial_of(spec)}))
     for spec, run_ids in runs:
-        _refuse_lacking(spec, held)
-        names = [name for name in named(spec) if name in held]
+        _refuse_missing(spec, held)
+        names = [name for name in initial_of(spec) if name in held]
         rows = [{"run_id": run, "creature": name} for run in run_ids for name in names]
         insert_missing(session, InitialCreature, rows)
 
 
-def named(spec: Spec) -> Sequence[str]:
-    """The creatures that a spec names."""
+def initial_of(spec: Spec) -> Sequence[str]:
+    """Return the creatures that a spec names."""
     if isinstance(spec, Evolution):
         return spec.search.initial
     return [spec.creature["sha256"]] if isinstance(spec, Refinement) else []
 
 
 def files(session: Session, names: Sequence[str]) -> list[dict[str, Any]]:
-    """Creature files."""
-    mine = select(Creature).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
-    return [document(row) for row in session.scalars(mine)] if names else []
+    """Return the creature files of those that exist."""
+    some = select(Creature).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
+    return [document(row) for row in session.scalars(some)] if names else []
 
 
-def _hold(session: Session, names: Sequence[str]) -> set[str]:
-    """Those that are there; none can go before the transaction ends."""
+def _lock(session: Session, names: Sequence[str]) -> set[str]:
+    """Return those that exist; none can be deleted before the transaction ends."""
     if not names:
         return set()
-    mine = select(Creature.sha256).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
-    return set(session.scalars(mine.with_for_update(read=True, key_share=True)))
+    some = select(Creature.sha256).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
+    return set(session.scalars(some.with_for_update(read=True, key_share=True)))
 
 
-def _refuse_lacking(spec: Spec, there: Container[str]) -> None:
-    """A refinement has its creature with it, a search only their names."""
-    lacking = [name for name in named(spec) if name not in there]
-    if lacking and isinstance(spec, Evolution):
-        needed = "names of creatures that are here (import it first)"
-        raise CreatureError("search.initial", needed, lacking[0])
+def _refuse_missing(spec: Spec, existing: Container[str]) -> None:
+    """A refinement contains its creature, a search only names creatures."""
+    missing = [name for name in initial_of(spec) if name not in existing]
+    if missing and isinstance(spec, Evolution):
+        needed = "names of creatures of this server (import it first)"
+        raise CreatureError("search.initial", needed, missing[0])

@@ -15,32 +15,31 @@ def network_of(identity: dict[str, Any]) -> Network:
     genome: dict[str, Any] = identity["genome"]
     if "nodes" not in genome:
         detail = (
-            f"The creature has no network: its `genome.encoding` is {genome['encoding']!r}; "
-            "needed are genes of nodes and connections."
+            f"The creature has no network: its `genome.encoding` is {genome['encoding']!r}, "
+            "which has no genes of nodes and connections."
         )
         raise ProblemError(404, "No network", detail)
     return networks.of_creature(identity)
 
 
 def tensorneat(network: Network) -> bytes:
-    """Return the network as a genome of TensorNEAT."""
     return networks.dump_tensorneat(networks.write_tensorneat(network))
 
 
-FORMS: dict[str, tuple[str, Callable[[Network], str | bytes]]] = {
-    "svg": ("image/svg+xml", networks.svg),
-    "dot": ("text/vnd.graphviz", networks.dot),
-    "py": ("text/x-python", networks.numpy_code),
-    "npz": ("application/octet-stream", tensorneat),
+FORMS: dict[str, tuple[str, str, Callable[[Network], str | bytes]]] = {
+    "svg": ("image/svg+xml", "a picture", networks.svg),
+    "dot": ("text/vnd.graphviz", "a graph for Graphviz", networks.dot),
+    "py": ("text/x-python", "a Python module that needs NumPy alone", networks.numpy_code),
+    "npz": ("application/octet-stream", "a genome of TensorNEAT", tensorneat),
 }
-"""Media type and writer of each form, by the ending of the file."""
+"""Media type, description and writer of each form, by the ending of the file."""
 
 
 def written(identity: bytes, form: str) -> bytes:
-    """Return the network in a form. Only for the sandbox: code is proved by running it."""
+    """Return the network in a form. Only for the sandbox, since it runs code of the network."""
     network = network_of(json.loads(identity))
     try:
-        data = FORMS[form][1](network)
+        data = FORMS[form][2](network)
     except ValueError as error:
         detail = f"The network cannot be written as .{form}: {error}."
         raise ProblemError(422, "Not expressible", detail) from error

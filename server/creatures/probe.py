@@ -1,4 +1,4 @@
-"""A creature to try things with: a filament that does nothing."""
+"""An example creature: a filament at rest, for warming up the sandbox."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from microcosmos.spec import EXPERIMENTS
 
 
 def example() -> dict[str, Any]:
-    """The identity of a swimmer without hidden nodes, as the demonstration's have it."""
+    """Return the identity of a swimmer without hidden nodes, in the demonstration's world."""
     spec: Any = EXPERIMENTS["quality-diversity"].presets[0].spec
     whole, control = spec.model_dump(mode="json"), spec.control
     ends = [*control.inputs, *control.outputs]

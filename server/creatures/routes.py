@@ -1,5 +1,6 @@
-"""Creatures: read one by its name, bring one."""
+"""Routes of creatures: read, import, relatives, and the network in several forms."""
 
+from collections.abc import Callable
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Query, Request
@@ -10,18 +11,18 @@ from microcosmos.archive import creature, creature_h5
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
 from ..auth.capability import SharedViewDep
+from ..core.page import IMMUTABLE
 from ..core.uploads import limited
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Creature
-from . import lineage
+from . import lineage, networks
 from . import storage as creatures
-from .deps import CreatureDep
+from .deps import CreatureDep, IdentityDep
 from .sandbox import sandbox
 from .schemas import Ancestors, Children, CreatureName
 
 FILE_BYTES = 8 << 20
 H5 = "application/x-hdf5"
-FOR_EVER = "public, max-age=31536000, immutable"
 
 router = APIRouter(prefix="/creatures", tags=["creatures"])
 body: dict[str, Any] = {
@@ -36,7 +37,7 @@ body: dict[str, Any] = {
 
 
 async def file_sent(request: Request) -> dict[str, Any]:
-    """A creature file in either form, which its first bytes tell."""
+    """Return the creature file of a request; its first bytes tell JSON from HDF5."""
     sent = await limited(request, FILE_BYTES)
     return await run_in_threadpool(sandbox().creature, sent)
 
@@ -52,24 +53,20 @@ def read_creature(
     download: bool = False,
     ancestors: bool = False,
 ) -> Response:
-    """The creature file; with `ancestors` those that are kept of them come along."""
+    """Return the creature file; with `ancestors` also the files of its ancestors."""
+    headers = attachment(row, "json") if download else {}
     if share or ancestors:
         file = creatures.with_ancestors(session, row) if ancestors else creatures.document(row)
-        headers = named(row) if download else {}
         headers["Cache-Control"] = "no-cache"
         return JSONResponse(share.licensed(file) if share else file, headers=headers)
-    etag = f'"{row.sha256}"'
-    headers = {"Cache-Control": FOR_EVER, "ETag": etag}
-    if request.headers.get("if-none-match") == etag:
+    headers |= {**IMMUTABLE, "ETag": f'"{row.sha256}"'}
+    if request.headers.get("if-none-match") == headers["ETag"]:
         return Response(status_code=304, headers=headers)
-    if download:
-        headers |= named(row)
     return JSONResponse(creatures.document(row), headers=headers)
 
 
-def named(row: Creature) -> dict[str, str]:
-    """How the file is called that somebody keeps."""
-    name = f"creature-{row.sha256[:12]}.json"
+def attachment(row: Creature, ending: str) -> dict[str, str]:
+    name = f"creature-{row.sha256[:12]}.{ending}"
     return {"Content-Disposition": f'attachment; filename="{name}"'}
 
 
@@ -80,12 +77,8 @@ def named(row: Creature) -> dict[str, str]:
     dependencies=[MAY_READ_SHARED],
 )
 def read_creature_h5(row: CreatureDep, share: SharedViewDep) -> Response:
-    """The creature file as HDF5, with its body and genes as arrays."""
-    name = f"creature-{row.sha256[:12]}.h5"
-    headers = {
-        "Cache-Control": "no-cache",
-        "Content-Disposition": f'attachment; filename="{name}"',
-    }
+    """Return the creature file as HDF5, with its body and genes as arrays."""
+    headers = {"Cache-Control": "no-cache", **attachment(row, "h5")}
     file = creatures.document(row)
     data = creature_h5.dump(creature.parse(share.licensed(file) if share else file))
     return Response(data, headers=headers, media_type=H5)
@@ -95,7 +88,7 @@ def read_creature_h5(row: CreatureDep, share: SharedViewDep) -> Response:
 def read_ancestors(
     row: CreatureDep, session: SessionDep, depth: Annotated[int, Query(ge=1, le=32)] = 3
 ) -> Ancestors:
-    """Parents and theirs, nearest first; who never was an elite is known by name alone."""
+    """Return parents and theirs, nearest first. Only elites have more than a name."""
     return lineage.ancestors(session, row, depth)
 
 
@@ -103,9 +96,9 @@ def read_ancestors(
 def read_children(
     row: CreatureDep,
     session: SessionDep,
-    limit: Annotated[int, Query(ge=1, le=lineage.MOST)] = 50,
+    limit: Annotated[int, Query(ge=1, le=lineage.MAX_RELATIVES)] = 50,
 ) -> Children:
-    """Elites that came from this creature, best first, and how many there are in all."""
+    """Return elites with this creature as a parent, best first, and their number."""
     return lineage.children(session, row, limit)
 
 
@@ -121,9 +114,9 @@ def import_creature(
     services: ServicesDep,
     response: Response,
 ) -> CreatureName:
-    """Keep a creature file, JSON or HDF5; its hash is verified. 200 where it is known.
+    """Import a creature file, JSON or HDF5, after verifying its hash. 200 if it is known.
 
-    Files of its ancestors, listed in `ancestors`, are verified and kept likewise.
+    The files of its ancestors, listed in `ancestors`, are verified and imported too.
     """
     ancestors = file.pop("ancestors")
     with services.sessions.write.begin() as session:
@@ -132,3 +125,28 @@ def import_creature(
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
     return CreatureName(creature=file["sha256"])
+
+
+def _network_reader(form: str, media_type: str, description: str) -> Callable[..., Response]:
+    def read(identity: IdentityDep) -> Response:
+        name = f"network-{identity.sha256[:12]}.{form}"
+        headers = {
+            **IMMUTABLE,
+            "Content-Disposition": f'inline; filename="{name}"',
+            "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'",
+        }
+        data = sandbox().network(identity.json, form)
+        return Response(data, headers=headers, media_type=media_type)
+
+    read.__name__ = f"read_network_{form}"
+    read.__doc__ = f"Return the network as {description}."
+    return read
+
+
+for form, (media_type, description, _) in networks.FORMS.items():
+    router.get(
+        f"/{{sha}}/network.{form}",
+        response_class=Response,
+        responses={200: {"content": {media_type: {}}}, 404: {}},
+        dependencies=[MAY_READ_SHARED],
+    )(_network_reader(form, media_type, description))

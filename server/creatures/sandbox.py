@@ -1,4 +1,4 @@
-"""The sandbox: a process that reads the files of strangers and runs code of networks."""
+"""The sandbox: a process that reads uploaded files and runs the code of networks."""
 
 import atexit
 import json
@@ -48,8 +48,7 @@ class Sandbox:
             raise ProblemError.of(Problem.model_validate_json(content))
         if status != RESULT:
             self._refuse_gone()
-            detail = f"{action} took too long, or ended the process that did it; "
-            detail += f"a sound one takes much less than {SECONDS:g} seconds."
+            detail = f"{action} took more than {SECONDS:g} seconds or too much memory."
             raise ProblemError(422, "Unreadable", detail)
         return content
 
@@ -69,7 +68,7 @@ class Sandbox:
         with self._lock, suppress(subprocess.TimeoutExpired):
             if self._process:
                 self._process.wait(END_SECONDS)
-            detail = "The server cannot do this just now; try again."
+            detail = "The sandbox of the server does not answer; try again."
             raise ProblemError(503, "Unavailable", detail, headers=RETRY)
 
     def _connection(self) -> socket.socket:

@@ -1,4 +1,4 @@
-"""The process of the sandbox: each request in a child that can open, write and keep nothing.
+"""The sandbox process: handle each request in a child that can open, write and keep nothing.
 
 `python -m server.creatures.sandbox_process` waits for connections on its standard input and
 forks for each.
@@ -25,14 +25,15 @@ from microcosmos.archive.creature import CreatureError
 from ..core import errors
 from ..core.errors import ProblemError
 from ..core.schemas import Problem
-from . import files, networks
+from . import networks
+from .files import HDF5, creature_file
 from .probe import example
 
 MEMORY = 256 << 20
 SECONDS = 1.5
-"""Of computing; a busy machine is no fault of the file."""
+"""Limit on CPU time; time that the process only waits does not count."""
 ALL_SECONDS = 5.0
-"""With all waiting, of which there should be none."""
+"""Limit on wall time."""
 LENGTH = struct.Struct("<Q")
 RESULT, PROBLEM = b"result", b"problem"
 """First lines of answers."""
@@ -40,7 +41,7 @@ RESULT, PROBLEM = b"result", b"problem"
 
 def main() -> None:
     warm_up()
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # Nobody waits for them.
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # Children need no wait.
     with socket.socket(fileno=sys.stdin.fileno()) as control:
         while True:
             _, given, *_ = socket.recv_fds(control, 1, 1)
@@ -59,7 +60,7 @@ def warm_up() -> None:
     file = creature.document(identity, None, None)
     for body in (creature.canonical(file), creature_h5.dump(creature.parse(file))):
         assert answer(b"creature\n" + body).startswith(RESULT)
-    for body in (b"{}", b"\xff", b"[" * 10_000, files.HDF5 + bytes(1000)):
+    for body in (b"{}", b"\xff", b"[" * 10_000, HDF5 + bytes(1000)):
         assert answer(b"creature\n" + body).startswith(PROBLEM)
     for form in networks.FORMS:
         assert answer(form.encode() + b"\n" + creature.canonical(identity)).startswith(RESULT)
@@ -80,7 +81,7 @@ def answer(request: bytes) -> bytes:
     task, _, body = request.partition(b"\n")
     try:
         if task == b"creature":
-            return RESULT + b"\n" + json.dumps(files.creature_file(body)).encode()
+            return RESULT + b"\n" + json.dumps(creature_file(body)).encode()
         return RESULT + b"\n" + networks.written(body, task.decode())
     except ProblemError as error:
         problem = error.problem
@@ -89,7 +90,7 @@ def answer(request: bytes) -> bytes:
     except ValidationError as error:
         problem = errors.invalid(error)
     except MemoryError:
-        problem = _unreadable("reading it needs more memory than a creature file has a use for")
+        problem = _unreadable("it needs more memory than any creature file does")
     except Exception as error:  # Any error in a library is the fault of the file.
         problem = _unreadable(f"{type(error).__name__}: {error}")
     return PROBLEM + b"\n" + problem.model_dump_json().encode()
@@ -101,7 +102,7 @@ def _unreadable(why: str) -> Problem:
 
 
 def restrict() -> None:
-    """For good: a hard limit cannot be raised again."""
+    """Set the limits for good: a hard limit cannot be raised again."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     room = pages * resource.getpagesize() + MEMORY
     for kind, most in (
@@ -112,7 +113,7 @@ def restrict() -> None:
         (resource.RLIMIT_NOFILE, 0),
     ):
         resource.setrlimit(kind, (most, most))
-    # Their default is to end the process, also one that is or waits within a library.
+    # By default these signals end the process, even inside a library.
     signal.setitimer(signal.ITIMER_PROF, SECONDS)
     signal.setitimer(signal.ITIMER_REAL, ALL_SECONDS)
 

@@ -1,6 +1,4 @@
-"""Creatures, their kin, and what is made of them."""
-
-from typing import Literal
+"""Wire types of creatures and their relatives."""
 
 from pydantic import Field
 
@@ -8,20 +6,20 @@ from ..core.schemas import Wire
 
 
 class Relative(Wire):
-    """Somebody in a creature's lineage."""
+    """An ancestor or a child of a creature."""
 
     creature: str
     distance: int
     """Generations between the two."""
     kept: bool
-    """Whether it ever was an elite; of others nothing but the name is known."""
+    """False if it never was an elite; then only its name is known."""
     parents: list[str]
     operator: str | None
     generation: int | None
     fitness: float | None
     licence: str | None = None
     credit: list[str] = Field(default=[])
-    """Whom its file asks to name; what came of it is theirs too."""
+    """People whom its file asks to name; its descendants' files name them too."""
 
 
 class Ancestors(Wire):
@@ -30,7 +28,7 @@ class Ancestors(Wire):
     items: list[Relative]
     """Nearest first."""
     more: bool
-    """Whether there are others, older than was asked for or too many for one answer."""
+    """There are others, older than requested or too many for one answer."""
 
 
 class Children(Wire):
@@ -41,28 +39,3 @@ class Children(Wire):
 
 class CreatureName(Wire):
     creature: str
-
-
-class Rendering(Wire):
-    status: Literal["rendering"] = "rendering"
-
-
-class Again(Wire):
-    """A recorded figure and the same one measured here; None where it is not finite."""
-
-    name: str
-    recorded: float
-    measured: float | None
-
-
-class Measurement(Wire):
-    """What came of evaluating a creature again by the program that measured it."""
-
-    creature: str
-    exact: bool
-    """Whether every recorded figure is the same to the bit."""
-    device: str
-    recorded_device: str
-    fitness: Again
-    figures: list[Again]
-    """Those that differ, the largest share first."""

@@ -1,28 +1,86 @@
-"""Creatures between the database and the files that people share."""
+"""Creatures in the database: insert, link to parents, mark as garbage, write as files."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from operator import itemgetter
-from typing import Any
+from typing import Any, cast
+from uuid import UUID
 
-from sqlalchemy import select, update
-from sqlalchemy.orm import Session
+from sqlalchemy import Select, select, update
+from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from microcosmos.archive import creature, pedigree
 
-from ..core.database import insert_missing
-from ..tables import Creature
+from ..core.database import insert_missing, insert_or_update
+from ..tables import Creature, Elite, GarbageCreature, Parent, Result
 from . import lineage
-from .insertion import creature_columns, link
 
-FARTHEST = 32
-"""Generations of ancestors that travel with a creature."""
+NAMES_PER_QUERY = 500
+MAX_DEPTH = 32
+"""Generations of ancestors in a creature file."""
 ANCESTRY_BYTES = 3 << 20
-"""Of their identities: a document can be sent where it is to be imported."""
+"""Limit on their identities, so that a server accepts the file as an import."""
+
+
+def creature_columns(
+    sha256: str,
+    identity: bytes,
+    measured: Mapping[str, Any] | None,
+    provenance: Mapping[str, Any] | None,
+    licence: str,
+    credit: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Return the row of a creature. Lineage has columns of its own."""
+    origin = dict(provenance) if provenance else {}
+    return {
+        "sha256": sha256,
+        "identity": identity,
+        "parents": list(origin.pop("parents", ())),
+        "operator": origin.pop("operator", None),
+        "measured": dict(measured) if measured else None,
+        "provenance": origin or None,
+        "licence": licence,
+        "credit": list(credit),
+    }
+
+
+def insert_and_lock(session: Session, rows: Sequence[dict[str, Any]]) -> None:
+    """Insert creatures. Existing ones cannot be deleted before the transaction ends."""
+    if rows:
+        # This update changes nothing; it takes the lock of the row.
+        same = {"licence": Creature.__table__.c.licence}
+        insert_or_update(session, Creature, rows, ["sha256"], same)
+
+
+def link(session: Session, names: Sequence[str]) -> None:
+    """Insert the links of existing creatures to their parents, as their rows name them."""
+    for first in range(0, len(names), NAMES_PER_QUERY):
+        some = Creature.sha256.in_(names[first : first + NAMES_PER_QUERY])
+        rows = [
+            {"child": child, "position": position, "parent": parent}
+            for child, parents in session.execute(
+                select(Creature.sha256, Creature.parents).where(some)
+            )
+            for position, parent in enumerate(parents)
+        ]
+        insert_missing(session, Parent, rows)
+
+
+def creatures_of(table: type[Elite | Result]) -> Select[str]:
+    """Select the distinct creatures of rows."""
+    column = cast(InstrumentedAttribute[str], table.creature)
+    return select(column).where(column.is_not(None)).distinct()
+
+
+def mark_garbage(session: Session, run_id: UUID, *creatures: Select[str]) -> None:
+    """Mark creatures for collection once their run is deleted, unless something uses them."""
+    names = sorted({name for some in creatures for name in session.scalars(some)})
+    rows = [{"run_id": run_id, "creature": name} for name in names]
+    insert_missing(session, GarbageCreature, rows)
 
 
 def document(row: Creature) -> dict[str, Any]:
-    """The creature file."""
+    """Return the creature file."""
     provenance = row.provenance and {
         "parents": row.parents,
         "operator": row.operator,
@@ -39,30 +97,30 @@ def document(row: Creature) -> dict[str, Any]:
 
 
 def with_ancestors(session: Session, row: Creature) -> dict[str, Any]:
-    """The creature file with those of its ancestors that are kept, the nearest first."""
-    found = lineage.ancestors(session, row, FARTHEST).items
+    """Return the creature file with the files of its ancestors, nearest first."""
+    found = lineage.ancestors(session, row, MAX_DEPTH).items
     names = [relative.creature for relative in found if relative.kept]
     rows = session.scalars(select(Creature).where(Creature.sha256.in_(names)))
     by_name = {row.sha256: row for row in rows}
-    taken, room = [], ANCESTRY_BYTES
+    ancestors, room = [], ANCESTRY_BYTES
     for name in names:
         room -= len(by_name[name].identity)
         if room < 0:
             break
-        taken.append(document(by_name[name]))
-    return pedigree.document(document(row), taken)
+        ancestors.append(document(by_name[name]))
+    return pedigree.document(document(row), ancestors)
 
 
 def add_all(session: Session, files: Sequence[dict[str, Any]]) -> None:
-    """Keep several: in one order, so that two such requests cannot wait for each other."""
+    """Import several, in one order, so that two requests cannot deadlock."""
     for file in sorted(files, key=itemgetter("sha256")):
         add(session, file)
 
 
 def add(session: Session, file: dict[str, Any]) -> bool:
-    """Keep a creature file that was checked: whether it is new. What is known stays."""
-    mine = update(Creature).where(Creature.sha256 == file["sha256"]).values(imported=True)
-    if session.scalars(mine.returning(Creature.sha256)).one_or_none():
+    """Import a checked creature file; return whether it is new. A known one stays as it is."""
+    known = update(Creature).where(Creature.sha256 == file["sha256"]).values(imported=True)
+    if session.scalars(known.returning(Creature.sha256)).one_or_none():
         return False
     row = creature_columns(
         file["sha256"],

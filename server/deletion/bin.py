@@ -1,22 +1,21 @@
-"""The bin: runs that nobody sees any more, until they are restored or go for good."""
+"""The bin: deleted runs, until they are restored or purged."""
 
 from datetime import timedelta
 
-from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from ..core.database import clock
-from ..runs.lifecycle import KEPT, change, refuse
+from ..core.database import clock, now
+from ..runs.lifecycle import NOT_IN_BIN, change, refuse
 from ..runs.log import note
 from ..tables import PAUSED, TERMINAL, Run
 
 
 def put(session: Session, run: Run, seconds: float) -> Run:
-    """Into the bin for so long; nobody may be at work on it."""
-    now = session.execute(select(clock())).scalar_one()
+    """Move a run that nobody computes to the bin for some seconds."""
+    deleted_at = now(session)
     over = Run.status.in_((*TERMINAL, PAUSED))
-    times = {"deleted_at": now, "purge_at": now + timedelta(seconds=seconds)}
-    changed = change(session, run.id, KEPT, over, **times)
+    times = {"deleted_at": deleted_at, "purge_at": deleted_at + timedelta(seconds=seconds)}
+    changed = change(session, run.id, NOT_IN_BIN, over, **times)
     if changed is None:
         refuse(session, "delete", run, "finished, failed, cancelled or paused: cancel it first")
     note(session, changed, f"Deleted: in the bin until {times['purge_at']:%Y-%m-%d %H:%M} UTC.")
@@ -24,10 +23,10 @@ def put(session: Session, run: Run, seconds: float) -> Run:
 
 
 def restore(session: Session, run: Run) -> Run:
-    """Out of the bin, as long as nothing of it is gone."""
+    """Restore a run from the bin before it is purged."""
     in_time = (Run.deleted_at.is_not(None), Run.purge_at > clock())
     changed = change(session, run.id, *in_time, deleted_at=None, purge_at=None)
     if changed is None:
-        refuse(session, "restore", run, "in the bin, and its time there not over")
+        refuse(session, "restore", run, "in the bin, before it is purged")
     note(session, changed, "Restored from the bin.")
     return changed

@@ -1,4 +1,4 @@
-"""Creatures of runs that are gone: which anything still uses, and the end of the others."""
+"""Collect garbage: delete creatures of deleted runs that nothing uses."""
 
 from collections.abc import Collection, Sequence
 
@@ -19,14 +19,13 @@ from ..tables import (
     Share,
 )
 
-AT_ONCE = 200
-"""Creatures that are judged in one transaction."""
+CREATURES_PER_TRANSACTION = 200
 
 
 def in_use(session: Session, names: Collection[str]) -> set[str]:
-    """Which of these creatures anything uses: whoever keeps a creature has a line here.
+    """Return those of the creatures that are in use. Each kind of use has a line here.
 
-    Who has a child that stays, stays too, so that lineage has no holes.
+    A parent of a kept creature is in use, so that lineage has no holes.
     """
     uses = (
         select(Elite.creature).where(Elite.creature.in_(names)),
@@ -41,33 +40,36 @@ def in_use(session: Session, names: Collection[str]) -> set[str]:
 
 
 def collect(session: Session) -> bool:
-    """Delete the next few that nothing uses; whether there were any to judge."""
-    there = select(Run.id).where(Run.id == GarbageCreature.run_id).exists()
+    """Delete the next few that are not in use; return False if none are left to check."""
+    exists = select(Run.id).where(Run.id == GarbageCreature.run_id).exists()
     rows = (
-        select(GarbageCreature).where(~there).order_by(GarbageCreature.creature).limit(AT_ONCE)
+        select(GarbageCreature)
+        .where(~exists)
+        .order_by(GarbageCreature.creature)
+        .limit(CREATURES_PER_TRANSACTION)
     )
-    judged = {row.creature: row.run_id for row in session.scalars(rows)}
-    if not judged:
+    checked = {row.creature: row.run_id for row in session.scalars(rows)}
+    if not checked:
         return False
-    # Whoever wants to use one from here on waits, and then finds that it is gone.
-    locked = select(Creature).where(Creature.sha256.in_(judged)).order_by(Creature.sha256)
+    # A new use of one waits from here on, and then finds that it is gone.
+    locked = select(Creature).where(Creature.sha256.in_(checked)).order_by(Creature.sha256)
     found = {row.sha256: row.parents for row in session.scalars(locked.with_for_update())}
     gone = sorted(found.keys() - in_use(session, found))
     session.execute(
         delete(GarbageCreature).where(
-            GarbageCreature.creature.in_(judged), GarbageCreature.run_id.in_(judged.values())
+            GarbageCreature.creature.in_(checked), GarbageCreature.run_id.in_(checked.values())
         )
     )
     _delete(session, gone)
-    # A parent may have stayed for the sake of its child alone.
-    parents = {(judged[name], parent) for name in gone for parent in found[name]}
+    # A parent may have been kept for its child alone.
+    parents = {(checked[name], parent) for name in gone for parent in found[name]}
     rows = [{"run_id": run_id, "creature": parent} for run_id, parent in sorted(parents)]
     insert_missing(session, GarbageCreature, rows)
     return True
 
 
 def _delete(session: Session, names: Sequence[str]) -> None:
-    """Creatures and their renderings; files go later, when nothing names them any more."""
+    """Delete creatures and the rows of their renderings; files are deleted later."""
     files = delete(Artifact).where(Artifact.creature.in_(names)).returning(Artifact.path)
     discard(session, list(session.scalars(files)))
     session.execute(delete(Parent).where(Parent.child.in_(names)))
@@ -75,5 +77,5 @@ def _delete(session: Session, names: Sequence[str]) -> None:
 
 
 def discard(session: Session, paths: Sequence[str]) -> None:
-    """Have files removed, once this transaction has happened."""
+    """Mark files for deletion after this transaction."""
     insert_missing(session, GarbageFile, [{"path": path} for path in paths])

@@ -1,4 +1,4 @@
-"""Why runs wait: the queue, and what those who work it off are at."""
+"""Position in the queue: why a run waits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,25 +11,25 @@ from microcosmos.sizes import size
 
 from ..queue.order import in_order
 from ..services.services import Services
-from ..specs.stored import known
+from ..specs.stored import parsed
 from ..tables import QUEUED, Run, Worker
 from ..workers import plugins, registry
 from .schemas import QueueAhead
 
-NOBODY = "No worker is alive: start one with `make run` or `python -m worker.supervisor`."
+NO_WORKER = "No worker is alive: start one with `make run` or `python -m worker.supervisor`."
 
 
 @dataclass(frozen=True)
-class Line:
-    """The queue as it stands, and those who work it off."""
+class QueueState:
+    """The queued runs, and the workers that take them."""
 
     runs: list[UUID]
-    """Those that wait, in the order in which they are taken."""
+    """In the order in which workers take them."""
     alive: list[Worker]
-    at_work: dict[str, Run]
+    running: dict[str, Run]
     """By worker."""
     singles: int
-    """Runs of no sweep: these wait before all others."""
+    """Number of runs outside sweeps, which go before all others."""
 
     @property
     def busy(self) -> list[str]:
@@ -37,73 +37,71 @@ class Line:
 
     @property
     def idle(self) -> int:
-        """Workers that have nothing to do."""
         return len(self.alive) - len(self.busy)
 
     def before(self, place: int) -> int:
-        """Runs that go before the one at a place, from 0; less than 0 where that is taken.
+        """Return the number of runs before a place, from 0; negative if it is being taken.
 
-        Whoever is busy without a run has taken one and is getting ready for it.
+        A busy worker without a run has taken one and prepares it.
         """
-        return place - sum(name not in self.at_work for name in self.busy)
+        return place - sum(name not in self.running for name in self.busy)
 
     def ahead(self, sweep: bool = False) -> QueueAhead:
-        """What a run, or a sweep, that is submitted now will have to wait for."""
+        """Return the queue ahead of a run, or a sweep, that is submitted now."""
         before = max(0, self.before(len(self.runs) if sweep else self.singles))
         return QueueAhead(runs_ahead=before, workers=len(self.alive), idle_workers=self.idle)
 
 
-def line(services: Services, session: Session) -> Line:
+def queue_state(services: Services, session: Session) -> QueueState:
     alive = registry.live(session, services.settings.lease)
     single = select(func.count()).where(Run.status == QUEUED, Run.sweep.is_(None))
-    return Line(
+    return QueueState(
         runs=[run.id for run in in_order(session)],
         alive=alive,
-        at_work=registry.at_work(session, alive),
+        running=registry.running(session, alive),
         singles=session.scalars(single).one(),
     )
 
 
 def reasons(services: Services, session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
-    """Why each of those that are queued waits. Where none is, nothing is asked."""
+    """Return why each of the queued ones waits; read the queue only if there are any."""
     queued = [run for run in runs if run.status == QUEUED]
-    return reasons_in(line(services, session), queued) if queued else {}
+    return reasons_in(queue_state(services, session), queued) if queued else {}
 
 
-def reasons_in(line: Line, queued: Sequence[Run]) -> dict[UUID, str]:
-    """Why each of these runs waits in a line."""
-    places = {run_id: place for place, run_id in enumerate(line.runs)}
-    return {run.id: reason(run, places.get(run.id, 0), line) for run in queued}
+def reasons_in(queue: QueueState, queued: Sequence[Run]) -> dict[UUID, str]:
+    places = {run_id: place for place, run_id in enumerate(queue.runs)}
+    return {run.id: reason(run, places.get(run.id, 0), queue) for run in queued}
 
 
-def reason(run: Run, place: int, line: Line) -> str:
-    """A sentence about a run at this place in the line, from 0."""
-    if not line.alive:
-        return NOBODY
-    fit = [worker for worker in line.alive if plugins.fit(worker, run.plugin_versions)]
+def reason(run: Run, place: int, queue: QueueState) -> str:
+    """Return a sentence about a run at this place of the queue, from 0."""
+    if not queue.alive:
+        return NO_WORKER
+    fit = [worker for worker in queue.alive if plugins.fit(worker, run.plugin_versions)]
     if not fit:
-        return plugins.missing(line.alive, run.spec)
-    line = replace(line, alive=fit)
-    before = line.before(place)
+        return plugins.missing(queue.alive, run.spec)
+    queue = replace(queue, alive=fit)
+    before = queue.before(place)
     if before < 0:
         return "A worker is about to begin."
-    needed, largest = needed_bytes(run), max(worker.memory_bytes for worker in line.alive)
+    needed, largest = needed_bytes(run), max(worker.memory_bytes for worker in queue.alive)
     if needed is not None and needed > largest:
         return f"Needs {size(needed)}; the largest live worker has {size(largest)}."
-    held = "A worker is free" if line.idle else f"Waits for a worker: {_busy(line)}"
-    return f"{held}; {_ahead(before)}."
+    state = "A worker is free" if queue.idle else f"Waits for a worker: {_busy(queue)}"
+    return f"{state}; {_ahead(before)}."
 
 
 def needed_bytes(run: Run) -> int | None:
-    """The memory that a run asks for; None where another version wrote its spec."""
-    found = known(run.spec)
-    return found.needs.memory_bytes if found else None
+    """Return the memory that a run needs; None if another version wrote its spec."""
+    found = parsed(run.spec)
+    return found.estimate.memory_bytes if found else None
 
 
-def _busy(line: Line) -> str:
-    if len(line.alive) > 1:
-        return f"all {len(line.alive)} are busy"
-    run = line.at_work.get(line.alive[0].name)
+def _busy(queue: QueueState) -> str:
+    if len(queue.alive) > 1:
+        return f"all {len(queue.alive)} are busy"
+    run = queue.running.get(queue.alive[0].name)
     return "the only one is busy" + (f" with run {str(run.id)[:8]}" if run else "")
 
 

@@ -1,4 +1,4 @@
-"""The queue: runs that wait for a worker."""
+"""The route of the queue."""
 
 from typing import Annotated
 
@@ -21,13 +21,13 @@ def read_queue(
     session: SessionDep,
     limit: Annotated[int, Query(ge=1, le=200)] = 50,
 ) -> QueueRead:
-    """How many runs wait, and the first of them, in order, each with the reason."""
-    line = position.line(services, session)
-    first = line.runs[:limit]
-    waits = select(Run).where(Run.id.in_(first), Run.status == QUEUED)
-    found = {run.id: run for run in session.scalars(waits)}
+    """Return the number of queued runs, and the first of them with the reasons for waiting."""
+    queue = position.queue_state(services, session)
+    first = queue.runs[:limit]
+    queued = select(Run).where(Run.id.in_(first), Run.status == QUEUED)
+    found = {run.id: run for run in session.scalars(queued)}
     runs = [found[run_id] for run_id in first if run_id in found]
-    reasons = position.reasons_in(line, runs)
+    reasons = position.reasons_in(queue, runs)
     items = [
         QueuedRun(
             **brief(run).model_dump(),
@@ -37,4 +37,4 @@ def read_queue(
         )
         for run in runs
     ]
-    return QueueRead(total=len(line.runs), items=items)
+    return QueueRead(total=len(queue.runs), items=items)

@@ -1,4 +1,4 @@
-"""What a run will need, before it is one."""
+"""Wire types of estimates and of the queue."""
 
 from datetime import datetime
 
@@ -8,7 +8,7 @@ from ..workers.schemas import RunBrief
 
 
 class MeasuredSpeed(Wire):
-    """How fast earlier runs of the same kind were, on a device that there is."""
+    """Speed of earlier runs of the same kind on a device of a live worker."""
 
     device: str
     runs: int
@@ -21,10 +21,9 @@ class MeasuredSpeed(Wire):
 
 class QueueAhead(Wire):
     runs_ahead: int
-    """Runs that go before it: those in the queue that no worker is about to begin."""
+    """Queued runs that go first, without those that a worker is about to begin."""
     workers: int
     idle_workers: int
-    """Workers that have nothing to do."""
 
 
 class EstimateRead(Wire):
@@ -33,23 +32,22 @@ class EstimateRead(Wire):
     evaluations: int
     cell_steps: int
     seconds: float | None
-    """None where no run of the kind was measured on a device that there is."""
+    """None if no such run was measured on a device of a live worker."""
     speed: MeasuredSpeed | None
-    """What the seconds rest on."""
+    """The measured speed behind `seconds`."""
     queue: QueueAhead
     drawing: DrawingRead
 
 
 class QueuedRun(RunBrief):
     waiting_reason: str
-    """Why it waits, in words."""
     queued_at: datetime
     memory_bytes: int | None
-    """What it needs, as far as can be said."""
+    """Needed memory; None if it is unknown."""
 
 
 class QueueRead(Wire):
     total: int
-    """Among them those that a worker is about to begin."""
+    """All queued runs, also those that a worker is about to begin."""
     items: list[QueuedRun]
-    """The first ones, in the order in which they will be taken."""
+    """The first ones, in the order in which workers take them."""

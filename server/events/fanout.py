@@ -1,4 +1,4 @@
-"""One reader of the event stream in a process, for any number of listeners."""
+"""Fan-out: one reader of the event stream serves all listeners of a process."""
 
 import asyncio
 import logging
@@ -12,8 +12,8 @@ from fastapi.sse import ServerSentEvent
 from redis import RedisError
 from redis.asyncio import Redis
 
-ROOM = 1000
-"""Events that may wait for a slow listener, before it is told to fetch everything anew."""
+QUEUE_SIZE = 1000
+"""Events that wait for a slow listener; with more it has to fetch everything again."""
 PAGE = 500
 BLOCK_MS = 1000
 
@@ -22,16 +22,12 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Entry:
-    """An event at its place in the stream."""
+    """An event of the stream."""
 
     id: str
     kind: str
     run: str = ""
     data: str = "{}"
-
-    @property
-    def place(self) -> tuple[int, int]:
-        return place(self.id)
 
     def sent(self) -> ServerSentEvent:
         return ServerSentEvent(id=self.id, event=self.kind, raw_data=self.data)
@@ -39,12 +35,14 @@ class Entry:
 
 @dataclass(eq=False)
 class Listener:
-    """What has arrived for one client since a place in the stream; None is the end."""
+    """The events that wait for one client; None is the end."""
 
     since: str
     token: UUID | None = None
-    """What it was opened with; it ends when that does."""
-    waiting: asyncio.Queue[Entry | None] = field(default_factory=lambda: asyncio.Queue(ROOM))
+    """The token that opened the stream; the stream ends with it."""
+    waiting: asyncio.Queue[Entry | None] = field(
+        default_factory=lambda: asyncio.Queue(QUEUE_SIZE)
+    )
 
     def put(self, entry: Entry | None) -> None:
         if self.waiting.full():
@@ -54,11 +52,11 @@ class Listener:
         self.waiting.put_nowait(entry)
 
 
-class Hub:
-    """Reads the stream while it `run`s, until it is closed."""
+class Fanout:
+    """Hands events to listeners while `run` runs, until it is closed."""
 
     def __init__(self, url: str, stream: str):
-        # Reading blocks, so that a timeout of the socket must not end it.
+        # Reading blocks, so a timeout of the socket must not end it.
         self.redis: Any = Redis.from_url(url, socket_timeout=None, socket_connect_timeout=2)
         self.stream = stream
         self.read_up_to = "0-0"
@@ -66,14 +64,14 @@ class Hub:
         self.reached = False
         self.closed = False
 
-    async def begin(self) -> None:
-        """Find the end of the stream, from where it is read."""
-        with suppress(RedisError):  # Then `run` finds it when Redis answers.
+    async def start(self) -> None:
+        """Find the end of the stream; `run` does it later if Redis does not answer."""
+        with suppress(RedisError):
             self.read_up_to = await self._newest()
             self.reached = True
 
     async def run(self) -> None:
-        """Hand on what is published. After an outage everybody is told to fetch anew."""
+        """Hand on new events. After an outage, have all listeners fetch everything again."""
         while not self.closed:
             try:
                 if not self.reached:
@@ -102,10 +100,10 @@ class Hub:
     async def follow(
         self, listener: Listener, after: str | None, run: str | None
     ) -> AsyncIterator[ServerSentEvent]:
-        """What comes after an event, in order, once each; `reset` where that is gone."""
+        """Yield all later events in order; `reset` if the stream has lost some of them."""
         start = listener.since
         if after is None:
-            yield ServerSentEvent(id=start, comment="from here on")
+            yield ServerSentEvent(id=start, comment="new events follow")
         elif not await self._keeps(after):
             yield Entry(start, "reset").sent()
         else:
@@ -115,22 +113,22 @@ class Hub:
                 if run in (None, entry.run):
                     yield entry.sent()
         while (entry := await listener.waiting.get()) is not None:
-            new = entry.place > place(start) and run in (None, entry.run)
+            new = position(entry.id) > position(start) and run in (None, entry.run)
             if new or entry.kind == "reset":
                 yield entry.sent()
 
     def close(self) -> None:
-        """End all streams: clients come back with the last id they have seen."""
+        """End all streams. Clients come back with the last id that they received."""
         self.closed = True
         for listener in self.listeners:
             listener.put(None)
 
     def tokens(self) -> set[UUID]:
-        """Those with which somebody listens."""
+        """Return the tokens of all listeners."""
         return {listener.token for listener in self.listeners if listener.token}
 
     def end(self, tokens: Collection[UUID]) -> None:
-        """End the streams that were opened with some tokens."""
+        """End the streams that some tokens opened."""
         for listener in self.listeners:
             if listener.token in tokens:
                 listener.put(None)
@@ -148,13 +146,13 @@ class Hub:
         return newest[0][0].decode() if newest else "0-0"
 
     async def _keeps(self, after: str) -> bool:
-        """Whether the stream still has everything that came after an event."""
+        """Return whether the stream still has all events after one."""
         try:
             first = await self.redis.xrange(self.stream, count=1)
             newest = await self._newest()
             if not first:
-                return place(after) == (0, 0)
-            return place(first[0][0].decode()) <= place(after) <= place(newest)
+                return position(after) == (0, 0)
+            return position(first[0][0].decode()) <= position(after) <= position(newest)
         except (ValueError, RedisError):
             return False
 
@@ -166,8 +164,8 @@ class Hub:
                 yield entry
 
 
-def place(identifier: str) -> tuple[int, int]:
-    """An id as numbers, which ids are ordered by."""
+def position(identifier: str) -> tuple[int, int]:
+    """Return the numbers of an id, by which ids are ordered."""
     milliseconds, _, number = identifier.partition("-")
     return int(milliseconds), int(number or 0)
 

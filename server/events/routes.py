@@ -1,4 +1,4 @@
-"""What happens, live: server-sent events."""
+"""The route of the event stream."""
 
 from collections.abc import AsyncIterable, AsyncIterator
 from typing import Annotated
@@ -8,31 +8,25 @@ from fastapi import APIRouter, Depends, Header, Request
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from ..auth.authorize import Reader
-from .fanout import Hub, Listener
+from .fanout import Listener
 
 router = APIRouter(prefix="/events", tags=["events"])
 
 
-def hub(request: Request) -> Hub:
-    return request.app.state.hub
-
-
-HubDep = Annotated[Hub, Depends(hub)]
-
-
-async def listener(hub: HubDep, principal: Reader) -> AsyncIterator[Listener]:
-    """Listens before the answer begins: who then reads a state misses nothing after it."""
-    with hub.listening(principal.token) as listener:
+async def listener(request: Request, principal: Reader) -> AsyncIterator[Listener]:
+    """Listen before the answer starts, so that a state read later misses no event."""
+    with request.app.state.fanout.listening(principal.token) as listener:
         yield listener
 
 
 @router.get("", response_class=EventSourceResponse)
 async def events(
-    hub: HubDep,
+    request: Request,
     listener: Annotated[Listener, Depends(listener)],
     run: UUID | None = None,
     last_event_id: Annotated[str | None, Header()] = None,
 ) -> AsyncIterable[ServerSentEvent]:
-    """One stream of everything, or of one run; it goes on after Last-Event-ID."""
-    async for event in hub.follow(listener, last_event_id, str(run) if run else None):
+    """Stream all events, or those of one run. It goes on after `Last-Event-ID`."""
+    fanout = request.app.state.fanout
+    async for event in fanout.follow(listener, last_event_id, str(run) if run else None):
         yield event

@@ -1,4 +1,4 @@
-"""Add generations to a run, and fork it."""
+"""Routes that extend and fork runs."""
 
 from uuid import UUID
 
@@ -6,13 +6,12 @@ from fastapi import APIRouter, Response
 
 from ..auth.authorize import Writer
 from ..core.uploads import json_route
-from ..creatures.initial import named
+from ..creatures.initial import initial_of
 from ..queue.order import requeue
-from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, current, submitted
+from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, submitted
 from ..runs.deps import OwnRunId, find_run
-from ..runs.idempotency import earlier
 from ..runs.schemas import Extension, Fork, RunRead
-from ..runs.submission import refuse_too_large, submit
+from ..runs.submission import Request, earlier_run, refuse_too_large, submit
 from ..services.deps import ServicesDep
 from ..specs import parsing
 from . import extending, forking
@@ -45,14 +44,17 @@ def fork_run(
 
     The same key with the same request gives the same run, even if the archive has changed.
     """
-    request = {"fork": str(run_id), **sent.model_dump(mode="json")}
-    if known := earlier(services, idempotency_key, principal.token, request):
-        return submitted(response, current(services, known.run_id), new=False)
+    body = {"fork": str(run_id), **sent.model_dump(mode="json")}
+    request = Request(body, idempotency_key, principal.token)
+    if known := earlier_run(services, response, request):
+        return known
     with services.sessions.read() as session, parsing.parsing(services) as parse:
         spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
     refuse_too_large(services, spec)
-    columns = {"name": sent.name or None, "forked_from": run_id, "n_initial": len(named(spec))}
-    run, new = submit(
-        services, spec, idempotency_key, request, owner=principal.token, **columns
-    )
+    columns = {
+        "name": sent.name or None,
+        "forked_from": run_id,
+        "n_initial": len(initial_of(spec)),
+    }
+    run, new = submit(services, spec, request, **columns)
     return submitted(response, run, new)

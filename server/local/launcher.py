@@ -112,8 +112,8 @@ def prepare_database(settings: Settings) -> None:
             f"The database {shared.sessions.engine.url!r} fails: {error.orig}"
         ) from None
     try:
-        if secret := bootstrap.begin(shared):
-            say("token", bootstrap.told(settings, secret))
+        if secret := bootstrap.create_first_token(shared):
+            say("token", bootstrap.announcement(settings, secret))
     except ValueError as error:
         raise StartError(str(error)) from None
     with shared.sessions.read() as session:

@@ -23,13 +23,13 @@ from ..workers import registry
 
 PARTS = ("server", "worker", "renderer", "auditor")
 INITS = ("docker-init", "tini", "catatonit")
-"""What a container's first process is called with `init: true`."""
-ASK_AFTER, KILL_AFTER = 180.0, 240.0
-"""Seconds of failed checks in a row after which a part is asked to end, and killed."""
+"""Names of a container's first process with `init: true`."""
+TERMINATE_AFTER, KILL_AFTER = 180.0, 240.0
+"""Seconds of failed checks in a row."""
 
 
 def alive(services: Services, part: str, host: str) -> bool:
-    """Tell whether a process of this kind on a host has reported within its lease.
+    """Return whether a process of this kind on a host has reported within its lease.
 
     Workers report to the database, renderer and auditor to Redis, which forgets silent ones.
     """
@@ -42,7 +42,7 @@ def alive(services: Services, part: str, host: str) -> bool:
 
 
 def answers(port: int, path: str) -> bool:
-    """Tell whether the server on this machine answers a request with 200."""
+    """Return whether the server on this machine answers a request with 200."""
     try:
         connection = HTTPConnection("127.0.0.1", port, timeout=5)
         connection.request("GET", path)
@@ -52,9 +52,9 @@ def answers(port: int, path: str) -> bool:
 
 
 def fault(settings: Settings, part: str) -> str:
-    """Say what is wrong with a part; empty for a healthy one.
+    """Return what is wrong with a part; empty for a healthy one.
 
-    Raise `ConnectionError` where the part is not to blame: what it needs cannot be reached.
+    Raise `ConnectionError` if the database or Redis cannot be reached.
     """
     if part == "server":
         if not answers(settings.port, "/healthz"):
@@ -83,7 +83,7 @@ def remedy(mark: Path, init: int = 1) -> None:
     if not mark.exists():
         mark.touch()
     failing = time.time() - mark.stat().st_mtime
-    if failing >= ASK_AFTER:
+    if failing >= TERMINATE_AFTER:
         for child in process.children():
             child.terminate() if failing < KILL_AFTER else child.kill()
 

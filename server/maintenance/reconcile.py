@@ -1,6 +1,6 @@
-"""Mends what deaths and outages leave: runs without a worker, runs without a job.
+"""The reconciler: repair runs without a worker or without a job, and delete what has expired.
 
-The server does it every few seconds; Redis may be emptied at any time without losing a run.
+The server reconciles every few seconds, so Redis may be emptied at any time.
 """
 
 import logging
@@ -21,8 +21,8 @@ from ..runs.log import note
 from ..services.services import Services
 from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker
 
-FORGOTTEN_AFTER = 3600.0
-"""Seconds after which a silent worker is no longer remembered."""
+FORGET_SECONDS = 3600.0
+"""Seconds of silence after which a worker is deleted."""
 
 log = logging.getLogger(__name__)
 
@@ -37,8 +37,8 @@ def reconciling(services: Services) -> Iterator[None]:
             try:
                 reconcile(services)
             except (RedisError, SQLAlchemyError) as error:
-                log.warning("will reconcile again: %s", error)  # An outage ends by itself.
-            except Exception:  # Without this thread a lost run would be lost for good.
+                log.warning("will reconcile again: %s", error)
+            except Exception:  # Without this thread lost runs would stay lost.
                 log.exception("will reconcile again")
             if ended.wait(services.settings.reconcile_interval):
                 return
@@ -53,8 +53,8 @@ def reconciling(services: Services) -> Iterator[None]:
 
 
 def reconcile(services: Services) -> None:
-    """One pass."""
-    end_disobedient(services)
+    """Make one pass."""
+    cancel_overdue(services)
     take_back_lost(services)
     services.jobs.clean()
     enqueue_missing(services)
@@ -63,8 +63,8 @@ def reconcile(services: Services) -> None:
     forget_empty_sweeps(services)
 
 
-def end_disobedient(services: Services) -> None:
-    """Cancel runs whose workers were asked to and did not; their heartbeats notice and kill."""
+def cancel_overdue(services: Services) -> None:
+    """Cancel runs whose workers did not obey in time. Their supervisors kill the jobs."""
     grace = services.settings.grace
     with services.sessions.read() as session:
         overdue = (
@@ -84,14 +84,14 @@ def end_disobedient(services: Services) -> None:
 
 
 def take_back_lost(services: Services) -> None:
-    """Queue runs again whose worker has been silent for as long as a lease."""
+    """Queue runs again whose worker has not reported within a lease."""
     lease = services.settings.lease
     with services.sessions.read() as session:
         silent = (Run.status == RUNNING, lost(session, lease))
         found = session.execute(select(Run.id, Run.worker).where(*silent)).all()
     for run_id, worker in found:
         with services.sessions.write.begin() as session:
-            error = f"no word from worker {worker} for {lease:g} s"
+            error = f"worker {worker} has not reported for {lease:g} s"
             run = release(session, run_id, *silent, error=error)
         if run:
             announce(services, run_id)
@@ -107,7 +107,7 @@ def enqueue_missing(services: Services) -> None:
 
 
 def forget_empty_sweeps(services: Services) -> None:
-    """A sweep ends with the last of its runs."""
+    """Delete sweeps whose last run is purged."""
     alone = ~select(Run.id).where(Run.sweep == Sweep.id).exists()
     with services.sessions.read() as session:
         found = session.scalars(select(Sweep.id).where(alone)).all()
@@ -118,5 +118,5 @@ def forget_empty_sweeps(services: Services) -> None:
 
 def forget_workers(services: Services) -> None:
     with services.sessions.write.begin() as session:
-        old = Worker.heartbeat_at < ago(session, FORGOTTEN_AFTER)
+        old = Worker.heartbeat_at < ago(session, FORGET_SECONDS)
         session.execute(delete(Worker).where(old))

@@ -1,17 +1,16 @@
-"""Answer with a rendering that exists, or order it."""
+"""Answer requests for renderings: send the file, or order it."""
 
 from fastapi import Request
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.orm import Session
 
 from ..core.errors import ProblemError
-from ..creatures.schemas import Rendering
 from ..queue.jobs import FAILURE_SECONDS
 from ..services.services import Services
 from ..storage import ranges
 from ..tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP, Creature
-from . import motions
-from . import storage as renderings
+from . import motions, storage
+from .schemas import Rendering
 
 MEDIA_TYPES = {
     REPLAY: "application/octet-stream",
@@ -22,50 +21,30 @@ MEDIA_TYPES = {
     MP4: "video/mp4",
     MEASUREMENT: "application/json",
 }
-ON_SIGHT = (REPLAY, AUDIT, STRIP, PREVIEW, GIF, MP4)
-"""What is made as soon as somebody wants to see it."""
+ON_REQUEST = (REPLAY, AUDIT, STRIP, PREVIEW, GIF, MP4)
+"""Renderings that the first request for them orders."""
 WORDS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
 
 
-def kept(
+def existing(
     request: Request, row: Creature, session: Session, services: Services, kind: str
 ) -> Response | None:
-    """A rendering that is there already."""
-    artifact = renderings.find(session, row.sha256, kind)
+    """Return the answer with a rendering, or None if it does not exist."""
+    artifact = storage.find(session, row.sha256, kind)
     if artifact is None:
         return None
-    headers = {"Cache-Control": "no-cache", **_named(row.sha256, kind)}
+    headers = {"Cache-Control": "no-cache"}
+    if kind not in (REPLAY, AUDIT, MEASUREMENT):
+        name = f"creature-{row.sha256[:12]}.{kind.rpartition('.')[2]}"
+        headers["Content-Disposition"] = f'inline; filename="{name}"'
     return ranges.file(request, services.artifacts, artifact, headers, MEDIA_TYPES[kind])
 
 
-def ordered(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
-    """Says that a rendering is being made, or why it cannot be.
-
-    The holder of a share is not told why: the words of errors may name files and hosts.
-    """
-    try:
-        renderings.order(services, sha, kind, anonymous=anonymous)
-    except renderings.RenderingFailed as error:
-        why = "" if anonymous else f": {error}"
-        detail = f"The {WORDS.get(kind, kind)} could not be made{why}. "
-        detail += "It can be tried again in a minute."
-        headers = {"Retry-After": str(FAILURE_SECONDS)}
-        raise ProblemError(500, "Rendering failed", detail, headers=headers) from error
-    return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})
-
-
-def _named(sha: str, kind: str) -> dict[str, str]:
-    """How a file is called that somebody keeps."""
-    if kind in (REPLAY, AUDIT, MEASUREMENT):
-        return {}
-    name = f"creature-{sha[:12]}.{kind.rpartition('.')[2]}"
-    return {"Content-Disposition": f'inline; filename="{name}"'}
-
-
-def kept_motion(
+def existing_motion(
     request: Request, row: Creature, session: Session, services: Services
 ) -> Response | None:
-    replay = renderings.find(session, row.sha256, REPLAY)
+    """Return the answer with the motion of a replay, or None if there is no replay."""
+    replay = storage.find(session, row.sha256, REPLAY)
     if replay is None:
         return None
     headers = {"Cache-Control": "no-cache", "ETag": f'"motion-{replay.sha256}"'}
@@ -73,3 +52,18 @@ def kept_motion(
         return Response(status_code=304, headers=headers)
     content = motions.motion(services.artifacts, replay)
     return Response(content, headers=headers, media_type="application/octet-stream")
+
+
+def order(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
+    """Order a rendering and return 202; raise `ProblemError` if the last try failed.
+
+    Holders of a share are not told why: the words of errors may name files and hosts.
+    """
+    try:
+        storage.order(services, sha, kind, anonymous=anonymous)
+    except storage.RenderingFailed as error:
+        why = "" if anonymous else f": {error}"
+        detail = f"The {WORDS.get(kind, kind)} failed{why}. Try again in a minute."
+        headers = {"Retry-After": str(FAILURE_SECONDS)}
+        raise ProblemError(500, "Rendering failed", detail, headers=headers) from error
+    return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})

@@ -1,4 +1,4 @@
-"""What can be seen of a creature: its recorded motion, films, pictures, its audit."""
+"""Routes of renderings: motion, films, pictures, audits and measurements of a creature."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,16 +6,20 @@ from typing import Any
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from ..auth.authorize import MAY_READ, MAY_READ_SHARED
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
 from ..auth.capability import SharedViewDep
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
-from ..creatures.schemas import Rendering
 from ..services.deps import ServicesDep, SessionDep
-from ..tables import AUDIT, PREVIEW, REPLAY
-from .reading import MEDIA_TYPES, ON_SIGHT, WORDS, kept, kept_motion, ordered
+from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
+from . import storage
+from .reading import MEDIA_TYPES, ON_REQUEST, WORDS, existing, existing_motion, order
+from .schemas import Measurement, Rendering
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
+Answers = dict[int | str, dict[str, Any]]
+UNDERWAY: Answers = {202: {"model": Rendering}}
+NEVER: Answers = {204: {"description": "Nobody has ordered this measurement"}}
 
 
 def _reader(kind: str) -> Callable[..., Response]:
@@ -26,32 +30,29 @@ def _reader(kind: str) -> Callable[..., Response]:
         session: SessionDep,
         services: ServicesDep,
     ) -> Response:
-        there = kept(request, row, session, services, kind)
-        if there is None and share and kind != REPLAY:
-            raise ProblemError(404, "Not found", f"The share holds no {WORDS[kind]} of it.")
-        return there or ordered(services, row.sha256, kind, anonymous=share is not None)
+        found = existing(request, row, session, services, kind)
+        if found is None and share and kind != REPLAY:
+            raise ProblemError(404, "Not found", f"The share has no {WORDS[kind]} of it.")
+        return found or order(services, row.sha256, kind, anonymous=share is not None)
 
     read.__name__ = f"read_{kind.replace('.', '_')}"
-    read.__doc__ = f"The {WORDS.get(kind, kind)}, or 202 while it is made."
+    read.__doc__ = f"Return the {WORDS.get(kind, kind)}, or 202 while it is computed."
     return read
 
 
-for kind in ON_SIGHT:
-    answers: dict[int | str, dict[str, Any]] = {
-        200: {"content": {MEDIA_TYPES[kind]: {}}},
-        202: {"model": Rendering},
-    }
-    allowed = MAY_READ if kind in (AUDIT, PREVIEW) else MAY_READ_SHARED
-    route = router.get(
-        f"/{kind}", response_class=Response, responses=answers, dependencies=[allowed]
-    )
-    route(_reader(kind))
+for kind in ON_REQUEST:
+    router.get(
+        f"/{kind}",
+        response_class=Response,
+        responses={200: {"content": {MEDIA_TYPES[kind]: {}}}, **UNDERWAY},
+        dependencies=[MAY_READ if kind in (AUDIT, PREVIEW) else MAY_READ_SHARED],
+    )(_reader(kind))
 
 
 @router.get(
     "/motion",
     response_class=Response,
-    responses={200: {"content": {"application/octet-stream": {}}}, 202: {"model": Rendering}},
+    responses={200: {"content": {"application/octet-stream": {}}}, **UNDERWAY},
     dependencies=[MAY_READ_SHARED],
 )
 def read_motion(
@@ -61,6 +62,39 @@ def read_motion(
     session: SessionDep,
     services: ServicesDep,
 ) -> Response:
-    """The body's motion alone, of the same recording as the replay; or 202 while it is made."""
-    there = kept_motion(request, row, session, services)
-    return there or ordered(services, row.sha256, REPLAY, anonymous=share is not None)
+    """Return the body's motion from the replay, without the fluid, or 202."""
+    found = existing_motion(request, row, session, services)
+    return found or order(services, row.sha256, REPLAY, anonymous=share is not None)
+
+
+@router.post("/measure", status_code=202, dependencies=[MAY_WRITE])
+def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
+    """Have the program that measured it evaluate the creature again; read `measurement`."""
+    if not row.measured:
+        detail = "The creature's file contains no measurement to compare a new one with."
+        raise ProblemError(422, "Never measured", detail)
+    if not storage.underway(services, row.sha256, MEASUREMENT):
+        storage.delete_rendering(services, row.sha256, MEASUREMENT)
+        services.jobs.render(row.sha256, MEASUREMENT)
+    return Rendering()
+
+
+@router.get(
+    "/measurement",
+    responses={200: {"model": Measurement}, **UNDERWAY, **NEVER},
+    dependencies=[MAY_READ_SHARED],
+)
+def read_measurement(
+    request: Request,
+    row: CreatureDep,
+    share: SharedViewDep,
+    session: SessionDep,
+    services: ServicesDep,
+) -> Response:
+    """Return the measurement; 202 while it is computed, 204 if nobody has ordered one."""
+    if found := existing(request, row, session, services, MEASUREMENT):
+        return found
+    job = services.jobs.find(services.jobs.rendering_id(row.sha256, MEASUREMENT))
+    if share or job is None:
+        return Response(status_code=204)
+    return order(services, row.sha256, MEASUREMENT)

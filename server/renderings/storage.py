@@ -1,10 +1,10 @@
-"""Renderings of creatures: kept as files, made by the renderer when somebody wants them."""
+"""Renderings of creatures: find, order, save and delete them."""
 
 import re
 from typing import Any
 
 from rq.job import JobStatus
-from sqlalchemy import delete, select
+from sqlalchemy import ColumnElement, delete, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
@@ -17,28 +17,31 @@ from ..storage.artifacts import Stored, rendering_path
 from ..tables import REPLAY, Artifact, Creature
 
 REFUSAL = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
-"""Before the words in which the engine refuses a creature; other errors say what they are."""
+"""Prefix of the engine's own errors, whose words suffice; others keep the name of the class."""
 VERSIONS = {REPLAY: REPLAY_VERSION}
-"""Of formats that have changed: what was kept in an earlier one counts as not there."""
-STRANGERS = 8
-"""Renderings that may wait before strangers' orders are put off."""
+"""Versions of formats that have changed: a rendering in an earlier one does not count."""
+ANONYMOUS_LIMIT = 8
+"""With so many renderings in the queue, anonymous orders are put off."""
 UNDERWAY = (JobStatus.QUEUED, JobStatus.STARTED, JobStatus.DEFERRED, JobStatus.SCHEDULED)
 
 
 class RenderingFailed(Exception):
-    """Why there is no such rendering."""
+    """The renderer failed; the message says why."""
 
 
 def find(session: Session, creature: str, kind: str = REPLAY) -> Artifact | None:
-    mine = (Artifact.creature == creature) & (Artifact.kind == kind)
-    found = session.scalars(select(Artifact).where(mine)).one_or_none()
+    found = session.scalars(select(Artifact).where(_is(creature, kind))).one_or_none()
     return found if found and found.number == VERSIONS.get(kind) else None
+
+
+def _is(creature: str, kind: str) -> ColumnElement[bool]:
+    return (Artifact.creature == creature) & (Artifact.kind == kind)
 
 
 def order(
     services: Services, creature: str, kind: str = REPLAY, *, anonymous: bool = False
 ) -> None:
-    """Have a rendering made, once; `RenderingFailed` says why the last try gave none.
+    """Order a rendering, once; raise `RenderingFailed` if the last try failed.
 
     An `anonymous` order waits behind all others, and is put off where many wait already.
     """
@@ -48,61 +51,51 @@ def order(
         return
     if job and status == JobStatus.FAILED:
         result = job.latest_result()
-        text = (result.exc_string if result else None) or "the renderer ended without a word"
+        text = (result.exc_string if result else None) or "the renderer's process died"
         raise RenderingFailed(REFUSAL.sub("", _reason(text)))
-    if not (anonymous and services.jobs.renderings.count >= STRANGERS):
+    if not (anonymous and services.jobs.renderings.count >= ANONYMOUS_LIMIT):
         services.jobs.render(creature, kind, anonymous=anonymous)
 
 
 def underway(services: Services, creature: str, kind: str) -> bool:
-    """Whether a rendering was ordered and is not there yet."""
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     return job is not None and job.get_status(refresh=False) in UNDERWAY
 
 
-def forget(services: Services, creature: str, kind: str) -> None:
-    """Have a rendering that is kept made anew, the next time that it is ordered."""
-    mine = (Artifact.creature == creature) & (Artifact.kind == kind)
+def delete_rendering(services: Services, creature: str, kind: str) -> None:
+    """Delete the row of a rendering, so that the next order computes it again."""
     with services.sessions.write.begin() as session:
-        session.execute(delete(Artifact).where(mine))
+        session.execute(delete(Artifact).where(_is(creature, kind)))
 
 
 def _reason(traceback: str) -> str:
-    """The first line of what was raised last; its message may go on for many more."""
-    said = traceback.strip().splitlines()
-    frames = [i for i, line in enumerate(said) if line.startswith("  ")]
-    return said[min(frames[-1] + 1, len(said) - 1)] if frames else said[-1]
+    """Return the first line of the last error; its message may have many more."""
+    lines = traceback.strip().splitlines()
+    frames = [i for i, line in enumerate(lines) if line.startswith("  ")]
+    return lines[min(frames[-1] + 1, len(lines) - 1)] if frames else lines[-1]
 
 
 def save(services: Services, creature: str, kind: str, data: bytes) -> None:
-    """Keep a rendering that was made, in place of an earlier one."""
+    """Save a rendering in place of an earlier one."""
     stored = services.artifacts.write(rendering_path(creature, kind), data)
-    row = {
-        "path": stored.path,
-        "kind": kind,
-        "number": VERSIONS.get(kind),
-        "creature": creature,
-        "size": stored.size,
-        "sha256": stored.sha256,
-    }
+    row = {**vars(stored), "kind": kind, "number": VERSIONS.get(kind), "creature": creature}
     try:
         with services.sessions.write.begin() as session:
-            mine = (Artifact.creature == creature) & (Artifact.kind == kind)
-            session.execute(delete(Artifact).where(mine))
+            session.execute(delete(Artifact).where(_is(creature, kind)))
             insert_missing(session, Artifact, [row])
-    except IntegrityError:  # The creature has gone with its run meanwhile.
+    except IntegrityError:  # The creature was deleted with its run meanwhile.
         services.artifacts.delete(stored.path)
         raise
 
 
-def kept(services: Services, creature: str, kind: str) -> bytes | None:
-    """A rendering that is there already and sound."""
+def existing(services: Services, creature: str, kind: str) -> bytes | None:
+    """Return a rendering if it exists and is sound."""
     with services.sessions.read() as session:
         row = find(session, creature, kind)
     return services.artifacts.sound(Stored(row.path, row.size, row.sha256)) if row else None
 
 
 def creature(services: Services, name: str) -> dict[str, Any]:
-    """The creature file that renderings are made from."""
+    """Return the creature file that renderings start from."""
     with services.sessions.read() as session:
         return creatures.document(session.get_one(Creature, name))

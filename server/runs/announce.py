@@ -1,4 +1,4 @@
-"""Publish how runs are, after a transaction has changed them."""
+"""Publish events of runs, after a transaction has changed them."""
 
 import logging
 from collections.abc import Collection, Mapping, Sequence
@@ -19,7 +19,7 @@ CHANGING = {
     *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "diverged"),
     *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting_reason"),
 }
-"""Fields that may differ at each reading; events of generations carry them too."""
+"""Fields that may differ at each reading; events of generations contain them too."""
 
 
 def announce(
@@ -28,9 +28,8 @@ def announce(
     """Publish an event for each run, `without` some fields, and return the runs.
 
     A slow reader may publish a stale state after a newer one. So the runs are read again after
-    publishing, and those that have changed are published again.
-
-    The change stands even if this fails: an event is a courtesy.
+    publishing, and those that have changed are published again. A failure is only logged: the
+    change is already committed.
     """
     published: dict[UUID, RunRead] = {}
     try:
@@ -47,7 +46,7 @@ def announce(
 def _news(
     services: Services, run_ids: Sequence[UUID], published: Mapping[UUID, RunRead]
 ) -> Sequence[RunRead]:
-    """Read the runs whose facts differ from those published; the queue only for these."""
+    """Read the runs that differ from those published; read the queue only for these."""
     with services.sessions.read() as session:
         rows = session.scalars(select(Run).where(Run.id.in_(run_ids))).all()
         if published:

@@ -1,4 +1,4 @@
-"""What the routes of several packages share: change a run, then read it as it is now."""
+"""Shared by the routes of several packages: change a run, then read it as it is now."""
 
 from collections.abc import Callable
 from typing import Annotated
@@ -15,7 +15,7 @@ from .overview import read_run
 from .schemas import RunRead
 
 SPEC_BYTES = 1 << 20
-"""The largest body of a request that brings a spec."""
+"""Limit on the body of a request with a spec."""
 
 IdempotencyKey = Annotated[
     str | None, Header(alias="Idempotency-Key", min_length=1, max_length=255)
@@ -38,7 +38,7 @@ def changed(
 
 
 def submitted(response: Response, run: RunRead, new: bool) -> RunRead:
-    """Answer a request for a run: 202 with a new one, 200 with the one that its key names."""
+    """Answer with a run: 202 if it is new, 200 if an earlier request created it."""
     response.status_code = 202 if new else 200
     response.headers["Location"] = f"/api/v1/runs/{run.id}"
     return run

@@ -1,4 +1,4 @@
-"""Curves over the generations, thinned for a screen."""
+"""Curves over the generations of a run, thinned for a screen."""
 
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
@@ -11,17 +11,23 @@ from sqlalchemy.orm import Session
 from ..tables import Generation
 
 COUNTED = "diverged: "
-"""What names begin with whose numbers are counts of their generation alone."""
+"""Prefix of names whose numbers count evaluations of their generation alone."""
 
 
-def told(
+def evenly(last: int, points: int) -> list[int]:
+    """Return about so many generations, evenly spaced from 1 to the last."""
+    if last <= points:
+        return list(range(1, last + 1))
+    return sorted({1 + round(i * (last - 1) / (points - 1)) for i in range(points)})
+
+
+def summaries(
     session: Session, run_id: UUID, generations: Sequence[int]
 ) -> dict[str, list[float | None]]:
-    """The numbers in the summaries, as columns with an entry for each of the generations.
+    """Return the numbers in the summaries as columns, an entry for each of the generations.
 
-    Some are told now and then: each entry is the newest since the generation before it in
-    the list, so that nothing told between two points is lost. Diverged evaluations are added
-    up instead.
+    Not every generation has every number: an entry is the newest since the previous entry.
+    Counts are added up instead.
     """
     mine = (Generation.run_id == run_id) & Generation.summary.is_not(None)
     rows = select(Generation.generation, Generation.summary).where(mine)
@@ -45,7 +51,7 @@ def _joined(before: dict[str, float], later: dict[str, float]) -> dict[str, floa
 
 
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
-    """Those of the values that are numbers."""
+    """Return those of the values that are numbers."""
     return {
         name: value
         for name, value in summary.items()
@@ -54,14 +60,14 @@ def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
 
 
 def species(session: Session, run_id: UUID, wanted: list[int]) -> dict[str, list[Any]]:
-    """Return numbers and members of the species, for the generations that have any."""
+    """Return numbers and sizes of the species, for the generations that have any."""
     mine = (Generation.run_id == run_id) & Generation.generation.in_(wanted)
     rows = select(Generation.generation, Generation.summary).where(mine)
     columns: dict[str, list[Any]] = {"generation": [], "number": [], "members": []}
     for generation, summary in session.execute(rows.order_by(Generation.generation)):
-        told = (summary or {}).get("species")
-        if isinstance(told, str):
-            pairs = [pair.partition(":") for pair in told.split()]
+        recorded = (summary or {}).get("species")
+        if isinstance(recorded, str):
+            pairs = [pair.partition(":") for pair in recorded.split()]
             columns["generation"].append(generation)
             columns["number"].append([int(number) for number, _, _ in pairs])
             columns["members"].append([int(members) for _, _, members in pairs])

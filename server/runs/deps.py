@@ -15,7 +15,7 @@ from ..tables import Run
 
 
 def find_run(session: Session, run_id: UUID, deleted: bool = False) -> Run:
-    """Return the row; a run in the bin is found only with `deleted`."""
+    """Return the row; raise `ProblemError` if it is missing, or in the bin unless `deleted`."""
     found = session.get(Run, run_id)
     if found is None:
         raise ProblemError(404, "Not found", f"No run has the id {run_id}.")

@@ -1,4 +1,4 @@
-"""Read a run's curves, species, log and target pictures; and all tags."""
+"""Routes of a run's curves, species, log and target pictures, and of all tags."""
 
 from typing import Annotated
 
@@ -9,12 +9,12 @@ from microcosmos.spec import Folding, parse, targets
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED
 from ..core.errors import ProblemError
-from ..core.schemas import MOST_ROWS
+from ..core.schemas import MAX_INTEGER
 from ..services.deps import SessionDep
 from ..tables import Generation
 from . import curves, listing, log
+from .curves import evenly
 from .deps import RunDep
-from .overview import evenly
 from .schemas import Curves, Log, LogEntryRead, Species, TagRead, Target
 
 router = APIRouter()
@@ -26,9 +26,9 @@ def read_generations(
     session: SessionDep,
     points: Annotated[int | None, Query(ge=2, le=10_000)] = None,
 ) -> Curves:
-    """All generations, or about so many of them, evenly spaced.
+    """Return all generations, or about so many of them, evenly spaced.
 
-    What `summary` tells is thinned to the newest value since the point before.
+    `summary` has the newest values since the previous point.
     """
     names = [name for name in Curves.model_fields if name != "summary"]
     statement = select(*(getattr(Generation, name) for name in names)).where(
@@ -39,7 +39,7 @@ def read_generations(
     rows = session.execute(statement.order_by(Generation.generation)).all()
     values = [list(column) for column in zip(*rows, strict=True)] or [[] for _ in names]
     columns = dict(zip(names, values, strict=True))
-    return Curves(**columns, summary=curves.told(session, run.id, columns["generation"]))
+    return Curves(**columns, summary=curves.summaries(session, run.id, columns["generation"]))
 
 
 @router.get("/runs/{run_id}/species", tags=["runs"], dependencies=[MAY_READ])
@@ -48,9 +48,9 @@ def read_species(
     session: SessionDep,
     points: Annotated[int, Query(ge=2, le=10_000)] = 400,
 ) -> Species:
-    """How many members each species had, in about so many generations, evenly spaced.
+    """Return the sizes of the species in about so many generations, evenly spaced.
 
-    There are none where the search keeps no species, or was computed before they were told.
+    The columns are empty if the search has no species.
     """
     return Species(**curves.species(session, run.id, evenly(run.generation, points)))
 
@@ -59,12 +59,12 @@ def read_species(
 def read_log(
     run: RunDep,
     session: SessionDep,
-    after: Annotated[int | None, Query(ge=0, le=MOST_ROWS)] = None,
+    after: Annotated[int | None, Query(ge=0, le=MAX_INTEGER)] = None,
     limit: Annotated[int, Query(ge=1, le=1000)] = 500,
 ) -> Log:
-    """The newest entries, the oldest of them first; `after` the id of one, those that follow.
+    """Return the newest entries, oldest first; or those that follow the entry `after`.
 
-    Of the checkpoints of an attempt only the first and the last are told.
+    An attempt keeps the first and the last entry about checkpoints.
     """
     found = log.read(session, run.id, after, limit)
     return Log(entries=[LogEntryRead.model_validate(entry) for entry in found])
@@ -72,20 +72,19 @@ def read_log(
 
 @router.get("/runs/{run_id}/targets", tags=["results"], dependencies=[MAY_READ])
 def read_targets(run: RunDep) -> list[Target]:
-    """In the order of the spec; at most 256 pixels along a side."""
+    """Return the pictures in the order of the spec, at most 256 pixels along a side."""
     if run.experiment != "folding":
-        detail = f"A run of `{run.experiment}` folds nothing into pictures."
-        raise ProblemError(404, "No pictures", detail)
-    chosen = parse(run.spec)
-    assert isinstance(chosen, Folding)
-    longest = min(chosen.size, targets.MAX_PIXELS)
-    fitted = [(one.name, targets.fitted(one.ink, longest)) for one in chosen.targets]
+        raise ProblemError(404, "No pictures", f"A run of `{run.experiment}` has no pictures.")
+    spec = parse(run.spec)
+    assert isinstance(spec, Folding)
+    longest = min(spec.size, targets.MAX_PIXELS)
+    fitted = [(one.name, targets.fitted(one.ink, longest)) for one in spec.targets]
     return [
         Target(
             name=name,
             width=ink.shape[1],
             height=ink.shape[0],
-            size=chosen.size,
+            size=spec.size,
             pixels=targets.encoded(ink),
         )
         for name, ink in fitted
@@ -94,5 +93,5 @@ def read_targets(run: RunDep) -> list[Target]:
 
 @router.get("/tags", tags=["runs"], dependencies=[MAY_READ])
 def list_tags(session: SessionDep) -> list[TagRead]:
-    """All of them, by name."""
+    """Return all tags by name."""
     return [TagRead(tag=tag, runs=runs) for tag, runs in listing.tags(session)]

@@ -26,7 +26,7 @@ from .log import note, note_status
 
 log = logging.getLogger(__name__)
 
-KEPT = Run.deleted_at.is_(None)
+NOT_IN_BIN = Run.deleted_at.is_(None)
 """The condition that a run does not lie in the bin."""
 
 ATTEMPTS = 3
@@ -54,7 +54,7 @@ def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | 
 def pause(session: Session, run: Run) -> Run:
     """At once where it waits; where it runs, its worker is asked to."""
     changed = (
-        change(session, run.id, KEPT, Run.status == QUEUED, status=PAUSED)
+        change(session, run.id, NOT_IN_BIN, Run.status == QUEUED, status=PAUSED)
         or change(
             session,
             run.id,
@@ -75,7 +75,7 @@ def cancel(session: Session, run: Run) -> Run:
         change(
             session,
             run.id,
-            KEPT,
+            NOT_IN_BIN,
             Run.status.in_((QUEUED, PAUSED)),
             status=CANCELLED,
             finished_at=clock(),
@@ -104,7 +104,7 @@ def resume(session: Session, run: Run) -> Run:
     values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_override": leave}
     values |= {"queued_at": clock()}
     waited = run.device_override == OVERRIDE_NEEDED
-    changed = change(session, run.id, KEPT, Run.status == PAUSED, **values) or refuse(
+    changed = change(session, run.id, NOT_IN_BIN, Run.status == PAUSED, **values) or refuse(
         session, "resume", run, "paused"
     )
     leave = " Another kind of device is allowed." if waited else ""

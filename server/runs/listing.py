@@ -1,35 +1,19 @@
-"""Lists of runs: which, in which order, and pages that stay right under any order."""
+"""Lists of runs: filters, orders and tags."""
 
-import json
-import math
 import re
-from base64 import urlsafe_b64decode, urlsafe_b64encode
 from collections.abc import Sequence
-from datetime import UTC, datetime
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 from uuid import UUID
 
-from sqlalchemy import (
-    ColumnElement,
-    Double,
-    Row,
-    Select,
-    and_,
-    case,
-    cast,
-    func,
-    or_,
-    select,
-    true,
-)
+from pydantic import Field
+from sqlalchemy import ColumnElement, Double, Row, Select, case, cast, func, or_, select, true
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session
 from sqlalchemy.sql.functions import GenericFunction
 
-from ..core.errors import ProblemError, brief
-from ..core.schemas import FieldError
+from ..core.paging import COUNT, MOMENT, NUMBER, TEXT, Order
 from ..tables import FINISHED, STATUSES, Run
-from .lifecycle import KEPT
+from .lifecycle import NOT_IN_BIN
 
 Sort = Literal[
     "created", "-created", "started", "-started", "finished", "-finished",
@@ -38,25 +22,31 @@ Sort = Literal[
     "qd_score", "-qd_score", "coverage", "-coverage", "best", "-best",
 ]  # fmt: skip
 
-KEYS: dict[str, ColumnElement[Any]] = {
-    "created": Run.created_at.expression,
-    "started": Run.started_at.expression,
-    "finished": Run.finished_at.expression,
-    "name": func.lower(Run.name),
-    "experiment": Run.experiment.expression,
-    "status": case({name: place for place, name in enumerate(STATUSES)}, value=Run.status),
-    "progress": case(
-        (Run.status == FINISHED, 1.0), else_=cast(Run.generation, Double) / Run.generations
+KEYS: dict[str, tuple[ColumnElement[Any], Any]] = {
+    "created": (Run.created_at.expression, MOMENT),
+    "started": (Run.started_at.expression, MOMENT),
+    "finished": (Run.finished_at.expression, MOMENT),
+    "name": (func.lower(Run.name), TEXT),
+    "experiment": (Run.experiment.expression, TEXT),
+    "status": (
+        case({name: place for place, name in enumerate(STATUSES)}, value=Run.status),
+        Annotated[int, Field(ge=0, lt=len(STATUSES))],
     ),
-    "evaluations": Run.evaluations.expression,
-    "qd_score": Run.qd_score.expression,
-    "coverage": Run.coverage.expression,
-    "best": Run.best.expression,
+    "progress": (
+        case(
+            (Run.status == FINISHED, 1.0), else_=cast(Run.generation, Double) / Run.generations
+        ),
+        NUMBER,
+    ),
+    "evaluations": (Run.evaluations.expression, COUNT),
+    "qd_score": (Run.qd_score.expression, NUMBER),
+    "coverage": (Run.coverage.expression, NUMBER),
+    "best": (Run.best.expression, NUMBER),
 }
-MOMENTS, TEXTS = ("created", "started", "finished"), ("name", "experiment")
-WHOLE = {"status": len(STATUSES), "evaluations": 1 << 63}
-"""Whole numbers, which are less than these."""
-LISTED = Row[Run, Any]
+
+
+def order(sort: str) -> Order:
+    return Order(sort, *KEYS[sort.removeprefix("-")], Run.id, UUID)
 
 
 class members(GenericFunction[str]):
@@ -76,7 +66,6 @@ def _postgresql_members(element: members, compiler: Any, **options: Any) -> str:
 
 
 def matching(
-    statement: Select[Run],
     statuses: Sequence[str],
     experiments: Sequence[str],
     tag: str | None,
@@ -84,10 +73,11 @@ def matching(
     sweep: UUID | Literal["none"] | None = None,
     deleted: bool = False,
 ) -> Select[Run]:
-    """The runs of any of the states and experiments, with the tag and the text, of a sweep;
-    those in the bin, or those that are not.
+    """Select runs by any of the states and experiments, a tag, a text and a sweep.
+
+    Select either runs in the bin, or all others.
     """
-    statement = statement.where(Run.deleted_at.is_not(None) if deleted else KEPT)
+    statement = select(Run).where(~NOT_IN_BIN if deleted else NOT_IN_BIN)
     if statuses:
         statement = statement.where(Run.status.in_(statuses))
     if experiments:
@@ -97,7 +87,7 @@ def matching(
     if sweep is not None:
         statement = statement.where(Run.sweep == (None if sweep == "none" else sweep))
     wanted = (text or "").strip()
-    return statement.where(_says(wanted)) if wanted else statement
+    return statement.where(_contains(wanted)) if wanted else statement
 
 
 def _tagged(condition: Any) -> ColumnElement[bool]:
@@ -105,15 +95,15 @@ def _tagged(condition: Any) -> ColumnElement[bool]:
     return select(value.c.value).where(condition(value.c.value)).exists()
 
 
-def _says(text: str) -> ColumnElement[bool]:
-    """Wildcards in the text mean themselves."""
+def _contains(text: str) -> ColumnElement[bool]:
+    """Wildcards in the text are ordinary characters."""
     inside = [column.icontains(text, autoescape=True) for column in (Run.name, Run.note)]
     tagged = _tagged(lambda value: value.icontains(text, autoescape=True))
-    return or_(*inside, tagged, *_begins(text))
+    return or_(*inside, tagged, *_id_starts_with(text))
 
 
-def _begins(text: str) -> list[ColumnElement[bool]]:
-    """The ids that begin with a text, where any can: as a range, on every database alike."""
+def _id_starts_with(text: str) -> list[ColumnElement[bool]]:
+    """Compare ids with a range, which works on every database."""
     digits = text.replace("-", "").lower()
     if not re.fullmatch("[0-9a-f]{1,32}", digits):
         return []
@@ -121,86 +111,9 @@ def _begins(text: str) -> list[ColumnElement[bool]]:
     return [Run.id.between(low, high)]
 
 
-def page(
-    session: Session, statement: Select[Run], sort: str, cursor: str | None, limit: int
-) -> Sequence[LISTED]:
-    """Runs from a place on with what they are sorted by, and one more if there is one."""
-    name, falling = sort.removeprefix("-"), sort.startswith("-")
-    key = KEYS[name]
-    listed = statement.add_columns(key)
-    if cursor:
-        listed = listed.where(_after(key, falling, *_position(cursor, sort)))
-    ordered = [key.desc() if falling else key, Run.id.desc() if falling else Run.id]
-    return session.execute(listed.order_by(key.is_(None), *ordered).limit(limit + 1)).all()
-
-
-def _after(
-    key: ColumnElement[Any], falling: bool, value: Any, last: UUID
-) -> ColumnElement[bool]:
-    later = Run.id < last if falling else Run.id > last
-    if value is None:
-        return and_(key.is_(None), later)
-    beyond = key < value if falling else key > value
-    return or_(beyond, and_(key == value, later), key.is_(None))
-
-
-def cursor(sort: str, rows: Sequence[LISTED], limit: int) -> str | None:
-    """Where the list goes on after a page; None at its end."""
-    if len(rows) <= limit:
-        return None
-    run, value = rows[limit - 1]
-    plain = value.isoformat() if isinstance(value, datetime) else value
-    return urlsafe_b64encode(json.dumps([sort, plain, str(run.id)]).encode()).decode()
-
-
-def _position(cursor: str, sort: str) -> tuple[Any, UUID]:
-    try:
-        sorted_by, value, last = json.loads(urlsafe_b64decode(cursor))
-        if sorted_by != sort:
-            raise ValueError(sort)
-        return _value(value, sort.removeprefix("-")), UUID(last)
-    except (ValueError, TypeError, AttributeError, OverflowError, RecursionError):
-        needed = "the `next` of an earlier answer to the same `sort`"
-        detail = f"`cursor` must be {needed}; got {cursor!r:.80}."
-        error = FieldError(field="cursor", message=detail, needed=needed, got=brief(cursor))
-        raise ProblemError(422, "Invalid input", detail, [error]) from None
-
-
-def _value(value: Any, name: str) -> Any:
-    """What a cursor says of a run's value, as the database has it; an error where it cannot."""
-    if value is None:
-        return None
-    if name in MOMENTS:
-        return datetime.fromisoformat(value).astimezone(UTC)
-    if name in TEXTS:
-        return _text(value)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(value)
-    return _whole(value, WHOLE[name]) if name in WHOLE else _finite(value)
-
-
-def _text(value: str) -> str:
-    value.encode()  # Not possible with lone surrogates.
-    if "\0" in value:
-        raise ValueError(value)
-    return value
-
-
-def _whole(value: float, end: int) -> int:
-    if not isinstance(value, int) or not 0 <= value < end:
-        raise ValueError(value)
-    return value
-
-
-def _finite(value: float) -> float:
-    if not math.isfinite(value):
-        raise ValueError(value)
-    return float(value)
-
-
 def tags(session: Session) -> Sequence[Row[str, int]]:
-    """All tags with the number of runs that have them, by name."""
+    """Return all tags and their numbers of runs, by name."""
     value = members(Run.tags).table_valued("value").c.value
     counted = select(value, func.count()).select_from(Run).join(value.table, true())
-    counted = counted.where(KEPT)
+    counted = counted.where(NOT_IN_BIN)
     return session.execute(counted.group_by(value).order_by(value)).all()

@@ -1,4 +1,4 @@
-"""How far runs are, as people see it: rows with their curves condensed."""
+"""Read runs for the API: columns, rates, and a sparkline."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -12,27 +12,22 @@ from ..estimates import position
 from ..services.services import Services
 from ..tables import FAILED, RUNNING, Generation, Run
 from ..workers.brief import progress
+from .curves import evenly
 from .schemas import ForkedFrom, RunRead
 
 POINTS = 32
-
-
-def evenly(last: int, points: int) -> list[int]:
-    """At most so many generations, evenly spaced from 1 to the last, both among them."""
-    if last <= points:
-        return list(range(1, last + 1))
-    return sorted({1 + round(i * (last - 1) / (points - 1)) for i in range(points)})
+"""Points of a sparkline."""
 
 
 def read_runs(
     services: Services, session: Session, runs: Sequence[Run], queue: bool = True
 ) -> list[RunRead]:
-    """Read runs for the API; without the `queue`, queued ones have no reason for waiting."""
+    """Read runs; without the `queue`, queued ones have no reason for waiting."""
     curves = _curves(session, runs)
     reasons = position.reasons(services, session, runs) if queue else {}
-    named = tokens.names(session, (run.owner for run in runs))
+    names = tokens.names(session, (run.owner for run in runs))
     return [
-        _read(run, curves[run.id], reasons.get(run.id), named.get(run.owner)) for run in runs
+        _read(run, curves[run.id], reasons.get(run.id), names.get(run.owner)) for run in runs
     ]
 
 
@@ -41,7 +36,7 @@ def read_run(services: Services, session: Session, run: Run) -> RunRead:
 
 
 def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation]]:
-    """A few generations of each run, all in one query."""
+    """Read a few generations of each run in one query."""
     curves: dict[UUID, list[Generation]] = defaultdict(list)
     wanted = [
         and_(
@@ -60,32 +55,27 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
 
 def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | None) -> RunRead:
     generations, evaluations = _rates(run, curve)
-    left = max(0, run.generations - run.generation)
+    remaining = max(0, run.generations - run.generation)
+    fork = None
+    if run.n_initial is not None:
+        fork = ForkedFrom(run=run.forked_from, creatures=run.n_initial)
     columns = {column.key: getattr(run, column.key) for column in Run.__table__.columns}
     columns |= {"error": run.error if run.status == FAILED else None, "owner": owner}
-    columns["forked_from"] = forked(run)
+    columns["forked_from"] = fork
     return RunRead(
         **{name: columns[name] for name in RunRead.model_fields if name in columns},
         waiting_reason=reason,
         progress=progress(run),
-        eta_seconds=left / generations if generations and run.status == RUNNING else None,
+        eta_seconds=remaining / generations if generations and run.status == RUNNING else None,
         evaluations_per_second=evaluations,
         sparkline=[row.qd_score for row in curve if row.qd_score is not None],
     )
 
 
-def forked(run: Run) -> ForkedFrom | None:
-    """Where it began, if it is a fork."""
-    return (
-        None
-        if run.n_initial is None
-        else ForkedFrom(run=run.forked_from, creatures=run.n_initial)
-    )
-
-
 def _rates(run: Run, curve: list[Generation]) -> tuple[float | None, float | None]:
-    """Generations and evaluations a second: at present, and since the first generation for a
-    run that nobody carries out. The first one had to compile.
+    """Return generations and evaluations per second, since the last point of a running run.
+
+    For other runs, since the first generation, which had to compile.
     """
     names = ("generation", "evaluations", "seconds")
     first, last = ([getattr(row, name) for name in names] for row in _ends(run, curve))
@@ -94,7 +84,7 @@ def _rates(run: Run, curve: list[Generation]) -> tuple[float | None, float | Non
 
 
 def _ends(run: Run, curve: list[Generation]) -> tuple[Generation, Generation]:
-    begin = Generation(generation=0, evaluations=0, seconds=0.0)
+    start = Generation(generation=0, evaluations=0, seconds=0.0)
     if len(curve) < 2:
-        return begin, [begin, *curve][-1]
+        return start, [start, *curve][-1]
     return curve[-2 if run.status == RUNNING else 0], curve[-1]

@@ -1,18 +1,16 @@
-"""Estimate, submit, list, read, name, pause, resume and cancel runs."""
+"""Routes of runs: estimate, submit, list, read, edit, pause, resume and cancel."""
 
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
 from fastapi import APIRouter, Body, Depends, Query, Response
 from pydantic import StringConstraints
-from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Writer
-from ..core.errors import ProblemError
-from ..core.schemas import FieldError
+from ..core.errors import invalid_field
 from ..core.uploads import json_route
 from ..estimates import position
 from ..estimates.eta import speed_of
@@ -23,15 +21,13 @@ from ..specs import parsing
 from ..specs.drawings import drawing_read
 from ..tables import Run, Status
 from . import lifecycle, listing
-from .commands import SPEC_BYTES, IdempotencyKey, changed, current, submitted
+from .commands import SPEC_BYTES, IdempotencyKey, changed, submitted
 from .deps import AnyRunDep, OwnRunId
-from .idempotency import earlier
 from .overview import read_run, read_runs
-from .schemas import NAME, RunChange, RunPage, RunRead
-from .submission import memory_limit, refuse_too_large, submit
+from .schemas import NAME_LENGTH, RunChange, RunPage, RunRead
+from .submission import Request, earlier_run, memory_limit, refuse_too_large, submit
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
-
 
 Document = Annotated[dict[str, Any], Body()]
 """A spec, which `microcosmos.spec` checks: its messages name fields as people write them."""
@@ -42,11 +38,9 @@ def spec_sent(document: Document, services: ServicesDep) -> Spec:
 
 
 SpecDep = Annotated[Spec, Depends(spec_sent)]
-
-
-Called = Annotated[
+NameQuery = Annotated[
     str | None,
-    StringConstraints(strip_whitespace=True, max_length=NAME, pattern=r"^[^\x00]*$"),
+    StringConstraints(strip_whitespace=True, max_length=NAME_LENGTH, pattern=r"^[^\x00]*$"),
     Query(),
 ]
 
@@ -58,27 +52,23 @@ def create_run(
     services: ServicesDep,
     response: Response,
     idempotency_key: IdempotencyKey = None,
-    name: Called = None,
+    name: NameQuery = None,
 ) -> RunRead:
-    """Queue a run. The same key with the same spec is the same run, answered with 200.
-
-    `name` is what it is called, as `PATCH` could say later.
-    """
-    if known := earlier(
-        services, idempotency_key, principal.token, spec.model_dump(mode="json")
-    ):
-        return submitted(response, current(services, known.run_id), new=False)
+    """Queue a run. The same key with the same spec gives the same run, with 200."""
+    request = Request(spec.model_dump(mode="json"), idempotency_key, principal.token)
+    if known := earlier_run(services, response, request):
+        return known
     refuse_too_large(services, spec)
-    run, new = submit(services, spec, idempotency_key, owner=principal.token, name=name or None)
+    run, new = submit(services, spec, request, name=name or None)
     return submitted(response, run, new)
 
 
 @router.post("/estimate", dependencies=[MAY_READ])
 def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> EstimateRead:
-    """What a run will need, and what it is about, without queueing it."""
+    """Return the needs of a run and a drawing, without queueing it."""
     needed = estimate(spec)
-    line = position.line(services, session)
-    speed = speed_of(session, spec, line.alive)
+    queue = position.queue_state(services, session)
+    speed = speed_of(session, spec, queue.alive)
     return EstimateRead(
         memory_bytes=needed.memory_bytes,
         memory_limit_bytes=memory_limit(services, session),
@@ -86,7 +76,7 @@ def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> E
         cell_steps=needed.cell_steps,
         seconds=speed.seconds(needed.cell_steps) if speed else None,
         speed=speed.read(needed.cell_steps) if speed else None,
-        queue=line.ahead(),
+        queue=queue.ahead(),
         drawing=drawing_read(drawing(spec)),
     )
 
@@ -108,26 +98,17 @@ def list_runs(
     sort: listing.Sort = "-created",
     deleted: bool = False,
 ) -> RunPage:
-    """Runs of any of these states and experiments, with this tag and this text.
+    """Return runs with any of these states and experiments, this tag and this text.
 
-    `q` is looked for in names, tags and notes and at the beginning of ids; `sweep` is one, or
-    `none`. With `-`, the sort is descending; runs without a value come last. `deleted` ones
-    lie in the bin.
+    `q` searches names, tags, notes and the start of ids. `sweep` is an id, or `none`. With `-`
+    the sort is descending; runs without a value come last. `deleted` selects the bin.
     """
-    _refuse_unknown(experiment)
-    statement = listing.matching(select(Run), status, experiment, tag, q, sweep, deleted)
-    rows = listing.page(session, statement, sort, cursor, limit)
-    items = read_runs(services, session, [run for run, _ in rows[:limit]])
-    return RunPage(items=items, next=listing.cursor(sort, rows, limit))
-
-
-def _refuse_unknown(experiments: list[str]) -> None:
-    for name in experiments:
+    for name in experiment:
         if name not in EXPERIMENTS:
-            known = ", ".join(EXPERIMENTS)
-            message = f"needs one of {known}; got {name!r}"
-            error = FieldError(field="experiment", message=message, needed=known, got=name)
-            raise ProblemError(422, "Invalid input", f"experiment: {message}", [error])
+            raise invalid_field("experiment", f"one of {', '.join(EXPERIMENTS)}", name)
+    statement = listing.matching(status, experiment, tag, q, sweep, deleted)
+    runs, following = listing.order(sort).page(session, statement, cursor, limit)
+    return RunPage(items=read_runs(services, session, runs), next=following)
 
 
 @router.get("/{run_id}", dependencies=[MAY_READ_SHARED])
@@ -137,13 +118,13 @@ def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
 
 @router.patch("/{run_id}")
 def change_run(run_id: OwnRunId, services: ServicesDep, sent: RunChange) -> RunRead:
-    """Say what a run is called, its tags or a note; what it computes stays as it is."""
-    said = sent.said()
+    """Change a run's name, tags or note."""
+    values = sent.values()
 
-    def say(session: Session, run: Run) -> Run:
-        return lifecycle.change(session, run.id, **said) or run if said else run
+    def edit(session: Session, run: Run) -> Run:
+        return lifecycle.change(session, run.id, **values) or run if values else run
 
-    return changed(services, run_id, say)
+    return changed(services, run_id, edit)
 
 
 @router.post("/{run_id}/pause", status_code=202)

@@ -1,4 +1,4 @@
-"""Runs, what people say of them, and their curves."""
+"""Wire types of runs, forks, curves and logs."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal, Self
@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, StringConstraints, model_validator
 from ..core.schemas import Wire
 from ..tables import Status
 
-NAME = 200
+NAME_LENGTH = 200
 
 
 def distinct(tags: list[str]) -> list[str]:
@@ -24,26 +24,26 @@ Tag = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_
 Tags = Annotated[list[Tag], Field(max_length=20), AfterValidator(distinct)]
 
 
-Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=NAME)]
+Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=NAME_LENGTH)]
 
 
 class RunChange(Wire):
-    """What people may say of a run; what is left out stays as it is."""
+    """New name, tags or note of a run; omitted fields stay as they are."""
 
     name: Name | None = None
     tags: Tags = Field(default=[])
     note: Annotated[str, StringConstraints(max_length=10_000)] | None = None
 
-    def said(self) -> dict[str, Any]:
-        """By field; text without anything in it is none."""
-        said = self.model_dump(exclude_unset=True)
+    def values(self) -> dict[str, Any]:
+        """Return the sent fields; empty texts become None."""
+        sent = self.model_dump(exclude_unset=True)
         return {
-            field: value if field == "tags" else value or None for field, value in said.items()
+            field: value if field == "tags" else value or None for field, value in sent.items()
         }
 
 
 class Extension(Wire):
-    """How many generations more."""
+    """Generations to add."""
 
     generations: int = Field(ge=1, le=1_000_000)
 
@@ -53,11 +53,11 @@ Digest = Annotated[str, StringConstraints(pattern="^[0-9a-f]{64}$")]
 Range = tuple[float, float]
 
 
-class Beginning(Wire):
-    """The creatures that a fork begins from: one of these."""
+class ForkStart(Wire):
+    """The creatures that a fork starts from, given by one of these fields."""
 
     creatures: Annotated[list[Digest], Field(min_length=1, max_length=4096)] | None = None
-    """By name, from anywhere."""
+    """Creatures by name, from any run."""
     cells: Annotated[list[int], Field(min_length=1, max_length=1 << 20)] | None = None
     """The elites of these cells."""
     region: Annotated[dict[str, Range], Field(min_length=1)] | None = None
@@ -75,23 +75,23 @@ class Beginning(Wire):
 
 
 class Fork(Wire):
-    """What a new run takes of another, and what is different."""
+    """The initial creatures of a fork, and the changes of its spec."""
 
-    start: Beginning = Field(alias="from")
+    start: ForkStart = Field(alias="from")
     generation: Annotated[int, Field(ge=0)] | None = None
-    """Elites as they were after it; None: as they are."""
+    """Take the elites as of this generation; None: as they are now."""
     spec: dict[str, Any] = Field(default={})
-    """A merge patch (RFC 7396) over the other run's spec."""
+    """A merge patch (RFC 7396) for the other run's spec."""
     name: Name | None = None
 
 
 class ForkedFrom(Wire):
-    """Where a fork began."""
+    """The origin of a fork."""
 
     run: UUID | None
-    """None where that run is gone."""
+    """None if that run is deleted."""
     creatures: int
-    """How many of its creatures."""
+    """Number of creatures taken from it."""
 
 
 class RunRead(Wire):
@@ -102,13 +102,13 @@ class RunRead(Wire):
     note: str | None
     status: Status
     requested_state: Literal["paused", "cancelled"] | None
-    """What a person asked of a running run that its worker has not done yet."""
+    """A requested state that the worker has not reached yet."""
     waiting_reason: str | None
-    """Why nobody carries it out yet, in words; None unless it is queued."""
+    """Why no worker computes it yet; None unless it is queued."""
     spec: dict[str, Any]
     created_at: datetime
     queued_at: datetime
-    """When it last began to wait for a worker."""
+    """When it last entered the queue."""
     started_at: datetime | None
     finished_at: datetime | None
     attempt: int
@@ -122,7 +122,7 @@ class RunRead(Wire):
     coverage: float | None
     best: float | None
     summary: dict[str, Any] | None
-    """Figures of the result as a whole, where it is a table."""
+    """Figures of the whole result, if it is a table."""
     diverged: int
     sparkline: list[float]
     """QD scores, evenly spaced over the generations so far."""
@@ -132,13 +132,12 @@ class RunRead(Wire):
     version: str
     demonstration: bool
     owner: str | None
-    """The name of the token it was made with."""
+    """Name of the token that created it."""
     sweep: UUID | None
-    """The sweep that it was asked for with."""
     deleted_at: datetime | None
-    """Since when it lies in the bin."""
+    """When it was moved to the bin."""
     purge_at: datetime | None
-    """When it goes for good."""
+    """When it is deleted for good."""
     forked_from: ForkedFrom | None
 
 
@@ -159,39 +158,38 @@ class Curves(Wire):
     diverged: list[int]
     seconds: list[float]
     summary: dict[str, list[float | None]]
-    """Whatever other numbers the generations told: each the newest one since the point before,
-    None where none was told."""
+    """Other recorded numbers by name: the newest since the previous point, else None."""
 
 
 class Species(Wire):
-    """Columns, one entry for each generation that tells its species, those that live."""
+    """Columns, one entry for each generation with recorded species."""
 
     generation: list[int]
     number: list[list[int]]
-    """No two species of a run ever have the same."""
+    """Numbers of the species, unique within a run."""
     members: list[list[int]]
 
 
 class Target(Wire):
-    """A picture that a filament folds into, made as large as the filament sees it."""
+    """A picture that a filament folds into, scaled to its world."""
 
     name: str
     width: int
     height: int
     size: int
-    """Cells of its longer side; it lies in the middle of the world."""
+    """Cells of its longer side; its centre is that of the world."""
     pixels: str
     """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
 
 
 class LogEntryRead(Wire):
-    """What happened to a run."""
+    """An event in the history of a run."""
 
     id: int
     at: datetime
     level: Literal["info", "warning", "error"]
     attempt: int
-    """Before the first one it is 0."""
+    """0 before the first attempt."""
     text: str
 
 
@@ -202,4 +200,3 @@ class Log(Wire):
 class TagRead(Wire):
     tag: str
     runs: int
-    """How many have it."""

@@ -1,49 +1,53 @@
-"""From a spec to a queued run."""
+"""Create runs from specs: one, a fork, the demonstration, or all runs of a sweep."""
 
+import json
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from datetime import timedelta
+from hashlib import sha256
 from typing import Any
 from uuid import UUID
 
+from fastapi import Response
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import Spec, estimate
 from microcosmos.version import VERSION
 
+from ..core.database import now
 from ..core.errors import FieldError, ProblemError
 from ..creatures import initial
 from ..services.services import Services
-from ..tables import Run
+from ..tables import Idempotency, LogEntry, Run, Sweep
 from ..workers import plugins, registry
-from . import idempotency
-from .commands import announced, current
-from .log import note
+from .commands import announced, current, submitted
 from .schemas import RunRead
 
-OF_SEARCHES = ("search.block", "search.batch", "archive")
-DECISIVE = {
-    "quality-diversity": OF_SEARCHES,
-    "neuroevolution": OF_SEARCHES,
+SEARCH_FIELDS = ("search.block", "search.batch", "archive")
+MEMORY_FIELDS = {
+    "quality-diversity": SEARCH_FIELDS,
+    "neuroevolution": SEARCH_FIELDS,
     "folding": ("memory",),
     "refinement": ("segment",),
     "gaits": ("block",),
     "scaling": ("nodes",),
 }
 """The fields of each experiment that may decide most about its memory."""
-TOO_LARGE = "More memory than there is"
+TOO_LARGE = "Not enough memory"
 
 
 @dataclass(frozen=True)
 class OneCell:
-    """The smallest archive, as far as an estimate looks at it."""
+    """The smallest archive, with the fields that an estimate reads."""
 
     cells: int = 1
     plugins: dict[str, Any] = field(default_factory=dict)
 
 
 def memory_limit(services: Services, session: Session) -> int:
-    """Bytes that a run may need: the largest worker's, else this machine's; or less, if set."""
+    """Return the bytes of the largest worker, else of this machine, or the setting if less."""
     live = registry.live(session, services.settings.lease)
     cap = services.settings.max_bytes
     if not live:
@@ -53,7 +57,7 @@ def memory_limit(services: Services, session: Session) -> int:
 
 
 def refuse_too_large(services: Services, spec: Spec) -> None:
-    """Raise `ProblemError` where no worker has the memory."""
+    """Raise `ProblemError` if no worker has the memory."""
     with services.sessions.read() as session:
         limit = memory_limit(services, session)
     if error := too_large(spec, limit):
@@ -61,26 +65,25 @@ def refuse_too_large(services: Services, spec: Spec) -> None:
 
 
 def too_large(spec: Spec, limit: int) -> FieldError | None:
-    """What is wrong with a spec that needs more than so many bytes."""
+    """Return the error of a spec that needs more than so many bytes."""
     needed = estimate(spec).memory_bytes
     if needed <= limit:
         return None
     detail = f"The run needs {needed:,} bytes of memory; {limit:,} bytes are available."
     return FieldError(
-        field=decisive(spec), message=detail, needed=f"at most {limit} bytes", got=needed
+        field=largest_field(spec), message=detail, needed=f"at most {limit} bytes", got=needed
     )
 
 
-def decisive(spec: Spec) -> str:
-    """The field whose least value would save the most memory."""
-    fields = DECISIVE[spec.experiment]
+def largest_field(spec: Spec) -> str:
+    """Return the field whose least value would save the most memory."""
+    fields = MEMORY_FIELDS[spec.experiment]
     if len(fields) == 1:
         return fields[0]
     return min(fields, key=lambda field: estimate(_least(spec, field)).memory_bytes)
 
 
 def _least(spec: Any, field: str) -> Spec:
-    """The spec with as little as possible in one of its fields."""
     part, _, name = field.partition(".")
     if not name:
         return spec.model_copy(update={part: OneCell()})
@@ -88,44 +91,119 @@ def _least(spec: Any, field: str) -> Spec:
     return spec.model_copy(update={part: changed})
 
 
-def submit(
-    services: Services,
-    spec: Spec,
-    key: str | None = None,
-    request: Any = None,
-    *,
-    owner: UUID | None = None,
-    **columns: Any,
-) -> tuple[RunRead, bool]:
-    """Create and enqueue a run; return it and whether it is new.
+@dataclass(frozen=True)
+class Request:
+    """A request that creates runs. With a key, the same body again creates nothing."""
 
-    The same key with the same request gives the same run. Without a `request` it is the spec.
-    """
-    document = spec.model_dump(mode="json")
-    request = document if request is None else request
-    run = Run(
-        experiment=spec.experiment,
-        spec=document,
-        plugin_versions=plugins.needed_versions(document),
-        generations=spec.generations,
-        version=VERSION,
-        owner=owner,
-        **columns,
-    )
-    with services.sessions.read() as session:
-        initial.check(session, spec)
+    body: Any
+    key: str | None = None
+    owner: UUID | None = None
+
+    @property
+    def stored_key(self) -> str | None:
+        """Owners do not share keys, since two may choose the same."""
+        if self.key is None or self.owner is None:
+            return self.key
+        return sha256(f"{self.owner} {self.key}".encode()).hexdigest()
+
+    @property
+    def digest(self) -> str:
+        """Specs may have integers that canonical JSON does not have, so this is plain JSON."""
+        return sha256(json.dumps(self.body, sort_keys=True).encode()).hexdigest()
+
+    def earlier(self, services: Services) -> Idempotency | None:
+        """Return what the key created; raise `ProblemError` if the request was another."""
+        with services.sessions.read() as session:
+            known = session.get(Idempotency, self.stored_key) if self.key is not None else None
+        if known and known.body_sha256 != self.digest:
+            made = f"sweep {known.sweep}" if known.sweep else f"run {known.run_id}"
+            detail = f"Idempotency-Key {self.key!r} was used with another request, for {made}."
+            raise ProblemError(422, "Idempotency key reused", detail)
+        return known
+
+
+def earlier_run(services: Services, response: Response, request: Request) -> RunRead | None:
+    """Answer a request with the run that its key created, if there is one."""
+    known = request.earlier(services)
+    return submitted(response, current(services, known.run_id), new=False) if known else None
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A run to create. The document is the spec as stored, which may have another seed."""
+
+    spec: Spec
+    document: dict[str, Any]
+    columns: dict[str, Any]
+
+
+def create_runs(
+    services: Services, drafts: Sequence[Draft], request: Request, sweep: Sweep | None = None
+) -> Sequence[Run] | Idempotency:
+    """Create and enqueue all runs or none; or return what the request's key created earlier."""
     try:
         with services.sessions.write.begin() as session:
-            session.add(run)
-            session.flush()
-            note(session, run, f"Submitted: {run.experiment}, {run.generations} generations.")
-            initial.keep(session, [(spec, [run.id])])
-            idempotency.remember(session, key, owner, request, run_id=run.id)
+            if sweep is not None:
+                session.add(sweep)
+                session.flush()
+            runs = _insert(session, drafts, request.owner, sweep)
+            if request.key is not None:
+                created = {"sweep": sweep.id} if sweep is not None else {"run_id": runs[0].id}
+                key, digest = request.stored_key, request.digest
+                session.add(Idempotency(key=key, body_sha256=digest, **created))
     except IntegrityError:
-        known = idempotency.earlier(services, key, owner, request)
+        known = request.earlier(services)
         if known is None:
             raise
-        return current(services, known.run_id), False
-    # Committed before it is enqueued: the worker must find the row.
-    services.jobs.enqueue([run])
-    return announced(services, run.id), True
+        return known
+    # Committed before they are enqueued: workers must find the rows.
+    services.jobs.enqueue(runs)
+    return runs
+
+
+def _insert(
+    session: Session, drafts: Sequence[Draft], owner: UUID | None, sweep: Sweep | None
+) -> list[Run]:
+    """Insert rows a microsecond apart, so that lists and the queue keep their order."""
+    created = now(session)
+    runs = [
+        Run(
+            experiment=draft.spec.experiment,
+            spec=draft.document,
+            plugin_versions=plugins.needed_versions(draft.document),
+            generations=draft.spec.generations,
+            version=VERSION,
+            owner=owner,
+            sweep=sweep.id if sweep is not None else None,
+            sweep_index=place if sweep is not None else None,
+            created_at=created + timedelta(microseconds=place),
+            queued_at=created + timedelta(microseconds=place),
+            **draft.columns,
+        )
+        for place, draft in enumerate(drafts)
+    ]
+    session.add_all(runs)
+    session.flush()
+    by_spec: dict[int, tuple[Spec, list[UUID]]] = {}
+    for place, (draft, run) in enumerate(zip(drafts, runs, strict=True), 1):
+        text = f"Submitted: {run.experiment}, {run.generations} generations"
+        if sweep is not None:
+            text += f"; run {place} of a sweep of {len(runs)}"
+        session.add(LogEntry(run_id=run.id, attempt=0, level="info", text=f"{text}."))
+        by_spec.setdefault(id(draft.spec), (draft.spec, []))[1].append(run.id)
+    initial.keep(session, list(by_spec.values()))
+    return runs
+
+
+def submit(
+    services: Services, spec: Spec, request: Request | None = None, **columns: Any
+) -> tuple[RunRead, bool]:
+    """Create and enqueue a run; return it and whether it is new."""
+    document = spec.model_dump(mode="json")
+    with services.sessions.read() as session:
+        initial.check(session, spec)
+    drafts = [Draft(spec, document, columns)]
+    created = create_runs(services, drafts, request or Request(document))
+    if isinstance(created, Idempotency):
+        return current(services, created.run_id), False
+    return announced(services, created[0].id), True

@@ -1,4 +1,4 @@
-"""The event stream: publish events to Redis, from where the server fans them out."""
+"""The event stream: publish events to Redis; the server sends them to its clients."""
 
 import json
 import logging
@@ -9,7 +9,7 @@ from uuid import UUID
 from redis import Redis, RedisError
 
 STREAM_LENGTH = 10_000
-"""Events that the stream keeps, approximately. A client that missed more fetches everything."""
+"""Approximate length of the stream. A client that missed more fetches everything."""
 
 log = logging.getLogger(__name__)
 
@@ -27,8 +27,7 @@ class Events:
         try:
             self.redis.xadd(self.stream, fields, maxlen=STREAM_LENGTH, approximate=True)  # pyright: ignore
         except RedisError as error:
-            # SQL already holds what the event says, so a run must not end when Redis does
-            # not answer. Pages fetch everything again when it is back.
+            # SQL holds the content of the event, and pages fetch it when Redis is back.
             log.warning("no event %s of run %s: %s", kind, run_id, error)
 
 

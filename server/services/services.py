@@ -1,4 +1,4 @@
-"""What server and workers share: database, queues, events and files, from the settings."""
+"""Services of server and workers: database, queues, events and files."""
 
 from dataclasses import dataclass
 
@@ -27,7 +27,7 @@ class Services:
 
 
 def connect(settings: Settings) -> Services:
-    """Open everything; Redis and the database are reached at the first use."""
+    """Create all services; they connect at their first use."""
     redis = open_redis(settings.redis_url)
     return Services(
         settings=settings,

@@ -1,4 +1,4 @@
-"""The file of an archive as it was when it was shared, with its licence and whom to credit."""
+"""The archive file of a share: a copy of a checkpoint with its licence and credit."""
 
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
@@ -16,27 +16,24 @@ def path(share: Share) -> str:
 
 
 def keep(services: Services, share: Share) -> None:
-    """Keep a copy of the checkpoint of the generation, where there is one.
+    """Copy the checkpoint of the shared generation, if there is one.
 
-    It may be large: nobody who wants to write has to wait for it.
+    The file may be large, so it is written outside any transaction.
     """
     with services.sessions.read() as session:
         checkpoint = None if find(session, share) else _checkpoint(session, share)
     if checkpoint is None:
         return
-    kept = Stored(checkpoint.path, checkpoint.size, checkpoint.sha256)
-    whole = services.artifacts.sound(kept)
-    if whole is None:
+    data = services.artifacts.sound(Stored(checkpoint.path, checkpoint.size, checkpoint.sha256))
+    if data is None:
         return
-    data = export.licensed(whole, share.licence, share.credit)
-    stored = services.artifacts.write(path(share), data)
+    licensed = export.licensed(data, share.licence, share.credit)
+    stored = services.artifacts.write(path(share), licensed)
     row = {
-        "path": stored.path,
+        **vars(stored),
         "kind": PUBLISHED,
         "run_id": share.run_id,
         "generation": share.generation,
-        "size": stored.size,
-        "sha256": stored.sha256,
     }
     with services.sessions.write.begin() as session:
         insert_missing(session, Artifact, [row])
@@ -52,7 +49,7 @@ def find(session: Session, share: Share) -> Artifact | None:
     return session.get(Artifact, path(share))
 
 
-def forget(session: Session, share: Share) -> str | None:
-    """The path of the file that nobody may see any more, if there was one."""
-    gone = delete(Artifact).where(Artifact.path == path(share)).returning(Artifact.path)
-    return session.scalars(gone).one_or_none()
+def remove_row(session: Session, share: Share) -> str | None:
+    """Delete the row of the file; return the path of the file, if there was one."""
+    rows = delete(Artifact).where(Artifact.path == path(share)).returning(Artifact.path)
+    return session.scalars(rows).one_or_none()

@@ -1,4 +1,4 @@
-"""Open a share, and decide what its holder may read."""
+"""Open a share, and read what it shows."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +14,7 @@ from . import archive_files, publishing
 
 @dataclass(frozen=True)
 class ShareView:
-    """What a live share shows."""
+    """Read access to what a live share shows."""
 
     share: Share
 
@@ -39,12 +39,12 @@ class ShareView:
         found = archive_files.find(session, self.share)
         if found is None:
             generation = self.share.generation
-            detail = f"No file was kept of generation {generation}; its elites are here."
+            detail = f"The share has no file of generation {generation}; its elites are shown."
             raise ProblemError(404, "No file", detail)
         return found
 
 
 def open_share(services: Services, slug: str) -> ShareView:
-    """Return the view of a share; raise `ProblemError` if there is none, or none any more."""
+    """Return the view of a live share; raise `ProblemError` 404 or 410."""
     with services.sessions.read() as session:
         return ShareView(publishing.opened(session, slug))

@@ -1,4 +1,4 @@
-"""The page at the address of a share, with what other sites show of it."""
+"""The page of a share, with the tags by which other sites show a preview of it."""
 
 from html import escape
 from typing import Any
@@ -12,10 +12,9 @@ from ..core.errors import ProblemError
 from ..services.deps import SessionDep
 from ..tables import Creature, Share
 from . import publishing
-from .routes import base
 
 WIDTH, HEIGHT = 1200, 630
-"""Of the preview: what most sites cut pictures to."""
+"""Size of the preview: most sites cut pictures to it."""
 
 router = APIRouter(include_in_schema=False)
 
@@ -23,7 +22,7 @@ router = APIRouter(include_in_schema=False)
 @router.get("/s/{slug}")
 @router.get("/s/{slug}/{rest:path}")
 def read_share_page(request: Request, slug: str, session: SessionDep) -> Response:
-    """The page itself; it says in words why nothing is shared at an address any more."""
+    """Return the page itself, which explains a missing, expired or revoked share."""
     if not (page.BUILT / "index.html").is_file():
         return HTMLResponse(page.MISSING, 503)
     index = (page.BUILT / "index.html").read_text()
@@ -32,30 +31,36 @@ def read_share_page(request: Request, slug: str, session: SessionDep) -> Respons
     except ProblemError as error:
         return HTMLResponse(index, error.problem.status)
     request.state.listed = share.listed
-    return HTMLResponse(with_tags(index, tags(base(request), share, described(session, share))))
+    found = tags(base(request), share, description(session, share))
+    return HTMLResponse(with_tags(index, found))
 
 
-def described(session: Session, share: Share) -> str:
-    """What was shared, in a sentence or two."""
+def base(request: Request) -> str:
+    """Return the public address of this server, without a slash at the end."""
+    given = request.app.state.services.settings.public_url
+    return (given or str(request.base_url)).rstrip("/")
+
+
+def description(session: Session, share: Share) -> str:
     by = f" By {', '.join(share.credit)}." if share.credit else ""
     licence = f" {share.licence}." if len(share.licence) <= 40 else ""
     if share.run_id:
         count = publishing.elites(session, share)
-        what = f"An archive of {count:,} swimmers after {share.generation:,} generations."
+        text = f"An archive of {count:,} swimmers after {share.generation:,} generations."
     else:
-        what = _told(session.get_one(Creature, share.cover).measured)
-    return what + by + licence
+        text = _creature_description(session.get_one(Creature, share.cover).measured)
+    return text + by + licence
 
 
-def _told(measured: dict[str, Any] | None) -> str:
+def _creature_description(measured: dict[str, Any] | None) -> str:
     measures = (measured or {}).get("measures", {})
     if "displacement" not in measures:
         return "A creature of Microcosmos."
-    return f"An evolved swimmer that goes {measures['displacement']:.3g} cells."
+    return f"An evolved swimmer that travels {measures['displacement']:.3g} cells."
 
 
 def tags(base: str, share: Share, description: str) -> dict[str, str]:
-    """Open Graph's names for it, and those that start with `twitter`."""
+    """Return the names and contents of Open Graph's and Twitter's tags."""
     picture = f"{base}/api/v1/shares/{share.slug}/preview.png"
     return {
         "og:site_name": "Microcosmos",
@@ -76,15 +81,14 @@ def tags(base: str, share: Share, description: str) -> dict[str, str]:
 
 
 def with_tags(index: str, tags: dict[str, str]) -> str:
-    """The page's own document, with tags in its head; all that people wrote is escaped."""
-    told = [
+    """Return the page's document with tags in its head; text from people is escaped."""
+    lines = [
         f'<meta {"name" if name.startswith("twitter") else "property"}="{name}" '
         f'content="{escape(value)}" />'
         for name, value in tags.items()
     ]
-    told.append(f'<link rel="canonical" href="{escape(tags["og:url"])}" />')
+    lines.append(f'<link rel="canonical" href="{escape(tags["og:url"])}" />')
     title = f"<title>{escape(tags['og:title'])} · Microcosmos</title>"
-    before, _, after = index.replace("<title>Microcosmos</title>", title, 1).partition(
-        "</head>"
-    )
-    return "\n".join([before.rstrip(), *told, "</head>"]) + after
+    index = index.replace("<title>Microcosmos</title>", title, 1)
+    before, _, after = index.partition("</head>")
+    return "\n".join([before.rstrip(), *lines, "</head>"]) + after

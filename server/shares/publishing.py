@@ -1,34 +1,36 @@
-"""What was published: who may see what of it, and until when."""
+"""Shares in the database: publish, open, and read what they show."""
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from secrets import token_urlsafe
 from typing import Any
 
-from sqlalchemy import Select, exists, func, or_, select
+from sqlalchemy import Select, exists, func, select
 from sqlalchemy.orm import Session
 
 from ..archives import measures
 from ..auth.authorize import refuse_other
 from ..auth.principal import Principal
-from ..core.database import clock
-from ..core.errors import ProblemError
-from ..core.schemas import FieldError
+from ..core.errors import ProblemError, invalid_field
+from ..creatures.deps import find_creature
 from ..runs.deps import find_run
 from ..tables import FINISHED, Creature, Elite, Generation, Run, Share
-from .schemas import ShareAsked, ShareState
+from ..tables.base import refuse_past
+from .schemas import ShareCreate, ShareState
 
-BYTES = 24
-"""Random ones in an address: nobody finds it by trying."""
+SLUG_BYTES = 24
 SLUG = re.compile(r"[A-Za-z0-9_-]{1,43}")
-MEANT = ("creature", "run_id", "generation", "title", "credit", "licence", "listed")
+COMPARED = (
+    *("creature", "run_id", "generation", "title", "credit", "licence", "listed"),
+    "expires_at",
+)
+"""Two shares with the same values are one."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """What is published, and what its file says already."""
+    """A creature or an archive to share, and what its file says already."""
 
     cover: str
     title: str
@@ -39,34 +41,29 @@ class Subject:
     generation: int | None = None
 
 
-def subject(session: Session, asked: ShareAsked, principal: Principal) -> Subject:
-    """What somebody asks to publish; `ProblemError` where it is not there."""
-    if asked.creature:
-        row = session.get(Creature, asked.creature)
-        if row is None:
-            raise ProblemError(404, "Not found", f"No creature has the name {asked.creature}.")
+def subject(session: Session, sent: ShareCreate, principal: Principal) -> Subject:
+    """Return the subject of a request; raise `ProblemError` if it cannot be shared."""
+    if sent.creature:
+        row = find_creature(session, sent.creature)
         title = f"Creature {row.sha256[:8]}"
         return Subject(row.sha256, title, row.licence, row.credit, creature=row.sha256)
-    assert asked.run is not None
-    run = find_run(session, asked.run)
+    assert sent.run is not None
+    run = find_run(session, sent.run)
     refuse_other(session, principal, run, "publish")
-    if not measures.searched(run):
-        detail = f"A run of `{run.experiment}` fills no archive that could be published."
+    if not measures.has_archive(run):
+        detail = f"A run of `{run.experiment}` has no archive to publish."
         raise ProblemError(422, "No archive", detail)
-    generation = _last(run, asked.generation)
+    generation = _last(run, sent.generation)
     best = session.get_one(Creature, _best(session, run, generation))
     title = run.name or f"Archive {str(run.id)[:8]}"
     return Subject(best.sha256, title, best.licence, [], run=run, generation=generation)
 
 
-def _last(run: Run, asked: int | None) -> int:
-    """The last generation that is seen: as the run's file has it, where none is named."""
-    last = asked or run.checkpoint_generation or run.generation
+def _last(run: Run, requested: int | None) -> int:
+    """Return the last generation to show: by default that of the run's file."""
+    last = requested or run.checkpoint_generation or run.generation
     if last > run.generation:
-        needed = f"at most {run.generation}, which the run has come to"
-        detail = f"`generation` must be {needed}; got {last}."
-        error = FieldError(field="generation", message=detail, needed=needed, got=last)
-        raise ProblemError(422, "Invalid input", detail, [error])
+        raise invalid_field("generation", f"at most {run.generation}, the run's last one", last)
     return last
 
 
@@ -79,79 +76,67 @@ def _best(session: Session, run: Run, generation: int) -> str:
     return found
 
 
-def publish(session: Session, asked: ShareAsked, principal: Principal) -> tuple[Share, bool]:
-    """The share, and whether it is new: one that says the same and is live is taken again."""
-    _refuse_past(session, asked.expires_at)
-    of = subject(session, asked, principal)
-    made = Share(
-        slug=token_urlsafe(BYTES),
+def publish(session: Session, sent: ShareCreate, principal: Principal) -> tuple[Share, bool]:
+    """Return the share and whether it is new: a live one with the same content is reused."""
+    refuse_past(session, sent.expires_at)
+    of = subject(session, sent, principal)
+    new = Share(
+        slug=token_urlsafe(SLUG_BYTES),
         creature=of.creature,
         run_id=of.run.id if of.run else None,
         generation=of.generation,
         cover=of.cover,
-        title=asked.title or of.title,
-        credit=list(dict.fromkeys([*of.credit, *asked.credit])),
-        licence=asked.licence or of.licence,
-        listed=asked.listed,
-        expires_at=asked.expires_at,
+        title=sent.title or of.title,
+        credit=list(dict.fromkeys([*of.credit, *sent.credit])),
+        licence=sent.licence or of.licence,
+        listed=sent.listed,
+        expires_at=sent.expires_at,
         owner=principal.token,
     )
     mine = Share.owner.is_not_distinct_from(principal.token)
     for known in session.scalars(live().where(Share.cover == of.cover, mine)):
-        same = all(getattr(known, name) == getattr(made, name) for name in MEANT)
-        if same and known.expires_at == made.expires_at:
+        if all(getattr(known, name) == getattr(new, name) for name in COMPARED):
             return known, False
-    session.add(made)
+    session.add(new)
     session.flush()
-    return made, True
-
-
-def _refuse_past(session: Session, expires: datetime | None) -> None:
-    now = session.execute(select(clock())).scalar_one()
-    if expires is not None and expires <= now:
-        needed = f"a moment to come; it is {now:%Y-%m-%dT%H:%M:%SZ}"
-        detail = f"`expires_at` must be {needed}; got {expires.isoformat()}."
-        error = FieldError(field="expires_at", message=detail, needed=needed, got=str(expires))
-        raise ProblemError(422, "Invalid input", detail, [error])
+    return new, True
 
 
 def live() -> Select[Share]:
-    """Shares that are neither revoked nor expired, and whose run does not lie in the bin."""
-    lasting = or_(Share.expires_at.is_(None), Share.expires_at > clock())
-    binned = exists().where(Run.id == Share.run_id, Run.deleted_at.is_not(None))
-    return select(Share).where(Share.revoked_at.is_(None), lasting, ~binned)
+    """Select shares that are live and whose run is not in the bin."""
+    in_bin = exists().where(Run.id == Share.run_id, Run.deleted_at.is_not(None))
+    return select(Share).where(Share.live(), ~in_bin)
 
 
 def state(session: Session, share: Share) -> ShareState:
     if share.revoked_at:
         return "revoked"
-    now = session.execute(select(clock())).scalar_one()
-    return "expired" if share.expires_at and share.expires_at <= now else "live"
+    return "expired" if share.expired(session) else "live"
 
 
 def find(session: Session, slug: str) -> Share | None:
-    """The share of a name; what cannot be one, a database need not be able to read."""
+    """Return the share of a slug, if there is one; a database may not take other texts."""
     return session.get(Share, slug) if SLUG.fullmatch(slug) else None
 
 
 def opened(session: Session, slug: str) -> Share:
-    """The share at an address; `ProblemError` says that there is none, or none any more."""
+    """Return a live share; raise `ProblemError` 404 or 410."""
     share = find(session, slug)
     if share is None:
         raise ProblemError(404, "Not found", "Nothing is shared at this address.")
-    standing = state(session, share)
-    if standing == "revoked":
-        raise ProblemError(410, "Gone", "Whoever shared this has taken it back.")
-    if standing == "expired":
-        detail = f"This was shared until {share.expires_at:%d %B %Y, %H:%M} UTC."
+    current = state(session, share)
+    if current == "revoked":
+        raise ProblemError(410, "Gone", "Its owner has revoked this share.")
+    if current == "expired":
+        detail = f"This share expired on {share.expires_at:%d %B %Y, %H:%M} UTC."
         raise ProblemError(410, "Gone", detail)
     if share.run_id and session.get_one(Run, share.run_id).deleted_at:
-        raise ProblemError(410, "Gone", "The run that was shared has been deleted.")
+        raise ProblemError(410, "Gone", "The shared run has been deleted.")
     return share
 
 
 def holds(session: Session, share: Share, creature: str) -> bool:
-    """Whether a creature is what was shared, or an elite of the archive that was."""
+    """Return whether a creature is the shared one, or an elite of the shared archive."""
     if share.run_id is None:
         return creature == share.creature
     mine = (Elite.run_id == share.run_id) & (Elite.creature == creature)
@@ -160,41 +145,36 @@ def holds(session: Session, share: Share, creature: str) -> bool:
 
 
 def frozen(session: Session, share: Share) -> Run:
-    """The run as it was when it was shared, without what its owner noted of it.
+    """Return the run as it was when it was shared, without its owner's notes.
 
-    It belongs to no session: nothing of it is ever written.
+    The object belongs to no session, so nothing of it is ever written.
     """
     run = session.get_one(Run, share.run_id)
     last = session.get(Generation, (run.id, share.generation))
+    copied = ("id", "experiment", "spec", "version", "created_at", "device", "generations")
     figures = ("qd_score", "coverage", "best", "evaluations", "diverged", "seconds")
     return Run(
-        id=run.id,
-        experiment=run.experiment,
-        spec=run.spec,
-        version=run.version,
         demonstration=False,
         name=share.title,
         tags=[],
         status=FINISHED,
-        created_at=run.created_at,
         queued_at=run.created_at,
         finished_at=share.created_at,
         attempt=0,
-        device=run.device,
-        generations=run.generations,
         generation=share.generation,
+        **{name: getattr(run, name) for name in copied},
         **{name: getattr(last or run, name) for name in figures},
     )
 
 
 def licensed(share: Share, document: Mapping[str, Any]) -> dict[str, Any]:
-    """A creature file under the share's licence; who was named in it stays named."""
+    """Return a creature file under the share's licence, with the credit of both."""
     credit = list(dict.fromkeys([*document["credit"], *share.credit]))
     return {**document, "licence": share.licence, "credit": credit}
 
 
 def elites(session: Session, share: Share) -> int:
-    """How many cells of a shared archive are filled."""
+    """Return the number of filled cells of a shared archive."""
     mine = (Elite.run_id == share.run_id) & (Elite.generation <= share.generation)
     counted = select(func.count(Elite.cell.distinct())).where(mine)
     return session.execute(counted).scalar_one()

@@ -1,75 +1,71 @@
-"""Publishing: what may be seen by whoever has an address, and taking it back."""
+"""Routes of shares: publish, read, list, revoke."""
 
 import logging
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from pydantic import StringConstraints
 from redis import RedisError
-from sqlalchemy import Select, and_, or_, select
+from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
 from ..auth.authorize import PUBLIC, Reader, Writer, authorize_owner
 from ..auth.principal import ADMIN
-from ..core.database import clock
+from ..core.database import now
 from ..core.errors import ProblemError
+from ..core.paging import MOMENT, Order
 from ..core.uploads import json_route
-from ..creatures.schemas import Rendering
+from ..creatures.deps import find_creature
 from ..renderings import reading
 from ..renderings import storage as renderings
+from ..renderings.schemas import Rendering
 from ..services.deps import ServicesDep, SessionDep
 from ..services.services import Services
-from ..tables import PREVIEW, Creature, Share
+from ..tables import PREVIEW, Share
 from . import archive_files, publishing
-from .schemas import ShareAsked, SharePage, ShareRead
+from .page import base
+from .schemas import ShareCreate, SharePage, ShareRead
 
 log = logging.getLogger(__name__)
-ASKED_BYTES = 1 << 16
+BODY_BYTES = 1 << 16
+Slug = Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")]
+SlugText = Annotated[str, StringConstraints(pattern=f"^{publishing.SLUG.pattern}$")]
+NEWEST_FIRST = Order("-created", Share.created_at.expression, MOMENT, Share.slug, SlugText)
 
-router = APIRouter(tags=["shares"], route_class=json_route(ASKED_BYTES))
+router = APIRouter(tags=["shares"], route_class=json_route(BODY_BYTES))
 
 
-@router.post(
-    "/shares",
-    status_code=201,
-    responses={200: {"model": ShareRead}},
-)
+@router.post("/shares", status_code=201, responses={200: {"model": ShareRead}})
 def publish(
     principal: Writer,
-    sent: ShareAsked,
+    sent: ShareCreate,
     request: Request,
     services: ServicesDep,
     response: Response,
 ) -> ShareRead:
-    """Publish a creature or an archive. What is live already is answered again, with 200."""
+    """Publish a creature or an archive. A live share with the same content is returned, 200."""
     with services.sessions.write.begin() as session:
         share, new = publishing.publish(session, sent, principal)
-        read = told(request, session, share)
+        read = share_read(request, session, share)
     if share.run_id:
         archive_files.keep(services, share)
-    _prepare(services, share.cover)
+    _order_preview(services, share.cover)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/shares/{share.slug}"
     return read
 
 
-def _prepare(services: Services, cover: str) -> None:
-    """Have picture and replay made, so that they are there when the first stranger comes."""
+def _order_preview(services: Services, cover: str) -> None:
+    """Order the picture, so that it exists when the first visitor comes."""
     try:
         with services.sessions.read() as session:
             if renderings.find(session, cover, PREVIEW) is None:
                 renderings.order(services, cover, PREVIEW)
     except (RedisError, renderings.RenderingFailed) as error:
-        log.warning("The preview of %s is left to who wants to see it: %s", cover, error)
+        log.warning("The preview of %s is left to its first visitor: %s", cover, error)
 
 
-Slug = Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")]
-
-
-def share(
-    request: Request,
-    slug: Slug,
-    session: SessionDep,
-) -> Share:
+def share(request: Request, slug: Slug, session: SessionDep) -> Share:
     found = publishing.opened(session, slug)
     request.state.listed = found.listed
     return found
@@ -84,7 +80,7 @@ PNG: dict[int | str, dict[str, Any]] = {
 
 @router.get("/shares/{slug}", dependencies=[PUBLIC])
 def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareRead:
-    return told(request, session, share)
+    return share_read(request, session, share)
 
 
 @router.get(
@@ -97,9 +93,9 @@ def read_preview(
     request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
 ) -> Response:
     """Return a picture of the creature, or of the best of the archive; 202 while it is made."""
-    cover = session.get_one(Creature, share.cover)
-    there = reading.kept(request, cover, session, services, PREVIEW)
-    return there or reading.ordered(services, share.cover, PREVIEW, anonymous=True)
+    cover = find_creature(session, share.cover)
+    found = reading.existing(request, cover, session, services, PREVIEW)
+    return found or reading.order(services, share.cover, PREVIEW, anonymous=True)
 
 
 Limit = Annotated[int, Query(ge=1, le=200)]
@@ -113,21 +109,34 @@ def list_shares(
     cursor: str | None = None,
     limit: Limit = 50,
 ) -> SharePage:
-    """One's own shares, newest first, with those that were taken back or have expired.
+    """Return one's own shares, newest first, also revoked and expired ones.
 
-    An admin sees everybody's: who knows an address sees what was shared.
+    An admin gets everybody's.
     """
-    mine = select(Share).where(Share.owner == principal.token)
-    everybody = principal.may(ADMIN)
-    return _page(request, session, select(Share) if everybody else mine, cursor, limit)
+    listed = select(Share)
+    if not principal.may(ADMIN):
+        listed = listed.where(Share.owner == principal.token)
+    return _page(request, session, listed, cursor, limit)
 
 
 @router.get("/commons", dependencies=[PUBLIC])
 def read_commons(
     request: Request, session: SessionDep, cursor: str | None = None, limit: Limit = 50
 ) -> SharePage:
-    """What is published for everybody to find, newest first."""
+    """Return the live listed shares, newest first."""
     return _page(request, session, publishing.live().where(Share.listed), cursor, limit)
+
+
+def _page(
+    request: Request,
+    session: Session,
+    listed: Select[Share],
+    cursor: str | None,
+    limit: int,
+) -> SharePage:
+    shares, following = NEWEST_FIRST.page(session, listed, cursor, limit)
+    items = [share_read(request, session, share) for share in shares]
+    return SharePage(items=items, next=following)
 
 
 def own_share(slug: str, principal: Writer, services: ServicesDep) -> str:
@@ -142,21 +151,21 @@ OwnSlug = Annotated[str, Depends(own_share)]
 
 @router.delete("/shares/{slug}")
 def revoke(slug: OwnSlug, request: Request, services: ServicesDep) -> ShareRead:
-    """Take it back: from now on its address shows nothing."""
+    """Revoke a share: its address shows nothing from now on."""
     with services.sessions.write.begin() as session:
         share = publishing.find(session, slug)
         if share is None:
             raise ProblemError(404, "Not found", "Nothing is shared under this name.")
         if share.revoked_at is None:
-            share.revoked_at = session.execute(select(clock())).scalar_one()
-        stored = archive_files.forget(session, share)
-        read = told(request, session, share)
+            share.revoked_at = now(session)
+        stored = archive_files.remove_row(session, share)
+        read = share_read(request, session, share)
     if stored:
         services.artifacts.delete(stored)
     return read
 
 
-def told(request: Request, session: Session, share: Share) -> ShareRead:
+def share_read(request: Request, session: Session, share: Share) -> ShareRead:
     names = [name for name in ShareRead.model_fields if name not in ("url", "run", "state")]
     return ShareRead(
         url=f"{base(request)}/s/{share.slug}",
@@ -164,34 +173,3 @@ def told(request: Request, session: Session, share: Share) -> ShareRead:
         state=publishing.state(session, share),
         **{name: getattr(share, name) for name in names},
     )
-
-
-def base(request: Request) -> str:
-    """How the outside reaches this server, without a slash at the end."""
-    given = request.app.state.services.settings.public_url
-    return (given or str(request.base_url)).rstrip("/")
-
-
-def _page(
-    request: Request,
-    session: Session,
-    statement: Select[Share],
-    cursor: str | None,
-    limit: int,
-) -> SharePage:
-    """A cursor is the name of the last share that was seen."""
-    if cursor is not None:
-        statement = statement.where(_after(session, cursor))
-    ordered = statement.order_by(Share.created_at.desc(), Share.slug.desc())
-    found = list(session.scalars(ordered.limit(limit + 1)))
-    items = [told(request, session, share) for share in found[:limit]]
-    return SharePage(items=items, next=items[-1].slug if len(found) > limit else None)
-
-
-def _after(session: Session, cursor: str) -> Any:
-    last = publishing.find(session, cursor)
-    if last is None:
-        detail = f"`cursor` must be the `next` of an earlier answer; got {cursor!r:.80}."
-        raise ProblemError(422, "Invalid input", detail)
-    at_once = and_(Share.created_at == last.created_at, Share.slug < last.slug)
-    return or_(Share.created_at < last.created_at, at_once)

@@ -1,4 +1,4 @@
-"""What people publish, and what is told of it to whoever has the address."""
+"""Wire types of shares."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal, Self
@@ -16,37 +16,34 @@ Licence = Annotated[
 ]
 
 
-def listed(credit: Any) -> Any:
-    """One name may stand by itself."""
+def as_list(credit: Any) -> Any:
     return [credit] if isinstance(credit, str) else credit
 
 
-Credit = Annotated[list[Line], Field(max_length=20), BeforeValidator(listed)]
+Credit = Annotated[list[Line], Field(max_length=20), BeforeValidator(as_list)]
 
 
-class ShareAsked(Wire):
-    """What is to be published; what is left out is taken from the creature's file."""
+class ShareCreate(Wire):
+    """What to share; by default the creature's file decides title, credit and licence."""
 
     creature: Digest | None = None
     run: UUID | None = None
     generation: int | None = Field(default=None, ge=1)
-    """The last one of the run that is seen; the one of its last file where none is named."""
+    """The last generation of the run that the share shows; by default that of its last file."""
     title: Line | None = None
     credit: Credit = Field(default=[])
-    """People to be named, beside those whom the creature's file names already."""
+    """People to name, beside those whom the creature's file names already."""
     licence: Licence | None = None
     """An SPDX name or a text."""
     expires_at: AwareDatetime | None = None
     listed: bool = False
-    """Whether it stands in the commons too."""
+    """List the share in the commons too."""
 
     @model_validator(mode="after")
     def check_subject(self) -> Self:
         if (self.creature is None) == (self.run is None):
-            came = "none" if self.run is None else "both"
-            raise ValueError(
-                f"`creature` needs to be named, or `run`, but one only; got {came}"
-            )
+            got = "none" if self.run is None else "both"
+            raise ValueError(f"`creature` must be set, or `run`, but only one; got {got}")
         if self.creature and self.generation is not None:
             raise ValueError(
                 f"`generation` needs a `run`; got {self.generation} with a creature"
@@ -55,16 +52,16 @@ class ShareAsked(Wire):
 
 
 class ShareRead(Wire):
-    """Either `creature` or `run` is what was shared, an archive up to `generation`."""
+    """A share of a `creature`, or of the archive of a `run` up to a `generation`."""
 
     slug: str
     url: str
-    """Where people look at it."""
+    """The address of its page."""
     creature: str | None
     run: UUID | None
     generation: int | None
     cover: str
-    """The creature whose picture stands for it."""
+    """The creature on its picture."""
     title: str
     credit: list[str]
     licence: str

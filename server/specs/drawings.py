@@ -1,4 +1,4 @@
-"""What is drawn of a spec before it runs, as it goes over the wire."""
+"""Convert the drawing of a spec to its wire type."""
 
 from microcosmos.spec import Drawing, targets
 

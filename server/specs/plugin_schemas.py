@@ -9,23 +9,23 @@ from microcosmos.plugins import Declaration
 from microcosmos.spec import PluginControl
 
 Schema = dict[str, Any]
-Having = Callable[[str], list[str]]
+Hosts = Callable[[str], list[str]]
 """From a version to the names of the workers that have it."""
 
 
-def with_plugins(schema: Schema, offered: Sequence[Declaration], having: Having) -> Schema:
-    """The same with more choices; `plugins` lists the workers that offer each."""
+def with_plugins(schema: Schema, offered: Sequence[Declaration], hosts: Hosts) -> Schema:
+    """Return a schema with plug-ins among its choices, each with the workers that offer it."""
     whole = deepcopy(schema)
     parts = whole.get("$defs", {})
     kinds = {kind: [one for one in offered if one.kind in kind] for kind in CHOICES}
     for kind, (owner, field) in CHOICES.items():
         if owner in parts and kinds[kind]:
-            _choose(parts[owner], field, kinds[kind], parts, having)
+            _choose(parts[owner], field, kinds[kind], parts, hosts)
     for kind, (field, tag) in UNIONS.items():
         union = whole["properties"].get(field, {})
         if "oneOf" in union:
             mine = [one for one in offered if one.kind in kind]
-            union["oneOf"] += [_part(one, tag, parts, having) for one in mine]
+            union["oneOf"] += [_part(one, tag, parts, hosts) for one in mine]
     swimmers = whole["properties"].get("swimmers")
     if swimmers:
         swimmers["items"]["enum"] += [one.name for one in offered if one.kind == "gait"]
@@ -37,12 +37,16 @@ UNIONS = {("body", "gait"): ("body", "builder"), ("encoding",): ("control", "enc
 
 
 def _choose(
-    owner: Schema, field: str, mine: Sequence[Declaration], parts: Schema, having: Having
+    owner: Schema,
+    field: str,
+    mine: Sequence[Declaration],
+    parts: Schema,
+    hosts: Hosts,
 ) -> None:
-    """More words for a choice, their units, and settings that go with some of them."""
+    """Add names to a choice, with their units and settings."""
     properties = owner["properties"]
     properties[field]["enum"] += [one.name for one in mine]
-    properties[field]["plugins"] = {one.name: _told(one, having) for one in mine}
+    properties[field]["plugins"] = {one.name: _about(one, hosts) for one in mine}
     for other in properties.values():
         if other.get("unit_of") == field:
             other["units"] |= {one.name: one.unit for one in mine}
@@ -51,29 +55,26 @@ def _choose(
         properties["plugin"] = {"settings_of": field, "parts": settings}
 
 
-def _part(one: Declaration, tag: str, parts: Schema, having: Having) -> Schema:
-    """One more of several parts."""
-    told = _told(one, having)
+def _part(one: Declaration, tag: str, parts: Schema, hosts: Hosts) -> Schema:
+    """Return the schema of a plug-in in a union."""
+    about = _about(one, hosts)
+    workers = ", ".join(about["workers"])
     properties = {tag: {"const": one.name, "type": "string"}}
     if one.kind == "encoding":
         properties |= deepcopy(_actuation())
     if one.settings:
         properties["plugin"] = _settings(one, parts)
-    about = [
-        told["about"] or f"{one.title}.",
-        f"Plug-in on {', '.join(told['workers'])}.",
-    ]
     return {
         "type": "object",
         "title": one.title,
-        "description": " ".join(about),
+        "description": f"{about['about'] or f'{one.title}.'} Plug-in on {workers}.",
         "properties": properties,
-        "plugin": told,
+        "plugin": about,
     }
 
 
 def _settings(one: Declaration, parts: Schema) -> Schema:
-    """The schema of `plugin`: the settings, shown as if they were fields beside it."""
+    """Return the schema of `plugin`, whose settings the form shows as fields beside it."""
     settings = _moved(dict(one.settings or {}), f"{one.name}.")
     for name, part in settings.pop("$defs", {}).items():
         parts[f"{one.name}.{name}"] = part
@@ -84,7 +85,7 @@ def _settings(one: Declaration, parts: Schema) -> Schema:
 
 
 def _moved(schema: Any, prefix: str) -> Any:
-    """A schema whose own definitions have got another name."""
+    """Rename the definitions of a schema and its references to them."""
     if isinstance(schema, list):
         return [_moved(part, prefix) for part in schema]
     if not isinstance(schema, Mapping):
@@ -95,12 +96,12 @@ def _moved(schema: Any, prefix: str) -> Any:
     return found
 
 
-def _told(one: Declaration, having: Having) -> Schema:
-    return {"title": one.title, "about": one.about, "workers": having(one.source)}
+def _about(one: Declaration, hosts: Hosts) -> Schema:
+    return {"title": one.title, "about": one.about, "workers": hosts(one.source)}
 
 
 @cache
 def _actuation() -> Schema:
-    """Fields of every plug-in encoding."""
+    """Return the fields of every plug-in encoding."""
     properties = PluginControl.model_json_schema()["properties"]
     return {n: part for n, part in properties.items() if n not in ("encoding", "plugin")}

@@ -1,4 +1,4 @@
-"""What can be run: the page's forms come from here."""
+"""The route of experiments, from which the page builds its forms."""
 
 from functools import cache
 
@@ -8,7 +8,7 @@ from microcosmos.spec import EXPERIMENTS, Experiment
 
 from ..auth.authorize import MAY_READ
 from ..services.deps import ServicesDep, SessionDep
-from ..workers import plugins
+from ..workers.plugins import KnownPlugins
 from .plugin_schemas import with_plugins
 from .schemas import ExperimentRead, PresetRead
 
@@ -18,19 +18,21 @@ router = APIRouter(prefix="/experiments", tags=["experiments"])
 @router.get("", dependencies=[MAY_READ])
 def list_experiments(services: ServicesDep, session: SessionDep) -> list[ExperimentRead]:
     """Return the experiments, with the plug-ins of live workers among the choices."""
-    known = plugins.reported(services, session)
+    known = KnownPlugins(services, session)
     offered = known.offered()
     if not offered:
         return built_in()
     return [
-        one.model_copy(update={"schema_": with_plugins(one.schema_, offered, known.having)})
+        one.model_copy(
+            update={"schema_": with_plugins(one.schema_, offered, known.workers_with)}
+        )
         for one in built_in()
     ]
 
 
 @cache
 def built_in() -> list[ExperimentRead]:
-    """Schemas take a tenth of a second to make, and do not change while a server runs."""
+    """Return the experiments without plug-ins; building their schemas takes 0.1 s."""
     return [_read(experiment) for experiment in EXPERIMENTS.values()]
 
 

@@ -28,16 +28,16 @@ class ExperimentRead(Wire):
 
 
 class BodyRead(Wire):
-    """A body at rest in its world; of one with many nodes some are left out."""
+    """A body at rest in its world; a large one is drawn with a part of its nodes."""
 
     name: str
     nodes: int
-    """How many there are."""
+    """Number of all nodes."""
     positions: list[list[float]]
     """[x, y] in cells."""
     edges: list[list[int]]
     whole: bool
-    """Whether every filament is drawn."""
+    """Every filament is drawn."""
 
 
 class PictureRead(Wire):
@@ -49,7 +49,7 @@ class PictureRead(Wire):
 
 
 class DrawingRead(Wire):
-    """Bodies, each in a world of its own, and the pictures that they are to become."""
+    """Bodies, each in a world of its own, and the pictures that they fold into."""
 
     width: int
     height: int

@@ -1,4 +1,4 @@
-"""Specs of runs as the database has them, read again and estimated."""
+"""Stored specs of runs, parsed and estimated."""
 
 import json
 from dataclasses import dataclass
@@ -9,22 +9,20 @@ from microcosmos.spec import Estimate, Spec, estimate, parse
 
 
 @dataclass(frozen=True)
-class Known:
-    """A spec and what it needs."""
-
+class ParsedSpec:
     spec: Spec
-    needs: Estimate
+    estimate: Estimate
 
 
-def known(document: dict[str, Any]) -> Known | None:
-    """None where another version wrote it in its own way."""
-    return _known(json.dumps(document, sort_keys=True))
+def parsed(document: dict[str, Any]) -> ParsedSpec | None:
+    """Return None if this version cannot read a spec of another version."""
+    return _parsed(json.dumps(document, sort_keys=True))
 
 
 @lru_cache(maxsize=1024)
-def _known(text: str) -> Known | None:
+def _parsed(text: str) -> ParsedSpec | None:
     try:
         spec = parse(json.loads(text))
-        return Known(spec, estimate(spec))
+        return ParsedSpec(spec, estimate(spec))
     except ValueError:
         return None

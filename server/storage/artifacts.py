@@ -25,15 +25,15 @@ class Stored:
 
 
 class Artifacts:
-    """A place for files, by relative path."""
+    """A store of files by relative path."""
 
     def __init__(self, url: str):
         self.files, self.root = fsspec.core.url_to_fs(url)
 
     def write(self, path: str, data: bytes) -> Stored:
-        """Write beside, then rename: a failure (`OSError`) leaves what was there before.
+        """Write to a temporary file, then rename: after an `OSError` the old file stays.
 
-        On a local disk both file and folder have reached the disk when this returns.
+        On a local disk, file and folder have reached the disk when this returns.
         """
         target = self._full(path)
         beside = f"{target}.{uuid4().hex}.part"
@@ -55,7 +55,7 @@ class Artifacts:
         return self.files.cat_file(self._full(path))
 
     def sound(self, stored: Stored) -> bytes | None:
-        """The content, or None where the file is missing or is not what was written."""
+        """Return the content, or None if the file is missing or has changed."""
         try:
             data = self.read(stored.path)
         except FileNotFoundError:
@@ -63,7 +63,7 @@ class Artifacts:
         return data if hashlib.sha256(data).hexdigest() == stored.sha256 else None
 
     def stream(self, path: str, start: int, stop: int) -> Iterator[bytes]:
-        """The bytes from `start` up to `stop`, in pieces."""
+        """Yield the bytes from `start` up to `stop` in pieces."""
         with self.files.open(self._full(path), "rb") as file:
             file.seek(start)
             while start < stop and (piece := file.read(min(CHUNK, stop - start))):
@@ -71,12 +71,12 @@ class Artifacts:
                 yield piece
 
     def delete(self, path: str) -> None:
-        """Remove a file; one that is gone already is no error."""
+        """Delete a file, if it exists."""
         with suppress(FileNotFoundError):
             self.files.rm_file(self._full(path))
 
     def delete_folder(self, path: str) -> None:
-        """Remove a folder and whatever is in it; one that is gone already is no error."""
+        """Delete a folder with its content, if it exists."""
         with suppress(FileNotFoundError):
             self.files.rm(self._full(path), recursive=True)
 
@@ -100,13 +100,13 @@ class Artifacts:
 
 
 def checkpoint_path(run_id: UUID, generation: int, data: bytes) -> str:
-    """Named by content too, so that two attempts never write to one file."""
+    """Return a path with a hash of the content: two attempts never write to one file."""
     name = hashlib.sha256(data).hexdigest()[:16]
     return f"{run_folder(run_id)}{generation:08d}-{name}.h5"
 
 
 def run_folder(run_id: UUID) -> str:
-    """Where all files of a run lie, with a slash at its end."""
+    """Return the folder of all files of a run, with a slash at its end."""
     return f"runs/{run_id}/"
 
 
@@ -115,6 +115,6 @@ def rendering_path(creature: str, kind: str) -> str:
 
 
 def superfluous(numbers: list[int]) -> list[int]:
-    """Which of a run's checkpoints can go: all but the last three and every tenth."""
+    """Return a run's checkpoints to delete: all but the last three and every tenth."""
     last = sorted(numbers)[-KEEP_LAST:]
     return [n for n in numbers if n not in last and n % KEEP_EVERY]

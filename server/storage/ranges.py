@@ -1,4 +1,4 @@
-"""Files over HTTP: a strong ETag, and the part of the file that was asked for."""
+"""Send files over HTTP with a strong ETag and byte ranges."""
 
 import re
 
@@ -19,7 +19,7 @@ def file(
     headers: dict[str, str],
     media_type: str = "application/octet-stream",
 ) -> Response:
-    """An artifact, or 304 where the client has it, or 206 with one range of it."""
+    """Return an artifact, 304 if the client has it, or 206 with one range of it."""
     etag = f'"{artifact.sha256}"'
     headers = {"ETag": etag, "Accept-Ranges": "bytes", **headers}
     known = [tag.strip() for tag in request.headers.get("if-none-match", "").split(",")]
@@ -37,7 +37,7 @@ def file(
 
 
 def _part(wanted: str, size: int) -> tuple[int, int] | None:
-    """Start and stop of the range; None where several are asked for: then all is sent."""
+    """Return start and stop of the range; None for several ranges: then all is sent."""
     match = ONE_RANGE.fullmatch(wanted.strip())
     if not match or match.groups() == ("", ""):
         return None

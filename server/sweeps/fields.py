@@ -1,15 +1,15 @@
-"""Fields of a spec by their dotted paths, and what they can be given."""
+"""Fields of a spec by dotted path: test, replace, and find the nearest."""
 
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
 from typing import Any
 
-LIKE = 0.4
-"""How much a path must be like another one to be proposed for it."""
+SIMILARITY = 0.4
+"""Least similarity of a path that is suggested for another."""
 
 
 def exists(document: Any, path: str) -> bool:
-    """Whether a path leads to a field; into a part that is null, only a spec can say."""
+    """Return whether a path may lead to a field; below null only the spec can decide."""
     return _leads(document, path.split("."))
 
 
@@ -19,17 +19,16 @@ def _leads(part: Any, names: Sequence[str]) -> bool:
     name, *rest = names
     if isinstance(part, dict):
         return name in part and _leads(part[name], rest)
-    return _counts(name, part) and _leads(part[int(name)], rest)
+    return _is_index(name, part) and _leads(part[int(name)], rest)
 
 
-def _counts(name: str, part: Any) -> bool:
-    """Whether a name is the number of something in a list."""
+def _is_index(name: str, part: Any) -> bool:
     whole = isinstance(part, list) and name.isascii() and name.isdecimal() and len(name) < 6
     return whole and int(name) < len(part)
 
 
 def replaced(document: Any, path: str, value: Any) -> Any:
-    """The document with another value at a path; what was null there becomes a part."""
+    """Return the document with another value at a path; a null on the way becomes a part."""
     return _replaced(document, path.split("."), value)
 
 
@@ -46,7 +45,7 @@ def _replaced(part: Any, names: Sequence[str], value: Any) -> Any:
 
 
 def paths(document: Any, before: str = "") -> Iterator[str]:
-    """All paths of a document: of its parts, its lists, and what is in them."""
+    """Yield the paths of all parts, lists and values of a document."""
     items = document.items() if isinstance(document, dict) else enumerate(document)
     for name, value in items:
         path = f"{before}{name}"
@@ -56,12 +55,12 @@ def paths(document: Any, before: str = "") -> Iterator[str]:
 
 
 def nearest(document: Any, path: str) -> str | None:
-    """The path that somebody may have meant."""
+    """Return the path that was probably meant."""
     known = list(paths(document))
     ending = [each for each in known if each.endswith(f".{path}")]
-    return next(iter(ending or get_close_matches(path, known, 1, LIKE)), None)
+    return next(iter(ending or get_close_matches(path, known, 1, SIMILARITY)), None)
 
 
 def inside(path: str, other: str) -> bool:
-    """Whether a path leads into what another one replaces."""
+    """Return whether a path leads into the value at another path."""
     return f"{path}.".startswith(f"{other}.")

@@ -1,4 +1,4 @@
-"""The combinations of a grid's values, and which value is to blame where one is refused."""
+"""The cases of a grid, and the errors of their specs by the responsible value."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -12,12 +12,12 @@ from microcosmos.spec import Spec
 
 from ..core.errors import ProblemError, field_errors, invalid_input
 from ..core.schemas import FieldError
-from ..runs.schemas import NAME
+from ..runs.schemas import NAME_LENGTH
 from ..specs.parsing import Parse
 from . import fields
 
-TOLD = 20
-"""Errors that one answer lists at most."""
+MAX_ERRORS = 20
+"""Limit on the errors in one answer."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Case:
 
     values: dict[str, Any]
     places: dict[str, int]
-    """Where in the lists of the grid these values are."""
+    """Indices of the values in the lists of the grid."""
     spec: Spec
 
     def field(self, path: str) -> str:
@@ -49,7 +49,7 @@ def cases_of(
                 blamed = _blamed(found, values, at)
                 errors.setdefault(blamed.field, blamed)
     if errors:
-        raise refused(list(errors.values())[:TOLD])
+        raise refused(list(errors.values())[:MAX_ERRORS])
     _refuse_alike(cases)
     return cases
 
@@ -61,11 +61,11 @@ def _replaced(document: dict[str, Any], values: Mapping[str, Any]) -> dict[str, 
 
 
 def _blamed(error: FieldError, values: dict[str, Any], places: dict[str, int]) -> FieldError:
-    """An error of a combination, at the value that is to blame where that can be told."""
-    own = concerned(error.field, values)
-    to_blame = own or (list(values) if len(values) == 1 else [])
-    field = f"grid.{to_blame[0]}[{places[to_blame[0]]}]" if to_blame else "grid"
-    by_itself = error.field in own and error.needed is not None
+    """Move an error of a case to the responsible value, if one can be identified."""
+    concerning = concerned(error.field, values)
+    responsible = concerning or (list(values) if len(values) == 1 else [])
+    field = f"grid.{responsible[0]}[{places[responsible[0]]}]" if responsible else "grid"
+    by_itself = error.field in concerning and error.needed is not None
     if by_itself or not values:
         return moved(error, field)
     named = "" if f"`{error.field}`" in error.message else f"{error.field}: "
@@ -73,12 +73,12 @@ def _blamed(error: FieldError, values: dict[str, Any], places: dict[str, int]) -
 
 
 def concerned(field: str, values: Mapping[str, Any]) -> list[str]:
-    """The paths that lead to a field, to a part of it, or to what it is part of."""
+    """Return the paths that lead to a field, into it, or to a part that contains it."""
     return [path for path in values if fields.inside(field, path) or fields.inside(path, field)]
 
 
 def _refuse_alike(cases: Sequence[Case]) -> None:
-    """Two combinations that are one and the same run."""
+    """Raise `ProblemError` for two cases with the same spec."""
     seen: dict[str, Case] = {}
     for case in cases:
         document = json.dumps(case.spec.model_dump(mode="json"), sort_keys=True)
@@ -95,22 +95,21 @@ def moved(error: FieldError, field: str, before: str = "") -> FieldError:
 
 
 def refused(errors: list[FieldError]) -> ProblemError:
-    problem = invalid_input(errors)
-    return ProblemError(problem.status, problem.title, problem.detail, problem.errors)
+    return ProblemError.of(invalid_input(errors))
 
 
 def run_name(name: str | None, values: Mapping[str, Any], seed: int | None) -> str | None:
-    """What a run of a sweep is called; its seed stays where all of it would be too long."""
+    """Return the name of a run; if it is too long, the seed stays."""
     case = " · ".join(filter(None, [name, combination(values, " · ")]))
     seeded = "" if seed is None else f"seed {seed}"
-    room = NAME - len(seeded) - len(" · ")
+    room = NAME_LENGTH - len(seeded) - len(" · ")
     if len(case) > room:
         case = f"{case[: room - 1]}…"
     return " · ".join(filter(None, [case, seeded])) or None
 
 
 def combination(values: Mapping[str, Any], between: str = ", ") -> str:
-    """The values of a case, each with its field."""
+    """Return the values of a case with their fields."""
     return between.join(f"{path}={_short(value)}" for path, value in values.items())
 
 

@@ -1,4 +1,4 @@
-"""Sweeps: what is asked for, how it stands, and what its runs say together."""
+"""Wire types of sweeps: request, state, summary and curves."""
 
 from datetime import datetime
 from typing import Annotated, Any
@@ -11,26 +11,26 @@ from ..estimates.schemas import MeasuredSpeed, QueueAhead
 from ..runs.schemas import Name
 from ..tables import Status
 
-MOST = 1000
-"""Runs that one request may ask for."""
-FIELDS = 16
-"""Fields of a spec that a grid may run over."""
+MAX_RUNS = 1000
+"""Limit on the runs of a sweep."""
+MAX_FIELDS = 16
+"""Limit on the fields of a grid."""
 SEEDS = 2**32
 
 
 def seeds_sent(value: Any) -> Any:
-    """How many, or which: numbers that differ."""
-    if _is_seed(value) and 1 <= value <= MOST:
+    """Check a number of seeds, or a list of different seeds."""
+    if _is_seed(value) and 1 <= value <= MAX_RUNS:
         return value
-    if isinstance(value, list) and 1 <= len(value) <= MOST and all(map(_is_seed, value)):
+    if isinstance(value, list) and 1 <= len(value) <= MAX_RUNS and all(map(_is_seed, value)):
         twice = next((seed for seed in value if value.count(seed) > 1), None)
         if twice is not None:
             raise ValueError(f"needs seeds that differ; got {twice} more than once")
         return value
     got = f"{value!r:.80}"
     raise ValueError(
-        f"needs a number of seeds from 1 to {MOST:,}, or a list of so many whole numbers from "
-        f"0 to {SEEDS - 1}; got {got}"
+        f"needs a number of seeds from 1 to {MAX_RUNS:,}, or a list of so many whole numbers "
+        f"from 0 to {SEEDS - 1}; got {got}"
     )
 
 
@@ -38,26 +38,26 @@ def _is_seed(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < SEEDS
 
 
-Count = Annotated[int, Field(ge=1, le=MOST)]
+Count = Annotated[int, Field(ge=1, le=MAX_RUNS)]
 Seed = Annotated[int, Field(ge=0, lt=SEEDS)]
-Listed = Annotated[list[Seed], Field(min_length=1, max_length=MOST)]
+Listed = Annotated[list[Seed], Field(min_length=1, max_length=MAX_RUNS)]
 Path = Annotated[str, StringConstraints(min_length=1, max_length=200)]
-Values = Annotated[list[Any], Field(min_length=1, max_length=MOST)]
+Values = Annotated[list[Any], Field(min_length=1, max_length=MAX_RUNS)]
 
 
-class SweepSent(Wire):
-    """One request for many runs: each case of the grid with each seed."""
+class SweepCreate(Wire):
+    """A request for many runs: each case of the grid with each seed."""
 
     spec: dict[str, Any]
     seeds: Annotated[Count | Listed, BeforeValidator(seeds_sent)] = 1
-    """So many from the spec's own on, or those in a list."""
-    grid: Annotated[dict[Path, Values], Field(max_length=FIELDS)] = Field(default={})
+    """A number of seeds, starting with the spec's own, or a list of seeds."""
+    grid: Annotated[dict[Path, Values], Field(max_length=MAX_FIELDS)] = Field(default={})
     """Values by the dotted path of a field, as `archive.descriptors.0.bins`."""
     name: Name | None = None
 
 
 class SweepChange(Wire):
-    """What a sweep is called; without anything in it, it has no name."""
+    """New name of a sweep; an empty one removes the name."""
 
     name: Name | None
 
@@ -67,7 +67,7 @@ class CaseRead(Wire):
 
     values: dict[str, Any]
     runs: list[UUID]
-    """One for each seed, in the order of the seeds, as far as they were not deleted."""
+    """One for each seed, in the order of the seeds, without deleted ones."""
 
 
 class SweepRead(Wire):
@@ -76,17 +76,17 @@ class SweepRead(Wire):
     experiment: str
     spec: dict[str, Any]
     seeds: list[int]
-    """None where the experiment has no seed."""
+    """Empty if the experiment has no seed."""
     grid: dict[str, list[Any]]
     created_at: datetime
     owner: str | None
-    """The name of the token it was made with."""
+    """Name of the token that created it."""
     cases: list[CaseRead]
     total: int
     deleted: int
-    """Its runs in the bin, which are not counted anywhere else."""
+    """Its runs in the bin, which no other field counts."""
     status_counts: dict[Status, int]
-    """How many runs are in each state that any is in."""
+    """Numbers of runs by state, without zeros."""
     progress: float
 
 
@@ -96,7 +96,7 @@ class SweepPage(Wire):
 
 
 class SkippedRun(Wire):
-    """A run that was left as it is."""
+    """A run that did not change, with the reason."""
 
     run: UUID
     status: Status
@@ -105,7 +105,7 @@ class SkippedRun(Wire):
 
 class SweepChanged(SweepRead):
     changed: list[UUID]
-    """The runs that did what was asked, or will."""
+    """The runs that changed, or that their workers will change."""
     skipped: list[SkippedRun]
 
 
@@ -113,20 +113,20 @@ class SweepEstimate(Wire):
     runs: int
     cases: int
     memory_bytes: int
-    """Of the run that needs most."""
+    """Of the largest run."""
     memory_limit_bytes: int
     evaluations: int
-    """Of all runs together, as the following."""
+    """Of all runs together, as the next two fields."""
     cell_steps: int
     seconds: float | None
-    """One run after the other; None where any kind of them was not measured yet."""
+    """Total time of all runs, one after the other; None if one has no estimate."""
     speed: MeasuredSpeed | None
-    """What the seconds of the first case rest on."""
+    """The measured speed behind the estimate of the first case."""
     queue: QueueAhead
 
 
 class Spread(Wire):
-    """Of the values that are known."""
+    """Median, quartiles and range of the known values."""
 
     median: float | None
     low: float | None
@@ -143,7 +143,7 @@ class Final(Spread):
 
 
 class Quantiles(Wire):
-    """A spread at each generation, as columns."""
+    """A `Spread` at each generation, as columns."""
 
     median: list[float | None]
     low: list[float | None]
@@ -153,7 +153,7 @@ class Quantiles(Wire):
 
 
 class SweepRun(Wire):
-    """A run as its sweep tells of it."""
+    """A run of a sweep in short."""
 
     run: UUID
     seed: int | None
@@ -163,13 +163,13 @@ class SweepRun(Wire):
 
 
 class CaseSummary(Wire):
-    """What the runs of one case say together; columns have one entry per generation."""
+    """Statistics over the runs of a case; columns have one entry per generation."""
 
     values: dict[str, Any]
     members: list[SweepRun]
     generation: list[int]
     runs: list[int]
-    """How many have got so far."""
+    """Number of runs that have reached the generation."""
     qd_score: Quantiles
     coverage: Quantiles
     best: Quantiles
@@ -180,13 +180,12 @@ class CaseSummary(Wire):
 class SweepSummary(Wire):
     id: UUID
     generation: int | None
-    """The generation at which `finals` compares the runs: all active ones have reached it.
-    None before the first."""
+    """The generation at which `finals` compares the runs; all active ones have reached it."""
     cases: list[CaseSummary]
 
 
 class RunCurves(Wire):
-    """The curves of one run; None beyond the last generation that it has recorded."""
+    """The curves of one run; None after its last recorded generation."""
 
     run: UUID
     qd_score: list[float | None]

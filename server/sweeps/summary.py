@@ -1,4 +1,4 @@
-"""What the runs of a sweep say together: medians and quartiles by generation, and at last."""
+"""Statistics of a sweep: quantiles by generation, and figures at the common generation."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -6,13 +6,13 @@ from typing import Any
 from uuid import UUID
 
 import numpy as np
-from sqlalchemy import select
+from sqlalchemy import case, select
 from sqlalchemy.orm import Session
 
-from ..runs.lifecycle import KEPT
-from ..runs.overview import evenly
-from ..tables import Generation, Run, Sweep
-from .comparison import FIGURES, common_generation, figures_at
+from ..runs.curves import evenly, numbers
+from ..runs.lifecycle import NOT_IN_BIN
+from ..tables import CANCELLED, FAILED, FINISHED, Generation, Run, Sweep
+from .overview import combinations
 from .schemas import (
     CaseSummary,
     Final,
@@ -22,17 +22,17 @@ from .schemas import (
     SweepRun,
     SweepSummary,
 )
-from .steering import combinations
 
+FIGURES = ("qd_score", "coverage", "best")
+COLUMNS = (*FIGURES, "evaluations")
 QUANTILES = {"median": 0.5, "low": 0.25, "high": 0.75, "min": 0.0, "max": 1.0}
 POINTS = 400_000
-"""Values of each figure that are looked at for one answer."""
-NAMED = 10_000
-"""Generations that one question to the database names."""
-OF_RUNS = ("id", "sweep_index", "status", "generation", "generations")
+"""Limit on the values of each figure that one answer reads."""
+GENERATIONS_PER_QUERY = 10_000
+RUN_COLUMNS = ("id", "sweep_index", "status", "generation", "generations")
 
-Told = Any
-"""A row of the columns that were asked for."""
+Row = Any
+"""A row of the selected columns."""
 Values = np.ndarray[Any, np.dtype[np.float64]]
 
 
@@ -40,73 +40,80 @@ Values = np.ndarray[Any, np.dtype[np.float64]]
 class Recorded:
     """The curves of all runs of a sweep, over the same generations."""
 
-    runs: Sequence[Told]
+    runs: Sequence[Row]
     """In the order of their places."""
     generation: list[int]
     reached: np.ndarray[Any, np.dtype[np.bool_]]
-    """Run by generation: whether it has got so far."""
+    """Run by generation: the run has recorded it."""
     values: Mapping[str, Values]
     """Of each figure, run by generation; NaN where there is none."""
 
 
 def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
-    """All generations, or about so many, and fewer where all would be too much."""
-    columns = [getattr(Run, name) for name in OF_RUNS]
-    mine = select(*columns).where(Run.sweep == sweep.id, KEPT).order_by(Run.sweep_index)
+    """Read all generations, or about so many, and fewer where all would be too much."""
+    columns = [getattr(Run, name) for name in RUN_COLUMNS]
+    mine = select(*columns).where(Run.sweep == sweep.id, NOT_IN_BIN).order_by(Run.sweep_index)
     runs = session.execute(mine).all()
     last = max((run.generation for run in runs), default=0)
     most = max(2, POINTS // max(1, len(runs)))
     wanted = points or last
-    generation = evenly(last, wanted if wanted <= most else min(most, NAMED))
+    generation = evenly(last, wanted if wanted <= most else min(most, GENERATIONS_PER_QUERY))
     return Recorded(runs, generation, *_table(session, sweep, runs, generation, last))
 
 
 def _table(
     session: Session,
     sweep: Sweep,
-    runs: Sequence[Told],
+    runs: Sequence[Row],
     generation: Sequence[int],
     last: int,
 ) -> tuple[Any, dict[str, Values]]:
-    """The rows of all runs in one question, put where they belong."""
+    """Read the generations of all runs in one query."""
     columns = [getattr(Generation, name) for name in FIGURES]
-    asked = select(Run.sweep_index, Generation.generation, *columns).join(
-        Run, Run.id == Generation.run_id
+    # Runs may have continued since they were read, or have come back from the bin.
+    wanted = (
+        select(Run.sweep_index, Generation.generation, *columns)
+        .join(Run, Run.id == Generation.run_id)
+        .where(Run.sweep == sweep.id, Run.sweep_index.in_([run.sweep_index for run in runs]))
+        .where(Generation.generation <= last)
     )
-    # Runs may have gone on since they were read, or have come back from the bin.
-    asked = asked.where(
-        Run.sweep == sweep.id, Run.sweep_index.in_([run.sweep_index for run in runs])
-    )
-    asked = asked.where(Generation.generation <= last)
     if len(generation) < last:
-        asked = asked.where(Generation.generation.in_(generation))
-    found = session.execute(asked).all()
+        wanted = wanted.where(Generation.generation.in_(generation))
+    found = session.execute(wanted).all()
     shape = (len(runs), len(generation))
     reached = np.zeros(shape, bool)
     values = np.full((len(FIGURES), *shape), np.nan)
     if found:
-        place, at, *told = zip(*found, strict=True)
+        place, at, *figures = zip(*found, strict=True)
         row = np.searchsorted([run.sweep_index for run in runs], place)
         column = np.searchsorted(generation, at)
         reached[row, column] = True
-        values[:, row, column] = np.array(told, float)  # None becomes NaN.
+        values[:, row, column] = np.array(figures, float)  # None becomes NaN.
     return reached, dict(zip(FIGURES, values, strict=True))
 
 
 def summary(session: Session, sweep: Sweep, points: int | None) -> SweepSummary:
-    """Each case by itself."""
     found = recorded(session, sweep, points)
-    values = combinations(sweep.grid)
-    of_case = np.array([run.sweep_index for run in found.runs], int) % len(values)
-    seeds = [seed for seed in sweep.seeds or [None] for _ in values]
-    members = [_member(run, seeds[run.sweep_index]) for run in found.runs]
+    cases = combinations(sweep.grid)
+    of_case = np.array([run.sweep_index for run in found.runs], int) % len(cases)
+    seeds = [seed for seed in sweep.seeds or [None] for _ in cases]
+    members = [
+        SweepRun(
+            run=run.id,
+            seed=seeds[run.sweep_index],
+            status=run.status,
+            generation=run.generation,
+            generations=run.generations,
+        )
+        for run in found.runs
+    ]
     common = common_generation(found.runs)
     figures = figures_at(session, found.runs, common, "search" in sweep.spec)
-    cases = [
-        _case(found, np.flatnonzero(of_case == number), members, figures, told)
-        for number, told in enumerate(values)
+    summaries = [
+        _case(found, np.flatnonzero(of_case == number), members, figures, values)
+        for number, values in enumerate(cases)
     ]
-    return SweepSummary(id=sweep.id, generation=common, cases=cases)
+    return SweepSummary(id=sweep.id, generation=common, cases=summaries)
 
 
 def _case(
@@ -116,39 +123,27 @@ def _case(
     figures: Mapping[UUID, Mapping[str, float]],
     values: dict[str, Any],
 ) -> CaseSummary:
-    """What some of the runs say together, as far as any of them has got."""
+    """Summarise some of the runs, up to the last generation that any has recorded."""
     counts = found.reached[mine].sum(0)
-    there = counts > 0
-    bands = {
-        name: _band(table[np.ix_(mine, np.flatnonzero(there))])
+    columns = np.flatnonzero(counts > 0)
+    quantiles = {
+        name: Quantiles(
+            **{key: _plain(one) for key, one in spread(table[np.ix_(mine, columns)]).items()}
+        )
         for name, table in found.values.items()
     }
     return CaseSummary(
         values=values,
         members=[members[row] for row in mine],
-        generation=[g for g, told in zip(found.generation, there, strict=True) if told],
-        runs=counts[there].tolist(),
-        **bands,
+        generation=[found.generation[column] for column in columns],
+        runs=counts[columns].tolist(),
+        **quantiles,
         finals=finals([figures.get(members[row].run, {}) for row in mine]),
     )
 
 
-def _member(run: Told, seed: int | None) -> SweepRun:
-    return SweepRun(
-        run=run.id,
-        seed=seed,
-        status=run.status,
-        generation=run.generation,
-        generations=run.generations,
-    )
-
-
-def _band(values: Values) -> Quantiles:
-    return Quantiles(**{name: told(column) for name, column in spread(values).items()})
-
-
 def spread(values: Values) -> dict[str, Values]:
-    """The quantiles of each column, those of its values that are none left aside."""
+    """Return the quantiles of each column, ignoring NaN."""
     if not values.size:
         return {name: np.full(values.shape[1], np.nan) for name in QUANTILES}
     ordered = np.sort(values, axis=0)  # NaN goes last.
@@ -157,7 +152,7 @@ def spread(values: Values) -> dict[str, Values]:
 
 
 def _quantile(ordered: Values, place: Values) -> Values:
-    """Between two of the values in proportion, where the place is between two."""
+    """Interpolate linearly between two of the values."""
     below, above = (
         np.take_along_axis(ordered, side(place).astype(int)[None], 0)[0]
         for side in (np.floor, np.ceil)
@@ -165,27 +160,71 @@ def _quantile(ordered: Values, place: Values) -> Values:
     return below + (above - below) * (place - np.floor(place))
 
 
-def told(column: Values) -> list[float | None]:
+def _plain(column: Values) -> list[float | None]:
     return [None if value != value else value for value in column.tolist()]
 
 
 def finals(figures: Sequence[Mapping[str, float]]) -> dict[str, Final]:
-    """Each figure of some runs, with its quantiles."""
+    """Return each figure of some runs, with its quantiles."""
     names = dict.fromkeys(name for one in figures for name in one)
     return {name: _final([one.get(name) for one in figures]) for name in names}
 
 
 def _final(values: Iterable[float | None]) -> Final:
     known = np.array(list(values), float)
-    quantiles = {name: told(one)[0] for name, one in spread(known[:, None]).items()}
-    return Final(values=told(known), **quantiles)
+    quantiles = {name: _plain(one)[0] for name, one in spread(known[:, None]).items()}
+    return Final(values=_plain(known), **quantiles)
+
+
+def common_generation(runs: Sequence[Row]) -> int | None:
+    """Return the last generation that every started run has reached; None before the first.
+
+    A finished run counts as complete, so it holds nobody back. Failed and cancelled runs do
+    not count where others go on or have finished.
+    """
+    started = [run for run in runs if run.generation > 0]
+    active = [run for run in started if run.status not in (FINISHED, FAILED, CANCELLED)]
+    finished = [run.generation for run in started if run.status == FINISHED]
+    if not active and finished:
+        return max(finished)
+    return min((run.generation for run in active or started), default=None)
+
+
+def figures_at(
+    session: Session, runs: Sequence[Row], generation: int | None, has_archive: bool
+) -> dict[UUID, dict[str, float]]:
+    """Return the figures of each run at a generation; of a shorter finished run its last ones.
+
+    Runs whose result is a table add the numbers of their newest summary until then.
+    """
+    if generation is None:
+        return {}
+    compared = [
+        run.id for run in runs if run.generation >= generation or run.status == FINISHED
+    ]
+    last = case((Run.generation < generation, Run.generation), else_=generation)
+    at = Generation.generation == last if has_archive else Generation.generation <= last
+    columns = [getattr(Generation, name) for name in COLUMNS]
+    rows = (
+        select(Generation.run_id, *columns, Generation.summary)
+        .join(Run, Run.id == Generation.run_id)
+        .where(Run.id.in_(compared), at)
+        .order_by(Generation.generation)
+    )
+    found: dict[UUID, dict[str, float]] = {}
+    for run_id, *values, summary in session.execute(rows):
+        figures = dict(zip(COLUMNS, values, strict=True))
+        known = {name: value for name, value in figures.items() if value is not None}
+        of_table = {} if has_archive else numbers(summary or {})
+        found[run_id] = {**found.get(run_id, {}), **known, **of_table}
+    return found
 
 
 def curves(session: Session, sweep: Sweep, points: int | None) -> SweepCurves:
-    """Each run by itself, over the same generations."""
+    """Return the curves of each run, over the same generations."""
     found = recorded(session, sweep, points)
     lines = [
-        RunCurves(run=run.id, **{name: told(table[i]) for name, table in found.values.items()})
+        RunCurves(run=run.id, **{name: _plain(one[i]) for name, one in found.values.items()})
         for i, run in enumerate(found.runs)
     ]
     return SweepCurves(generation=found.generation, runs=lines)

@@ -1,4 +1,5 @@
 """The tables. Rows are not wire types: those are in `schemas`."""
+# ruff: noqa: F401
 
 from .artifacts import (
     AUDIT,
@@ -11,12 +12,10 @@ from .artifacts import (
     REPLAY,
     STRIP,
     Artifact,
+    GarbageFile,
 )
-from .base import Base, Owned, Sha256
-from .creatures import Creature, InitialCreature, Parent
-from .garbage import GarbageCreature, GarbageFile
-from .idempotency import Idempotency
-from .log import LogEntry
+from .base import Base, Expiring, Owned, Sha256
+from .creatures import Creature, GarbageCreature, InitialCreature, Parent
 from .results import Elite, Generation, Result
 from .runs import (
     CANCELLED,
@@ -29,53 +28,12 @@ from .runs import (
     RUNNING,
     STATUSES,
     TERMINAL,
+    Idempotency,
+    LogEntry,
     Run,
     Status,
+    Sweep,
 )
 from .shares import Share
-from .sweeps import Sweep
 from .tokens import Token
 from .workers import Plugin, Worker
-
-__all__ = [
-    "AUDIT",
-    "CANCELLED",
-    "CHECKPOINT",
-    "FAILED",
-    "FINISHED",
-    "GIF",
-    "MEASUREMENT",
-    "MP4",
-    "OVERRIDE_ALLOWED",
-    "OVERRIDE_NEEDED",
-    "PAUSED",
-    "PREVIEW",
-    "PUBLISHED",
-    "QUEUED",
-    "REPLAY",
-    "RUNNING",
-    "STATUSES",
-    "STRIP",
-    "TERMINAL",
-    "Artifact",
-    "Base",
-    "Creature",
-    "Elite",
-    "GarbageCreature",
-    "GarbageFile",
-    "Generation",
-    "Idempotency",
-    "InitialCreature",
-    "LogEntry",
-    "Owned",
-    "Parent",
-    "Plugin",
-    "Result",
-    "Run",
-    "Sha256",
-    "Share",
-    "Status",
-    "Sweep",
-    "Token",
-    "Worker",
-]

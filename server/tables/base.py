@@ -1,14 +1,15 @@
-"""What all tables have in common."""
+"""Base classes of the tables, and the column type of hashes."""
 
 from datetime import datetime
 from typing import Any, ClassVar
 from uuid import UUID
 
-from sqlalchemy import JSON, Double, LargeBinary, MetaData
-from sqlalchemy.orm import DeclarativeBase, Mapped
+from sqlalchemy import JSON, ColumnElement, Double, LargeBinary, MetaData, and_, or_
+from sqlalchemy.orm import DeclarativeBase, Mapped, Session
 from sqlalchemy.types import TypeDecorator
 
-from ..core.database import Moment
+from ..core.database import Moment, clock, now
+from ..core.errors import invalid_field
 
 
 class Sha256(TypeDecorator[str]):
@@ -46,7 +47,29 @@ class Base(DeclarativeBase):
 
 
 class Owned:
-    """A row with an owner: the token of whoever created it, or None without a token."""
+    """A row with an owner: the token that created it, or None without a token."""
 
     owner: Mapped[UUID | None]
     """The id of a token. Tokens are never deleted, so a revoked one still has a name."""
+
+
+class Expiring:
+    """A row that is live until it expires or is revoked."""
+
+    expires_at: Mapped[datetime | None]
+    revoked_at: Mapped[datetime | None]
+
+    @classmethod
+    def live(cls) -> ColumnElement[bool]:
+        lasting = or_(cls.expires_at.is_(None), cls.expires_at > clock())
+        return and_(cls.revoked_at.is_(None), lasting)
+
+    def expired(self, session: Session) -> bool:
+        return self.expires_at is not None and self.expires_at <= now(session)
+
+
+def refuse_past(session: Session, expires_at: datetime | None) -> None:
+    """Raise `ProblemError` for an expiry that has passed."""
+    if expires_at is not None and expires_at <= (current := now(session)):
+        needed = f"a moment after now, {current:%Y-%m-%d %H:%M} UTC"
+        raise invalid_field("expires_at", needed, expires_at.isoformat())

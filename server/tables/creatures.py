@@ -1,4 +1,4 @@
-"""Creatures, where they came from, and who begins with them."""
+"""Tables of creatures, their parents, and the runs that start from them."""
 
 from datetime import datetime
 from typing import Any
@@ -12,7 +12,7 @@ from .base import Base, Sha256
 
 
 class Creature(Base):
-    """A creature by its name; kept after its cell was taken by another."""
+    """A creature. It stays after another one has taken its cell."""
 
     __tablename__ = "creatures"
 
@@ -23,13 +23,13 @@ class Creature(Base):
     operator: Mapped[str | None] = mapped_column(Text)
     measured: Mapped[dict[str, Any] | None]
     provenance: Mapped[dict[str, Any] | None]
-    """What else is known of its origin: generation, seed, version."""
+    """Generation, seed, version, without the parents and the operator."""
     licence: Mapped[str] = mapped_column(Text)
     credit: Mapped[list[str]] = mapped_column(default=list)
-    """Who is to be named wherever it is shown."""
+    """People to name wherever the creature is shown."""
     created_at: Mapped[datetime] = mapped_column(default=clock())
     imported: Mapped[bool] = mapped_column(default=False)
-    """Whether somebody brought it, so that it stays without any run."""
+    """An imported creature stays without any run."""
 
 
 class Parent(Base):
@@ -41,11 +41,11 @@ class Parent(Base):
     child: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), primary_key=True)
     position: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     parent: Mapped[str] = mapped_column(Sha256)
-    """Its name; only who became an elite is kept as a creature."""
+    """Only elites are kept as creatures, so the parent may have no row."""
 
 
 class InitialCreature(Base):
-    """A creature that a run begins from, as its spec says."""
+    """A creature that a run starts from, by its spec."""
 
     __tablename__ = "initial_creatures"
 
@@ -55,3 +55,12 @@ class InitialCreature(Base):
     creature: Mapped[str] = mapped_column(
         Sha256, ForeignKey("creatures.sha256"), primary_key=True, index=True
     )
+
+
+class GarbageCreature(Base):
+    """A creature to delete once its run is gone, unless something else uses it."""
+
+    __tablename__ = "garbage_creatures"
+
+    run_id: Mapped[UUID] = mapped_column(primary_key=True)
+    creature: Mapped[str] = mapped_column(Sha256, primary_key=True)

@@ -1,4 +1,4 @@
-"""What runs have brought: curves, tables, elites."""
+"""Tables of results: curves, tables and elites of runs."""
 
 from typing import Any
 from uuid import UUID
@@ -26,7 +26,7 @@ class Generation(Base):
     diverged: Mapped[int] = mapped_column(BigInteger)
     seconds: Mapped[float]
     summary: Mapped[dict[str, Any] | None]
-    """As the run's, where this generation changed it."""
+    """As the run's, if this generation changed it."""
 
 
 class Result(Base):
@@ -47,7 +47,7 @@ class Result(Base):
 
 
 class Elite(Base):
-    """A cell's new elite; append-only. Now is the last row of a cell, the past one before."""
+    """A new elite of a cell; append-only. The last row of a cell is its present elite."""
 
     __tablename__ = "elites"
 

@@ -1,14 +1,14 @@
-"""Runs: what is to be computed, and how each stands."""
+"""Tables of runs and sweeps, their log, and the keys of requests that may come twice."""
 
 from datetime import datetime
 from typing import Any, Literal
 from uuid import UUID, uuid4
 
-from sqlalchemy import JSON, BigInteger, CheckConstraint, Index, String, Text
+from sqlalchemy import JSON, BigInteger, CheckConstraint, ForeignKey, Index, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from ..core.database import clock
-from .base import Base, Owned
+from .base import Base, Owned, Sha256
 
 Status = Literal["queued", "running", "paused", "finished", "failed", "cancelled"]
 QUEUED, RUNNING, PAUSED = "queued", "running", "paused"
@@ -19,7 +19,7 @@ OVERRIDE_NEEDED, OVERRIDE_ALLOWED = "needed", "allowed"
 
 
 class Run(Owned, Base):
-    """One spec being carried out; the truth about its state."""
+    """The execution of a spec; the truth about its state."""
 
     __tablename__ = "runs"
     __table_args__ = (
@@ -35,11 +35,11 @@ class Run(Owned, Base):
     experiment: Mapped[str] = mapped_column(String(64))
     spec: Mapped[dict[str, Any]]
     plugin_versions: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
-    """Versions of modules of users' own that a worker must have to carry it out."""
+    """Versions of plug-ins that its worker must have."""
     version: Mapped[str] = mapped_column(String(64))
     demonstration: Mapped[bool] = mapped_column(default=False)
     name: Mapped[str | None] = mapped_column(String(200))
-    """What people call it; this, the tags and the note decide nothing."""
+    """Name, tags and note are for people alone."""
     tags: Mapped[list[str]] = mapped_column(default=list)
     note: Mapped[str | None] = mapped_column(Text)
     status: Mapped[str] = mapped_column(String(16), default=QUEUED)
@@ -47,42 +47,88 @@ class Run(Owned, Base):
     requested_at: Mapped[datetime | None]
     created_at: Mapped[datetime] = mapped_column(default=clock())
     queued_at: Mapped[datetime] = mapped_column(default=clock())
-    """Since when it waits, or when it last began to: its place in the queue."""
+    """When it last entered the queue, which decides its position there."""
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
     attempt: Mapped[int] = mapped_column(default=0)
-    """The fence: whoever writes proves first that this is still their own."""
+    """Number of the current attempt, which each write of a worker proves to be its own."""
     attempts_without_checkpoint: Mapped[int] = mapped_column(default=0)
     worker: Mapped[str | None] = mapped_column(String(255))
     device: Mapped[str | None] = mapped_column(Text)
     device_override: Mapped[str | None] = mapped_column(String(16))
-    """Leave to go on on another kind of device than began it: None until it is `needed`."""
+    """Permission to continue on another kind of device; None until it is `needed`."""
     heartbeat_at: Mapped[datetime | None]
     generations: Mapped[int]
-    """How many there will be."""
+    """Number of generations at the end."""
     generation: Mapped[int] = mapped_column(default=0)
-    """The last one recorded."""
+    """The last recorded one."""
     checkpoint_generation: Mapped[int] = mapped_column(default=0)
-    """The one that the last checkpoint holds; 0 without a checkpoint."""
+    """The generation of the last checkpoint; 0 without a checkpoint."""
     evaluations: Mapped[int] = mapped_column(BigInteger, default=0)
     diverged: Mapped[int] = mapped_column(BigInteger, default=0)
     seconds: Mapped[float] = mapped_column(default=0.0)
-    """Wall time of the computing that led to the last record."""
+    """Wall time of the computing that led to the last recorded generation."""
     qd_score: Mapped[float | None]
     coverage: Mapped[float | None]
     best: Mapped[float | None]
     summary: Mapped[dict[str, Any] | None]
-    """Figures of the result as a whole, where it is a table."""
+    """Figures of the whole result, if it is a table."""
     error: Mapped[str | None] = mapped_column(Text)
     warning: Mapped[str | None] = mapped_column(Text)
     sweep: Mapped[UUID | None]
     sweep_index: Mapped[int | None]
     """Its place in the sweep, from 0: every case with the first seed, then with the next."""
     deleted_at: Mapped[datetime | None]
-    """Since when it lies in the bin."""
+    """When it was moved to the bin."""
     purge_at: Mapped[datetime | None]
-    """When it goes for good: until then it can be restored, from then on it cannot."""
+    """When it is deleted for good; it can be restored until then."""
     n_initial: Mapped[int | None]
-    """How many creatures of another run it began from, where it is a fork."""
+    """For a fork: the number of creatures that it took from another run."""
     forked_from: Mapped[UUID | None]
-    """That run, while it is there."""
+    """That run, while it exists."""
+
+
+class Sweep(Owned, Base):
+    """Runs that one request created: seeds, and a grid over fields of a spec."""
+
+    __tablename__ = "sweeps"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
+    experiment: Mapped[str] = mapped_column(String(64))
+    name: Mapped[str | None] = mapped_column(String(200))
+    spec: Mapped[dict[str, Any]]
+    """The spec of all runs, before the grid's values and the seed replace its own."""
+    seeds: Mapped[list[int]]
+    """Empty if the experiment has no seed."""
+    grid: Mapped[dict[str, Any]]
+    """Values by the dotted path of a field, in the order of the request."""
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+
+
+class Idempotency(Base):
+    """A client's key, so that the same request twice creates one run or one sweep."""
+
+    __tablename__ = "idempotency"
+
+    key: Mapped[str] = mapped_column(String(255), primary_key=True)
+    body_sha256: Mapped[str] = mapped_column(Sha256)
+    run_id: Mapped[UUID | None] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    sweep: Mapped[UUID | None] = mapped_column(ForeignKey("sweeps.id", ondelete="CASCADE"))
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+
+
+class LogEntry(Base):
+    """A line of a run's log; append-only, except for kinds that come again and again."""
+
+    __tablename__ = "log_entries"
+    __table_args__ = (Index(None, "run_id", "id"),)
+
+    id: Mapped[int] = mapped_column(primary_key=True)
+    run_id: Mapped[UUID] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
+    at: Mapped[datetime] = mapped_column(default=clock())
+    level: Mapped[str] = mapped_column(String(16))
+    attempt: Mapped[int]
+    kind: Mapped[str | None] = mapped_column(String(16))
+    """Set for entries of which an attempt keeps the first and the last alone."""
+    text: Mapped[str] = mapped_column(Text)

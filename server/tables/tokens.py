@@ -7,13 +7,13 @@ from sqlalchemy import CheckConstraint, Index, String, text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from ..core.database import clock
-from .base import Base, Sha256
+from .base import Base, Expiring, Sha256
 
 SCOPES = ("read", "write", "admin")
 """Each scope includes those before it."""
 
 
-class Token(Base):
+class Token(Expiring, Base):
     """A token. The row holds the hash of the secret, never the secret."""
 
     __tablename__ = "tokens"
@@ -32,9 +32,7 @@ class Token(Base):
     name: Mapped[str] = mapped_column(String(64))
     secret_sha256: Mapped[str] = mapped_column(Sha256, unique=True)
     prefix: Mapped[str] = mapped_column(String(16))
-    """The first characters of the secret, to tell which one it is."""
+    """The first characters of the secret, by which its holder recognises it."""
     scope: Mapped[str] = mapped_column(String(16))
     created_at: Mapped[datetime] = mapped_column(default=clock())
-    expires_at: Mapped[datetime | None]
-    revoked_at: Mapped[datetime | None]
     last_used_at: Mapped[datetime | None]

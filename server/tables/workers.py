@@ -1,4 +1,4 @@
-"""Who computes, and what of users' own they have."""
+"""Tables of workers and of the plug-ins that they offer."""
 
 from datetime import datetime
 from typing import Any
@@ -22,20 +22,20 @@ class Worker(Base):
     memory_bytes: Mapped[int] = mapped_column(BigInteger)
     memory_used_bytes: Mapped[int | None] = mapped_column(BigInteger)
     load: Mapped[float | None]
-    """How busy the device is with anything at all: 1 is fully."""
+    """Load of the device by all programs: 1 is fully busy."""
     status: Mapped[str] = mapped_column(String(16))
     run_id: Mapped[UUID | None]
     since: Mapped[datetime] = mapped_column(default=clock())
     """When its status or its run last changed."""
     heartbeat_at: Mapped[datetime] = mapped_column(default=clock())
     plugins: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
-    """Declarations of what it has of users' own."""
+    """Declarations of its plug-ins."""
     unloaded: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
     """Modules that it could not load: `module` and `reason`."""
 
 
 class Plugin(Base):
-    """Something of users' own that a worker has, or had; a row for each version."""
+    """A version of a plug-in that a worker has, or had."""
 
     __tablename__ = "plugins"
 
@@ -44,4 +44,4 @@ class Plugin(Base):
     source: Mapped[str] = mapped_column(Sha256, primary_key=True)
     declaration: Mapped[dict[str, Any]] = mapped_column(JSON())
     seen_at: Mapped[datetime] = mapped_column(default=clock())
-    """When a worker first came with it, or came back."""
+    """When a worker first reported it, or reported it again after an absence."""

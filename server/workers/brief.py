@@ -1,17 +1,16 @@
-"""The run that a worker carries out, in short."""
+"""Short form of a run, for lists of workers and queues."""
 
 from ..tables import FINISHED, Run
 from .schemas import RunBrief
 
 
 def brief(run: Run) -> RunBrief:
-    """Return the summary of a run."""
     names = (name for name in RunBrief.model_fields if name != "progress")
     return RunBrief(**{name: getattr(run, name) for name in names}, progress=progress(run))
 
 
 def progress(run: Run) -> float:
-    """Return the share of its generations that a run has completed.
+    """Return the completed share of a run's generations.
 
     A finished run counts as complete, even if it stopped early.
     """

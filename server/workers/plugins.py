@@ -1,4 +1,4 @@
-"""What workers have of users' own, as they report it: looked up by name, never imported."""
+"""Plug-ins as workers report them: the server knows declarations and never imports code."""
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -20,11 +20,11 @@ from . import registry
 HELP = "install it on one: docs/plugins.md"
 
 
-class Reported:
-    """What live workers have, and what those had that are away; asked when first needed."""
+class KnownPlugins:
+    """The plug-ins of live workers, and those that earlier workers had."""
 
-    def __init__(self, session: Session, lease: float):
-        self._session, self._lease = session, lease
+    def __init__(self, services: Services, session: Session):
+        self._session, self._lease = session, services.settings.lease
 
     @cached_property
     def alive(self) -> list[Worker]:
@@ -32,20 +32,20 @@ class Reported:
 
     @cached_property
     def known(self) -> list[Declaration]:
-        """Those that live first, then the newest first."""
+        """All versions: those of live workers first, then the newest first."""
         rows = self._session.scalars(select(Plugin).order_by(Plugin.seen_at.desc())).all()
         found = [Declaration.model_validate(row.declaration) for row in rows]
-        return sorted(found, key=lambda one: not self.having(one.source))
+        return sorted(found, key=lambda one: not self.workers_with(one.source))
 
-    def having(self, source: str) -> list[str]:
-        """Names of the live workers that have a version."""
+    def workers_with(self, source: str) -> list[str]:
+        """Return the names of the live workers that have a version."""
         return [one.name for one in self.alive if source in versions_of(one)]
 
     def offered(self) -> list[Declaration]:
-        """Of each name the version that is taken where nobody says otherwise, if one lives."""
+        """Return the default version of each plug-in, if a live worker offers it."""
         first = {(one.kind, one.name): one for one in reversed(self.known)}
         return sorted(
-            (one for one in first.values() if self.having(one.source)),
+            (one for one in first.values() if self.workers_with(one.source)),
             key=lambda one: (one.kind, one.name),
         )
 
@@ -53,12 +53,13 @@ class Reported:
         return [one for one in self.known if (one.kind, one.name) == (kind, name)]
 
     def settings(self, declared: Declaration, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Return settings with defaults; raise `ValueError` if the schema refuses them."""
         if declared.settings is None:
             if given:
                 raise ValueError(f"`plugin.settings` must be empty for {declared.name}")
             return {}
         whole = {**declared.defaults, **given}
-        # Without a registry it would fetch what a schema refers to.
+        # Without a registry the validator would fetch the documents that a schema refers to.
         validator = Draft202012Validator(declared.settings, registry=Registry())
         try:
             error = next(validator.iter_errors(whole), None)
@@ -71,20 +72,17 @@ class Reported:
         return whole
 
     def explain_unknown(self, kind: str, name: str) -> str:
-        there = [f"{one.name} on {self._on(one)}" for one in self.offered() if one.kind == kind]
-        have = f"; workers have {', '.join(there)}" if there else ""
+        offered = [
+            f"{one.name} on {', '.join(self.workers_with(one.source))}"
+            for one in self.offered()
+            if one.kind == kind
+        ]
+        have = f"; workers have {', '.join(offered)}" if offered else ""
         return f"no worker has {name!r} as a {kind}{have}; {HELP}"
-
-    def _on(self, one: Declaration) -> str:
-        return ", ".join(self.having(one.source))
-
-
-def reported(services: Services, session: Session) -> Reported:
-    return Reported(session, services.settings.lease)
 
 
 def needed_versions(document: Any) -> list[str] | None:
-    """Versions that a worker must have for a spec; None where there are none."""
+    """Return the versions that a worker must have for a spec; None if there are none."""
     return sorted({one.version.source for one in plugins_in(document)}) or None
 
 
@@ -93,27 +91,27 @@ def versions_of(worker: Worker) -> set[str]:
 
 
 def fit(worker: Worker | None, needed: Sequence[str] | None) -> bool:
-    """Whether a worker has all versions that a run needs."""
+    """Return whether a worker has all versions that a run needs."""
     return not needed or (worker is not None and set(needed) <= versions_of(worker))
 
 
 def missing(alive: Sequence[Worker], document: Any) -> str:
-    """A sentence about a run that none of the live workers can carry out."""
-    gone = {
+    """Return a sentence about a run that none of the live workers can compute."""
+    absent = {
         one.name: one.version.source
         for one in plugins_in(document)
         if not any(one.version.source in versions_of(worker) for worker in alive)
     }
-    if not gone:
-        return "Waits for a worker that has all of its own modules; none has them together."
-    told = ", ".join(f"{name} (version {source[:12]})" for name, source in gone.items())
+    if not absent:
+        return "Waits for a worker that has all of its plug-ins; none has them together."
+    names = ", ".join(f"{name} (version {source[:12]})" for name, source in absent.items())
     others = sorted(
         {
             worker.name
             for worker in alive
             for one in worker.plugins
-            if one["name"] in gone and one["source"] != gone[one["name"]]
+            if one["name"] in absent and one["source"] != absent[one["name"]]
         }
     )
     have = f"; {', '.join(others)} has another version" if others else ""
-    return f"Waits for a worker that has {told}: none that is alive does{have}."
+    return f"Waits for a worker that has {names}: no live worker does{have}."

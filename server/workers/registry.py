@@ -1,4 +1,4 @@
-"""What workers say about themselves."""
+"""The registry of workers: their reports, and the runs that they compute."""
 
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -25,9 +25,8 @@ def report(
     plugins: Sequence[dict[str, Any]] = (),
     unloaded: Sequence[dict[str, Any]] = (),
 ) -> None:
-    """Say that a worker is alive, what it is at, how busy its device is, and what it has of
-    users' own."""
-    said = Worker(
+    """Report a live worker: its run, the load of its device, and its plug-ins."""
+    reported = Worker(
         name=name,
         device=device,
         kind=kind,
@@ -42,37 +41,30 @@ def report(
     with sessions.write.begin() as session:
         known = session.get(Worker, name)
         same = known is not None and (known.status, known.run_id) == (status, run_id)
-        if known is None or known.plugins != said.plugins:
-            _remember(session, said.plugins)
-        row = session.merge(said)
+        if known is None or known.plugins != reported.plugins:
+            for one in plugins:  # They stay known when the worker is gone.
+                key = {key: one[key] for key in ("kind", "name", "source")}
+                session.merge(Plugin(**key, declaration=dict(one))).seen_at = clock()
+        row = session.merge(reported)
         row.heartbeat_at = clock()
         if not same:
             row.since = clock()
 
 
-def _remember(session: Session, plugins: Sequence[dict[str, Any]]) -> None:
-    """Runs may ask for what a worker had that is away by then."""
-    for one in plugins:
-        row = Plugin(
-            kind=one["kind"], name=one["name"], source=one["source"], declaration=dict(one)
-        )
-        session.merge(row).seen_at = clock()
-
-
 def retire(sessions: Sessions, name: str) -> None:
-    """Say that a worker has ended."""
+    """Remove a worker that has ended."""
     with sessions.write.begin() as session:
         session.execute(delete(Worker).where(Worker.name == name))
 
 
 def live(session: Session, lease: float) -> list[Worker]:
-    """Workers that were heard of within a lease, by name."""
+    """Return the workers that reported within a lease, by name."""
     alive = Worker.heartbeat_at >= ago(session, lease)
     return list(session.scalars(select(Worker).where(alive).order_by(Worker.name)))
 
 
-def at_work(session: Session, alive: Sequence[Worker]) -> dict[str, Run]:
-    """The run that each of the workers carries out, by the worker's name."""
+def running(session: Session, alive: Sequence[Worker]) -> dict[str, Run]:
+    """Return the runs that some workers compute, by the worker's name."""
     names = [worker.name for worker in alive]
-    running = select(Run).where(Run.status == RUNNING, Run.worker.in_(names))
-    return {str(run.worker): run for run in session.scalars(running)}
+    runs = select(Run).where(Run.status == RUNNING, Run.worker.in_(names))
+    return {str(run.worker): run for run in session.scalars(runs)}

@@ -1,4 +1,4 @@
-"""Wire types of workers and of the runs that they carry out."""
+"""Wire types of workers and their runs."""
 
 from datetime import datetime
 from typing import Literal
@@ -9,7 +9,7 @@ from ..tables import Status
 
 
 class RunBrief(Wire):
-    """A run as it is named beside a worker or in the queue."""
+    """A run in short."""
 
     id: UUID
     experiment: str
@@ -23,7 +23,7 @@ class RunBrief(Wire):
 
 
 class PluginRead(Wire):
-    """Something of users' own that a worker has."""
+    """A plug-in that a worker has."""
 
     kind: Literal["fitness", "descriptor", "body", "gait", "encoding"]
     name: str
@@ -34,7 +34,7 @@ class PluginRead(Wire):
 
 
 class UnloadedRead(Wire):
-    """A module of users' own that a worker could not load."""
+    """A plug-in module that a worker could not load."""
 
     module: str
     reason: str
@@ -48,13 +48,12 @@ class WorkerRead(Wire):
     """Of the machine, or of the GPU."""
     memory_used_bytes: int | None
     load: float | None
-    """Of the machine, over a minute and for each core; or of the GPU. 1 is fully busy."""
+    """Load of the machine over a minute per core, or of the GPU; 1 is fully busy."""
     status: Literal["idle", "busy"]
     since: datetime
     """When its status or its run last changed."""
     run: UUID | None
     current_run: RunBrief | None
-    """The run that it is at."""
     heartbeat_at: datetime
     plugins: list[PluginRead]
     unloaded: list[UnloadedRead]

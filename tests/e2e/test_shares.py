@@ -31,7 +31,7 @@ def test_a_creature_is_published_viewed_and_revoked(shared, shared_page: Page, s
     meet_it_in_the_commons(stranger, address, link)
     take_back(page, address, "An eel <b>&")
     stranger.goto(link)
-    expect(stranger.get_by_text("Whoever shared this has taken it back.")).to_be_visible()
+    expect(stranger.get_by_text("Its owner has revoked this share.")).to_be_visible()
 
 
 @pytest.mark.e2e

@@ -6,8 +6,11 @@ without optimising. What is marked `optimised` is about the very bits that come 
 """
 
 import hashlib
+import json
 import os
 import platform
+import signal
+import struct
 from pathlib import Path
 
 QUICK = (
@@ -60,13 +63,15 @@ SHAPED = (
 install_import_hook([f"microcosmos.{name}" for name in SHAPED], "beartype.beartype")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 
-from microcosmos import bodies, filaments, spec, world  # noqa: E402
-from microcosmos.build import build_world  # noqa: E402
+from typer.testing import CliRunner  # noqa: E402
+
+from microcosmos import cli, genomes, spec, world  # noqa: E402
+from microcosmos.archive import creature  # noqa: E402
+from microcosmos.build import build, build_world  # noqa: E402
 
 
 @pytest.fixture
 def float64():
-    """JAX computes in float64."""
     with jax.enable_x64(True):
         yield jnp.dtype("float64")
 
@@ -82,8 +87,8 @@ def dtype(request):
 def immerse():
     """A function that puts a body at rest in the middle of a fluid at rest."""
 
-    def put(body, dtype, *, viscosity, size=(64, 64), magic="capped", **coupling):
-        place = spec.World(width=size[0], height=size[1], viscosity=viscosity, magic=magic)
+    def put(body, dtype, *, viscosity, size=(64, 64), fluid=True, **coupling):
+        place = spec.World(width=size[0], height=size[1], viscosity=viscosity, fluid=fluid)
         box = build_world(place, spec.Coupling(**coupling), body, dtype)
         positions = body.positions - body.positions.mean(0) + np.array(size) / 2
         return box, world.at_rest(box, jnp.asarray(positions, dtype))
@@ -91,44 +96,116 @@ def immerse():
     return put
 
 
-@pytest.fixture
-def chain():
-    """A function that makes a straight filament with nodes one cell apart."""
+@pytest.fixture(scope="session")
+def require_slope():
+    """A function that compares a gradient with central differences along random directions.
 
-    def straight(nodes):
-        return bodies.chain(nodes, 1.0)
+    Other directions can be given. The slope along the last one is returned.
+    """
 
-    return straight
-
-
-@pytest.fixture
-def ring():
-    """A function that makes a closed filament with nodes one cell apart."""
-
-    def closed(nodes):
-        return bodies.ring(nodes, 1.0)
-
-    return closed
-
-
-@pytest.fixture
-def erratic():
-    """A function that draws large rest angles and lengths anew every 20 steps."""
-
-    def gait(body, steps, dtype, seed=0):
+    def compare(value, inputs, *, h=1e-6, rtol=1e-6, seed=0, directions=()):
         random = np.random.default_rng(seed)
-        draws = -(-steps // 20)
-        turn = random.uniform(-1, 1, (draws, len(body.joints)))
-        change = random.uniform(-0.3, 0.3, (draws, len(body.edges)))
-        rest = _rest(body, turn, dtype, change)
-        return jax.tree.map(lambda x: jnp.repeat(x, 20, 0)[:steps], rest)
+        inputs = jax.tree.map(np.asarray, inputs)
+        both = jax.jit(jax.value_and_grad(value))
+        gradient = jax.device_get(both(inputs)[1])
+        anywhere = jax.tree.map(lambda x: random.normal(size=x.shape), inputs)
+        for along in directions or [anywhere]:
+            ahead, behind = (
+                both(jax.tree.map(lambda x, d, s=step: x + s * d, inputs, along))[0]
+                for step in (h, -h)
+            )
+            products = jax.tree.map(lambda g, d: np.sum(g * d), gradient, along)
+            slope = sum(jax.tree.leaves(products))
+            np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), rtol=rtol)
+        return slope
 
-    return gait
+    return compare
 
 
-def _rest(body, turn, dtype, change=0.0):
-    """Rest shapes over time: `turn` added to angles, lengths stretched by `change`."""
-    length = body.rest_length[None] * (1 + change * np.ones((len(turn), len(body.edges))))
-    return filaments.Rest(
-        jnp.asarray(body.rest_angle[None] + turn, dtype), jnp.asarray(length, dtype)
+@pytest.fixture(scope="session")
+def network_of():
+    """A function that makes a CPPN from its links, activations and biases."""
+
+    def make(links, inputs, activations, biases, *, dtype="float32", room=(12, 16)):
+        genes, names = genomes.empty(*room), list(genomes.ACTIVATIONS)
+        used, count = inputs + len(activations), len(links)
+        genes.node_used[:used], genes.node_id[:used] = True, np.arange(used)
+        genes.activation[inputs:used] = [names.index(name) for name in activations]
+        genes.bias[inputs:used] = biases
+        genes.connection_used[:count] = genes.enabled[:count] = True
+        genes.innovation[:count] = np.arange(count)
+        genes.source[:count], genes.target[:count] = np.transpose(list(links))
+        genes.weight[:count] = list(links.values())
+        return jax.tree.map(
+            lambda x: jnp.asarray(x, dtype if x.dtype == np.float32 else None), genes
+        )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def newcomer():
+    chosen = spec.parse(
+        {
+            "experiment": "quality-diversity",
+            "world": {"width": 32, "height": 32},
+            "body": {"nodes": 8},
+            "control": {"period": 20},
+            "task": {"steps": 40},
+            "search": {"generations": 1, "batch": 2, "block": 2},
+        }
     )
+    experiment = build(chosen)
+    return creature.parse(experiment.best(experiment.advance(experiment.init())[0]))
+
+
+@pytest.fixture(scope="session")
+def replay_bytes():
+    """A function that writes a replay of positions, edges and vorticity levels, all else 0."""
+
+    def write(positions, edges, levels, /, scale=0.01, **change):
+        frames, nodes, _ = positions.shape
+        header = {
+            "format": "microcosmos-replay/2",
+            "frames": frames,
+            "every": 5,
+            "nodes": nodes,
+            "edges": edges,
+            "joints": [],
+            "size": list(levels.shape[1:]),
+            "vorticity": {"scale": scale},
+            "velocity": {"scale": 1.0},
+            "energy": {"scale": 1.0, "frames": 0},
+        }
+        text = json.dumps(header | change).encode()
+        text += b" " * (-len(text) % 4)
+        arrays = (
+            positions.astype("<f4"),
+            np.zeros((frames, len(edges)), "<f4"),
+            levels.astype(np.int8),
+            np.zeros((frames, 2, *levels.shape[1:]), np.int8),
+        )
+        return struct.pack("<I", len(text)) + text + b"".join(x.tobytes() for x in arrays)
+
+    return write
+
+
+@pytest.fixture
+def invoke(tmp_path, monkeypatch):
+    """A function that runs a command in this process and returns its output on one line.
+
+    The working folder is empty; signal handlers and JAX stay as the tests have them.
+    """
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "1000")
+    monkeypatch.setattr("microcosmos.device.prepare", lambda **_: None)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+
+    def run(*arguments, code=0):
+        done = CliRunner().invoke(cli.app, [str(argument) for argument in arguments])
+        assert done.exit_code == code, done.output
+        return " ".join(done.output.split())
+
+    yield run
+    for number, handler in before.items():
+        signal.signal(number, handler)

@@ -21,7 +21,10 @@ def taken(program, *arguments) -> int:
     return sizes.temp_size_in_bytes + sizes.output_size_in_bytes
 
 
-@pytest.mark.parametrize("name", SPECS)
+@pytest.mark.parametrize(
+    "name",
+    ["ordinary", *(pytest.param(name, marks=pytest.mark.long) for name in list(SPECS)[1:])],
+)
 def test_programs_take_no_more_than_was_estimated(name):
     spec = parse({"experiment": "quality-diversity", **SPECS[name]})
     run = build(spec)

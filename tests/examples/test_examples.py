@@ -1,11 +1,15 @@
-"""Each example runs, at a tiny size."""
+"""Examples and notebooks run at a tiny size."""
 
 import importlib.util
 import json
+import os
+import subprocess
+import sys
 from hashlib import sha256
 from pathlib import Path
 
 import h5py
+import nbformat
 import numpy as np
 import pytest
 
@@ -14,8 +18,6 @@ from microcosmos.audit.reproducibility import check
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TINY = {"body": {"nodes": 8}, "task": {"steps": 20}}
-
-pytestmark = pytest.mark.filterwarnings("ignore")
 
 
 @pytest.fixture(autouse=True)
@@ -37,6 +39,7 @@ def example(name, needs="jax"):
     return module
 
 
+@pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("emitter", ["iso+line", "neat"])
 def test_their_map_elites_evolves_our_creatures_and_networks(emitter):
     module = example("qdax_map_elites", "qdax")
@@ -51,6 +54,7 @@ def test_their_cma_mega_climbs_our_slopes():
     assert np.isfinite(repertoire.fitnesses).sum() > 1
 
 
+@pytest.mark.filterwarnings("ignore")
 def test_their_emitters_work_in_our_search(tmp_path):
     module = example("qdax_emitter", "qdax")
     search = {**module.SPEC["search"], "generations": 3, "batch": 8, "block": 4}
@@ -58,30 +62,35 @@ def test_their_emitters_work_in_our_search(tmp_path):
     assert np.isfinite(repertoire.fitnesses).any()
 
 
+@pytest.mark.filterwarnings("ignore")
 def test_pyribs_draws_our_archive(tmp_path):
     search = {"generations": 2, "batch": 4, "block": 4}
     picture = example("ribs_heatmap", "ribs").main(tmp_path, **TINY, search=search)
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.filterwarnings("ignore")
 @pytest.mark.long
 def test_a_stiffness_is_recovered_within_a_hundredth_from_how_a_filament_straightens():
     module = example("stiffness")
     assert abs(module.main() / module.TRUE - 1) < 0.01
 
 
+@pytest.mark.filterwarnings("ignore")
 @pytest.mark.long
 def test_a_gait_is_designed_for_a_path():
     found = example("path").main(steps=40, updates=6)
     assert found[-1] < found[0]
 
 
+@pytest.mark.filterwarnings("ignore")
 @pytest.mark.long
 def test_a_rest_shape_is_designed_for_a_viscosity():
     ((before, after),) = example("rest_shape").main((0.5,), steps=60, updates=2).values()
     assert after > before
 
 
+@pytest.mark.filterwarnings("ignore")
 def test_a_plugin_task_evolves_and_its_file_names_the_version(tmp_path):
     module = example("plugin_task")
     search = {"generations": 2, "batch": 4, "block": 4}
@@ -103,3 +112,55 @@ def test_a_plugin_task_evolves_and_its_file_names_the_version(tmp_path):
     assert creature["identity"]["task"]["plugin"]["source"] == source
     assert creature["identity"]["body"]["builder"] == "graph"
     assert check(parse(creature)).exact
+
+
+NOTEBOOKS = sorted((Path(__file__).parents[2] / "examples" / "notebooks").glob("*.ipynb"))
+
+EXECUTE = """
+import sys
+import nbformat
+from nbclient import NotebookClient
+notebook = nbformat.read(sys.argv[1], as_version=4)
+NotebookClient(notebook, timeout=300).execute()
+nbformat.write(notebook, sys.argv[2])
+"""
+"""In a process of its own: sockets of kernels do not survive those of other tests."""
+
+
+@pytest.fixture
+def tiny(monkeypatch, tmp_path_factory):
+    """The kernel's environment: small sizes, and programs shared with other tests."""
+    cache = os.environ.get("MICROCOSMOS_TEST_COMPILED") or tmp_path_factory.mktemp("compiled")
+    for name, value in {
+        "MICROCOSMOS_NOTEBOOK": "tiny",
+        "JAX_COMPILATION_CACHE_DIR": str(cache),
+        "JAX_PLATFORMS": "cpu",
+        "IPYTHONDIR": str(tmp_path_factory.mktemp("ipython")),
+    }.items():
+        monkeypatch.setenv(name, value)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_runs_to_its_end_without_a_warning(path, tiny, tmp_path):
+    command = [sys.executable, "-c", EXECUTE, str(path), "done.ipynb"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-4000:]
+    notebook = nbformat.read(tmp_path / "done.ipynb", as_version=4)
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    warned = [o.text for o in outputs if o.output_type == "stream" and o.name == "stderr"]
+    assert warned == []
+    kinds = {kind for output in outputs for kind in output.get("data", {})}
+    assert {"image/png", "text/html"} <= kinds
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_is_kept_without_outputs(path):
+    notebook = nbformat.read(path, as_version=4)
+    nbformat.validate(notebook)
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert all(cell.outputs == [] and cell.execution_count is None for cell in code)
+
+
+def test_there_are_three():
+    assert [path.stem for path in NOTEBOOKS] == ["archive", "folding", "swimmer"]

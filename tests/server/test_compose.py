@@ -26,8 +26,8 @@ from sqlalchemy.exc import OperationalError
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from server.local.redis_embedded import find_binary, free_port
-from server.main import GRACE
-from server.maintenance.healthcheck import ASK_AFTER, KILL_AFTER, PARTS
+from server.main import SHUTDOWN_SECONDS
+from server.maintenance.healthcheck import KILL_AFTER, PARTS, TERMINATE_AFTER
 from server.settings import Settings
 from server.tables.migrations import __main__ as migrate
 from worker.supervisor import PATIENCE
@@ -133,10 +133,10 @@ def test_an_unhealthy_container_is_restarted_after_its_start_period(ours):
         assert ours[name]["restart"] == "unless-stopped", name
         assert ours[name]["init"] is True, "signals reach the program through it"
         check = ours[name]["healthcheck"]
-        assert seconds(check["start_period"]) < ASK_AFTER, name
-        assert seconds(check["interval"]) < KILL_AFTER - ASK_AFTER, name
+        assert seconds(check["start_period"]) < TERMINATE_AFTER, name
+        assert seconds(check["interval"]) < KILL_AFTER - TERMINATE_AFTER, name
         grace = seconds(ours[name].get("stop_grace_period", "10s"))
-        assert grace < KILL_AFTER - ASK_AFTER, name
+        assert grace < KILL_AFTER - TERMINATE_AFTER, name
 
 
 def test_a_database_is_ready_once_it_listens_to_others(services):
@@ -183,7 +183,7 @@ def test_containers_have_longer_to_stop_than_their_programs(ours):
     for name, one in ours.items():
         if "worker.supervisor" in one["command"]:
             assert seconds(one["stop_grace_period"]) >= PATIENCE + 15, name
-    assert seconds(ours["server"]["stop_grace_period"]) > GRACE
+    assert seconds(ours["server"]["stop_grace_period"]) > SHUTDOWN_SECONDS
 
 
 def test_only_the_server_has_a_port_on_loopback(services):

@@ -7,7 +7,7 @@ from sqlalchemy import func, select, update
 from microcosmos.spec import parse
 from server.attempts.claim import claim
 from server.maintenance.reconcile import reconcile
-from server.runs.submission import submit
+from server.runs.submission import Request, submit
 from server.tables import Base, Run
 
 
@@ -35,7 +35,8 @@ def finish(services, run_id, *reports, files=True):
 
 
 def another(services, spec, seed, key=None):
-    return submit(services, parse({**spec, "seed": seed}), key)[0].id
+    seeded = {**spec, "seed": seed}
+    return submit(services, parse(seeded), Request(seeded, key))[0].id
 
 
 def let_time_pass(services, run_id):

@@ -80,8 +80,8 @@ def test_a_part_that_fails_for_minutes_is_terminated_then_killed(container, tmp_
         os.utime(mark, (time.time() - seconds,) * 2)
         healthcheck.remedy(mark, container.pid)
 
-    failing_for(healthcheck.ASK_AFTER - 5)
-    failing_for(healthcheck.ASK_AFTER + 5)
+    failing_for(healthcheck.TERMINATE_AFTER - 5)
+    failing_for(healthcheck.TERMINATE_AFTER + 5)
     time.sleep(0.2)
     assert program.is_running(), "asked, which it ignores"
     failing_for(healthcheck.KILL_AFTER + 5)

@@ -82,7 +82,7 @@ def test_films_and_pictures_are_drawn_from_the_stored_replay(
 ):
     assert pictures.make(services, known, kind).startswith(start)
     assert asked == [("record", known)]
-    assert renderings.kept(services, known, REPLAY) == replay()
+    assert renderings.existing(services, known, REPLAY) == replay()
     pictures.make(services, known, kind)
     assert asked == [("record", known)], "the second one needs no simulation"
 

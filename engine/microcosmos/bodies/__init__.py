@@ -1,20 +1,16 @@
 """Bodies as NumPy data; JAX-free, so that a spec can be checked anywhere."""
 
 from .assembly import placed, together
-from .bounds import refuse_outside
-from .branching import star, tree
-from .chain import chain
+from .builders import arc, chain, from_graph, graph, ring, star, tree, walk
 from .checks import MIN_GAP
-from .circle import arc, ring
 from .colouring import Colour, colour
 from .curve import polyline, svg
+from .extent import extent, refuse_outside
 from .graph import Body
-from .network import from_graph, graph
 from .refine import Refined, subdivided
 from .shape import from_edges
 from .thinning import thinned
 from .unfolding import Unfolded, drawn, unfolded
-from .walk import walk
 
 __all__ = [
     "MIN_GAP",
@@ -26,6 +22,7 @@ __all__ = [
     "chain",
     "colour",
     "drawn",
+    "extent",
     "from_edges",
     "from_graph",
     "graph",

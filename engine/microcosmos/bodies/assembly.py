@@ -1,4 +1,4 @@
-"""Bodies moved, and put together into one world."""
+"""Placement of bodies, and their combination into one world."""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -11,7 +11,7 @@ NUMBERED = {"edges": "positions", "joints": "edges"}
 
 
 def placed(body: Body, centre: Sequence[int | float] | np.ndarray, turned: float = 0.0) -> Body:
-    """The body turned anticlockwise about its mean node, which comes to lie at `centre`."""
+    """Turn a body anticlockwise about its mean node position and move that to `centre`."""
     c, s = np.cos(turned), np.sin(turned)
     arms = body.positions - body.positions.mean(0)
     rotated = arms @ np.array([[c, s], [-s, c]]) if turned else arms
@@ -19,7 +19,7 @@ def placed(body: Body, centre: Sequence[int | float] | np.ndarray, turned: float
 
 
 def together(bodies: Sequence[Body]) -> Body:
-    """All bodies as one, their creatures numbered in turn."""
+    """Combine bodies into one, their creatures numbered in turn."""
     if not bodies:
         raise ValueError("`bodies` must hold at least one body, got none.")
     arrays = {}
@@ -35,5 +35,5 @@ def together(bodies: Sequence[Body]) -> Body:
 
 
 def _offsets(sizes: list[int], parts: list[np.ndarray]) -> np.ndarray:
-    """For each entry of the joined parts, the sizes of the bodies before it."""
+    """Return, for each entry of the joined parts, the sizes of the bodies before it."""
     return np.repeat(np.cumsum([0, *sizes[:-1]]), [len(part) for part in parts])

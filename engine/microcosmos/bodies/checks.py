@@ -1,4 +1,4 @@
-"""What makes arrays a body, and what keeps a body inside its world."""
+"""Checks of the arrays of a body."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 MIN_GAP = 0.25
-"""Cells between two nodes. At this gap their four-point deltas overlap to 97 %, so that the
-fluid cannot tell them apart; below, forces at the two grow without changing the flow."""
+"""Least distance of two nodes in cells. At this gap their four-point deltas overlap to 97 %;
+below it, the forces at the two nodes grow without changing the flow."""
 
 SHAPES = {
     "positions": ("node", 2),
@@ -25,7 +25,7 @@ WHOLE = ("edges", "joints", "member")
 
 
 def refuse_malformed(arrays: Mapping[str, Any]) -> None:
-    """Raise `ValueError` with the reason where `arrays` do not describe a body."""
+    """Raise `ValueError` where `arrays` do not describe a body."""
     _refuse_shapes(arrays)
     _refuse_values(arrays)
     _refuse_members(arrays["member"])
@@ -36,7 +36,7 @@ def refuse_malformed(arrays: Mapping[str, Any]) -> None:
 
 
 def refuse_crowding(positions: np.ndarray) -> None:
-    """Raise where two nodes are nearer than `MIN_GAP`.
+    """Raise `ValueError` where two nodes are nearer than `MIN_GAP`.
 
     Such a pair shares a cell of width 2 `MIN_GAP` in one of four shifted grids, and few
     nodes that keep their distance fit into a cell.
@@ -54,9 +54,8 @@ def refuse_crowding(positions: np.ndarray) -> None:
             if len(close):
                 pair = sorted((int(order[close[0]]), int(order[close[0] + lag])))
                 raise ValueError(
-                    f"`positions` must be at least {MIN_GAP} cells apart, or the fluid cannot "
-                    f"tell nodes apart: nodes {pair[0]} and {pair[1]} are "
-                    f"{gap[close[0]]:.3g} apart."
+                    f"`positions` must be at least {MIN_GAP} cells apart, nodes {pair[0]} and "
+                    f"{pair[1]} are {gap[close[0]]:.3g} apart."
                 )
 
 
@@ -128,7 +127,7 @@ def _refuse_joints(joints: np.ndarray, edges: np.ndarray) -> None:
 
 
 def _refuse_pairs(name: str, pairs: np.ndarray, of: str, count: int) -> None:
-    """Pairs of distinct things that exist, none twice."""
+    """Raise `ValueError` unless pairs are distinct and of two different existing items."""
     if not pairs.size:
         return
     low, high = pairs.min(), pairs.max()

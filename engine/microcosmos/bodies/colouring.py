@@ -1,4 +1,4 @@
-"""Colouring of constraints: those of one colour share no member, so that they act at once."""
+"""Colouring of constraints: constraints of one colour share no member and act at once."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -8,7 +8,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Colour:
-    """Constraints that share no member, seen from every member.
+    """Constraints that share no member, listed for every member.
 
     `sign` is 1 for the first of a pair, −1 for the second, and 0 where no constraint of
     this colour touches the member.
@@ -20,12 +20,12 @@ class Colour:
 
 
 def colour(pairs: np.ndarray, members: int) -> tuple[Colour, ...]:
-    """Greedy colouring: each pair gets the first colour that neither member has yet."""
-    return _seen_from_members(pairs, _greedy(pairs, members), members)
+    """Colour pairs greedily: each gets the first colour that neither member has yet."""
+    return _by_member(pairs, _greedy(pairs, members), members)
 
 
 def colour_parts(pairs: np.ndarray, part: np.ndarray) -> tuple[Colour, ...]:
-    """The same for a graph whose members belong to separate parts; equal parts cost one.
+    """Colour a graph of separate parts; equal parts are coloured once.
 
     `part` is the part of each member, ascending; no pair joins two parts.
     """
@@ -37,12 +37,12 @@ def colour_parts(pairs: np.ndarray, part: np.ndarray) -> tuple[Colour, ...]:
     known: dict[bytes, np.ndarray] = {}
     chosen = np.zeros(len(pairs), int)
     for i, (first, last) in enumerate(pairwise(bounds.tolist())):
-        own = local[first:last]
-        name = own.tobytes()
+        pairs_of_part = local[first:last]
+        name = pairs_of_part.tobytes()
         if name not in known:
-            known[name] = _greedy(own, int(start[i + 1] - start[i]))
+            known[name] = _greedy(pairs_of_part, int(start[i + 1] - start[i]))
         chosen[order[first:last]] = known[name]
-    return _seen_from_members(pairs, chosen, len(part))
+    return _by_member(pairs, chosen, len(part))
 
 
 def _greedy(pairs: np.ndarray, members: int) -> np.ndarray:
@@ -56,9 +56,7 @@ def _greedy(pairs: np.ndarray, members: int) -> np.ndarray:
     return chosen
 
 
-def _seen_from_members(
-    pairs: np.ndarray, chosen: np.ndarray, members: int
-) -> tuple[Colour, ...]:
+def _by_member(pairs: np.ndarray, chosen: np.ndarray, members: int) -> tuple[Colour, ...]:
     colours = range(chosen.max(initial=-1) + 1)
     return tuple(_pairing(pairs, np.flatnonzero(chosen == c), members) for c in colours)
 

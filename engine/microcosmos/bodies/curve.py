@@ -1,46 +1,36 @@
 """Bodies along drawn curves: polylines and SVG paths."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
 from .graph import Body
-from .shape import from_edges
+from .shape import Stiffness, from_edges
 
 SAMPLES = 512
-"""Points on each curved piece of an SVG path, before nodes are spaced evenly on them."""
+"""Points on each curved piece of an SVG path, on which nodes are then spaced evenly."""
 
 
 def polyline(
     points: Sequence[Any] | np.ndarray,
     spacing: float,
     closed: bool = False,
-    *,
-    stretch: float = 1.0,
-    shear: float = 1.0,
-    bend: float = 1.0,
+    **stiffness: Unpack[Stiffness],
 ) -> Body:
-    """A filament along `points`, its nodes at equal arc lengths of about `spacing` cells.
+    """Build a filament along `points`, its nodes at equal arc lengths of about `spacing` cells.
 
-    A closed one starts and ends at the first point; given again as the last, it counts once.
+    A closed one ends at the first point, which may be repeated as the last.
     """
     corners = np.array(points, float)
     _refuse_curve(corners, spacing)
     places, edges = _strand(corners, spacing, closed)
     arc = np.arange(len(places)) / len(edges)
-    return from_edges(places, edges, arc, stretch=stretch, shear=shear, bend=bend)
+    return from_edges(places, edges, arc, **stiffness)
 
 
-def svg(
-    text: str,
-    spacing: float,
-    *,
-    stretch: float = 1.0,
-    shear: float = 1.0,
-    bend: float = 1.0,
-) -> Body:
-    """Filaments along an SVG path's `d`, or all shapes of a whole SVG document.
+def svg(text: str, spacing: float, **stiffness: Unpack[Stiffness]) -> Body:
+    """Build filaments along an SVG path's `d`, or along all shapes of an SVG document.
 
     A unit is a cell, y turned upwards. A strand that ends less than half of `spacing`
     from a node is joined to it. Needs svgpathtools.
@@ -55,7 +45,7 @@ def svg(
     if not places:
         raise ValueError("`text` must hold an SVG path, got none.")
     joined, pairs = _join(np.concatenate(places), np.concatenate(edges), spacing / 2)
-    return from_edges(joined, pairs, stretch=stretch, shear=shear, bend=bend)
+    return from_edges(joined, pairs, **stiffness)
 
 
 def _refuse_curve(corners: np.ndarray, spacing: float) -> None:
@@ -68,7 +58,7 @@ def _refuse_curve(corners: np.ndarray, spacing: float) -> None:
 
 
 def _strand(corners: np.ndarray, spacing: float, closed: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Places at equal arc lengths, and the edges between them."""
+    """Return positions at equal arc lengths, and the edges between them."""
     if closed:
         corners = np.concatenate([corners, corners[:1]])
     steps = np.diff(corners, axis=0)
@@ -83,25 +73,23 @@ def _strand(corners: np.ndarray, spacing: float, closed: bool) -> tuple[np.ndarr
 
 
 def _strands(text: str) -> list[tuple[np.ndarray, bool]]:
-    """Points along every unbroken part of the SVG, and whether it is closed."""
+    """Return the points of every unbroken part of the SVG, and whether it is closed."""
     try:
         import svgpathtools
     except ImportError as missing:
         raise ImportError(
             "Bodies from SVG need svgpathtools: pip install microcosmos[shapes]"
         ) from missing
-    whole = "<svg" in text
-    paths = (
-        svgpathtools.Document.from_svg_string(text).paths()
-        if whole
-        else [svgpathtools.parse_path(text)]
-    )
+    if "<svg" in text:
+        paths = svgpathtools.Document.from_svg_string(text).paths()
+    else:
+        paths = [svgpathtools.parse_path(text)]
     parts = [part for path in paths for part in path.continuous_subpaths()]
     return [(_points(part, svgpathtools.Line), part.isclosed()) for part in parts]
 
 
 def _points(path, straight: type) -> np.ndarray:
-    """Points along an SVG path, y upwards; of straight pieces the ends alone."""
+    """Return points along an SVG path, y upwards; only the ends of straight pieces."""
     z = [path[0].start]
     for piece in path:
         count = 1 if isinstance(piece, straight) else SAMPLES
@@ -110,7 +98,7 @@ def _points(path, straight: type) -> np.ndarray:
 
 
 def _join(places: np.ndarray, edges: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of strands nearer than `reach` to a node become that node."""
+    """Merge ends of strands with nodes nearer than `reach`."""
     same = list(range(len(places)))
 
     def root(node: int) -> int:

@@ -1,4 +1,4 @@
-"""Bodies as graphs: nodes, edges and joints as NumPy data, coloured once."""
+"""Bodies: nodes, edges and joints as NumPy data."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,7 +11,7 @@ from .colouring import Colour, colour_parts
 
 @dataclass(frozen=True)
 class Body:
-    """Filaments at rest, in cells and radians: one creature, or several in one world."""
+    """Filaments at rest, in cells and radians, of one creature or several."""
 
     positions: np.ndarray
     """(node, 2)."""
@@ -21,17 +21,16 @@ class Body:
     """(joint, 2) numbers of edges that share a node."""
     rest_length: np.ndarray
     rest_angle: np.ndarray
-    """(joint,) the second edge's direction less the first's."""
+    """(joint,) direction of the second edge minus that of the first."""
     stretch: np.ndarray
     shear: np.ndarray
     bend: np.ndarray
     arc: np.ndarray
     """(node,) position along the creature from 0 to 1."""
     member: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
-    """(node,) the creature that a node belongs to, ascending from 0; one if left out."""
-
+    """(node,) creature of each node, ascending from 0; one creature if left out."""
     crossing: bool = False
-    """Whether filaments may lie upon each other, nearer than the fluid tells nodes apart."""
+    """Whether filaments may cross, with nodes nearer than `MIN_GAP`."""
 
     def __post_init__(self):
         if not len(self.member):
@@ -45,7 +44,7 @@ class Body:
 
     @cached_property
     def joint_nodes(self) -> np.ndarray:
-        """(joint,) the node that the two edges share."""
+        """(joint,) node that the two edges share."""
         first, second = self.edges[self.joints[:, 0]], self.edges[self.joints[:, 1]]
         shared = (first[:, :, None] == second[:, None, :]).any(2)
         return np.where(shared[:, 0], first[:, 0], first[:, 1])

@@ -1,4 +1,4 @@
-"""The same body at twice the resolution."""
+"""Bodies at twice the resolution."""
 
 from dataclasses import dataclass
 
@@ -9,27 +9,27 @@ from .graph import Body
 
 @dataclass(frozen=True)
 class Refined:
-    """A body with every edge halved, and where its parts come from."""
+    """A body with every edge halved, and the mapping from the original."""
 
     body: Body
     nodes: np.ndarray
-    """(node of the original,) its number now."""
+    """(node of the original,) its new number."""
     edges: np.ndarray
-    """(edge now,) the edge of the original that it is half of."""
+    """(new edge,) the original edge that it halves."""
     joints: np.ndarray
-    """(joint of the original,) its number now; all others are in the middle of an edge."""
+    """(joint of the original,) its new number; the others lie in the middle of an edge."""
 
 
 def subdivided(body: Body) -> Refined:
-    """Every edge halved by a new node, in a world twice as large.
+    """Halve every edge by a new node, in a world twice as large.
 
-    Edges keep their length in cells. Joints keep angle and stiffness; a new one holds the
-    two halves of an edge straight.
+    Edges keep their length in cells. Joints keep angle and stiffness; new joints hold the
+    halves of an edge straight.
     """
     first, second = body.edges.T
     count = len(body.edges)
     order = np.argsort(np.concatenate([body.member, body.member[first]]), kind="stable")
-    number = np.argsort(order)  # Of the original nodes, then of the middles.
+    number = np.argsort(order)  # Original nodes, then middles.
     middle = number[len(body.positions) :]
     halves = np.stack([number[first], middle, middle, number[second]], 1).reshape(-1, 2)
     places = body.positions[first] + body.positions[second]
@@ -56,6 +56,6 @@ def subdivided(body: Body) -> Refined:
 
 
 def _between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Half way from `a` to `b`; on a ring, the way through 1 is the shorter one."""
+    """Return the middle of `a` and `b`; across a ring's end, through 1."""
     closing = (np.abs(a - b) > 0.5) & (np.abs(a - b) < 1)
     return np.where(closing, (np.maximum(a, b) + 1) / 2, (a + b) / 2)

@@ -1,10 +1,19 @@
-"""From nodes and edges to a body at rest in the shape that it is drawn in."""
+"""Bodies from nodes and edges, at rest as they are drawn."""
 
 import heapq
+from typing import TypedDict
 
 import numpy as np
 
 from .graph import Body
+
+
+class Stiffness(TypedDict, total=False):
+    """Stiffness of a body, the same everywhere; 1 where left out."""
+
+    stretch: float
+    shear: float
+    bend: float
 
 
 def from_edges(
@@ -17,11 +26,11 @@ def from_edges(
     shear: float | np.ndarray = 1.0,
     bend: float | np.ndarray = 1.0,
 ) -> Body:
-    """A body whose joints, lengths and angles are those of the drawing.
+    """Build a body whose joints, lengths and angles are those of the drawing.
 
-    At a node of two edges these are joined; at a branch of three or more each is joined to
-    its neighbours on both sides. `arc` is the way along the edges from the first node
-    where it is left out; so is `rest_length` the drawn one, where left out or NaN.
+    Two edges at a node are joined; at a branch of three or more, each is joined to its
+    neighbours on both sides. By default `arc` is the path from the first node along the edges,
+    and `rest_length` (also where NaN) the drawn length.
     """
     positions, edges = np.asarray(positions, float), np.asarray(edges, int).reshape(-1, 2)
     joints = joints_of(positions, edges)
@@ -44,12 +53,12 @@ def from_edges(
 
 
 def wrap(angle: np.ndarray) -> np.ndarray:
-    """The same angle within ±π."""
+    """Return the same angle within ±π."""
     return angle - 2 * np.pi * np.round(angle / (2 * np.pi))
 
 
 def joints_of(positions: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Joints in the order of their nodes, an edge that arrives before one that leaves."""
+    """Return joints in the order of their nodes, incoming edges before outgoing ones."""
     met: list[list[tuple[int, int]]] = [[] for _ in positions]
     for number, (first, second) in enumerate(edges.tolist()):
         for node, leaves in ((first, 1), (second, 0)):
@@ -68,7 +77,7 @@ def joints_of(positions: np.ndarray, edges: np.ndarray) -> np.ndarray:
 
 
 def _cyclic(node: int, met: list[int], positions: np.ndarray, edges: np.ndarray):
-    """Pairs of neighbours among a node's edges, anticlockwise."""
+    """Return pairs of neighbours among a node's edges, anticlockwise."""
     far = np.sum(edges[met], 1) - node
     v = positions[far] - positions[node]
     round_about = np.array(met)[np.argsort(np.arctan2(v[:, 1], v[:, 0]), kind="stable")]
@@ -76,7 +85,7 @@ def _cyclic(node: int, met: list[int], positions: np.ndarray, edges: np.ndarray)
 
 
 def distances(nodes: int, edges: np.ndarray, length: np.ndarray, start: int = 0) -> np.ndarray:
-    """Cells along the edges from `start` to every node, infinite where no way leads."""
+    """Return the cells along edges from `start` to every node; infinite without a path."""
     neighbours: list[list[tuple[int, float]]] = [[] for _ in range(nodes)]
     for (first, second), cells in zip(edges.tolist(), length.tolist(), strict=True):
         neighbours[first].append((second, cells))
@@ -93,7 +102,7 @@ def distances(nodes: int, edges: np.ndarray, length: np.ndarray, start: int = 0)
 
 
 def _arc(nodes: int, edges: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Shares of the way from the first node to the furthest; 0 where no way leads."""
+    """Return shares of the path from the first node to the furthest; 0 without a path."""
     way = distances(nodes, edges, length)
     way[np.isinf(way)] = 0
     return way / max(way.max(), 1e-12)

@@ -1,4 +1,4 @@
-"""A body with fewer nodes that looks the same from afar, for a drawing."""
+"""Thinning of bodies for drawings."""
 
 import numpy as np
 
@@ -6,8 +6,7 @@ from .graph import Body
 
 
 def thinned(body: Body, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and edges of about `most` nodes: ends and branches stay, and every so many in
-    between; edges lead to the next node that stayed."""
+    """Return positions and edges of about `most` nodes: ends, branches, and some in between."""
     every = -(-len(body.positions) // most)
     if every == 1:
         return body.positions, body.edges
@@ -19,7 +18,7 @@ def thinned(body: Body, most: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _spans(edges: np.ndarray, kept: np.ndarray) -> list[tuple[int, int]]:
-    """Pairs of kept nodes with none but others between them, each way once."""
+    """Return the pairs of kept nodes that become neighbours, each path once."""
     met: list[list[int]] = [[] for _ in kept]
     for number, ends in enumerate(edges.tolist()):
         for node in ends:
@@ -33,7 +32,7 @@ def _spans(edges: np.ndarray, kept: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _follow(node: int, edge: int, edges, met, kept, walked: set[int]) -> int:
-    """The first kept node along an edge and those after it, which count as walked."""
+    """Return the first kept node along a path of edges, which are marked as walked."""
     while True:
         walked.add(edge)
         node = int(edges[edge].sum()) - node

@@ -1,4 +1,4 @@
-"""Bodies without loops, laid out from their first node by angles and lengths."""
+"""Layout of bodies without loops, from their first node by angles and lengths."""
 
 from dataclasses import dataclass
 
@@ -6,35 +6,34 @@ import numpy as np
 
 from .graph import Body
 
-MOST = 1024
-"""Nodes of a body that is laid out: what is needed grows with their square."""
+MAX_NODES = 1024
+"""Most nodes of a body that is laid out: memory grows with their square."""
 
 
 @dataclass(frozen=True)
 class Unfolded:
-    """How edges hang on joints, and nodes on edges."""
+    """The dependence of edges on joints, and of nodes on edges."""
 
     joints: np.ndarray
-    """(free,) the joints that can be turned independently: the last one around a branch
-    follows from the others."""
+    """(free,) joints that turn independently; the last one around a branch follows."""
     turned: np.ndarray
-    """(edge, free) how much a turn of each of these joints turns each edge."""
+    """(edge, free) factor by which the turn of a joint turns an edge."""
     ways: np.ndarray
-    """(node, edge) how often, and in which sense, the way from the first node has each edge."""
+    """(node, edge) sign with which the path from the first node has each edge, or 0."""
 
 
 def unfolded(body: Body) -> Unfolded:
-    """How a body is laid out.
+    """Return the layout of a body.
 
-    Raises `ValueError` where it has loops or several parts, or too many nodes.
+    Raises `ValueError` where it has loops, several parts, or too many nodes.
     """
     nodes, edges = len(body.positions), len(body.edges)
-    if nodes > MOST:
-        raise ValueError(f"a body that is laid out must have at most {MOST} nodes, got {nodes}")
+    if nodes > MAX_NODES:
+        raise ValueError(f"a body to lay out must have at most {MAX_NODES} nodes, got {nodes}")
     ways = _ways(body)
     if edges != nodes - 1 or ways is None:
         raise ValueError(
-            f"a body that is laid out must be one piece without loops, got {nodes} nodes and "
+            f"a body to lay out must be one piece without loops, got {nodes} nodes and "
             f"{edges} edges"
         )
     joints, turned = _turned(body)
@@ -42,13 +41,13 @@ def unfolded(body: Body) -> Unfolded:
 
 
 def drawn(body: Body) -> tuple[np.ndarray, np.ndarray]:
-    """The angle and the length of every edge as the body stands."""
+    """Return the angle and the length of every edge in the body's present positions."""
     v = body.positions[body.edges[:, 1]] - body.positions[body.edges[:, 0]]
     return np.arctan2(v[:, 1], v[:, 0]), np.hypot(v[:, 0], v[:, 1])
 
 
 def _ways(body: Body) -> np.ndarray | None:
-    """From the first node to every node, or None where some cannot be reached."""
+    """Return the paths from the first node, or None where some node cannot be reached."""
     met: list[list[tuple[int, int, int]]] = [[] for _ in body.positions]
     for number, (first, second) in enumerate(body.edges.tolist()):
         met[first].append((number, second, 1))
@@ -67,7 +66,7 @@ def _ways(body: Body) -> np.ndarray | None:
 
 
 def _turned(body: Body) -> tuple[np.ndarray, np.ndarray]:
-    """The joints by which edges are found from an edge that stays, and what they turn."""
+    """Return the joints of a spanning tree of the edges, and the edges that each turns."""
     met: list[list[tuple[int, int, int]]] = [[] for _ in body.edges]
     for number, (first, second) in enumerate(body.joints.tolist()):
         met[first].append((number, second, 1))

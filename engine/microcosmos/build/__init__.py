@@ -1,4 +1,4 @@
-"""From a spec to the objects that carry it out: the only place where pydantic meets JAX."""
+"""Build the objects of a run from its spec: the only place where pydantic meets JAX."""
 
 from .cells import build_axes, build_cells
 from .creatures import build_block, build_point, build_stroke_block, frame

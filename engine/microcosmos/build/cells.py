@@ -1,4 +1,4 @@
-"""From the words for an archive to its cells."""
+"""Build the cells of an archive."""
 
 from .. import search, spec
 
@@ -6,7 +6,7 @@ from .. import search, spec
 def build_cells(
     archive: spec.Archive, measures: tuple[str, ...] = search.MEASURES
 ) -> search.Cells:
-    """The archive's cells over recorded measures."""
+    """Build the archive's cells over recorded measures."""
     axes = build_axes(archive, measures)
     if archive.centroids is None:
         return search.Grid(axes)
@@ -17,7 +17,7 @@ def build_cells(
 def build_axes(
     archive: spec.Archive, measures: tuple[str, ...] = search.MEASURES
 ) -> tuple[search.Axis, ...]:
-    """The archive's descriptors among recorded measures."""
+    """Build the archive's axes over recorded measures."""
     return tuple(
         search.Axis(
             measure=measures.index(axis.name),

@@ -1,7 +1,6 @@
-"""From the words for emitters to what makes children."""
+"""Build the emitters of a spec."""
 
 from dataclasses import replace
-from functools import singledispatch
 
 from .. import neat, search, spec
 from ..genomes import Encoding
@@ -13,100 +12,82 @@ from .plugins import measures_of
 
 
 def build_emitters(chosen: spec.Evolution, encoding: Encoding) -> tuple[search.Emitter, ...]:
-    """The sources of children, each with its slots of a generation."""
+    """Build the emitters, each with its slots of a generation."""
     pairs = zip(chosen.emitters, chosen.slots, strict=True)
     return tuple(_build(emitter, slots, chosen, encoding) for emitter, slots in pairs)
 
 
-@singledispatch
 def _build(
-    emitter: words.Emitter,
+    emitter: words.Emitter, slots: int, chosen: spec.Evolution, encoding: Encoding
+) -> search.Emitter:
+    newcomer, outputs = encoding.newcomer, 1 + len(chosen.archive.descriptors)
+    match emitter:
+        case words.RandomEmitter():
+            return emitters.Random(slots, newcomer)
+        case words.NeatEmitter():
+            return _neat(emitter, slots, chosen, encoding)
+        case words.PopulationEmitter():
+            return _population(emitter, slots, chosen, encoding)
+        case words.LineEmitter():
+            return emitters.IsoLine(slots, newcomer, emitter.iso, emitter.line)
+        case words.GaussianEmitter():
+            return emitters.IsoLine(slots, newcomer, emitter.step)
+        case words.CmaMaeEmitter():
+            return emitters.CmaMae(
+                slots=slots,
+                newcomer=newcomer,
+                cells=chosen.archive.cells,
+                step=emitter.step,
+                learning_rate=emitter.learning_rate,
+                threshold=emitter.threshold,
+            )
+        case words.CmaMeEmitter():
+            cells, count = (
+                build_cells(chosen.archive, measures_of(chosen.scene)),
+                emitter.emitters,
+            )
+            return qdax.cma_me(slots, newcomer, cells, step=emitter.step, emitters=count)
+        case words.LamarckianEmitter():
+            return emitters.Lamarckian(
+                neat=_neat(emitter, slots, chosen, encoding),
+                outputs=outputs,
+                lessons=emitter.lessons,
+                step=emitter.step,
+                diversity=emitter.diversity,
+            )
+        case words.CmaMegaEmitter():
+            return emitters.CmaMega(slots, newcomer, outputs, emitter.step, emitter.rate)
+
+
+def _neat(
+    emitter: words.NeatEmitter | words.LamarckianEmitter,
     slots: int,
     chosen: spec.Evolution,
     encoding: Encoding,
-) -> search.Emitter:
-    raise TypeError(f"`emitters` must be known ones, got {type(emitter).__name__}")
-
-
-@_build.register
-def _(emitter: words.RandomEmitter, slots, chosen, encoding):
-    return emitters.Random(slots, encoding.newcomer)
-
-
-@_build.register
-def _(emitter: words.NeatEmitter, slots, chosen, encoding):
+) -> emitters.Neat:
     rates, inputs = build_rates(chosen), len(chosen.control.inputs)
     return emitters.Neat(slots, encoding.newcomer, rates, inputs, emitter.crossover)
 
 
-@_build.register
-def _(emitter: words.PopulationEmitter, slots, chosen, encoding):
+def _population(
+    emitter: words.PopulationEmitter, slots: int, chosen: spec.Evolution, encoding: Encoding
+) -> search.Emitter:
     settings = build_settings(emitter, chosen, slots)
     inputs, outputs = len(chosen.control.inputs), len(chosen.control.outputs)
     if emitter.backend == "tensorneat":
+        assert encoding.room is not None
         backend = tensorneat.build(settings, inputs, outputs, *encoding.room)
         return TensorNeat(slots, backend, chosen.seed)
     return emitters.population.Neat(slots, encoding.newcomer, settings, inputs, outputs)
 
 
-@_build.register
-def _(emitter: words.LineEmitter, slots, chosen, encoding):
-    return emitters.IsoLine(slots, encoding.newcomer, emitter.iso, emitter.line)
-
-
-@_build.register
-def _(emitter: words.GaussianEmitter, slots, chosen, encoding):
-    return emitters.IsoLine(slots, encoding.newcomer, emitter.step)
-
-
-@_build.register
-def _(emitter: words.CmaMaeEmitter, slots, chosen, encoding):
-    return emitters.CmaMae(
-        slots=slots,
-        newcomer=encoding.newcomer,
-        cells=chosen.archive.cells,
-        step=emitter.step,
-        learning_rate=emitter.learning_rate,
-        threshold=emitter.threshold,
-    )
-
-
-@_build.register
-def _(emitter: words.CmaMeEmitter, slots, chosen, encoding):
-    cells, asked = build_cells(chosen.archive, measures_of(chosen.scene)), emitter.emitters
-    return qdax.cma_me(slots, encoding.newcomer, cells, step=emitter.step, emitters=asked)
-
-
-@_build.register
-def _(emitter: words.LamarckianEmitter, slots, chosen, encoding):
-    rates, inputs = build_rates(chosen), len(chosen.control.inputs)
-    return emitters.Lamarckian(
-        neat=emitters.Neat(slots, encoding.newcomer, rates, inputs, emitter.crossover),
-        outputs=1 + len(chosen.archive.descriptors),
-        lessons=emitter.lessons,
-        step=emitter.step,
-        diversity=emitter.diversity,
-    )
-
-
-@_build.register
-def _(emitter: words.CmaMegaEmitter, slots, chosen, encoding):
-    return emitters.CmaMega(
-        slots=slots,
-        newcomer=encoding.newcomer,
-        outputs=1 + len(chosen.archive.descriptors),
-        step=emitter.step,
-        rate=emitter.rate,
-    )
-
-
 def build_settings(
     emitter: words.PopulationEmitter, chosen: spec.Evolution, slots: int
 ) -> neat.Settings:
-    """How a population is divided, selected and varied."""
+    """Build the settings of a NEAT population."""
     whole = neat.PRESETS[emitter.preset]
     rates = build_rates(chosen)
-    if emitter.preset != "paper":  # Its own rates, among all activations.
+    if emitter.preset != "paper":  # TensorNEAT's rates, over all activations.
         rates = replace(whole.rates, palette=rates.palette, recurrent=rates.recurrent)
     names = ("threshold", "target_species", "stagnation", "survival", "crossover")
     given = {name: getattr(emitter, name) for name in names}
@@ -115,7 +96,7 @@ def build_settings(
 
 
 def build_rates(chosen: spec.Evolution) -> neat.Rates:
-    """How often each of NEAT's mutations happens."""
+    """Build NEAT's mutation rates."""
     genome = chosen.genome
     return neat.Rates(
         weight=genome.weight_rate,

@@ -1,6 +1,4 @@
-"""From the words for an encoding to what genotypes mean."""
-
-from functools import singledispatch
+"""Build the encoding of a scene."""
 
 import numpy as np
 
@@ -13,10 +11,10 @@ BASES = {"fourier": genomes.fourier, "table": genomes.table}
 
 
 def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding:
-    """What genotypes mean for a scene's body; `room` is for nodes and connections."""
+    """Build a scene's encoding; `room` is the number of nodes and connections."""
     control, body = scene.control, spec.shape(scene.body)
     if isinstance(control, spec.Gait):
-        raise ValueError("`control` must be inherited, got a hand-made gait")
+        raise ValueError("`control` must have a genome, got a hand-made gait")
     if isinstance(control, spec.Fold):
         lengths = LENGTHS[control.lengths]
         return genomes.Fold(body.rest_angle, body.rest_length, scene.task.steps, lengths)
@@ -25,7 +23,7 @@ def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding
 
 
 def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> genomes.Controls:
-    """What a controller is told at all nodes and times, and what it says means."""
+    """Build a controller's inputs at all nodes and times, and the meaning of its outputs."""
     rise = np.maximum(control.ramp * control.period, 1)
     unit = getattr(control, "position", "signed") == "unit"
     return genomes.Controls(
@@ -42,54 +40,40 @@ def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> g
     )
 
 
-@singledispatch
 def _encoding(
     control: spec.Controller,
     controls: genomes.Controls,
     body: bodies.Body,
     room: tuple[int, int],
 ) -> genomes.Encoding:
-    raise TypeError(f"`control` must have a known encoding, got {type(control).__name__}")
-
-
-@_encoding.register
-def _(control: spec.Control, controls, body, room):
-    return genomes.CPPNControl(controls, room, control.recurrent)
-
-
-@_encoding.register
-def _(control: spec.Weights, controls, body, room):
-    layers = genomes.Layers(control.sizes, control.activation, control.scale)
-    return genomes.Weights(controls, layers)
-
-
-@_encoding.register
-def _(control: spec.Direct, controls, body, room):
-    reshaped = {"rest_angle", "rest_length"} & set(control.traits)
-    return genomes.Direct(
-        controls=controls,
-        parts=control.parts(body),
-        bounds=control.traits,
-        basis=BASES[control.waveform],
-        terms=control.terms,
-        plan=build_layout(body) if reshaped else None,
-        spread=control.spread,
-        faintest=control.faintest,
-    )
-
-
-@_encoding.register
-def _(control: spec.PluginControl, controls, body, room):
-    return genomes.PluginEncoding(controls, control.genes(body), build_act(control, controls))
-
-
-@_encoding.register
-def _(control: spec.Grown, controls, body, room):
-    return genomes.Grown(controls, room, control.traits, control.min_nodes, build_layout(body))
+    match control:
+        case spec.Control():
+            return genomes.CPPNControl(controls, room, control.recurrent)
+        case spec.Weights():
+            layers = genomes.Layers(control.sizes, control.activation, control.scale)
+            return genomes.Weights(controls, layers)
+        case spec.Direct():
+            reshaped = {"rest_angle", "rest_length"} & set(control.traits)
+            return genomes.Direct(
+                controls=controls,
+                parts=control.parts(body),
+                bounds=control.traits,
+                basis=BASES[control.waveform],
+                terms=control.terms,
+                plan=build_layout(body) if reshaped else None,
+                spread=control.spread,
+                faintest=control.faintest,
+            )
+        case spec.PluginControl():
+            act = build_act(control, controls)
+            return genomes.PluginEncoding(controls, control.genes(body), act)
+        case spec.Grown():
+            layout = build_layout(body)
+            return genomes.Grown(controls, room, control.traits, control.min_nodes, layout)
 
 
 def build_layout(body: bodies.Body) -> genomes.Plan:
-    """How a body without loops is laid out."""
+    """Build the layout of a body without loops."""
     unfolded = bodies.unfolded(body)
     angle, length = bodies.drawn(body)
     return genomes.Plan(

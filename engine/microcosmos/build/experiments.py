@@ -1,4 +1,4 @@
-"""From a spec to the experiment that carries it out."""
+"""Build the experiment of a spec."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .. import device, neat, search, spec
+from .. import device, genomes, neat, search, spec
 from ..archive.initial import counters, genes_of
 from ..experiments import Experiment, reevaluation
 from ..experiments.evolution import Evolution
@@ -29,10 +29,9 @@ from .tables import build_gaits, build_scaling
 
 @singledispatch
 def build(chosen: spec.Spec, initial: Sequence[Mapping[str, Any]] = ()) -> Experiment:
-    """The experiment that a spec describes, its programs ready to be compiled.
+    """Build the experiment of a spec, its programs ready to be compiled.
 
-    `initial` are the creature files that `search.initial` names; a run resumed from its file
-    needs none.
+    `initial` are the creature files that `search.initial` names; a resumed run needs none.
     """
     raise TypeError(f"`spec` must be an experiment's, got {type(chosen).__name__}")
 
@@ -47,12 +46,12 @@ build.register(build_scaling)
 def build_evolution(
     chosen: spec.Evolution, initial: Sequence[Mapping[str, Any]] = ()
 ) -> Evolution:
-    """A search with an archive."""
-    plan = begun(build_plan(chosen), chosen, initial)
+    """Build a search with an archive."""
+    plan = with_initial(build_plan(chosen), chosen, initial)
     emitters, key = plan.emitters, plan.key
     hosted = any(isinstance(emitter, TensorNeat) for emitter in emitters)
     compiled = (lambda program: program) if hosted else jax.jit
-    # Bound one by one: a program is compiled for this run's sizes and seed.
+    # Each program is compiled for this run's sizes and seed.
     programs = Programs(
         emit=compiled(lambda *given: search.emitters.emit(emitters, *given, key=key)),
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
@@ -67,7 +66,7 @@ def build_evolution(
 def build_lessons(
     chosen: spec.Evolution, emitters: tuple[search.Emitter, ...]
 ) -> tuple[Lessons | None, ...]:
-    """What the children of each emitter learn, where they do."""
+    """Build the lessons of each emitter whose offspring learn."""
     pairs = zip(chosen.emitters, emitters, strict=True)
     task = build_task(chosen.scene, room=room_of(chosen))
     descriptors = tuple(axis.name for axis in chosen.archive.descriptors)
@@ -89,13 +88,13 @@ def build_lessons(
 
 
 def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs | None:
-    """What evaluates elites again, where they are."""
-    asked = plan.reevaluation
-    if asked is None:
+    """Build the programs that reevaluate elites, if the spec asks for it."""
+    settings = plan.reevaluation
+    if settings is None:
         return None
     return reevaluation.Programs(
         disturb=jax.jit(
-            lambda g, s: reevaluation.disturb(asked, plan.key, plan.cell_count, g, s)
+            lambda g, s: reevaluation.disturb(settings, plan.key, plan.cell_count, g, s)
         ),
         evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
         add=jax.jit(search.reevaluation.add),
@@ -104,7 +103,7 @@ def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs |
 
 
 def build_plan(chosen: spec.Evolution) -> Plan:
-    """What the experiment needs of the spec besides programs."""
+    """Build everything that the experiment needs besides programs."""
     scene = chosen.scene
     encoding = build_encoding(scene, room_of(chosen))
     fixed = len(chosen.control.inputs), len(chosen.control.outputs)
@@ -129,31 +128,33 @@ def build_plan(chosen: spec.Evolution) -> Plan:
     )
 
 
-def begun(plan: Plan, chosen: spec.Evolution, files: Sequence[Mapping[str, Any]]) -> Plan:
-    """The plan of a search that begins from creatures; those of the spec, if any are given."""
+def with_initial(
+    plan: Plan, chosen: spec.Evolution, files: Sequence[Mapping[str, Any]]
+) -> Plan:
+    """Add initial creatures to the plan of a search, if any are given."""
     if not files:
         return plan
     given = {file["sha256"]: file for file in files}
-    if lacking := [name for name in chosen.search.initial if name not in given]:
+    if missing := [name for name in chosen.search.initial if name not in given]:
         raise ValueError(
-            f"`search.initial` needs the file of each creature; got none of {lacking[0]}"
+            f"`search.initial` needs the file of each creature; got none of {missing[0]}"
         )
-    genomes = genes_of(chosen, [given[name] for name in chosen.search.initial])
-    genotypes = [plan.encoding.read(genome) for genome in genomes]
+    genes = genes_of(chosen, [given[name] for name in chosen.search.initial])
+    genotypes = [genomes.read(genome, plan.encoding.room) for genome in genes]
     names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.initial]
     rows = jax.tree.map(lambda *parts: np.stack(parts), *genotypes)
     return replace(
         plan,
         initial=InitialCreatures(np.stack(names), rows),
-        counters=_counters(plan, genomes),
+        counters=_counters(plan, genes),
     )
 
 
-def _counters(plan: Plan, genomes: list[dict[str, Any]]) -> neat.Counters:
-    """Numbers after all genes that the search begins with."""
+def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
+    """Return the next gene numbers after those of the initial creatures."""
     if plan.encoding.room is None:
         return plan.counters
-    connections, nodes = counters(genomes)
+    connections, nodes = counters(genes)
     return neat.Counters(
         jnp.maximum(plan.counters.innovation, connections),
         jnp.maximum(plan.counters.node, nodes),
@@ -161,13 +162,13 @@ def _counters(plan: Plan, genomes: list[dict[str, Any]]) -> neat.Counters:
 
 
 def build_limits(stop: spec.Stop) -> Limits:
-    """When the run ends before its generations are through."""
+    """Build the conditions that end a run early."""
     given = {name: value for name, value in stop.model_dump().items() if value is not None}
     return Limits(**given)
 
 
 def build_reevaluation(chosen: spec.Evolution) -> Reevaluation | None:
-    """When elites are evaluated again, and under which conditions."""
+    """Build the interval and the conditions of reevaluation."""
     asked = chosen.search.reevaluation
     if asked is None:
         return None
@@ -179,7 +180,7 @@ def build_reevaluation(chosen: spec.Evolution) -> Reevaluation | None:
 
 
 def names_of(emitters: tuple[spec.Emitter, ...]) -> tuple[str, ...]:
-    """Operators, numbered where there are several of a kind."""
+    """Return the operators, numbered where there are several of a kind."""
     kinds = [emitter.operator for emitter in emitters]
     return tuple(
         f"{kind} {kinds[: i + 1].count(kind)}" if kinds.count(kind) > 1 else kind
@@ -188,5 +189,5 @@ def names_of(emitters: tuple[spec.Emitter, ...]) -> tuple[str, ...]:
 
 
 def room_of(chosen: spec.Evolution) -> tuple[int, int]:
-    """Nodes and connections that networks have room for."""
+    """Return the number of nodes and connections of network arrays."""
     return chosen.genome.max_nodes, chosen.genome.max_connections

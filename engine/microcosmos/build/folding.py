@@ -1,4 +1,4 @@
-"""From the spec of a folding to the experiment that carries it out."""
+"""Build a folding experiment."""
 
 import json
 from functools import partial
@@ -15,9 +15,8 @@ DENSITIES = {"saturated": fields.saturated, "raw": fields.unsaturated}
 
 
 def build_folding(chosen: spec.Folding) -> folding.Folding:
-    """Folds, their program compiled when it is first used."""
+    """Build a folding, whose program is compiled on first use."""
     descent = build_descent(chosen)
-    assert descent.task.encoding is not None
     return folding.Folding(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         names=tuple(target.name for target in chosen.targets),
@@ -26,13 +25,12 @@ def build_folding(chosen: spec.Folding) -> folding.Folding:
         updates=chosen.updates,
         block=chosen.block,
         frame=frame(chosen.scene),
-        encoding=descent.task.encoding,
         device=device.device_kind(),
     )
 
 
 def build_descent(chosen: spec.Folding) -> search.folding.Descent:
-    """What an update needs to know of a spec."""
+    """Build the settings of an update."""
     return search.folding.Descent(
         task=build_task(chosen.scene),
         width=chosen.width,
@@ -43,6 +41,6 @@ def build_descent(chosen: spec.Folding) -> search.folding.Descent:
 
 
 def build_pictures(chosen: spec.Folding) -> np.ndarray:
-    """(fold, x, y) pictures on the lattice."""
+    """Build the pictures on the lattice, (fold, x, y)."""
     size = (chosen.world.width, chosen.world.height)
     return np.stack([targets.field(one.ink, size, chosen.size) for one in chosen.targets])

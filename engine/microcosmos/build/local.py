@@ -1,4 +1,4 @@
-"""A run without a server: evolve a spec into an archive file, and take it up again."""
+"""Run a spec without a server: evolve it into an archive file and resume it."""
 
 import json
 import time
@@ -23,13 +23,12 @@ def evolve(
     other_device: bool = False,
     initial: Sequence[Mapping[str, Any]] = (),
 ) -> bool:
-    """Carry a run on until it is done or `stop()` says so; whether it is done.
+    """Continue a run until it is done or `stop()` is true; return whether it is done.
 
-    The archive file is the checkpoint: where it exists, the run goes on from it and ends
-    with the same bytes as without the interruption. The best creature is written beside
-    it. `initial` are the creature files that `search.initial` names; to go on takes none.
-    Raises `ValueError` where the file is of another spec or, without `other_device`, of
-    another kind of device.
+    The archive file is the checkpoint: a run resumed from it ends with the same bytes as an
+    uninterrupted one. The best creature is written beside it. `initial` are the creature files
+    that `search.initial` names; a resumed run needs none. Raises `ValueError` where the file is
+    of another spec or, without `other_device`, of another kind of device.
     """
     experiment = build(spec, initial) if initial else build(spec)
     if archive.exists():
@@ -42,21 +41,21 @@ def evolve(
             state, report = experiment.advance(state, stop)
             tell(report)
             if time.monotonic() - saved >= checkpoint_seconds:
-                keep(experiment, state, archive)
+                _save(experiment, state, archive)
                 saved = time.monotonic()
     except Stopped:
         pass
-    keep(experiment, state, archive)
+    _save(experiment, state, archive)
     return experiment.done(state)
 
 
 def refine(
     file: Mapping[str, Any], archive: Archive | None = None, **options: Any
 ) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """A creature made fitter by gradient steps within its cell of `archive`, and each step.
+    """Refine a creature by gradient steps within its cell; return it and each step.
 
     `options` are those of `spec.Refinement`. The new creature file has the old one as its
-    parent. Raises `ValueError` for a file that is not sound.
+    parent. Raises `ValueError` for an invalid file.
     """
     chosen = Refinement(creature=dict(file), archive=archive or Archive(), **options)
     experiment = build(chosen)
@@ -68,8 +67,7 @@ def refine(
     return refined, [dict(row.values) for row in state.table.rows]
 
 
-def keep(experiment: Experiment, state: Any, archive: Path) -> None:
-    """Write the archive file and, beside it, the creature file of its best elite."""
+def _save(experiment: Experiment, state: Any, archive: Path) -> None:
     write_whole(archive, experiment.save(state))
     best = experiment.best(state)
     if best is not None:

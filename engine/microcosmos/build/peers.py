@@ -1,4 +1,4 @@
-"""Our specs and archives for QDax."""
+"""Scoring functions and repertoires of QDax from specs and archives."""
 
 import json
 import os
@@ -17,12 +17,10 @@ from .scene import build_task
 
 
 def scoring_function(chosen: spec.Evolution, *, slopes: bool = False) -> Callable:
-    """What QDax's `MAPElites` takes; see `search.qdax.scoring_function`.
+    """Return a scoring function for QDax's `MAPElites`; see `search.qdax.scoring_function`.
 
-    With `slopes` it is what QDax's `CMAMEGAEmitter` takes, for about seven times the work.
-
-    It may be compiled with QDax's loop. Rounding then depends on that program, and simulations
-    are chaotic: figures of single creatures are not those of our own runs bit for bit.
+    With `slopes` it suits QDax's `CMAMEGAEmitter`, for about seven times the work. Compiled
+    within QDax's loop it rounds differently, so single creatures differ from those of our runs.
     """
     task = build_task(chosen.scene, room=room_of(chosen))
     descriptors = tuple(axis.name for axis in chosen.archive.descriptors)
@@ -38,7 +36,7 @@ def scoring_function(chosen: spec.Evolution, *, slopes: bool = False) -> Callabl
 
 
 def to_repertoire(archive: bytes | str | os.PathLike) -> Any:
-    """The `MapElitesRepertoire` in an archive file, or in its bytes."""
+    """Return the `MapElitesRepertoire` of an archive file, or of its bytes."""
     data = archive if isinstance(archive, bytes) else Path(archive).read_bytes()
     chosen = spec.parse(json.loads(load(data)[1]["spec"]))
     if not isinstance(chosen, spec.Evolution):

@@ -1,4 +1,4 @@
-"""From names of one's own to the functions that carry them out, which are checked."""
+"""Build measures, encodings and swimmers of plug-ins, with checks of what they return."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from ..bodies import swimmers
 
 
 def build_measures(scene: spec.Scene) -> tuple[search.Measure, ...]:
-    """What is measured of a scene's creatures beside the usual measures, by name."""
+    """Build the plug-in measures of a scene, by name."""
     task, found = scene.task, dict(scene.plugins)
     kinds = dict.fromkeys(found, "descriptor")
     if task.plugin is not None:
@@ -20,7 +20,7 @@ def build_measures(scene: spec.Scene) -> tuple[search.Measure, ...]:
 
 
 def measures_of(scene: spec.Scene) -> tuple[str, ...]:
-    """What is recorded of a scene's creatures, in this order."""
+    """Return the names of a scene's measures, in the order of recording."""
     return search.MEASURES + tuple(measure.name for measure in build_measures(scene))
 
 
@@ -35,14 +35,14 @@ def _measure(kind: str, name: str, version: spec.PluginVersion) -> search.Measur
     def of(motion: search.Motion) -> Array:
         found = _array(name, plugin(motion, settings=version.settings))
         if found.shape != ():
-            raise plugins.Broken(f"{name} must give one number, got shape {found.shape}")
+            raise plugins.Broken(f"{name} must return one number, got shape {found.shape}")
         return found.astype(motion.path.dtype)
 
     return search.Measure(name, of)
 
 
 def build_act(control: spec.PluginControl, controls: genomes.Controls) -> Any:
-    """What an encoding of one's own makes of genes."""
+    """Build the function by which a plug-in encoding turns genes into movements."""
     name, version = control.encoding, control.plugin
     plugin = plugins.find(("encoding",), name, version.source)
     needed = (len(controls.joint_nodes), len(controls.edges))
@@ -50,12 +50,12 @@ def build_act(control: spec.PluginControl, controls: genomes.Controls) -> Any:
     def act(genes: Array, clock: genomes.Clock) -> tuple[Array, Array]:
         found = plugin(genes, clock, settings=version.settings)
         if not isinstance(found, tuple | list) or len(found) != 2:
-            raise plugins.Broken(f"{name} must give what joints and what edges do, got another")
+            raise plugins.Broken(f"{name} must return two arrays, for joints and for edges")
         angle, length = (_array(name, one) for one in found)
         shapes = tuple((len(clock.phase), count) for count in needed)
         if (angle.shape, length.shape) != shapes:
             raise plugins.Broken(
-                f"{name} must give shapes {shapes[0]} for joints and {shapes[1]} for edges, "
+                f"{name} must return shapes {shapes[0]} for joints and {shapes[1]} for edges, "
                 f"got {angle.shape} and {length.shape}"
             )
         return angle, length
@@ -64,32 +64,35 @@ def build_act(control: spec.PluginControl, controls: genomes.Controls) -> Any:
 
 
 def swimmer_of(gait: spec.Gait) -> swimmers.Swimmer:
-    """A known swimmer, or one of one's version."""
+    """Build a swimmer, built in or from a plug-in."""
     if gait.plugin is None:
         return swimmers.SWIMMERS[gait.swimmer]()
     plugin = plugins.find(("gait",), gait.swimmer, gait.plugin.source)
     found = plugin(settings=gait.plugin.settings)
     if not isinstance(found, swimmers.Swimmer):
-        raise plugins.Broken(f"{gait.swimmer} must give a `swimmers.Swimmer`, got another")
+        raise plugins.Broken(
+            f"{gait.swimmer} must return a `swimmers.Swimmer`, got {type(found).__name__}"
+        )
     return found
 
 
 def strokes_of(gait: spec.Gait, time: np.ndarray) -> tuple[swimmers.Swimmer, Any, Any]:
-    """A swimmer and how its rest angles and rest lengths deviate at these times."""
+    """Return a swimmer and the deviations of its rest angles and lengths at these times."""
     swimmer = swimmer_of(gait)
     angle, length = swimmer.gait(time)
     shapes = (len(time), len(swimmer.body.joints)), (len(time), len(swimmer.body.edges))
     if (np.shape(angle), np.shape(length)) != shapes:
         raise plugins.Broken(
-            f"{gait.swimmer} must deviate by shapes {shapes[0]} and {shapes[1]}, got "
+            f"{gait.swimmer} must return shapes {shapes[0]} and {shapes[1]}, got "
             f"{np.shape(angle)} and {np.shape(length)}"
         )
     return swimmer, angle, length
 
 
 def _array(name: str, value: Any) -> Array:
-    """What is a number, or numbers."""
     try:
         return jnp.asarray(value)
     except (TypeError, ValueError) as error:
-        raise plugins.Broken(f"{name} must give numbers, got {type(value).__name__}") from error
+        raise plugins.Broken(
+            f"{name} must return numbers, got {type(value).__name__}"
+        ) from error

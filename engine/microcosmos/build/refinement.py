@@ -1,4 +1,4 @@
-"""From the spec of a refinement to the experiment that carries it out."""
+"""Build a refinement experiment."""
 
 import json
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from .. import device, search, spec
+from .. import device, genomes, search, spec
 from ..archive import creature
 from ..experiments import refinement
 from ..spec.refinement import parsed
@@ -17,12 +17,13 @@ from .scene import build_task
 
 
 def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
-    """A refinement, its programs compiled when they are first used."""
+    """Build a refinement, whose programs are compiled on first use."""
     found = parsed(chosen.creature)
     scene, room = _scene(chosen, found), creature.room(found)
-    task, names = build_task(scene, room=room), _names(chosen)
+    task = build_task(scene, room=room)
+    names = tuple(axis.name for axis in chosen.archive.descriptors)
     assert task.encoding is not None
-    genotype = task.encoding.read(found["identity"]["genome"])
+    genotype = genomes.read(found["identity"]["genome"], task.encoding.room)
     return refinement.Refinement(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         genotype=jax.tree.map(lambda x: np.asarray(x)[None], genotype),
@@ -46,10 +47,6 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
 
 
 def _scene(chosen: spec.Refinement, found: dict[str, Any]) -> spec.Scene:
-    """The creature's, with what its own archive and this one measure."""
+    """Return the creature's scene with the plug-in measures of its file and of the archive."""
     scene = creature.scene_of(found)
     return scene.model_copy(update={"plugins": {**scene.plugins, **chosen.archive.plugins}})
-
-
-def _names(chosen: spec.Refinement) -> tuple[str, ...]:
-    return tuple(axis.name for axis in chosen.archive.descriptors)

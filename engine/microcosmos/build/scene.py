@@ -1,4 +1,4 @@
-"""From a scene's words to the world, the body and the controller that they mean."""
+"""Build the world, the body and the task of a scene."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ KERNELS = {"peskin": coupling.PESKIN, "roma": coupling.ROMA, "hat": coupling.HAT
 MAGIC = {"capped": fluid.capped_magic, "fixed": fluid.fixed_magic}
 SMOOTHING = {"gaussian": fields.gaussian, "binomial": fields.binomial}
 ROOM = (8, 8)
-"""Of networks that nobody will vary."""
+"""Default number of nodes and connections of networks that are not varied."""
 GOALS = {"displacement": (1.0, 0.0), "energy": (0.0, 1.0), "displacement+energy": (1.0, 1.0)}
 
 
@@ -30,10 +30,10 @@ def build_task(
     room: tuple[int, int] | None = None,
     body: bodies.Body | None = None,
 ) -> search.Task:
-    """The world with the body at rest in its middle, and what genotypes mean there.
+    """Build the world with the body at rest in its middle, and the encoding of genotypes.
 
-    `room` is for the nodes and connections of networks; another `body` than the scene's is
-    one that a genotype has made of it.
+    `room` is the number of nodes and connections of networks; `body` replaces the scene's body
+    by the one that a genotype has grown.
     """
     body = spec.shape(scene.body) if body is None else body
     place = build_world(scene.world, scene.coupling, body, dtype)
@@ -54,7 +54,7 @@ def build_task(
 
 
 def build_goal(task: spec.Task) -> search.Goal:
-    """What fitness is made of."""
+    """Build the terms of the fitness."""
     if task.plugin is not None:
         return search.Goal(plugin=task.fitness)
     displacement, energy = GOALS[task.fitness]
@@ -62,7 +62,7 @@ def build_goal(task: spec.Task) -> search.Goal:
 
 
 def build_placements(place: spec.World) -> jnp.ndarray | None:
-    """How far the energy is moved in each world of a creature, where there are several."""
+    """Build the shifts of the energy in each world of a creature; None for one world."""
     energy, size = place.energy, (place.width, place.height)
     if energy is None or energy.placements == 1:
         return None
@@ -73,7 +73,7 @@ def build_placements(place: spec.World) -> jnp.ndarray | None:
 def build_world(
     place: spec.World, form: spec.Coupling, body: bodies.Body, dtype: Any = jnp.float32
 ) -> world.World:
-    """The box of fluid around bodies."""
+    """Build the box of fluid around bodies."""
     size = (place.width, place.height)
     return world.World(
         viscosity=jnp.asarray(place.viscosity, dtype),
@@ -99,7 +99,7 @@ def build_world(
 
 
 def build_limits(form: spec.Coupling, viscosity: float, dtype: Any) -> world.Limits:
-    """What a step may do at most at a viscosity."""
+    """Build the limits of a step at a viscosity."""
     return world.Limits(
         displacement=_scalar(form.displacement_limit(viscosity), dtype),
         force=_scalar(form.force_limit(viscosity), dtype),
@@ -107,7 +107,7 @@ def build_limits(form: spec.Coupling, viscosity: float, dtype: Any) -> world.Lim
 
 
 def build_steric(steric: spec.Steric | None, dtype: Any) -> fields.Steric | None:
-    """Repulsion between nodes, if there is any."""
+    """Build the repulsion between nodes, if there is any."""
     if steric is None:
         return None
     return fields.Steric(
@@ -120,7 +120,7 @@ def build_steric(steric: spec.Steric | None, dtype: Any) -> fields.Steric | None
 def build_energy(
     energy: spec.Energy | None, size: tuple[int, int], dtype: Any
 ) -> fields.Energy | None:
-    """The packets and what becomes of them, if there are any."""
+    """Build the packets of energy, if there are any."""
     if energy is None:
         return None
     packets = fields.Packets(energy.packets, energy.width, energy.amplitude, energy.seed)
@@ -132,7 +132,7 @@ def build_energy(
 
 
 def build_rods(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Rods:
-    """The bodies' graph as device arrays; of many equal bodies the colours of a few."""
+    """Build the bodies' graph as device arrays; equal bodies share their colours."""
     nodes, edges = filaments.first_chunk(body.member, body.edges, body.joints)
 
     def pairings(
@@ -159,7 +159,7 @@ def build_rods(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Rods:
 
 
 def build_stroke(gait: spec.Gait, steps: int, dtype: Any = jnp.float32) -> filaments.Rest:
-    """The rest shapes of a known swimmer over time."""
+    """Build the rest shapes of a swimmer over time."""
     t = np.arange(steps) / gait.period
     swimmer, angle, length = strokes_of(gait, t)
     rise = t / gait.ramp if gait.ramp else np.ones(steps)

@@ -1,4 +1,4 @@
-"""From the specs of sweeps and measurements to the experiments that carry them out."""
+"""Build gait sweeps and measurements of scaling."""
 
 import json
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from .scene import build_world
 
 
 def build_gaits(chosen: spec.Gaits) -> TableRun:
-    """A sweep, its programs compiled when they are first used."""
+    """Build a gait sweep, whose programs are compiled on first use."""
     strokes, kind = build_strokes(chosen), device.device_kind()
 
     def rows(number: int, stop: Callable[[], bool]) -> tuple[Row, ...]:
@@ -26,12 +26,12 @@ def build_gaits(chosen: spec.Gaits) -> TableRun:
 
 
 def build_strokes(chosen: spec.Gaits) -> tuple[gaits.Stroke, ...]:
-    """The strokes of a sweep, each a generation."""
+    """Build the strokes of a sweep, one per generation."""
     return tuple(_stroke(chosen, form, swimmer) for form, swimmer in chosen.strokes)
 
 
 def build_scaling(chosen: spec.Scaling) -> TableRun:
-    """A measurement."""
+    """Build a measurement of wall time."""
 
     def rows(number: int, stop: Callable[[], bool]) -> tuple[Row, ...]:
         nodes = chosen.nodes[number]
@@ -47,7 +47,7 @@ def build_scaling(chosen: spec.Scaling) -> TableRun:
 
 
 def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[timing.Scene, world.State]:
-    """A box with many straight filaments at random places, and their shape at rest."""
+    """Build a box with many straight filaments at random places, at rest."""
     one = bodies.chain(chosen.filament, SPACING)
     centres = chosen.centres(nodes).tolist()
     crowd = bodies.together([bodies.placed(one, centre) for centre in centres])

@@ -11,7 +11,7 @@ import numpy as np
 from .. import naming, search
 from ..archive import file
 from ..archive.report import Report, Row
-from ..genomes import Encoding, Vector
+from ..genomes import Vector
 from . import table_file
 from .archive_file import filled, leaves
 from .lineage import identity
@@ -44,7 +44,6 @@ class Folding:
     block: int
     frame: Mapping[str, Any]
     """The identity of all creatures but for their genes."""
-    encoding: Encoding
     device: str
 
     def init(self) -> State:
@@ -112,7 +111,7 @@ class Folding:
 
     def _identity(self, state: State, fold: int) -> dict[str, Any]:
         genotype = Vector(jnp.asarray(state.folds.best[fold]))
-        return identity(self.frame, self.encoding, genotype)
+        return identity(self.frame, genotype)
 
     def _row(self, state: State, fold: int) -> Row:
         course, whole = state.losses[:, fold], self._identity(state, fold)

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import naming, search
 from ..archive.report import Elite
-from ..genomes import Encoding, Genotype, take
+from ..genomes import Genotype, take, write
 from .state import Lineage, Plan, State
 
 NOBODY = np.zeros(32, np.uint8)
@@ -113,11 +113,9 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
     return naming.document(json.loads(elite.identity), elite.measured, elite.provenance)
 
 
-def identity(
-    frame: Mapping[str, Any], encoding: Encoding, genotype: Genotype
-) -> dict[str, Any]:
-    """The identity of a genotype in the world, body and task of `frame`."""
-    return {**frame, "genome": {**frame["genome"], **encoding.write(genotype)}}
+def identity(frame: Mapping[str, Any], genotype: Genotype) -> dict[str, Any]:
+    """Return the identity of a genotype in the world, body and task of `frame`."""
+    return {**frame, "genome": {**frame["genome"], **write(genotype)}}
 
 
 def measurement(
@@ -172,7 +170,7 @@ def _elite(
     parents: np.ndarray,
     device: str,
 ) -> Elite:
-    whole = identity(plan.frame, plan.encoding, genotype)
+    whole = identity(plan.frame, genotype)
     measures: dict[str, float] = dict(zip(plan.measures, values.tolist(), strict=True))
     creature = naming.name(whole)
     named = tuple(bytes(parent).hex() for parent in parents if parent.any())

@@ -173,7 +173,7 @@ class Refinement:
         return int(self.cells.of(jnp.asarray(measures, jnp.float32))[0])
 
     def _identity(self, genes: np.ndarray) -> dict[str, Any]:
-        return identity(self.frame, self.encoding, take(self._genotypes(genes[None]), 0))
+        return identity(self.frame, take(self._genotypes(genes[None]), 0))
 
     def _row(self, state: State, found: search.Evaluation, best: int, genes: np.ndarray) -> Row:
         measures: dict[str, float] = dict(

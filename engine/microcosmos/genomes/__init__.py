@@ -1,4 +1,4 @@
-"""What is inherited and varied, and how it becomes a creature that moves."""
+"""Genotypes and encodings: inherited genes, and their development into moving creatures."""
 
 from .control import CPPNControl
 from .cppn import ACTIVATIONS, CPPN, depths, evaluate, minimal
@@ -6,15 +6,13 @@ from .development import OUTPUTS, Controls, develop, linear, respond, sine_cosin
 from .direct import Direct
 from .encoding import Drive, Encoding
 from .fold import Fold, added, scaled
-from .genes import empty, from_genes, take, to_genes
-from .genotype import Genotype, Vector, words
+from .genotype import Genotype, Vector, empty, from_genes, read, take, to_genes, words, write
 from .grown import Grown
-from .layers import Layers, forward
 from .plugin import Clock, PluginEncoding
 from .recurrent import advance
 from .shaping import Plan
 from .waves import fourier, phases, table, wave
-from .weights import Weights
+from .weights import Layers, Weights, forward
 
 __all__ = [
     "ACTIVATIONS",
@@ -46,6 +44,7 @@ __all__ = [
     "linear",
     "minimal",
     "phases",
+    "read",
     "respond",
     "scaled",
     "sine_cosine",
@@ -54,4 +53,5 @@ __all__ = [
     "to_genes",
     "wave",
     "words",
+    "write",
 ]

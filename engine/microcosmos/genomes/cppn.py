@@ -16,9 +16,9 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 Points = Float[Array, "_ point"]
 
 BOUND = 1e6
-"""Values are kept within this, so that a chain of squares cannot overflow into NaN."""
+"""Limit of values, so that a chain of squares cannot overflow into NaN."""
 
-# The order is the one of `naming.ACTIVATIONS`, which a test compares.
+# The order is that of `naming.ACTIVATIONS`, which a test compares.
 ACTIVATIONS = {
     "identity": lambda z: z,
     "sigmoid": jax.nn.sigmoid,
@@ -33,7 +33,7 @@ ACTIVATIONS = {
 
 
 class CPPN(eqx.Module):
-    """A feed-forward network; rows of nodes are inputs, outputs, then hidden ones."""
+    """A network; rows of nodes are inputs, outputs, then hidden nodes."""
 
     node_used: Bool[Array, "*batch node"]
     node_id: Int[Array, "*batch node"]
@@ -42,7 +42,7 @@ class CPPN(eqx.Module):
     connection_used: Bool[Array, "*batch connection"]
     innovation: Int[Array, "*batch connection"]
     source: Int[Array, "*batch connection"]
-    """Row of the node that a connection comes from."""
+    """Row of a connection's source node."""
     target: Int[Array, "*batch connection"]
     enabled: Bool[Array, "*batch connection"]
     weight: Float[Array, "*batch connection"]
@@ -56,9 +56,9 @@ def minimal(
     max_connections: int,
     palette: tuple[int, ...] = tuple(range(len(ACTIVATIONS))),
 ) -> CPPN:
-    """Every input connected to every output; weights and biases have deviation 1.
+    """Connect every input to every output, with normal weights and biases of deviation 1.
 
-    Outputs have activations of the palette, each equally likely.
+    Activations of outputs are drawn uniformly from the palette.
     """
     weight_key, bias_key, activation_key = jax.random.split(key, 3)
     node, row = jnp.arange(max_nodes), jnp.arange(max_connections)
@@ -81,7 +81,7 @@ def minimal(
 
 
 def depths(network: CPPN) -> Int[Array, "node"]:
-    """The longest way from a node without incoming connections, enabled or not."""
+    """Return the longest path to each node over all connections, enabled or not."""
     nodes = network.node_used.shape[0]
     target = jnp.where(network.connection_used, network.target, nodes)
 
@@ -92,7 +92,7 @@ def depths(network: CPPN) -> Int[Array, "node"]:
 
 
 def matrix(network: CPPN, dtype: Any) -> Float[Array, "target source"]:
-    """The weights of enabled connections, 0 where there is none."""
+    """Return the weights of enabled connections, 0 elsewhere."""
     nodes = network.node_used.shape[0]
     live = network.connection_used & network.enabled
     target = jnp.where(live, network.target, nodes)
@@ -101,12 +101,12 @@ def matrix(network: CPPN, dtype: Any) -> Float[Array, "target source"]:
 
 
 def evaluate(network: CPPN, inputs: Points, outputs: int) -> Points:
-    """The values of the output nodes, (outputs, point), for inputs (inputs, point)."""
+    """Return the values of output nodes (output, point) for inputs (input, point)."""
     nodes, given = network.node_used.shape[0], inputs.shape[0]
     weights = matrix(network, inputs.dtype)
     order = jnp.argsort(depths(network), stable=True)
     functions = list(ACTIVATIONS.values())
-    # Inputs and unused rows keep what they have.
+    # Inputs and unused rows keep their values.
     computed = network.node_used & (np.arange(nodes) >= given)
 
     def visit(values, node):
@@ -116,7 +116,7 @@ def evaluate(network: CPPN, inputs: Points, outputs: int) -> Points:
             found = jax.lax.switch(network.activation[node], functions, z)
             return jnp.clip(found, -BOUND, BOUND)
 
-        # All that branches is one row: a branch that held every node's values would copy them.
+        # Branch on one row only: a branch over all values would copy them.
         return values.at[node].set(
             jax.lax.cond(computed[node], value, lambda: values[node])
         ), None

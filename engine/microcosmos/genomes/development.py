@@ -1,4 +1,4 @@
-"""From what a controller says to rest angles and rest lengths over time."""
+"""Development: from the outputs of a controller to rest angles and rest lengths."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,20 +12,20 @@ from ..filaments import Rest
 from .cppn import CPPN, Points, evaluate
 
 OUTPUTS = 2
-"""Rest angle and rest length; a network that grows the body has more behind them."""
+"""Rest angle and rest length; a network that grows the body has further outputs."""
 
 Outputs = Float[Array, "2 time node"]
 Read = Callable[[Points], Points]
-"""A network: from inputs (input, point) to outputs (output, point)."""
+"""A network as a function of inputs (input, point) with outputs (output, point)."""
 
 
 @dataclass(frozen=True)
 class Controls:
-    """What a controller's inputs and outputs mean.
+    """The meaning of a controller's inputs and outputs.
 
     `position` is (node,), `timer` (input, time), `ramp` (time,); rest angles and lengths are
-    the body's own, in rad and cells. A network that `senses` has one more input, which is known
-    only while the world moves; any other's outputs for all times are one batch.
+    the body's, in rad and cells. A network that `senses` has one more input, known only during
+    the simulation; the outputs of any other network for all times are one batch.
     """
 
     position: np.ndarray
@@ -41,23 +41,23 @@ class Controls:
 
     @property
     def inputs(self) -> int:
-        """Inputs of a network."""
+        """Number of inputs of a network."""
         return 1 + len(self.timer) + self.senses
 
 
 def sine_cosine(steps: int, period: float) -> np.ndarray:
-    """The timer as sine and cosine of its phase, (2, time)."""
+    """Return sine and cosine of the phase, (2, time)."""
     phase = 2 * np.pi * np.arange(steps) / period
     return np.stack([np.sin(phase), np.cos(phase)])
 
 
 def linear(steps: int, period: float) -> np.ndarray:
-    """The timer rising from 0 towards 1 over the whole simulation, (1, time)."""
+    """Return a rise from 0 towards 1 over the whole simulation, (1, time)."""
     return np.arange(steps)[None] / steps
 
 
 def develop(network: CPPN, controls: Controls) -> Rest:
-    """Rest angles (time, joint) and rest lengths (time, edge) that a CPPN asks for."""
+    """Return the rest angles (time, joint) and rest lengths (time, edge) of a CPPN."""
     return rest_shapes(reading(network), controls, network.bias.dtype)
 
 
@@ -68,17 +68,17 @@ def respond(
     ramp: Float[Array, ""],
     sensed: Float[Array, "node"],
 ) -> Rest:
-    """Rest angles (joint,) and rest lengths (edge,) at one time, from what nodes sense."""
+    """Return rest angles (joint,) and rest lengths (edge,) at one time, from sensed energy."""
     return rest_shape(reading(network), controls, timer, ramp, sensed)
 
 
 def reading(network: CPPN) -> Read:
-    """A feed-forward network as a function."""
+    """Return a feed-forward network as a function."""
     return lambda inputs: evaluate(network, inputs, OUTPUTS)
 
 
 def rest_shapes(read: Read, controls: Controls, dtype: Any) -> Rest:
-    """Rest shapes as applied at all times, in one batch."""
+    """Return the rest shapes at all times, in one batch."""
     steps, nodes = len(controls.ramp), len(controls.position)
     position = np.tile(controls.position, steps)[None]
     clock = jnp.repeat(jnp.asarray(controls.timer, dtype), nodes, 1)
@@ -93,7 +93,7 @@ def rest_shape(
     ramp: Float[Array, ""],
     sensed: Float[Array, "node"] | None,
 ) -> Rest:
-    """The rest shape at one time."""
+    """Return the rest shape at one time."""
     outputs = read(network_inputs(controls, timer, sensed))
     return rest_of_outputs(outputs, ramp, controls)
 
@@ -101,7 +101,7 @@ def rest_shape(
 def network_inputs(
     controls: Controls, timer: Float[Array, "input"], sensed: Float[Array, "node"] | None
 ) -> Points:
-    """A network's inputs at all nodes at one time."""
+    """Return the inputs of a network at all nodes at one time."""
     nodes = len(controls.position)
     clock = jnp.broadcast_to(timer[:, None], (len(timer), nodes))
     position = jnp.asarray(controls.position, timer.dtype)[None]
@@ -109,7 +109,7 @@ def network_inputs(
 
 
 def rest_of_outputs(outputs: Points, ramp: Float[Array, ""], controls: Controls) -> Rest:
-    """The rest shape that outputs (output, node) of one time stand for."""
+    """Return the rest shape of outputs (output, node) at one time."""
     rest = applied(outputs[:, None], ramp[None], controls)
     return Rest(rest.angle[0], rest.length[0])
 
@@ -117,7 +117,7 @@ def rest_of_outputs(outputs: Points, ramp: Float[Array, ""], controls: Controls)
 def applied(
     outputs: Outputs, ramp: Float[Array, "time"] | np.ndarray, controls: Controls
 ) -> Rest:
-    """The rest shapes that a network's outputs stand for.
+    """Return the rest shapes of a network's outputs.
 
     A joint takes the output at its node; an edge the mean of its two ends, so that a
     mirrored network makes a mirrored body.
@@ -133,7 +133,7 @@ def actuated(
     ramp: Float[Array, "time"] | np.ndarray,
     controls: Controls,
 ) -> Rest:
-    """Rest shapes from what is asked of every joint and edge, −1 to 1."""
+    """Return rest shapes from controls of every joint and edge, −1 to 1."""
     dtype = angle.dtype
     ramp = jnp.asarray(ramp, dtype)[:, None]
     return Rest(

@@ -1,8 +1,7 @@
-"""Direct encoding: genes are the control of every joint and edge, and measures of the body."""
+"""Direct encoding: genes are the control of every joint and edge, and traits of the body."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -10,43 +9,38 @@ from jaxtyping import Array, PRNGKeyArray
 
 from ..world import State, World
 from .development import Controls, actuated
-from .encoding import Drive, Scalar, none, shifted
-from .genotype import Vector
+from .encoding import Drive, Scalar, no_size, shifted
+from .genotype import Vector, uniform_vector
 from .shaping import Plan, shaped, within
-from .vectors import evenly, from_values, to_values
 from .waves import Basis, phases, wave
 
 CONTROL = ("angles", "lengths")
-"""The parts that move the body."""
+"""The parts of the genome that move the body."""
 
 
 @dataclass(frozen=True)
 class Direct:
-    """Numbers from −1 to 1, part by part: the body's free measures, then its control."""
+    """Genes within ±1, part by part: inherited traits of the body, then its control."""
 
     controls: Controls
     parts: Mapping[str, int]
-    """How many genes each part has, in order; the last are `CONTROL`."""
+    """Number of genes of each part, in order; `CONTROL` comes last."""
     bounds: Mapping[str, tuple[float, float]]
-    """Of the body's free measures."""
+    """Bounds of the inherited traits."""
     basis: Basis
     terms: int
     plan: Plan | None = None
-    """Needed where rest angles or rest lengths are free."""
+    """Needed where rest angles or rest lengths are inherited."""
     spread: float = 1.0
-    """Newcomers' genes lie within ± this."""
+    """Genes of new genotypes lie within ± this."""
     faintest: float = 1.0
-    """Newcomers' angles and lengths are multiplied by factors from this to 1."""
-
-    @property
-    def room(self) -> None:
-        """There is no network."""
-        return None
+    """Lowest factor on the angles and on the lengths of new genotypes; the highest is 1."""
+    room: None = None
 
     def newcomer(self, *, key: PRNGKeyArray) -> Vector:
-        """Every gene evenly drawn, then control made fainter."""
+        """Draw every gene uniformly, then reduce the control by random factors."""
         genes_key, factor_key = jax.random.split(key)
-        genes = evenly(sum(self.parts.values()), self.spread, key=genes_key)
+        genes = uniform_vector(sum(self.parts.values()), self.spread, key=genes_key)
         factors = self.faintest ** jax.random.uniform(factor_key, (2,))
         scale = jnp.concatenate(
             [
@@ -59,7 +53,6 @@ class Direct:
     def drive(
         self, world: World, start: State, genotype: Vector, phase: Scalar | None
     ) -> Drive:
-        """Open loop."""
         dtype = start.positions.dtype
         genes = self.divided(genotype.values.astype(dtype))
         traits = {name: within(genes[name], bounds) for name, bounds in self.bounds.items()}
@@ -72,7 +65,6 @@ class Direct:
         return Drive(body.world, body.start, rest)
 
     def divided(self, values: Array) -> dict[str, Array]:
-        """The genes of each part."""
         found, used = {}, 0
         for name, count in self.parts.items():
             found[name] = values[used : used + count]
@@ -80,13 +72,4 @@ class Direct:
         return found
 
     def size(self, genotype: Vector) -> tuple[Array, Array]:
-        """No network."""
-        return none()
-
-    def write(self, genotype: Vector) -> dict[str, Any]:
-        """All genes."""
-        return to_values(genotype)
-
-    def read(self, genes: Mapping[str, Any]) -> Vector:
-        """All genes."""
-        return from_values(genes)
+        return no_size()

@@ -1,6 +1,6 @@
-"""How a genotype becomes a body that is driven, and how it is written down."""
+"""The interface of encodings, which turn genotypes into driven bodies."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -16,10 +16,10 @@ Scalar = Float[Array, ""]
 
 @dataclass(frozen=True)
 class Drive:
-    """What is simulated of a creature: a world, its start, and what moves its body.
+    """The simulation of a creature: a world, its start, and the control of its body.
 
-    `inputs` have the time first; `control` makes the rest shape of a step from them and
-    `remember` the controller's memory, as `world.rollout` takes them.
+    `inputs` have time as first axis; from them `control` makes the rest shape of a step and
+    `remember` the controller's memory, as in `world.rollout`.
     """
 
     world: World
@@ -28,46 +28,38 @@ class Drive:
     control: Callable[[World, State, Any], Rest] = follow
     remember: Callable[[World, State, Any], PyTree[Array]] = keep
     length: Scalar | None = None
-    """How far the body reaches, in cells; None: as far as everybody's."""
+    """Extent of the body in cells; None: that of the task's body."""
 
 
 @runtime_checkable
 class Encoding(Protocol):
-    """A kind of genotype: what it means for a body in a world."""
+    """The meaning of a kind of genotype for a body in a world."""
 
     @property
     def room(self) -> tuple[int, int] | None:
-        """Nodes and connections that a genotype's arrays have room for; None for vectors."""
+        """Nodes and connections of a genotype's arrays; None for vectors."""
         ...
 
     def newcomer(self, *, key: PRNGKeyArray) -> Any:
-        """A random genotype."""
+        """Draw a random genotype."""
         ...
 
     def drive(self, world: World, start: State, genotype: Any, phase: Scalar | None) -> Drive:
-        """Grow a creature; `phase` in rad moves a periodic timer ahead where there is one."""
+        """Build a creature; `phase` in rad advances a periodic timer."""
         ...
 
     def size(self, genotype: Any) -> tuple[Array, Array]:
-        """Hidden nodes and enabled connections; both 0 where there is no network."""
-        ...
-
-    def write(self, genotype: Any) -> dict[str, Any]:
-        """The genes of one genotype of NumPy arrays, as they stand in a creature file."""
-        ...
-
-    def read(self, genes: Mapping[str, Any]) -> Any:
-        """The genotype of a parsed creature file, as NumPy arrays."""
+        """Return the number of hidden nodes and enabled connections; 0 without a network."""
         ...
 
 
-def none() -> tuple[Array, Array]:
-    """The size of what is no network."""
+def no_size() -> tuple[Array, Array]:
+    """Return the size of a genotype that is no network."""
     return jnp.zeros((), jnp.int32), jnp.zeros((), jnp.int32)
 
 
 def shifted(timer: np.ndarray | Array, phase: Scalar | None) -> Array | np.ndarray:
-    """A sine and cosine (2, time) so much ahead; a linear timer (1, time) has no phase."""
+    """Advance a sine and cosine (2, time) by a phase; a linear timer (1, time) has none."""
     if phase is None or len(timer) == 1:
         return timer
     sine, cosine = jnp.asarray(timer, phase.dtype)

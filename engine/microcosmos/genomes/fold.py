@@ -1,8 +1,7 @@
-"""Folding: genes are the rest angle of every joint and the rest length of every edge."""
+"""Folding: genes are constant rest angles and rest lengths."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -10,27 +9,26 @@ from jaxtyping import Array, PRNGKeyArray
 
 from ..filaments import Rest
 from ..world import State, World
-from .encoding import Drive, Scalar, none
+from .encoding import Drive, Scalar, no_size
 from .genotype import Vector
-from .vectors import from_values, to_values
 
 Lengths = Callable[[Array, Array], Array]
-"""From the body's own rest lengths and genes to rest lengths."""
+"""From the body's rest lengths and genes to rest lengths."""
 
 
-def scaled(own: Array, genes: Array) -> Array:
-    """Genes are logarithms of factors: lengths stay positive."""
-    return own * jnp.exp(genes)
+def scaled(lengths: Array, genes: Array) -> Array:
+    """Multiply by exponentials of genes; lengths stay positive."""
+    return lengths * jnp.exp(genes)
 
 
-def added(own: Array, genes: Array) -> Array:
-    """Genes are cells, as in the paper; nothing keeps lengths positive."""
-    return own + genes
+def added(lengths: Array, genes: Array) -> Array:
+    """Add genes in cells, as in the paper; lengths may become negative."""
+    return lengths + genes
 
 
 @dataclass(frozen=True)
 class Fold:
-    """Numbers of any size: angles added to the body's own, then lengths; both stay for life."""
+    """Genes of any size: angles added to the body's, then lengths."""
 
     rest_angle: np.ndarray
     """(joint,) of the body, in rad."""
@@ -38,20 +36,15 @@ class Fold:
     """(edge,) of the body, in cells."""
     steps: int
     lengths: Lengths = scaled
-
-    @property
-    def room(self) -> None:
-        """There is no network."""
-        return None
+    room: None = None
 
     def newcomer(self, *, key: PRNGKeyArray) -> Vector:
-        """The body as it is: nothing is drawn."""
+        """Return the unchanged body; nothing is drawn."""
         return Vector(jnp.zeros(len(self.rest_angle) + len(self.rest_length)))
 
     def drive(
         self, world: World, start: State, genotype: Vector, phase: Scalar | None
     ) -> Drive:
-        """The same rest shape at all times."""
         dtype, joints = start.positions.dtype, len(self.rest_angle)
         genes = genotype.values.astype(dtype)
         rest = Rest(
@@ -61,13 +54,4 @@ class Fold:
         return Drive(world, start, jnp.zeros((self.steps, 0), dtype), lambda *_: rest)
 
     def size(self, genotype: Vector) -> tuple[Array, Array]:
-        """No network."""
-        return none()
-
-    def write(self, genotype: Vector) -> dict[str, Any]:
-        """All genes."""
-        return to_values(genotype)
-
-    def read(self, genes: Mapping[str, Any]) -> Vector:
-        """All genes."""
-        return from_values(genes)
+        return no_size()

@@ -1,15 +1,22 @@
-"""What is inherited: networks of genes, or plain vectors of numbers."""
+"""Genotypes, networks of genes or vectors of numbers, and their form in a creature file."""
+
+from collections.abc import Mapping
+from typing import Any, TypeVar
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float, UInt32
+import numpy as np
+from jaxtyping import Array, Float, PRNGKeyArray, UInt32
 
+from ..naming import ACTIVATIONS, decode, encode
 from .cppn import CPPN
+
+T = TypeVar("T")
 
 
 class Vector(eqx.Module):
-    """Genes that are numbers from −1 to 1; what each means is for an encoding to say."""
+    """Genes that are numbers; the encoding gives each its meaning."""
 
     values: Float[Array, "*batch gene"]
 
@@ -17,8 +24,13 @@ class Vector(eqx.Module):
 Genotype = CPPN | Vector
 
 
+def uniform_vector(genes: int, spread: float, *, key: PRNGKeyArray) -> Vector:
+    """Draw genes uniformly within ± `spread`."""
+    return Vector(jax.random.uniform(key, (genes,), jnp.float32, -spread, spread))
+
+
 def words(genotypes: Genotype) -> UInt32[Array, "row word"]:
-    """Every gene of a batch as 32 bits, −0 counting as 0."""
+    """Return every gene of a batch as 32 bits, with −0 as 0."""
     if isinstance(genotypes, Vector):
         return _bits(genotypes.values)
     columns = [
@@ -36,3 +48,82 @@ def words(genotypes: Genotype) -> UInt32[Array, "row word"]:
 
 def _bits(values: Float[Array, "row gene"]) -> UInt32[Array, "row gene"]:
     return jax.lax.bitcast_convert_type(values.astype(jnp.float32) + 0.0, jnp.uint32)
+
+
+def take(genotypes: T, index: int) -> T:
+    """Return one genotype of a batch as NumPy arrays."""
+    return jax.tree.map(lambda x: np.asarray(x)[index], genotypes)
+
+
+def write(genotype: Genotype) -> dict[str, Any]:
+    """Return the genes of one genotype of NumPy arrays as a creature file holds them."""
+    if isinstance(genotype, CPPN):
+        return to_genes(genotype)
+    return {"values": encode(np.asarray(genotype.values))}
+
+
+def read(genes: Mapping[str, Any], room: tuple[int, int] | None) -> Genotype:
+    """Return the genotype of a parsed creature file as NumPy arrays.
+
+    `room` is the number of nodes and connections of a network's arrays; None for a vector.
+    """
+    if room is not None:
+        return from_genes(genes, *room)
+    return jax.tree.map(np.array, Vector(jnp.asarray(decode(genes["values"]), jnp.float32)))
+
+
+def to_genes(network: CPPN) -> dict[str, Any]:
+    """Return the used genes of one network of NumPy arrays."""
+    n, c = int(network.node_used.sum()), int(network.connection_used.sum())
+    ids = network.node_id
+    return {
+        "nodes": {
+            "id": ids[:n].tolist(),
+            "activation": [ACTIVATIONS[a] for a in network.activation[:n].tolist()],
+            "bias": encode(np.asarray(network.bias[:n])),
+        },
+        "connections": {
+            "innovation": network.innovation[:c].tolist(),
+            "source": ids[network.source[:c]].tolist(),
+            "target": ids[network.target[:c]].tolist(),
+            "enabled": network.enabled[:c].tolist(),
+            "weight": encode(np.asarray(network.weight[:c])),
+        },
+    }
+
+
+def from_genes(genes: Mapping[str, Any], max_nodes: int, max_connections: int) -> CPPN:
+    """Return the network of a parsed creature file, with room for more genes."""
+    nodes, connections = genes["nodes"], genes["connections"]
+    row = {number: row for row, number in enumerate(nodes["id"])}
+    network = empty(max_nodes, max_connections)
+    n, c = len(row), len(connections["innovation"])
+    network.node_used[:n] = True
+    network.node_id[:n] = nodes["id"]
+    network.activation[:n] = [ACTIVATIONS.index(a) for a in nodes["activation"]]
+    network.bias[:n] = decode(nodes["bias"])
+    network.connection_used[:c] = True
+    network.innovation[:c] = connections["innovation"]
+    network.source[:c] = [row[number] for number in connections["source"]]
+    network.target[:c] = [row[number] for number in connections["target"]]
+    network.enabled[:c] = connections["enabled"]
+    network.weight[:c] = decode(connections["weight"])
+    return network
+
+
+def empty(max_nodes: int, max_connections: int, batch: tuple[int, ...] = ()) -> CPPN:
+    """Return writable NumPy arrays without any gene."""
+    node, connection = (*batch, max_nodes), (*batch, max_connections)
+    network = CPPN(
+        node_used=jnp.zeros(node, bool),
+        node_id=jnp.zeros(node, jnp.int32),
+        activation=jnp.zeros(node, jnp.int32),
+        bias=jnp.zeros(node, jnp.float32),
+        connection_used=jnp.zeros(connection, bool),
+        innovation=jnp.zeros(connection, jnp.int32),
+        source=jnp.zeros(connection, jnp.int32),
+        target=jnp.zeros(connection, jnp.int32),
+        enabled=jnp.zeros(connection, bool),
+        weight=jnp.zeros(connection, jnp.float32),
+    )
+    return jax.tree.map(np.array, network)

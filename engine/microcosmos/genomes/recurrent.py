@@ -1,6 +1,6 @@
-"""Networks with cycles: all nodes are updated together, once in every step of the world.
+"""Networks with cycles: all nodes are updated together, once per step of the world.
 
-Every node of the body has a copy of the network, whose values live across steps.
+Every node of the body has a copy of the network, which keeps its values between steps.
 """
 
 from dataclasses import replace
@@ -17,9 +17,9 @@ from .encoding import Drive
 
 
 def advance(network: CPPN, values: Points, inputs: Points) -> Points:
-    """Values (node, point) one step later: f(b + W v), v being `values` with new inputs.
+    """Return the values (node, point) of the next step: f(b + W v), v with new inputs.
 
-    Inputs hold what was given; unused rows hold 0.
+    Input rows hold the inputs; unused rows hold 0.
     """
     given = inputs.shape[0]
     values = values.at[:given].set(inputs)
@@ -34,7 +34,7 @@ def advance(network: CPPN, values: Points, inputs: Points) -> Points:
 
 
 def drive_recurrent(network: CPPN, controls: Controls, world: World, start: State) -> Drive:
-    """Open loop, computed before the world moves, or closed where the network senses."""
+    """Open loop, computed before the simulation, or closed loop where the network senses."""
     dtype = start.positions.dtype
     rows = slice(controls.inputs, controls.inputs + OUTPUTS)
     nothing = jnp.zeros((len(network.bias), len(controls.position)), dtype)
@@ -45,8 +45,8 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
             values = advance(network, values, network_inputs(controls, timer, None))
             return values, values[rows]
 
-        _, said = jax.lax.scan(step, nothing, timer)
-        return Drive(world, start, applied(jnp.moveaxis(said, 0, 1), ramp, controls))
+        _, outputs = jax.lax.scan(step, nothing, timer)
+        return Drive(world, start, applied(jnp.moveaxis(outputs, 0, 1), ramp, controls))
 
     def remember(
         world: World, state: State, given: tuple[Array, Array]

@@ -1,4 +1,4 @@
-"""Bodies whose measures are inherited: rest angles and lengths, stiffnesses, and nodes."""
+"""Bodies with inherited traits: rest angles and lengths, stiffness, and number of nodes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -11,46 +11,42 @@ from ..world import State, World, at_rest, centre, grown_rods
 from .development import Controls
 
 Traits = Mapping[str, Array]
-"""Values of each joint or edge, by what they are values of."""
+"""Values of each joint or edge, by trait."""
 
 STIFFNESSES = ("stretch", "shear", "bend")
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How the shape of a body follows from angles and lengths; NumPy arrays.
-
-    Turns are those of joints that turn independently, the first dimension of `turned`'s
-    rows; `ways` lead from the first node to every other.
-    """
+    """The dependence of a body's shape on angles and lengths, as NumPy arrays."""
 
     angle: np.ndarray
-    """(edge,) direction of each edge of the body as it is, in rad."""
+    """(edge,) direction of each edge of the unchanged body, in rad."""
     length: np.ndarray
-    """(edge,) its length in cells."""
+    """(edge,) its length, in cells."""
     joints: np.ndarray
     """(joint, 2) pairs of edges."""
     turned: np.ndarray
-    """(edge, turn) which edges a turn of a joint turns."""
+    """(edge, turn) 1 where the turn of a joint turns an edge."""
     ways: np.ndarray
-    """(node, edge) the edges on the way to each node, with their senses."""
+    """(node, edge) the edges on the path from the first node, with their signs."""
     free: np.ndarray
-    """(turn,) the joints that turn independently."""
+    """(turn,) joints that turn independently."""
 
 
 @dataclass(frozen=True)
 class Shaped:
-    """A body on its way: the world and start with it, and controls of its own rest shape."""
+    """A shaped body: the world and start with it, and controls with its rest shape."""
 
     world: World
     start: State
     controls: Controls
     length: Float[Array, ""] | None = None
-    """How far it reaches, in cells; None: as far as the body that it is made of."""
+    """Extent in cells; None: that of the task's body."""
 
 
 def within(values: Array, bounds: tuple[float, float]) -> Array:
-    """From −1 to 1 to what lies between bounds."""
+    """Map values from −1 to 1 to the range between bounds."""
     low, high = bounds
     return low + (high - low) * 0.5 * (1 + values)
 
@@ -58,7 +54,7 @@ def within(values: Array, bounds: tuple[float, float]) -> Array:
 def shaped(
     world: World, start: State, controls: Controls, plan: Plan | None, traits: Traits
 ) -> Shaped:
-    """The body with other measures, laid out anew where angles or lengths are among them.
+    """Return the body with inherited traits, laid out anew where its shape changes.
 
     `rest_angle` is added to rest angles at the plan's free joints, `rest_length` multiplies.
     """
@@ -82,7 +78,7 @@ def shaped(
 
 
 def cut(body: Shaped, present: Bool[Array, "node"]) -> Shaped:
-    """A chain of which only some nodes are there, their middle where the whole one's was."""
+    """Keep only some nodes of a chain, and its centre in place."""
     rods = grown_rods(body.world.rods, present)
     world = replace(body.world, rods=rods, present=present)
     middle = jnp.mean(body.start.positions, 0)
@@ -94,7 +90,7 @@ def cut(body: Shaped, present: Bool[Array, "node"]) -> Shaped:
 
 
 def _laid_out(plan: Plan, turned: Array, factor: Array) -> Float[Array, "node 2"]:
-    """Positions about their own mean."""
+    """Return node positions relative to their mean."""
     dtype = turned.dtype
     angle = jnp.asarray(plan.angle, dtype) + turned
     v = jnp.stack([jnp.cos(angle), jnp.sin(angle)], 1)

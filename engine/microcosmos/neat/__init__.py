@@ -1,4 +1,4 @@
-"""NEAT: how networks arise and vary, how their genes are numbered, and its population."""
+"""NEAT: variation of networks, numbering of their genes, and populations with species."""
 
 from ..genomes import minimal
 from .crossover import crossover

@@ -1,4 +1,4 @@
-"""Which nodes reach which, as sets of nodes in 32-bit words."""
+"""Reachability of nodes, as sets in 32-bit words."""
 
 import jax
 import jax.numpy as jnp
@@ -9,7 +9,7 @@ from .rows import over
 WORD = 32
 
 Sets = tuple[UInt32[Array, "node"], ...]
-"""For each node a set of nodes: node n is bit n % 32 of word n // 32."""
+"""A set of nodes for each node: node n is bit n % 32 of word n // 32."""
 
 
 def neighbours(
@@ -18,7 +18,7 @@ def neighbours(
     used: Bool[Array, "connection"],
     nodes: int,
 ) -> Sets:
-    """For each node the other ends of the connections that it owns."""
+    """Return, for each node, the members of the connections that it owns."""
     owner, node = jnp.where(used, owner, nodes), jnp.arange(nodes)
     bit = jnp.uint32(1) << (member % WORD).astype(jnp.uint32)
     bits = [jnp.where(member // WORD == word, bit, 0) for word in range(_words(nodes))]
@@ -31,7 +31,7 @@ def neighbours(
 
 
 def closure(sets: Sets) -> Sets:
-    """All that each node reaches, itself included (Warshall, J. ACM 9, 11, 1962)."""
+    """Return the nodes that each node reaches, and itself (Warshall, J. ACM 9, 11, 1962)."""
     nodes = sets[0].shape[0]
     sets = union(sets, singletons(nodes))
     for word in range(len(sets)):
@@ -47,14 +47,14 @@ def closure(sets: Sets) -> Sets:
 
 
 def singletons(nodes: int) -> Sets:
-    """Each node's set holds itself."""
+    """Return sets that hold each node itself."""
     node = jnp.arange(nodes)
     bit = jnp.uint32(1) << (node % WORD).astype(jnp.uint32)
     return tuple(jnp.where(node // WORD == word, bit, 0) for word in range(_words(nodes)))
 
 
 def members(among: Bool[Array, "node"]) -> Sets:
-    """The same set for every node."""
+    """Return the same set for every node."""
     nodes = among.shape[0]
     bit = jnp.where(among, jnp.uint32(1) << (jnp.arange(nodes) % WORD).astype(jnp.uint32), 0)
     words = [
@@ -72,13 +72,13 @@ def without(one: Sets, other: Sets) -> Sets:
 
 
 def sizes(sets: Sets) -> Int[Array, "node"]:
-    """How many nodes each set holds."""
+    """Return the number of nodes in each set."""
     counts = jnp.stack([jax.lax.population_count(s) for s in sets])
     return jnp.sum(counts, 0, dtype=jnp.int32)
 
 
 def held(sets: Sets, node: Int[Array, ""]) -> Bool[Array, "node"]:
-    """The set of one node, as flags."""
+    """Return the set of one node as flags."""
     nodes = sets[0].shape[0]
     place = jnp.arange(nodes)
     words = jnp.stack([s[node] for s in sets])

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Int, PRNGKeyArray
 
 from ..genomes import CPPN
-from .rng import draws, left
+from .rng import draws, rescaled
 from .rows import match
 
 DISABLED = 0.75
@@ -23,11 +23,10 @@ def crossover(
     *,
     key: PRNGKeyArray,
 ) -> CPPN:
-    """A child with all genes of the fitter parent, the matching ones from either.
+    """Return a child with the structure of the fitter parent, and matching genes of either.
 
-    Genes match where their numbers are equal; disjoint and excess ones come from the fitter
-    parent. So the child has its structure, and holds a cycle only if it does. With
-    probability `average` weights and biases of matching genes are means.
+    Genes match where their numbers are equal. The child has a cycle only if the fitter parent
+    has. With probability `average`, weights and biases of matching genes are means.
     """
     mean, swapped, gene = draws((), fitter.bias.shape, fitter.weight.shape, key=key)
     connection = match(
@@ -35,7 +34,7 @@ def crossover(
     )
     node = match(fitter.node_id, fitter.node_used, other.node_id, other.node_used)
     mean, swapped, taken = mean < average, swapped < HALF, gene < HALF
-    uniform = left(jnp.where(taken, gene, gene - HALF), 0.0, HALF)
+    uniform = rescaled(jnp.where(taken, gene, gene - HALF), 0.0, HALF)
     off = ~fitter.enabled | ((connection >= 0) & ~other.enabled[connection])
     return replace(
         fitter,
@@ -46,8 +45,8 @@ def crossover(
     )
 
 
-def _mixed(own, others, row: Int[Array, "gene"], taken, mean):
-    """Values from either parent, or halfway; without a match the own ones."""
+def _mixed(values, others, row: Int[Array, "gene"], taken, mean):
+    """Return values of either parent, or their mean; without a match, those of the fitter."""
     other = others[row]
-    mixed = jnp.where(mean, own + (other - own) / 2, jnp.where(taken, other, own))
-    return jnp.where(row >= 0, mixed, own)
+    mixed = jnp.where(mean, values + (other - values) / 2, jnp.where(taken, other, values))
+    return jnp.where(row >= 0, mixed, values)

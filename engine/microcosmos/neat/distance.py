@@ -1,4 +1,4 @@
-"""How far apart two networks are (Stanley and Miikkulainen 2002, section 3.3)."""
+"""Compatibility distance of networks (Stanley and Miikkulainen 2002, section 3.3)."""
 
 from dataclasses import dataclass
 
@@ -11,20 +11,20 @@ from .rows import match
 
 @dataclass(frozen=True)
 class Coefficients:
-    """What unlike genes count, and how the number of genes divides it."""
+    """Coefficients of the distance."""
 
     excess: float
     disjoint: float
     weight: float
     small: int = 0
-    """Up to this many connections in the larger network the number divides nothing."""
+    """Largest number of connections for which the distance is not divided by it."""
     totals: bool = False
     """TensorNEAT's form: nodes count as well as connections, and differences of matching
     genes are summed and divided by the number of genes, not averaged."""
 
 
 def distance(a: CPPN, b: CPPN, coefficients: Coefficients) -> Float[Array, ""]:
-    """c₁E/N + c₂D/N + c₃W̄ (their equation 1), or the form of `totals`.
+    """Return c₁E/N + c₂D/N + c₃W̄ (their equation 1), or the form of `totals`.
 
     E, D: excess and disjoint connection genes; W̄: mean weight difference of matching ones,
     0 where none match; N: genes of the larger network.
@@ -47,13 +47,13 @@ def distance(a: CPPN, b: CPPN, coefficients: Coefficients) -> Float[Array, ""]:
 
 
 def _beyond(a: CPPN, b: CPPN):
-    """How many of a's connections have numbers above all of b's."""
+    """Return how many of a's connections have numbers above all of b's."""
     last = jnp.max(jnp.where(b.connection_used, b.innovation, -1))
     return jnp.sum(a.connection_used & (a.innovation > last))
 
 
 def _between_nodes(a: CPPN, b: CPPN, coefficients: Coefficients):
-    """Bias differences, and 1 for each other activation; inputs and outputs always match."""
+    """Return the distance of nodes: bias differences, and 1 for each different activation."""
     row = match(a.node_id, a.node_used, b.node_id, b.node_used)
     unlike = jnp.abs(a.bias - b.bias[row]) + (a.activation != b.activation[row])
     unlike = jnp.sum(jnp.where(row >= 0, unlike, 0.0))

@@ -1,8 +1,7 @@
 """NEAT's mutations of one network (Stanley and Miikkulainen 2002, section 3.1).
 
-As in the paper networks grow, and a connection is removed by disabling it; where rates of
-deletion are given, genes can be lost as well. A new gene has no number yet: `numbering`
-gives it one that all of the generation share.
+As in the paper, networks grow, and a connection is removed by disabling it; with rates of
+deletion, genes are also lost. `numbering` numbers new genes for a whole generation.
 """
 
 from dataclasses import replace
@@ -13,28 +12,28 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
 from .rates import Rates, bounded, one_of
-from .rng import Uniform, draws, left
+from .rng import Uniform, draws, rescaled
 from .rows import NONE, apart
 from .structure import add_connection, add_node, delete_connection, delete_node
 
 DECISIONS = 10
-"""Draws of a child besides those of each gene."""
+"""Draws per child beside those per gene."""
 
 
 class Novelty(eqx.Module):
-    """The genes that arose in children, by what identifies them in a generation."""
+    """The new genes of children, and what identifies them in a generation."""
 
     connection_row: Int[Array, "*batch"]
-    """Where the added connection stands, or −1; its ends identify it."""
+    """Row of the added connection, or −1; its ends identify it."""
     split_row: Int[Array, "*batch"]
-    """Where the first of a new node's two connections stands, or −1."""
+    """Row of the first of a new node's two connections, or −1."""
     node_row: Int[Array, "*batch"]
     split_innovation: Int[Array, "*batch"]
-    """The number of the connection that was split, or −1."""
+    """Number of the split connection, or −1."""
 
 
 def nothing_new(children: int) -> Novelty:
-    """No gene arose in any child."""
+    """Return no new genes for any child."""
     none = jnp.full(children, NONE)
     return Novelty(none, none, none, none)
 
@@ -42,10 +41,10 @@ def nothing_new(children: int) -> Novelty:
 def mutate(
     network: CPPN, rates: Rates, inputs: int, outputs: int | None = None, *, key: PRNGKeyArray
 ) -> tuple[CPPN, Novelty]:
-    """A child of one parent, and the genes in it that need numbers.
+    """Return a child of one parent, and its genes that need numbers.
 
-    Raises `ValueError` where nodes can be deleted and the number of `outputs`, which never
-    are, is not given.
+    Raises `ValueError` where nodes can be deleted and the number of `outputs`, which are never
+    deleted, is not given.
     """
     if rates.delete_node and outputs is None:
         raise ValueError("`outputs` must be given where `delete_node` is above 0, got None")
@@ -64,7 +63,7 @@ def mutate(
         some[3] < rates.add_connection,
         some[4] < rates.add_node,
     )
-    if rates.apart:
+    if rates.separate:
         vary = vary & ~link & ~node
     network = mutate_values(network, vary, rates, inputs, values)
     network = mutate_activations(network, rates, inputs, activations)
@@ -99,7 +98,7 @@ def mutate_activations(network: CPPN, rates: Rates, inputs: int, uniform: Unifor
         return network
     node = jnp.arange(network.node_used.shape[0])
     chosen = (uniform < rates.activation) & network.node_used & (node >= inputs)
-    drawn = one_of(rates.palette, left(uniform, 0.0, rates.activation))
+    drawn = one_of(rates.palette, rescaled(uniform, 0.0, rates.activation))
     return replace(network, activation=jnp.where(chosen, drawn, network.activation))
 
 
@@ -115,9 +114,11 @@ def toggle_connections(network: CPPN, rate: float, uniform: Uniform) -> CPPN:
 def _vary(
     values: Float[Array, "gene"], used: Bool[Array, "gene"], rates: Rates, uniform: Uniform
 ) -> Float[Array, "gene"]:
-    """A draw decides about each gene, and what it leaves is its step or its new value."""
+    """Perturb or redraw genes; one draw decides and, rescaled, gives the step or value."""
     new, either = rates.replace, rates.replace + (1 - rates.replace) * rates.weight
-    again = jnp.where(uniform < new, left(uniform, 0.0, new), left(uniform, new, either))
+    again = jnp.where(
+        uniform < new, rescaled(uniform, 0.0, new), rescaled(uniform, new, either)
+    )
     drawn = rates.draw(again).astype(values.dtype)
     varied = jnp.where(uniform < either, values + rates.weight_step * drawn, values)
     varied = jnp.where(uniform < new, rates.new_step * drawn, varied)

@@ -1,4 +1,4 @@
-"""Numbers for new genes: the same for the same mutation within a generation."""
+"""Numbering of new genes: equal mutations in a generation get equal numbers."""
 
 from dataclasses import replace
 
@@ -13,15 +13,15 @@ from .rows import NONE
 
 
 class Counters(eqx.Module):
-    """The next numbers that no gene has yet."""
+    """The next unused numbers."""
 
     innovation: Int[Array, ""]
     node: Int[Array, ""]
 
 
 def first_counters(inputs: int, outputs: int) -> Counters:
-    """After the genes of minimal networks."""
-    # Types are stated: programs would be compiled anew for a weak one.
+    """Return the counters after the genes of minimal networks."""
+    # Strong types: weak ones would compile programs anew.
     return Counters(jnp.asarray(inputs * outputs, int), jnp.asarray(inputs + outputs, int))
 
 
@@ -60,9 +60,9 @@ def number(children: CPPN, novelty: Novelty, counters: Counters) -> tuple[CPPN, 
 def ranks(
     first: Int[Array, "child"], second: Int[Array, "child"]
 ) -> tuple[Int[Array, "child"], Int[Array, ""]]:
-    """Each child's place among the distinct pairs, and how many there are.
+    """Return each child's rank among the distinct pairs, and their number.
 
-    A negative `first` stands for no pair.
+    A negative `first` means no pair.
     """
     order = jnp.lexsort((second, first))
     a, b = first[order], second[order]

@@ -1,4 +1,4 @@
-"""How many children each species has (Stanley and Miikkulainen 2002, section 3.3)."""
+"""Number of offspring of each species (Stanley and Miikkulainen 2002, section 3.3)."""
 
 from dataclasses import replace
 
@@ -11,29 +11,29 @@ from .settings import Settings
 from .species import Species
 
 
-class Standing(eqx.Module):
-    """The population in order: species after species, in each the fittest first."""
+class Ranking(eqx.Module):
+    """The population ordered by species, and by fitness within each."""
 
     order: Int[Array, "individual"]
     start: Int[Array, "species"]
-    """Where a species begins in the order."""
+    """Start of each species in the order."""
     valid: Int[Array, "species"]
-    """Members with a finite fitness, which come first."""
+    """Number of members with finite fitness, which come first."""
     best: Float[Array, "species"]
-    """The highest fitness, or −inf."""
+    """Highest fitness, or −inf."""
 
 
-def standing(species: Species, fitness: Float[Array, "individual"]) -> Standing:
-    """Ranks within species; of equals the earlier one is first. Not finite is last."""
+def ranking(species: Species, fitness: Float[Array, "individual"]) -> Ranking:
+    """Rank networks within species: ties by index, non-finite fitness last."""
     order = jnp.lexsort((-fitness, species.of))
     start = jnp.cumsum(species.members) - species.members
     valid = jnp.zeros_like(species.members).at[species.of].add(jnp.isfinite(fitness))
     best = jnp.full(species.best.shape, -jnp.inf, fitness.dtype).at[species.of].max(fitness)
-    return Standing(order, start, valid, best)
+    return Ranking(order, start, valid, best)
 
 
-def recorded(species: Species, now: Standing, generation: Int[Array, ""]) -> Species:
-    """The species with what their members reached in a generation."""
+def recorded(species: Species, now: Ranking, generation: Int[Array, ""]) -> Species:
+    """Record the best fitness of species and population in a generation."""
     better, higher = now.best > species.best, jnp.max(now.best) > species.peak
     return replace(
         species,
@@ -45,41 +45,41 @@ def recorded(species: Species, now: Standing, generation: Int[Array, ""]) -> Spe
 
 
 def allowed(
-    species: Species, now: Standing, settings: Settings, generation: Int[Array, ""]
+    species: Species, now: Ranking, settings: Settings, generation: Int[Array, ""]
 ) -> tuple[Bool[Array, "species"], Species]:
-    """The species that may have children.
+    """Return which species may have offspring, and the species with updated clocks.
 
-    Once the population stagnates, its clock and those of the two species start anew, as in the
+    Once the population stagnates, only the best two may, and the clocks restart, as in the
     authors' program.
     """
     able = species.alive & (now.valid > 0)
-    place = places(now.best)
+    place = ranks(now.best)
     fresh = generation - species.improved < settings.stagnation
     lively = able & (fresh | (place < max(1, settings.species_elitism)))
     if not settings.population_stagnation:
         return lively, species
     stuck = generation - species.peak_generation > settings.population_stagnation
     able = jnp.where(stuck, able & (place < 2), lively)
-    again = replace(
+    restarted = replace(
         species,
         improved=jnp.where(stuck & able, generation, species.improved),
         peak_generation=jnp.where(stuck, generation, species.peak_generation),
     )
-    return able, again
+    return able, restarted
 
 
 def shares(
     able: Bool[Array, "species"],
     fitness: Float[Array, "individual"],
     species: Species,
-    now: Standing,
+    now: Ranking,
     settings: Settings,
 ) -> Float[Array, "species"]:
-    """The share of all children that each species gets; they sum to 1 where any is able."""
+    """Return the share of offspring of each species; shares sum to 1 where any is able."""
     members = jnp.maximum(1, species.members)
     if settings.allotment == "rank":
-        share = jnp.sum(able) - places(jnp.where(able, now.best, -jnp.inf))
-    else:  # The sum of shared fitness f/n over n members; negative ones are moved to 0.
+        share = jnp.sum(able) - ranks(jnp.where(able, now.best, -jnp.inf))
+    else:  # The sum of shared fitness f/n over n members, shifted so that none is negative.
         finite = jnp.isfinite(fitness)
         low = jnp.minimum(0, jnp.min(jnp.where(finite, fitness, 0)))
         given = jnp.where(finite, fitness - low, 0) / members[species.of]
@@ -92,10 +92,10 @@ def shares(
 def allot(
     share: Float[Array, "species"], able: Bool[Array, "species"], total: int, minimum: int
 ) -> Int[Array, "species"]:
-    """Whole numbers of children that sum to `total` exactly, each within 1 of its share.
+    """Return numbers of offspring that sum to `total` exactly, each within 1 of its share.
 
-    Ends of consecutive shares are rounded. `minimum` children of each able species come
-    first, as far as there is room.
+    Ends of consecutive shares are rounded. Each able species first gets `minimum` offspring,
+    if `total` allows.
     """
     count = jnp.maximum(1, jnp.sum(able))
     least = jnp.where(able, jnp.minimum(minimum, total // count), 0)
@@ -105,13 +105,13 @@ def allot(
     return least + jnp.diff(ends, prepend=0)
 
 
-def places(values: Float[Array, "species"]) -> Int[Array, "species"]:
-    """0 for the highest value and so on; of equals the earlier row is first."""
+def ranks(values: Float[Array, "species"]) -> Int[Array, "species"]:
+    """Return the rank of each value, 0 for the highest; ties by row."""
     order = jnp.argsort(-values, stable=True)
     return jnp.zeros_like(order).at[order].set(jnp.arange(len(order)))
 
 
 def _normalised(share, able):
-    """Shares that sum to 1, equal ones where all are 0."""
+    """Scale shares to sum 1; equal shares where all are 0."""
     share = jnp.where(jnp.any(share > 0), share, able)
     return share / jnp.maximum(jnp.sum(share), jnp.finfo(jnp.float32).tiny)

@@ -1,4 +1,4 @@
-"""How often each mutation happens to a child, and what a new gene is like."""
+"""Rates of mutations, and the distribution of new genes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,37 +12,37 @@ from ..genomes import ACTIVATIONS
 from .rng import LARGEST, Uniform
 
 Draw = Callable[[Array], Array]
-"""Numbers that are equally likely between 0 and 1 → random numbers around zero."""
+"""From uniform numbers in [0, 1) to random numbers around zero."""
 
 
 def normal(uniform: Uniform) -> Array:
-    """Numbers with mean 0 and deviation 1."""
+    """Return normal numbers with mean 0 and deviation 1."""
     return np.sqrt(2) * jax.lax.erf_inv(jnp.maximum(2 * uniform - 1, -LARGEST))
 
 
 def uniform(uniform: Uniform) -> Array:
-    """Numbers between −1 and 1, each equally likely."""
+    """Return uniform numbers between −1 and 1."""
     return 2 * uniform - 1
 
 
 def one_of(palette: tuple[int, ...], uniform: Uniform) -> Array:
-    """Activations, each of the palette equally likely."""
+    """Return uniformly drawn activations of the palette."""
     place = jnp.floor(uniform * len(palette)).astype(jnp.int32)
     return jnp.asarray(np.asarray(palette, np.int32))[place]
 
 
 @dataclass(frozen=True)
 class Rates:
-    """Probabilities a gene (values, activations, toggles) or a child (structure)."""
+    """Probabilities per gene (values, activations, toggles) or per child (structure)."""
 
     weight: float
     """A weight or bias is perturbed."""
     weight_step: float
-    """What a drawn number is multiplied by to perturb a weight or bias."""
+    """Factor on a drawn number that perturbs a weight or bias."""
     replace: float
     """A weight or bias is drawn anew."""
     new_step: float = field(default=1.0, kw_only=True)
-    """What a drawn number is multiplied by then."""
+    """Factor on a drawn number that replaces a weight or bias."""
     activation: float
     toggle: float
     add_node: float
@@ -50,23 +50,23 @@ class Rates:
     delete_node: float = 0.0
     delete_connection: float = 0.0
     values: float = 1.0
-    """A child's weights and biases vary at all."""
-    apart: bool = False
-    """They do not where a node or connection is added, so that this alone is judged."""
+    """Probability that the weights and biases of a child vary."""
+    separate: bool = False
+    """Keep values where a node or connection is added, so that fitness tests that alone."""
     bound: float | None = None
-    """Weights and biases are kept within this of zero."""
+    """Limit of the size of weights and biases."""
     draw: Draw = normal
     palette: tuple[int, ...] = tuple(range(len(ACTIVATIONS)))
-    """Activations that are drawn, by their place among `genomes.ACTIVATIONS`."""
+    """Indices of the activations that are drawn, in `genomes.ACTIVATIONS`."""
     recurrent: bool = False
-    """Added connections may close cycles and lead from a node to itself."""
+    """Allow added connections that close cycles or join a node to itself."""
     blind: bool = False
-    """An added connection joins any two nodes, and fails where they are joined already or a
-    cycle would close, in place of being one of those that are possible."""
+    """Draw any two nodes for an added connection, and fail where they are joined or would
+    close a cycle; otherwise draw among the possible connections."""
     drop_split: bool = False
-    """A split connection is removed, not disabled."""
+    """Remove a split connection instead of disabling it."""
 
 
 def bounded(values: Array, rates: Rates) -> Array:
-    """Weights or biases as far as they are allowed."""
+    """Clip weights or biases to the limit."""
     return values if rates.bound is None else jnp.clip(values, -rates.bound, rates.bound)

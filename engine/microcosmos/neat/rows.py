@@ -1,4 +1,4 @@
-"""Rows of genes: written, chosen, removed and found by number."""
+"""Rows of genes: writing, choosing, removing and matching."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,7 +11,7 @@ from ..genomes import CPPN
 from .rng import Uniform, below
 
 NONE = -1
-"""Stands for the row or the number of a gene that is not there."""
+"""Row or number of an absent gene."""
 
 UNROLLED = 10
 
@@ -20,12 +20,12 @@ CONNECTIONS = ("connection_used", "innovation", "source", "target", "enabled", "
 
 
 def put(values: Array, row: Int[Array, ""], value) -> Array:
-    """The values with one replaced, or as they were where `row` is −1."""
+    """Replace one value; none where `row` is −1."""
     return jnp.where(jnp.arange(values.shape[0]) == row, value, values)
 
 
 def connect(network: CPPN, row, source, target, weight) -> CPPN:
-    """The network with a connection in a free row, or as it was where `row` is −1."""
+    """Add a connection in a free row; none where `row` is −1."""
     return replace(
         network,
         connection_used=put(network.connection_used, row, True),
@@ -39,13 +39,13 @@ def connect(network: CPPN, row, source, target, weight) -> CPPN:
 def choose(
     allowed: Bool[Array, "item"], uniform: Uniform
 ) -> tuple[Int[Array, ""], Bool[Array, ""]]:
-    """One allowed item, each equally likely, and whether there is any."""
+    """Draw one allowed item uniformly; also return whether there is any."""
     total = jnp.sum(allowed)
     return ranked(allowed, below(total, uniform)), total > 0
 
 
 def ranked(weights: Array, rank: Int[Array, ""]) -> Int[Array, ""]:
-    """The item that holds the place `rank` where each takes as many as its weight."""
+    """Return the item at `rank` where each item counts as often as its weight."""
     place = jnp.sum(jnp.cumsum(weights.astype(jnp.int32)) <= rank)
     return jnp.minimum(place, weights.shape[0] - 1)
 
@@ -56,7 +56,7 @@ def match(
     others: Int[Array, "other"],
     others_used: Bool[Array, "other"],
 ) -> Int[Array, "gene"]:
-    """The row of the other parent's gene that has the same number, or −1."""
+    """Return the row of the other parent's gene with the same number, or −1."""
     table = jnp.where(others_used, others, NONE)
 
     def compare(place, row):
@@ -67,22 +67,22 @@ def match(
 
 
 def apart(values):
-    """The same values: XLA compiles what makes them apart from what uses them, far faster."""
+    """Return the same values; XLA compiles their producers and consumers separately, faster."""
     return jax.lax.optimization_barrier(values)
 
 
 def over(count: int, body: Callable, initial):
-    """A loop over rows, many to a turn: XLA makes one fast pass over a batch of each turn."""
+    """Loop over rows, unrolled: XLA makes one fast pass over a batch per iteration."""
     return jax.lax.fori_loop(0, count, body, initial, unroll=min(UNROLLED, count))
 
 
 def drop_connection(network: CPPN, row: Int[Array, ""]) -> CPPN:
-    """The network without one connection gene, the later ones moved up; −1 for none."""
+    """Remove one connection gene and move later ones up; −1 for none."""
     return _shifted(network, CONNECTIONS, row)
 
 
 def drop_node(network: CPPN, node: Int[Array, ""]) -> CPPN:
-    """The network without one node and all its connections; −1 for none."""
+    """Remove one node and all its connections; −1 for none."""
     kept = network.connection_used & (network.source != node) & (network.target != node)
     rows, upto = jnp.arange(kept.shape[0]), jnp.cumsum(kept)
     start = jnp.zeros(rows.shape, rows.dtype)
@@ -99,7 +99,7 @@ def drop_node(network: CPPN, node: Int[Array, ""]) -> CPPN:
 
 
 def _shifted(network: CPPN, names: tuple[str, ...], row: Int[Array, ""]) -> CPPN:
-    """The named columns without one row, and zero at the end."""
+    """Remove one row of the named columns, with zero at the end."""
 
     def shift(values):
         place = jnp.arange(values.shape[0])

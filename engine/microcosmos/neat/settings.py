@@ -1,4 +1,4 @@
-"""All settings of a NEAT population, and the two presets."""
+"""Settings of a NEAT population, and two presets."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,43 +14,43 @@ SIGMOID = tuple(ACTIVATIONS).index("sigmoid")
 
 @dataclass(frozen=True)
 class Settings:
-    """How a population is divided, selected and varied."""
+    """Settings of speciation, selection and variation."""
 
     rates: Rates
     coefficients: Coefficients
     population: int
     threshold: float
-    """Distance within which networks are of one species; the first one where it moves."""
+    """Compatibility distance of a species; its initial value where it is adjusted."""
     target_species: int
-    """The number of species that the threshold moves towards; 0 keeps it fixed."""
+    """Number of species that the threshold is adjusted towards; 0: fixed threshold."""
     threshold_step: float
     max_species: int
     representative: Literal["random", "nearest"]
-    """A member drawn at random, or the one nearest to the representative before."""
+    """A random member, or the member nearest to the former representative."""
     stagnation: int
-    """Generations without a better network after which a species has no children."""
+    """Generations without improvement after which a species has no offspring."""
     population_stagnation: int
-    """The same for all species but the best two, once the population stagnates; 0: never."""
+    """The same for the population, after which only the best two species breed; 0: never."""
     species_elitism: int
-    """So many best species never stagnate; one at least."""
+    """Number of best species that never stagnate, at least one."""
     allotment: Literal["sharing", "rank"]
-    """Children of a species in proportion to its mean fitness, or to its place by best."""
+    """Offspring in proportion to mean fitness, or to the rank by best fitness."""
     inertia: float
-    """How much of its present size a species keeps; 0: it takes what is allotted."""
+    """Weight of a species' present size in its number of offspring; 0: none."""
     min_size: int
-    """Children of each species that has any."""
+    """Least offspring of a species that has any."""
     elites: int
-    """Best networks of a species that are copied unchanged."""
+    """Number of a species' best networks that are copied unchanged."""
     elite_size: int
-    """Members that a species must have for that."""
+    """Least members of a species with elites."""
     survival: float
-    """Best share of a species from which parents are drawn."""
+    """Fittest share of a species from which parents are drawn."""
     crossover: float
-    """Probability that a child has two parents."""
+    """Probability of crossover with a second parent."""
     interspecies: float
-    """Probability that the second one is of any species."""
+    """Probability that the second parent is of any species."""
     crossover_only: float
-    """Probability that a child of two parents is not mutated."""
+    """Probability that crossover is not followed by mutation."""
     average: float
     disabled: float
     """See `crossover`."""
@@ -67,7 +67,7 @@ PAPER = Settings(
         add_node=0.03,
         add_connection=0.05,
         values=0.8,
-        apart=True,
+        separate=True,
         bound=8.0,
         draw=uniform,
         palette=(SIGMOID,),
@@ -96,11 +96,10 @@ PAPER = Settings(
 )
 """The XOR experiment of Stanley and Miikkulainen (2002), section 4.1.
 
-Not in the paper, but in the authors' program: the step of weights, also of new ones, that
-they stay where structure is added, and the shares of survivors and of children that are only
-crossed. Ours: a stagnant population keeps all its species (the paper keeps two after 20
-generations, with which XOR was solved less often), weights stay within 8, the best species
-never stagnates, and species are at most 50.
+From the authors' program, not the paper: the steps of weights, unchanged weights where
+structure is added, and the shares of survivors and of crossover without mutation. Ours: a
+stagnant population keeps all species (the paper keeps two after 20 generations, which solved
+XOR less often), weights stay within 8, the best species never stagnates, at most 50 species.
 """
 
 TENSORNEAT = Settings(
@@ -141,6 +140,6 @@ TENSORNEAT = Settings(
     average=0.0,
     disabled=0.75,
 )
-"""The defaults of TensorNEAT 0.1.0, as far as its networks have what ours have."""
+"""The defaults of TensorNEAT 0.1.0, as far as they apply to our networks."""
 
 PRESETS: Mapping[str, Settings] = MappingProxyType({"paper": PAPER, "tensorneat": TENSORNEAT})

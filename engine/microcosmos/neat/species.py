@@ -1,4 +1,4 @@
-"""Species: networks that are near one representative (Stanley and Miikkulainen 2002)."""
+"""Species: networks close to one representative (Stanley and Miikkulainen 2002)."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -15,39 +15,39 @@ UNASSIGNED = -1
 
 
 class Species(eqx.Module):
-    """Rows of species, those that live first and the older before the younger."""
+    """Rows of species, living ones first, older before younger."""
 
     representatives: CPPN
     alive: Bool[Array, "species"]
     number: Int[Array, "species"]
-    """No other species ever has it."""
+    """Unique over the whole run."""
     best: Float[Array, "species"]
-    """The highest fitness of any member so far; −inf before the first one is known."""
+    """Highest fitness of any member so far; −inf before the first."""
     improved: Int[Array, "species"]
-    """The generation in which that was reached, or the species arose."""
+    """Generation in which `best` was reached, or the species was founded."""
     members: Int[Array, "species"]
     of: Int[Array, "individual"]
-    """The species' row of each network of the population."""
+    """Row of the species of each network."""
     threshold: Float[Array, ""]
-    """Networks nearer than this to a representative belong to its species."""
+    """Compatibility distance to a representative."""
     next_number: Int[Array, ""]
     peak: Float[Array, ""]
-    """The highest fitness in the population so far, and when it was reached."""
+    """Highest fitness in the population so far."""
     peak_generation: Int[Array, ""]
 
 
 class Assignment(NamedTuple):
-    """The species of each network while species are still being founded."""
+    """The species of each network while species are founded."""
 
     representatives: CPPN
     count: Int[Array, ""]
     of: Int[Array, "individual"]
     nearest: Int[Array, "individual"]
-    """The species whose representative is nearest, compatible or not."""
+    """Species with the nearest representative, compatible or not."""
     least: Float[Array, "individual"]
-    """The distance to it."""
+    """Distance to that representative."""
     closest: Int[Array, "species"]
-    """The member nearest to each representative."""
+    """Member nearest to each representative."""
 
 
 def assign(
@@ -57,14 +57,13 @@ def assign(
     threshold: Float[Array, ""],
     coefficients: Coefficients,
 ) -> Assignment:
-    """Each network joins the first species that it is compatible with, or founds one.
+    """Assign each network to the first compatible species, or let it found one.
 
-    That is the paper's rule. Once all rows are taken, what fits nowhere joins the species
-    whose representative is nearest.
+    That is the paper's rule. Once all rows are taken, a network compatible with none joins the
+    species with the nearest representative.
     """
-    individuals = population.weight.shape[0]
+    individuals, dtype = population.weight.shape[0], population.weight.dtype
     rows = representatives.weight.shape[0]
-    dtype = population.weight.dtype
 
     def join(row, state: Assignment, founder=None) -> Assignment:
         one = _row(state.representatives, row)
@@ -92,8 +91,16 @@ def assign(
     def unfinished(state: Assignment) -> Bool[Array, ""]:
         return (state.count < rows) & jnp.any(state.of == UNASSIGNED)
 
+    state = _unassigned(individuals, representatives, count)
+    state = jax.lax.fori_loop(0, state.count, join, state)
+    state = jax.lax.while_loop(unfinished, found, state)
+    return state._replace(of=jnp.where(state.of == UNASSIGNED, state.nearest, state.of))
+
+
+def _unassigned(individuals: int, representatives: CPPN, count: Int[Array, ""]) -> Assignment:
     nobody = jnp.full(individuals, UNASSIGNED)
-    state = Assignment(
+    rows, dtype = representatives.weight.shape[0], representatives.weight.dtype
+    return Assignment(
         representatives=representatives,
         count=count.astype(nobody.dtype),
         of=nobody,
@@ -101,13 +108,10 @@ def assign(
         least=jnp.full(individuals, jnp.inf, dtype),
         closest=jnp.zeros(rows, nobody.dtype),
     )
-    state = jax.lax.fori_loop(0, state.count, join, state)
-    state = jax.lax.while_loop(unfinished, found, state)
-    return state._replace(of=jnp.where(state.of == UNASSIGNED, state.nearest, state.of))
 
 
 def no_species(population: CPPN, rows: int, threshold: float) -> Species:
-    """Before the first population is divided."""
+    """Return empty species for a first population."""
     dtype = population.weight.dtype
     individuals = population.weight.shape[0]
     return Species(
@@ -135,10 +139,10 @@ def divide(
     nearest: bool,
     generation: Int[Array, ""],
 ) -> Species:
-    """The species of a population, whose members will be evaluated in `generation`.
+    """Divide a population, to be evaluated in `generation`, into species.
 
-    Species without members end. With `nearest`, the member nearest to a representative is
-    the next one.
+    Species without members end. With `nearest`, the member nearest to a representative becomes
+    the next representative.
     """
     species = compacted(species)
     before = jnp.sum(species.alive)
@@ -169,7 +173,7 @@ def divide(
 
 
 def compacted(species: Species) -> Species:
-    """The rows that live first, in their order; the others empty."""
+    """Move living rows to the front, in their order, and empty the others."""
     order = jnp.argsort(~species.alive, stable=True)
     place = jnp.zeros_like(order).at[order].set(jnp.arange(len(order)))
     alive = species.alive[order]
@@ -193,5 +197,5 @@ def _row(networks: CPPN, row) -> CPPN:
 
 
 def _column(flags, values):
-    """Flags of rows, broadcast over whatever each row holds."""
+    """Broadcast flags of rows over the values of each row."""
     return flags.reshape(-1, *[1] * (values.ndim - 1))

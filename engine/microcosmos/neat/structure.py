@@ -1,4 +1,4 @@
-"""Connections and nodes are added to networks, and removed from them."""
+"""Structural mutations: adding and removing connections and nodes."""
 
 from dataclasses import replace
 
@@ -8,17 +8,14 @@ from jaxtyping import Array, Bool, Int
 from ..genomes import CPPN
 from . import acyclicity
 from .rates import Rates, bounded, one_of
-from .rng import Uniform, below, left
+from .rng import Uniform, below, rescaled
 from .rows import NONE, apart, choose, connect, drop_connection, drop_node, put, ranked
 
 
 def add_connection(
     network: CPPN, happens: Bool[Array, ""], rates: Rates, inputs: int, uniform: Uniform
 ) -> tuple[CPPN, Int[Array, ""]]:
-    """Join two nodes that are not joined; also the new connection's row, or −1.
-
-    Three draws decide.
-    """
+    """Join two unconnected nodes, using three draws; also return the new row, or −1."""
     if not rates.add_connection:
         return network, jnp.asarray(NONE)
     source, target, exists = apart(_free_pair(network, rates, inputs, uniform))
@@ -35,11 +32,11 @@ def add_node(
     rates: Rates,
     uniform: Uniform,
 ) -> tuple[CPPN, Int[Array, ""], Int[Array, ""], Int[Array, ""]]:
-    """Split a connection: it is disabled (or removed), and a new node takes its place.
+    """Split a connection, which is disabled or removed, by a new node, using two draws.
 
-    The way in has weight 1 and the way out the old weight, so that with the identity as
-    activation nothing would change. Also the row of the way in, the node's row, and the
-    number of the connection that was split, or −1 each. Two draws decide.
+    The incoming connection has weight 1 and the outgoing one the old weight, so that a node
+    with identity activation changes nothing. Also return the rows of the incoming connection
+    and the node, and the number of the split connection, or −1 each.
     """
     old, exists = apart(choose(splittable, uniform[0]))
     node, row = jnp.sum(network.node_used), jnp.sum(network.connection_used)
@@ -66,21 +63,21 @@ def add_node(
 
 def delete_connection(network: CPPN, rate: float, uniform: Uniform) -> CPPN:
     """Remove a connection."""
-    row, exists = choose(network.connection_used, left(uniform, 0.0, rate))
+    row, exists = choose(network.connection_used, rescaled(uniform, 0.0, rate))
     return drop_connection(network, jnp.where((uniform < rate) & exists, row, NONE))
 
 
 def delete_node(network: CPPN, rate: float, fixed: int, uniform: Uniform) -> CPPN:
-    """Remove a hidden node and all its connections; the first `fixed` ones stay."""
+    """Remove a hidden node and all its connections; the first `fixed` nodes stay."""
     hidden = network.node_used & (jnp.arange(network.node_used.shape[0]) >= fixed)
-    node, exists = choose(hidden, left(uniform, 0.0, rate))
+    node, exists = choose(hidden, rescaled(uniform, 0.0, rate))
     return drop_node(network, jnp.where((uniform < rate) & exists, node, NONE))
 
 
 def _free_pair(
     network: CPPN, rates: Rates, inputs: int, uniform: Uniform
 ) -> tuple[Int[Array, ""], Int[Array, ""], Bool[Array, ""]]:
-    """The source and target of a possible connection, and whether there is one."""
+    """Draw source and target of a new connection; also return whether one is possible."""
     free = apart(_free_sources(network, rates.recurrent))
     is_target = network.node_used & (jnp.arange(network.node_used.shape[0]) >= inputs)
     if rates.blind:
@@ -95,7 +92,7 @@ def _free_pair(
 
 
 def _free_sources(network: CPPN, recurrent: bool) -> acyclicity.Sets:
-    """For each node those that it could be joined from."""
+    """Return, for each node, the possible sources of a new connection."""
     used, nodes = network.connection_used, network.node_used.shape[0]
     joined = acyclicity.neighbours(network.target, network.source, used, nodes)
     free = acyclicity.without(acyclicity.members(network.node_used), joined)

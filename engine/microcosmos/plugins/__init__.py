@@ -1,4 +1,4 @@
-"""Plug-ins of users: fitnesses, descriptors, bodies, gaits and encodings; no JAX."""
+"""Plug-ins: fitnesses, descriptors, bodies, gaits and encodings of users; no JAX."""
 
 from .declaration import KINDS, Axis, Declaration, is_plugin
 from .declaring import body, descriptor, encoding, fitness, gait

@@ -1,4 +1,4 @@
-"""What is known of something of one's own wherever it is talked about: words, no code."""
+"""Declarations of plug-ins: names, versions and settings, without code."""
 
 import re
 from typing import Annotated, Any, Final, Literal, Self, get_args
@@ -9,19 +9,19 @@ Kind = Literal["fitness", "descriptor", "body", "gait", "encoding"]
 KINDS: Final = get_args(Kind)
 
 NAME = r"[a-z][a-z0-9_]{0,62}"
-"""Of a module, and of what is in it."""
+"""Pattern of a module's name, and of a plug-in's name in it."""
 FULL_NAME = re.compile(rf"{NAME}\.{NAME}")
 
 Size = Annotated[int, Field(ge=0, le=65_536)]
 
 
 def is_plugin(name: object) -> bool:
-    """Whether a name is of something of one's own: nothing built in has a dot in its name."""
+    """Whether a name is that of a plug-in: it contains a dot, built-in names do not."""
     return isinstance(name, str) and FULL_NAME.fullmatch(name) is not None
 
 
 class Axis(BaseModel):
-    """Where an archive's axis begins and ends, unless its spec says otherwise."""
+    """Default ends and scale of an archive's axis."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -39,24 +39,24 @@ class Axis(BaseModel):
 
 
 class Declaration(BaseModel):
-    """A name, what it stands for, and which version of its module says so."""
+    """The name, kind and version of a plug-in."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     kind: Kind
     name: Annotated[str, Field(pattern=rf"^{FULL_NAME.pattern}$")]
-    """That of its module, a dot, and its own."""
+    """Name of the module, a dot, and the plug-in's name."""
     source: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
     """SHA-256 of the module's source."""
     title: Annotated[str, Field(min_length=1, max_length=100)]
     unit: Annotated[str, Field(max_length=40)] = ""
     about: Annotated[str, Field(max_length=1000)] = ""
-    """A sentence for people."""
+    """Description in one sentence."""
     axis: Axis | None = None
-    """Of a descriptor."""
+    """Axis of a descriptor."""
     sizes: dict[str, Size] = {}
-    """`nodes` that a body has at most; `genes`, `per_joint` and `per_edge` of an encoding."""
+    """Most `nodes` of a body; `genes`, `per_joint` and `per_edge` of an encoding."""
     settings: dict[str, Any] | None = None
-    """JSON schema of its settings, if it has any."""
+    """JSON schema of the settings, if there are any."""
     defaults: dict[str, Any] = {}
-    """The settings where nobody says otherwise."""
+    """Default settings."""

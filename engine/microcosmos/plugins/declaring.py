@@ -1,4 +1,4 @@
-"""The decorators by which a module says what it adds."""
+"""Decorators that declare the plug-ins of a module."""
 
 import inspect
 import re
@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from .declaration import NAME, Axis, Kind
 
 MARK = "__microcosmos__"
-"""The attribute by which a declared function is known."""
+"""The attribute that marks a declared function."""
 
 F = TypeVar("F", bound=Callable[..., Any])
 Settings = type[BaseModel] | None
@@ -19,7 +19,7 @@ Settings = type[BaseModel] | None
 
 @dataclass(frozen=True)
 class Draft:
-    """What a decorator says of a function, before it is known which module it is in."""
+    """A declaration before the name of its module is known."""
 
     kind: Kind
     name: str
@@ -31,7 +31,7 @@ class Draft:
 
 
 def fitness(name: str, *, title: str, unit: str = "", settings: Settings = None):
-    """Declares what is to be large: from a `search.Motion` to one number, in JAX."""
+    """Declare a fitness: a JAX function from a `search.Motion` to one number."""
     return _declared(Draft("fitness", name, title, unit, settings=settings))
 
 
@@ -45,18 +45,18 @@ def descriptor(
     unit: str = "",
     settings: Settings = None,
 ):
-    """Declares an axis of archives: from a `search.Motion` to one number, in JAX."""
+    """Declare a descriptor: a JAX function from a `search.Motion` to one number."""
     axis = Axis(low=low, high=high, scale=scale)
     return _declared(Draft("descriptor", name, title, unit, axis, settings=settings))
 
 
 def body(name: str, *, title: str, nodes: int, settings: Settings = None):
-    """Declares what gives a `bodies.Body` of at most so many nodes, in NumPy."""
+    """Declare a body: a NumPy function that returns a `bodies.Body` of at most `nodes`."""
     return _declared(Draft("body", name, title, sizes={"nodes": nodes}, settings=settings))
 
 
 def gait(name: str, *, title: str, nodes: int, settings: Settings = None):
-    """Declares what gives a `swimmers.Swimmer`, a body with its gait, in NumPy."""
+    """Declare a gait: a NumPy function that returns a `swimmers.Swimmer`."""
     return _declared(Draft("gait", name, title, sizes={"nodes": nodes}, settings=settings))
 
 
@@ -69,11 +69,10 @@ def encoding(
     per_edge: int = 0,
     settings: Settings = None,
 ):
-    """Declares what genes from −1 to 1 do to the rest shape over time, in JAX.
+    """Declare an encoding: a JAX function from genes and a `genomes.Clock` to movements.
 
-    There are so many genes for a body as a whole, for each of its joints and of its edges.
-    The function is given them and a `genomes.Clock`, and gives what every joint (time,
-    joint) and every edge (time, edge) does, from −1 to 1.
+    A body has `genes` genes, and more per joint and per edge, all from −1 to 1. The function
+    returns the control of joints (time, joint) and of edges (time, edge), from −1 to 1.
     """
     if genes + per_joint + per_edge < 1:
         raise ValueError(f"`genes` of {name!r} must be at least 1, or those per joint or edge")
@@ -95,7 +94,7 @@ def _declared(draft: Draft) -> Callable[[F], F]:
 
 
 def _refuse_unfit(draft: Draft) -> None:
-    """Settings must refuse what they do not know, and be complete where nothing is said."""
+    """Raise `ValueError` unless settings refuse unknown fields and have all defaults."""
     model = draft.settings
     if model is None:
         return
@@ -109,12 +108,12 @@ def _refuse_unfit(draft: Draft) -> None:
         )
 
 
-GIVEN = {"fitness": 1, "descriptor": 1, "body": 0, "gait": 0, "encoding": 2}
-"""Arguments of each kind of function, settings not among them."""
+ARGUMENTS = {"fitness": 1, "descriptor": 1, "body": 0, "gait": 0, "encoding": 2}
+"""Number of arguments of each kind of function, without settings."""
 
 
 def _refuse_arguments(draft: Draft, function: Callable[..., Any]) -> None:
-    needed = GIVEN[draft.kind] + (draft.settings is not None)
+    needed = ARGUMENTS[draft.kind] + (draft.settings is not None)
     try:
         inspect.signature(function).bind(*range(needed))
     except TypeError as error:

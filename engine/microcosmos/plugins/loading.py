@@ -1,10 +1,11 @@
-"""Modules with something of one's own: from files, and from installed packages."""
+"""Loading of plug-in modules, from files and from installed packages."""
 
 import importlib.util
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from hashlib import sha256
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -17,35 +18,35 @@ from .declaring import MARK, Draft
 from .registry import Plugin
 
 GROUP = "microcosmos.plugins"
-"""The entry points by which installed packages name their modules."""
+"""Group of the entry points by which installed packages name their modules."""
 
 
 @dataclass(frozen=True)
 class Unloaded:
-    """A module that could not be loaded, and why."""
+    """A module that could not be loaded, and the reason."""
 
     module: str
     reason: str
 
 
 def load(path: Path | str) -> tuple[Declaration, ...]:
-    """Run a module's file and take up what it declares, under the file's own name.
+    """Run a module's file and register its plug-ins under the file's name.
 
-    Raises `ValueError` where it is no module, declares nothing or has errors of its own.
+    Raises `ValueError` where it is no module, declares nothing or fails.
     """
     file = Path(path).resolve()
     if file.suffix != ".py" or not file.is_file():
         there = "" if file.exists() else ", which is not there"
         raise ValueError(f"a module must be a Python file (.py), got {path}{there}")
-    # Read once: what ran is what the hash is of, whatever Python has compiled of it before.
+    # Read once, so that the hash is that of the code that runs.
     source = file.read_bytes()
     module = _run(path, file, source)
-    return _taken(module, file.stem, sha256(source).hexdigest())
+    return _register(module, file.stem, sha256(source).hexdigest())
 
 
 def load_module(module: ModuleType, namespace: str) -> tuple[Declaration, ...]:
-    """Take up what a module declares; `namespace` comes before its names."""
-    return _taken(module, namespace, digest(Path(str(module.__file__))))
+    """Register the plug-ins of a module; `namespace` precedes their names."""
+    return _register(module, namespace, digest(Path(str(module.__file__))))
 
 
 def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
@@ -54,7 +55,7 @@ def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
     assert found is not None
     module = importlib.util.module_from_spec(found)
     before = sys.modules.get(name)
-    sys.modules[name] = module  # Where annotations of its classes are looked up.
+    sys.modules[name] = module  # Annotations of its classes are looked up there.
     try:
         exec(compile(source, file, "exec", dont_inherit=True), vars(module))
     except BaseException as error:
@@ -69,7 +70,7 @@ def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
     return module
 
 
-def _taken(module: ModuleType, namespace: str, source: str) -> tuple[Declaration, ...]:
+def _register(module: ModuleType, namespace: str, source: str) -> tuple[Declaration, ...]:
     if not re.fullmatch(NAME, namespace):
         raise ValueError(f"a module's name must be of a-z, 0-9 and _, got {namespace!r}")
     file = str(module.__file__)
@@ -87,14 +88,27 @@ def _taken(module: ModuleType, namespace: str, source: str) -> tuple[Declaration
 
 
 def load_all(paths: Iterable[Path | str]) -> tuple[Unloaded, ...]:
-    """Load files, and what installed packages name: those that cannot be, and why."""
-    return tuple(
-        failed for load_one in (*_files(paths), *_installed()) if (failed := load_one())
-    )
+    """Load files and the modules of installed packages; return those that failed.
+
+    A failing module must not end the process.
+    """
+    loaders: list[tuple[str, Callable[[], Any]]] = [
+        (str(one), partial(load, one)) for one in paths
+    ]
+    for entry in sorted(entry_points(group=GROUP), key=lambda one: one.name):
+        loaders.append((f"{entry.name} ({entry.value})", partial(_load_entry, entry)))
+    unloaded = []
+    for module, load_one in loaders:
+        try:
+            load_one()
+        except (Exception, SystemExit) as error:
+            kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
+            unloaded.append(Unloaded(module, f"{kind}{error}"))
+    return tuple(unloaded)
 
 
 def digest(file: Path) -> str:
-    """SHA-256 of a module's source; of a package that of all its Python files."""
+    """Return the SHA-256 of a module's source, or of all Python files of a package."""
     if file.name != "__init__.py":
         return sha256(file.read_bytes()).hexdigest()
     whole = sha256()
@@ -104,40 +118,20 @@ def digest(file: Path) -> str:
     return whole.hexdigest()
 
 
-def _files(paths: Iterable[Path | str]) -> Iterator[Any]:
-    for path in paths:
-        yield lambda path=path: _tried(str(path), lambda: load(path))
-
-
-def _installed() -> Iterator[Any]:
-    for entry in sorted(entry_points(group=GROUP), key=lambda one: one.name):
-        yield lambda entry=entry: _tried(f"{entry.name} ({entry.value})", lambda: _load(entry))
-
-
-def _load(entry: EntryPoint) -> None:
+def _load_entry(entry: EntryPoint) -> None:
     module = entry.load()
     if not isinstance(module, ModuleType):
         raise ValueError(f"the entry point must name a module, got {type(module).__name__}")
     load_module(module, entry.name)
 
 
-def _tried(module: str, load_one: Any) -> Unloaded | None:
-    """What a module of somebody's own does wrong must not end whoever loads it."""
-    try:
-        load_one()
-    except (Exception, SystemExit) as error:
-        own = isinstance(error, ValueError)
-        return Unloaded(module, str(error) if own else f"{type(error).__name__}: {error}")
-    return None
-
-
 def _declared(module: ModuleType) -> list[tuple[Draft, Any]]:
-    """Functions with a mark that were made in this module, in their order."""
+    """Return the declared functions that were defined in this module, in their order."""
     found = [
         one for one in vars(module).values() if isinstance(getattr(one, MARK, None), Draft)
     ]
-    own = [one for one in dict.fromkeys(found) if one.__module__ == module.__name__]
-    return [(getattr(one, MARK), one) for one in own]
+    defined = [one for one in dict.fromkeys(found) if one.__module__ == module.__name__]
+    return [(getattr(one, MARK), one) for one in defined]
 
 
 def _plugin(draft: Draft, function: Any, prefix: str, source: str, location: str) -> Plugin:

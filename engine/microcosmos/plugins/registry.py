@@ -1,4 +1,4 @@
-"""What is loaded in this process, by kind and name."""
+"""The plug-ins loaded in this process, by kind and name."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,51 +13,51 @@ HELP = "see docs/plugins.md"
 
 
 class Missing(ValueError):
-    """Something of one's own that is not loaded here, or in another version."""
+    """A plug-in is not loaded in this process, or only in another version."""
 
 
 class Broken(ValueError):
-    """Something of one's own that fails, or gives what cannot be used."""
+    """A plug-in fails, or returns an unusable value."""
 
 
 @dataclass(frozen=True)
 class Plugin:
-    """A declaration and what carries it out."""
+    """A declaration and its function."""
 
     declaration: Declaration
     function: Callable[..., Any]
     model: type[BaseModel] | None
     location: str
-    """The file that it was loaded from."""
+    """Path of the module's file."""
 
     def __call__(self, *given: Any, settings: Mapping[str, Any]) -> Any:
-        """What the function gives; its errors are named as its own."""
+        """Call the function; raise `Broken` with its place in the file where it fails."""
         try:
             chosen = () if self.model is None else (self.model.model_validate(dict(settings)),)
             return self.function(*given, *chosen)
         except Exception as error:
-            what = f"{self.declaration.name} ({self.location}{line_of(error, self.location)})"
-            raise Broken(f"{what} failed with {type(error).__name__}: {error}") from error
+            place = f"{self.declaration.name} ({self.location}{line_of(error, self.location)})"
+            raise Broken(f"{place} failed with {type(error).__name__}: {error}") from error
 
 
 class Catalogue(Protocol):
-    """Whoever knows which versions of a name there are."""
+    """A list of available plug-ins."""
 
     def versions(self, kind: str, name: str) -> Sequence[Declaration]:
-        """The one to take where nobody says otherwise first."""
+        """Return the available versions of a name, the default first."""
         ...
 
     def settings(self, declared: Declaration, given: Mapping[str, Any]) -> dict[str, Any]:
-        """All settings, checked; `ValueError` names the one that is wrong."""
+        """Return all settings, checked; `ValueError` names the wrong one."""
         ...
 
     def explain_unknown(self, kind: str, name: str) -> str:
-        """A sentence about a name that is not known."""
+        """Return a sentence about an unknown name."""
         ...
 
 
 def line_of(error: BaseException, file: str) -> str:
-    """Where in a file something went wrong, if it did there."""
+    """Return the line of a file in which an error arose, if it arose there."""
     lines = [one.lineno for one in extract_tb(error.__traceback__) if one.filename == file]
     return f", line {lines[-1]}" if lines else ""
 
@@ -66,7 +66,7 @@ _plugins: dict[tuple[str, str], Plugin] = {}
 
 
 class Loaded:
-    """What this process has loaded: at most one version of a name."""
+    """The plug-ins of this process: at most one version per name."""
 
     def versions(self, kind: str, name: str) -> Sequence[Declaration]:
         found = _plugins.get((kind, name))
@@ -96,12 +96,12 @@ LOADED = Loaded()
 
 
 def loaded() -> tuple[Plugin, ...]:
-    """All of them, in the order in which they were loaded."""
+    """Return all loaded plug-ins, in the order of loading."""
     return tuple(_plugins.values())
 
 
 def find(kinds: Iterable[str], name: str, source: str) -> Plugin:
-    """What carries out a version of a name; `Missing` says what is there instead."""
+    """Return a version of a plug-in; raise `Missing` where it is not loaded."""
     found = next((_plugins[kind, name] for kind in kinds if (kind, name) in _plugins), None)
     if found is None:
         raise Missing(
@@ -111,13 +111,13 @@ def find(kinds: Iterable[str], name: str, source: str) -> Plugin:
     if found.declaration.source != source:
         raise Missing(
             f"{name} must be of version {source[:12]}, got version "
-            f"{found.declaration.source[:12]}: {found.location} is not what it was"
+            f"{found.declaration.source[:12]}: {found.location} has changed"
         )
     return found
 
 
 def replace(namespace: str, plugins: Iterable[Plugin]) -> None:
-    """Take up all that a module adds, in place of what it added before."""
+    """Register the plug-ins of a module in place of its former ones."""
     for key in [key for key in _plugins if key[1].partition(".")[0] == namespace]:
         del _plugins[key]
     for plugin in plugins:
@@ -125,6 +125,6 @@ def replace(namespace: str, plugins: Iterable[Plugin]) -> None:
 
 
 def location_of(namespace: str) -> str | None:
-    """The file of the module that has a namespace, if one has."""
+    """Return the file of the module with a namespace, if there is one."""
     inside = (one for key, one in _plugins.items() if key[1].partition(".")[0] == namespace)
     return next((one.location for one in inside), None)

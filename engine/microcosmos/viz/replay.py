@@ -18,7 +18,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from .. import plugins, search, world
+from .. import genomes, plugins, search, world
 from ..archive import creature
 from ..build import build_encoding, build_measures, build_stroke, build_task
 from ..device import device_kind
@@ -181,7 +181,7 @@ def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
     if isinstance(scene.control, Gait):
         return build_stroke(scene.control, scene.task.steps)
     encoding = build_encoding(scene, creature.room(file) or ROOM)
-    return encoding.read(file["identity"]["genome"])
+    return genomes.read(file["identity"]["genome"], encoding.room)
 
 
 class Film(eqx.Module):

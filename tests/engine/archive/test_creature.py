@@ -1,12 +1,16 @@
-"""A creature file from anybody is checked before it is believed."""
+"""Creature files of every encoding and pedigree: parsed, checked and refused."""
 
 import copy
 import json
 
+import numpy as np
 import pytest
 
-from microcosmos.archive import creature
+from microcosmos import spec
+from microcosmos.archive import creature, pedigree
+from microcosmos.build import frame
 from microcosmos.naming import encode
+from microcosmos.spec import EXPERIMENTS
 
 pytestmark = pytest.mark.fast
 
@@ -161,3 +165,118 @@ def test_room_for_fewer_genes_than_there_are_is_refused(file):
     assert "`measured.room` must be at least" in str(
         refused(file | {"measured": measured()}, dict)
     )
+
+
+GENOME = IDENTITY["genome"]
+CYCLE = {"source": [0, 1, 9, 9], "enabled": [True] * 4}
+NETWORK = {"nodes": GENOME["nodes"], "connections": GENOME["connections"] | CYCLE}
+
+
+def document(control, genes):
+    scene = spec.Scene(body=spec.Chain(nodes=6), control=control)
+    whole = frame(scene)
+    whole["genome"] |= genes
+    return creature.document(whole, None, None)
+
+
+def values(control):
+    count = spec.gene_count(control, spec.shape(spec.Chain(nodes=6)))
+    return {"values": encode(np.linspace(-1, 1, count))}
+
+
+VECTORS = [spec.Direct(bend=spec.Bounds(low=0.1, high=0.9)), spec.Weights(hidden=(4,))]
+
+
+@pytest.mark.parametrize("control", VECTORS)
+def test_vectors_come_back(control):
+    file = document(control, values(control))
+    assert creature.parse(file) == file
+    assert creature.room(file) is None
+    assert creature.scene_of(file).control == control
+
+
+@pytest.mark.parametrize("control", VECTORS)
+def test_vectors_of_another_length_or_beyond_one_are_refused(control):
+    short = document(control, {"values": encode(np.zeros(3))})
+    with pytest.raises(creature.CreatureError, match=r"must hold \d+ numbers, got 3"):
+        creature.parse(short)
+    wide = values(control)
+    wide["values"] = encode(
+        np.full(spec.gene_count(control, spec.shape(spec.Chain(nodes=6))), 1.5)
+    )
+    with pytest.raises(creature.CreatureError, match="-1 to 1") as caught:
+        creature.parse(document(control, wide))
+    assert caught.value.field == "identity.genome.values"
+
+
+def test_only_recurrent_networks_have_cycles():
+    file = document(spec.Control(recurrent=True), NETWORK)
+    assert creature.parse(file) == file
+    with pytest.raises(creature.CreatureError, match="free of cycles"):
+        creature.parse(document(spec.Control(), NETWORK))
+
+
+def test_a_network_that_grows_has_outputs_for_what_is_free():
+    control = spec.Grown(stretch=None, shear=None, bend=None)
+    genes = copy.deepcopy(NETWORK)
+    genes["nodes"]["id"] = [0, 1, 2, 3, 4, 5, 6, 7]
+    genes["nodes"]["activation"] = ["identity"] * 3 + ["sin"] * 5
+    genes["nodes"]["bias"] = encode(np.zeros(8))
+    genes["connections"] |= {"source": [0, 1, 2, 1], "target": [3, 4, 7, 5]}
+    file = document(control, genes)
+    assert file["identity"]["genome"]["outputs"][2:] == [
+        "body_rest_angle",
+        "body_rest_length",
+        "growth",
+    ]
+    assert creature.parse(file) == file
+    assert creature.room(file) == (8, 8)
+    file["identity"]["genome"]["outputs"].pop()
+    with pytest.raises(creature.CreatureError, match="`outputs` must be"):
+        creature.parse(file)
+
+
+def one(number, *parents):
+    sweep = next(p.spec for p in EXPERIMENTS["gaits"].presets)
+    scene = sweep.scene("ours", "worm", 0.5)
+    written = scene.model_dump(mode="json")
+    control = written["control"] | {"period": number}
+    whole = {
+        "format": creature.FORMAT,
+        "genome": {"encoding": "gait", **control},
+        "world": {**written["world"], "coupling": written["coupling"]},
+        "body": written["body"],
+        "task": written["task"],
+    }
+    names = [parent["sha256"] for parent in parents]
+    origin = {"operator": "hand-made", "generation": 0, "seed": 0, "version": "0"}
+    return creature.parse(creature.document(whole, None, {"parents": names, **origin}))
+
+
+def test_a_family_is_taken_apart_as_it_was_put_together():
+    oldest = one(40) | {"credit": ["Ada"], "licence": "CC0-1.0"}
+    parent = one(60, oldest)
+    young = one(80, parent, oldest)
+    assert pedigree.split(pedigree.document(young, [parent, oldest])) == (
+        young,
+        [parent, oldest],
+    )
+    assert pedigree.split(young) == (young, [])
+
+
+def test_a_creature_that_is_no_ancestor_is_refused():
+    oldest, stranger = one(40), one(100)
+    young = one(80, oldest)
+    with pytest.raises(creature.CreatureError, match=r"`ancestors.1` needs an ancestor"):
+        pedigree.split(pedigree.document(young, [oldest, stranger]))
+    grown = one(80, one(60, oldest))
+    with pytest.raises(creature.CreatureError, match=r"`ancestors.0` needs an ancestor"):
+        pedigree.split(pedigree.document(grown, [oldest]))
+
+
+def test_names_of_credit_are_words():
+    file = one(40)
+    assert creature.parse(file | {"credit": [" Ada "]})["credit"] == ["Ada"]
+    for wrong in ([""], ["x" * 201], ["x"] * 51, "Ada", [1]):
+        with pytest.raises(creature.CreatureError, match="`credit"):
+            creature.parse(file | {"credit": wrong})

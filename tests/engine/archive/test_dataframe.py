@@ -108,7 +108,7 @@ def test_their_heatmaps_draw_our_archive(archive, tmp_path):
     assert axes.get_ylim() == pytest.approx((0, 1))
 
 
-def test_what_is_missing_is_named_with_its_command(monkeypatch):
+def test_a_missing_package_is_named_with_its_command(monkeypatch):
     def missing(name):
         raise ImportError(name)
 

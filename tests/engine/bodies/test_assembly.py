@@ -1,9 +1,12 @@
-"""Bodies moved, put together and refined keep their shape."""
+"""Bodies that are placed, put together, subdivided, thinned or measured."""
 
 import numpy as np
 import pytest
 
 from microcosmos import bodies
+from microcosmos.bodies.extent import extent
+
+pytestmark = pytest.mark.fast
 
 PARTS = [
     bodies.star(5, 4, 1.0, bend=0.5),
@@ -27,7 +30,6 @@ def errors(body):
     return np.abs(z) - body.rest_length, np.angle(turn * np.exp(-1j * body.rest_angle))
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("part", PARTS)
 def test_a_placed_body_is_turned_about_its_centre(part):
     body = bodies.placed(part, (3.0, -4.0), 0.7)
@@ -39,7 +41,6 @@ def test_a_placed_body_is_turned_about_its_centre(part):
         np.testing.assert_allclose(error, 0, atol=1e-12)
 
 
-@pytest.mark.fast
 def test_bodies_together_keep_their_own_edges_joints_and_stiffness():
     body = world()
     assert body.count == len(PARTS)
@@ -58,7 +59,6 @@ def test_bodies_together_keep_their_own_edges_joints_and_stiffness():
         np.testing.assert_allclose(error, 0, atol=1e-12)
 
 
-@pytest.mark.fast
 def test_groups_of_creatures_are_numbered_on():
     pair = bodies.together([PARTS[0], bodies.placed(PARTS[1], (20, 0))])
     body = bodies.together(
@@ -68,13 +68,11 @@ def test_groups_of_creatures_are_numbered_on():
     np.testing.assert_array_equal(body.member, np.repeat(np.arange(5), sizes))
 
 
-@pytest.mark.fast
 def test_creatures_on_top_of_each_other_are_refused():
     with pytest.raises(ValueError, match="nodes 0 and 5 are 0 apart"):
         bodies.together([PARTS[2], PARTS[2]])
 
 
-@pytest.mark.fast
 def test_a_subdivided_body_has_the_same_shape_twice_as_large():
     body = world()
     fine = bodies.subdivided(body)
@@ -87,7 +85,6 @@ def test_a_subdivided_body_has_the_same_shape_twice_as_large():
     np.testing.assert_array_equal(fine.body.arc[fine.nodes], body.arc)
 
 
-@pytest.mark.fast
 def test_joints_of_a_subdivided_body_are_the_original_ones_and_straight_new_ones():
     body = world()
     fine = bodies.subdivided(body)
@@ -103,9 +100,45 @@ def test_joints_of_a_subdivided_body_are_the_original_ones_and_straight_new_ones
     np.testing.assert_array_equal(fine.body.bend[new], 1)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("closed", [True, False])
 def test_the_arc_of_a_subdivided_filament_is_even(closed):
     body = bodies.ring(9, 1.0) if closed else bodies.chain(9, 1.0)
     arc = np.sort(bodies.subdivided(body).body.arc)
     np.testing.assert_allclose(arc, np.arange(len(arc)) / (18 if closed else 16))
+
+
+def test_a_small_body_stays_as_it_is():
+    body = bodies.chain(8, 1.0)
+    positions, edges = bodies.thinned(body, 8)
+    np.testing.assert_array_equal(positions, body.positions)
+    np.testing.assert_array_equal(edges, body.edges)
+
+
+def test_a_thinned_chain_keeps_its_ends_and_its_order():
+    positions, edges = bodies.thinned(bodies.chain(1001, 1.0), 100)
+    assert len(positions) <= 102
+    assert np.ptp(positions[:, 0]) == pytest.approx(1000)
+    np.testing.assert_array_equal(edges, [(i, i + 1) for i in range(len(positions) - 1)])
+
+
+def test_a_thinned_ring_is_still_closed():
+    positions, edges = bodies.thinned(bodies.ring(1000, 1.0), 100)
+    np.testing.assert_array_equal(np.bincount(edges.ravel()), np.full(len(positions), 2))
+    radius = np.hypot(*(positions - positions.mean(0)).T)
+    np.testing.assert_allclose(radius, 1 / (2 * np.sin(np.pi / 1000)), rtol=1e-6)
+
+
+def test_a_thinned_tree_keeps_every_branch():
+    tree = bodies.tree(3, 2, 100, 1.0, 0.9)
+    positions, edges = bodies.thinned(tree, 100)
+    assert len(positions) < len(tree.positions) / 4
+    for degree in (1, 3):
+        whole, thin = (np.bincount(found.ravel()) for found in (tree.edges, edges))
+        assert (whole == degree).sum() == (thin == degree).sum() > 0
+
+
+def test_a_body_reaches_as_far_as_its_longest_way_along_edges():
+    assert extent(bodies.chain(9, 1.5)) == 12
+    np.testing.assert_allclose(extent(bodies.ring(12, 1.0)), 6)
+    np.testing.assert_allclose(extent(bodies.star(5, 4, 1.0)), 8)
+    np.testing.assert_allclose(extent(bodies.tree(3, 2, 5, 1.0, 0.9)), 20)

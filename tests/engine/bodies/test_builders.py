@@ -1,4 +1,4 @@
-"""Builders against closed forms."""
+"""Builders of bodies, compared with closed forms."""
 
 import sys
 
@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies
+from microcosmos.bodies.refine import subdivided
+
+pytestmark = pytest.mark.fast
 
 STIFF = {"stretch": 0.7, "shear": 0.8, "bend": 0.9}
 
@@ -36,7 +39,6 @@ def circle(radius, count):
     return radius * np.stack([np.cos(turn), np.sin(turn)], 1)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("name", BUILT)
 def test_a_body_is_at_rest_as_it_is_built(name):
     body = BUILT[name](**STIFF)
@@ -50,7 +52,6 @@ def test_a_body_is_at_rest_as_it_is_built(name):
     assert body.arc.max() <= 1
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("name", BUILT)
 def test_the_edges_of_a_joint_share_its_node(name):
     body = BUILT[name]()
@@ -59,7 +60,6 @@ def test_the_edges_of_a_joint_share_its_node(name):
         assert set(first) & set(second) == {node}
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("name", BUILT)
 def test_a_node_of_two_edges_has_one_joint_and_of_more_one_for_each(name):
     body = BUILT[name]()
@@ -68,7 +68,6 @@ def test_a_node_of_two_edges_has_one_joint_and_of_more_one_for_each(name):
     np.testing.assert_array_equal(joints, np.where(degree > 2, degree, degree - 1))
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("nodes", [3, 8, 40])
 def test_a_ring_is_a_regular_polygon_that_turns_once(nodes):
     body = bodies.ring(nodes, 1.5)
@@ -79,7 +78,6 @@ def test_a_ring_is_a_regular_polygon_that_turns_once(nodes):
     np.testing.assert_allclose(body.arc, np.arange(nodes) / nodes)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("gap", [0.05, 0.25, 0.9])
 def test_an_arc_leaves_its_share_of_the_circle_open(gap):
     nodes, radius = 32, 0.5 / np.sin(np.pi * (1 - gap) / 31)
@@ -92,7 +90,6 @@ def test_an_arc_leaves_its_share_of_the_circle_open(gap):
     assert (body.arc[0], body.arc[-1]) == (0, 1)
 
 
-@pytest.mark.fast
 def test_a_star_has_equal_straight_arms_evenly_around():
     body = bodies.star(6, 7, 1.5)
     assert len(body.positions) == 1 + 6 * 7
@@ -105,7 +102,6 @@ def test_a_star_has_equal_straight_arms_evenly_around():
     np.testing.assert_allclose(np.abs(body.rest_angle[body.joint_nodes == 0]), np.pi / 3)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize(("levels", "branches"), [(1, 3), (3, 2), (2, 4)])
 def test_a_tree_forks_at_every_level_over_its_angle(levels, branches):
     body = bodies.tree(levels, branches, 5, 1.0, 1.2)
@@ -121,7 +117,6 @@ def test_a_tree_forks_at_every_level_over_its_angle(levels, branches):
         np.testing.assert_allclose(np.sort(heading), np.linspace(-0.6, 0.6, branches))
 
 
-@pytest.mark.fast
 def test_a_polyline_is_resampled_at_equal_arc_length():
     body = bodies.polyline([(0, 0), (6.1, 0), (6.1, 0), (20.3, 0)], 1.0)
     np.testing.assert_allclose(body.rest_length, 20.3 / 20, rtol=1e-12)
@@ -129,7 +124,6 @@ def test_a_polyline_is_resampled_at_equal_arc_length():
     np.testing.assert_allclose(body.arc, np.arange(21) / 20)
 
 
-@pytest.mark.fast
 def test_a_circle_drawn_as_a_polyline_or_as_a_path_is_a_ring():
     path = "M 10 0 A 10 10 0 0 1 -10 0 A 10 10 0 0 1 10 0 Z"
     drawn = bodies.polyline(circle(10.0, 4000), 1.0, closed=True)
@@ -143,7 +137,6 @@ def test_a_circle_drawn_as_a_polyline_or_as_a_path_is_a_ring():
         np.testing.assert_allclose(np.hypot(*body.positions.T), 10, rtol=1e-4)
 
 
-@pytest.mark.fast
 def test_strands_of_an_svg_are_joined_where_they_end_and_drawn_upright():
     body = bodies.svg("M 0 0 L 10 0 M 10.2 0 L 20 5 M 10 0.1 L 20 -5 M 5 0.1 V 8", 1.0)
     degree = np.bincount(body.edges.reshape(-1))
@@ -153,7 +146,6 @@ def test_strands_of_an_svg_are_joined_where_they_end_and_drawn_upright():
     np.testing.assert_allclose(body.rest_length, 1, atol=0.5)
 
 
-@pytest.mark.fast
 def test_a_document_is_drawn_with_its_transforms():
     text = (
         '<svg xmlns="http://www.w3.org/2000/svg"><g transform="translate(30,-4)">{}</g></svg>'
@@ -162,14 +154,12 @@ def test_a_document_is_drawn_with_its_transforms():
     np.testing.assert_allclose(body.positions, np.stack([30 + np.arange(9), np.full(9, 4)], 1))
 
 
-@pytest.mark.fast
 def test_an_svg_without_its_library_says_how_to_install_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "svgpathtools", None)
     with pytest.raises(ImportError, match=r"pip install microcosmos\[shapes\]"):
         bodies.svg("M 0 0 L 9 0", 1.0)
 
 
-@pytest.mark.fast
 def test_a_networkx_graph_becomes_its_body():
     networkx = pytest.importorskip("networkx")
     graph = networkx.Graph()
@@ -188,7 +178,6 @@ def test_a_networkx_graph_becomes_its_body():
         bodies.from_graph(graph)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize(
     ("build", "reason"),
     [
@@ -204,6 +193,56 @@ def test_a_networkx_graph_becomes_its_body():
         (lambda: bodies.together([]), "at least one body"),
     ],
 )
-def test_what_cannot_be_built_is_refused(build, reason):
+def test_measures_that_make_no_body_are_refused(build, reason):
     with pytest.raises(ValueError, match=reason):
         build()
+
+
+def test_nodes_are_evenly_spaced_and_joints_turn_as_they_were_drawn():
+    body = bodies.walk(5000, 0.4, 0.3, 1)
+    steps = np.diff(body.positions, axis=0)
+    np.testing.assert_allclose(np.hypot(*steps.T), 0.4)
+    angle = np.arctan2(steps[:, 1], steps[:, 0])
+    turns = (np.diff(angle) + np.pi) % (2 * np.pi) - np.pi
+    np.testing.assert_allclose(turns, body.rest_angle, atol=1e-9)
+    assert abs(body.rest_angle.std() - 0.3) < 0.01
+    assert abs(body.rest_angle.mean()) < 0.02
+
+
+def test_the_mean_square_distance_of_ends_is_that_of_a_freely_rotating_chain():
+    # Flory: <R²> = n l² [(1 + c)/(1 − c) − 2 c (1 − cⁿ)/(n (1 − c)²)], c = <cos turn>.
+    n, c = 99, np.exp(-(0.5**2) / 2)
+    ends = [bodies.walk(n + 1, 1.0, 0.5, seed).positions for seed in range(2000)]
+    found = np.mean([np.sum((p[-1] - p[0]) ** 2) for p in ends])
+    expected = n * ((1 + c) / (1 - c) - 2 * c * (1 - c**n) / (n * (1 - c) ** 2))
+    assert abs(found / expected - 1) < 0.06
+
+
+def test_a_walk_may_cross_itself_and_other_bodies_may_not():
+    body = bodies.walk(300, 0.4, 1.0, 0)
+    assert body.crossing
+    assert bodies.together([body, body]).crossing
+    assert len(subdivided(body).body.positions) == 599
+    with pytest.raises(ValueError, match="cells apart"):
+        bodies.polyline([(0, 0), (4, 0), (2, 0.01)], 0.5)
+
+
+def test_another_seed_is_another_walk_and_no_deviation_is_straight():
+    assert (
+        bodies.walk(9, 1.0, 0.3, 0).rest_angle != bodies.walk(9, 1.0, 0.3, 1).rest_angle
+    ).all()
+    assert np.ptp(bodies.walk(9, 1.0, 0.0, 0).positions[:, 1]) == 0
+    with pytest.raises(ValueError, match="deviation"):
+        bodies.walk(9, 1.0, np.nan, 0)
+
+
+@pytest.mark.parametrize("spacing", [0.5, 1.0, 2.0])
+def test_a_chain_at_rest_satisfies_its_own_constraints(spacing):
+    body = bodies.chain(9, spacing, stretch=1.0, shear=1.0, bend=0.5)
+    v = np.diff(body.positions, axis=0)
+    np.testing.assert_allclose(np.hypot(v[:, 0], v[:, 1]), body.rest_length)
+    np.testing.assert_allclose(np.diff(np.arctan2(v[:, 1], v[:, 0])), body.rest_angle)
+    np.testing.assert_array_equal(
+        body.edges[body.joints[:, 0], 1], body.edges[body.joints[:, 1], 0]
+    )
+    assert (body.arc[0], body.arc[-1]) == (0, 1)

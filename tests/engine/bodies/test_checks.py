@@ -7,9 +7,10 @@ import pytest
 
 from microcosmos import bodies
 
+pytestmark = pytest.mark.fast
+
 
 def change(name, index, value):
-    """A chain of six nodes with one entry changed."""
     body = bodies.chain(6, 1.0)
     array = getattr(body, name).copy()
     array[index] = value
@@ -17,7 +18,6 @@ def change(name, index, value):
 
 
 def two(**changed):
-    """Two chains in one world, with arrays replaced."""
     pair = bodies.together([bodies.chain(4, 1.0), bodies.placed(bodies.chain(4, 1.0), (2, 5))])
     return lambda: replace(pair, **changed)
 
@@ -56,7 +56,6 @@ MALFORMED = {
 }
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("name", MALFORMED)
 def test_a_malformed_body_is_refused_with_the_reason(name):
     build, reason = MALFORMED[name]
@@ -64,7 +63,6 @@ def test_a_malformed_body_is_refused_with_the_reason(name):
         build()
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize(
     "name", [field.name for field in fields(bodies.Body) if field.name != "crossing"]
 )
@@ -75,7 +73,6 @@ def test_an_array_of_the_wrong_length_is_refused(name):
         replace(body, **{name: longer})
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("seed", range(20))
 def test_crowding_is_found_exactly_where_it_is(seed):
     random = np.random.default_rng(seed)
@@ -90,7 +87,6 @@ def test_crowding_is_found_exactly_where_it_is(seed):
             bodies.graph(scale * nodes, [(0, 1)])
 
 
-@pytest.mark.fast
 def test_a_body_must_lie_inside_its_world():
     body = bodies.placed(bodies.chain(20, 1.0), (16, 8))
     bodies.refuse_outside(body, 32, 16)
@@ -100,7 +96,6 @@ def test_a_body_must_lie_inside_its_world():
         bodies.refuse_outside(bodies.placed(body, (16, 8), np.pi / 2), 32, 16)
 
 
-@pytest.mark.fast
 def test_a_creature_must_not_reach_its_own_image():
     apart = [bodies.placed(bodies.chain(8, 1.0), (x, 8)) for x in (4, 18)]
     bodies.refuse_outside(bodies.together(apart), 23, 16)

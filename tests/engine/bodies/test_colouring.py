@@ -1,9 +1,27 @@
-"""Colours of bodies with branches and loops, and of many bodies at once."""
+"""Colours of constraints: no two constraints of a colour share a member."""
 
 import numpy as np
 import pytest
 
 from microcosmos import bodies
+
+pytestmark = pytest.mark.fast
+
+
+def random_graph(seed):
+    """Pairs of distinct members; some pairs occur often."""
+    random = np.random.default_rng(seed)
+    members = int(random.integers(4, 30))
+    pairs = random.integers(0, members, (60, 2))
+    return pairs[pairs[:, 0] != pairs[:, 1]], members
+
+
+def path(members):
+    return np.stack([np.arange(members - 1), np.arange(1, members)], 1), members
+
+
+def circle(members):
+    return np.stack([np.arange(members), (np.arange(members) + 1) % members], 1), members
 
 
 def random_body(seed):
@@ -15,43 +33,55 @@ def random_body(seed):
     return bodies.graph(nodes, pairs)
 
 
-def cover(colours, pairs):
+def world(*parts):
+    return bodies.together(
+        [bodies.placed(part, (30.0 * i, 0.0)) for i, part in enumerate(parts)]
+    )
+
+
+def require_colouring(colours, pairs):
     """Every pair is in one colour, and no two of a colour share a member."""
     seen = []
     for colour in colours:
         first = np.flatnonzero(colour.sign == 1)
-        chosen = colour.constraint[first]
-        np.testing.assert_array_equal(pairs[chosen, 0], first)
-        np.testing.assert_array_equal(pairs[chosen, 1], colour.partner[first])
-        assert len(np.unique(pairs[chosen])) == 2 * len(chosen)
-        assert np.count_nonzero(colour.sign) == 2 * len(chosen)
+        second, chosen = colour.partner[first], colour.constraint[first]
+        np.testing.assert_array_equal(pairs[chosen], np.stack([first, second], 1))
+        np.testing.assert_array_equal(colour.partner[second], first)
+        np.testing.assert_array_equal(colour.sign[second], -1)
+        np.testing.assert_array_equal(colour.constraint[second], chosen)
+        alone = colour.sign == 0
+        np.testing.assert_array_equal(colour.partner[alone], np.flatnonzero(alone))
+        assert len(np.unique(pairs[chosen])) == 2 * len(chosen) == np.sum(~alone)
         seen.extend(chosen.tolist())
     assert sorted(seen) == list(range(len(pairs)))
 
 
-@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("pairs", "members"),
+    [path(20), path(2), circle(20), circle(21), *map(random_graph, range(5))],
+    ids=["chain", "shortest chain", "even ring", "odd ring", *map(str, range(5))],
+)
+def test_every_constraint_of_a_graph_has_one_colour(pairs, members):
+    require_colouring(bodies.colour(pairs, members), pairs)
+
+
 @pytest.mark.parametrize("seed", range(8))
-def test_colours_cover_a_random_graph_without_sharing_members(seed):
+def test_every_constraint_of_a_random_body_has_one_colour(seed):
     body = random_body(seed)
     assert len(body.edges) >= len(body.positions)
-    cover(body.edge_colours, body.edges)
-    cover(body.joint_colours, body.joints)
+    require_colouring(body.edge_colours, body.edges)
+    require_colouring(body.joint_colours, body.joints)
 
 
-@pytest.mark.fast
-def test_colours_cover_a_world_of_different_creatures():
-    parts = [random_body(0), bodies.ring(9, 1.0), random_body(0), bodies.chain(2, 1.0)]
-    body = bodies.together(
-        [bodies.placed(part, (30.0 * i, 0.0)) for i, part in enumerate(parts)]
-    )
-    cover(body.edge_colours, body.edges)
-    cover(body.joint_colours, body.joints)
+def test_every_constraint_of_different_creatures_has_one_colour():
+    body = world(random_body(0), bodies.ring(9, 1.0), random_body(0), bodies.chain(2, 1.0))
+    require_colouring(body.edge_colours, body.edges)
+    require_colouring(body.joint_colours, body.joints)
 
 
-@pytest.mark.fast
-def test_creatures_alike_are_coloured_alike_and_need_no_more_colours():
+def test_equal_creatures_have_equal_colours_and_need_no_more_of_them():
     one = random_body(3)
-    many = bodies.together([bodies.placed(one, (30.0 * i, 9.0)) for i in range(5)])
+    many = world(*[one] * 5)
     for alone, colours in (
         (one.edge_colours, many.edge_colours),
         (one.joint_colours, many.joint_colours),
@@ -61,7 +91,11 @@ def test_creatures_alike_are_coloured_alike_and_need_no_more_colours():
             np.testing.assert_array_equal(repeated.sign, np.tile(single.sign, 5))
 
 
-@pytest.mark.fast
+def test_a_chain_needs_two_colours_and_an_odd_ring_three():
+    assert len(bodies.colour(*path(33))) == 2
+    assert len(bodies.colour(*circle(33))) == 3
+
+
 def test_a_ring_with_branches_needs_few_colours():
     body = bodies.svg(
         "M 6 0 A 6 6 0 0 1 -6 0 A 6 6 0 0 1 6 0 Z M 0 6 L 0 12 M 0 -6 L 0 -12", 1.0

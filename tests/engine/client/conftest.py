@@ -31,7 +31,6 @@ class Fake(NamedTuple):
 
 @pytest.fixture
 def record() -> dict[str, Any]:
-    """A run as a server tells of it."""
     return {
         "id": RUN,
         "experiment": "quality-diversity",
@@ -59,8 +58,6 @@ def record() -> dict[str, Any]:
 
 @pytest.fixture
 def fake() -> Callable[..., Fake]:
-    """A client whose server answers by method and path."""
-
     def make(answers: dict[tuple[str, str], Any]) -> Fake:
         asked: list[Asked] = []
 

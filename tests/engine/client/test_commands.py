@@ -86,7 +86,7 @@ def test_a_sweep_is_submitted_with_its_grid(told):
     assert "A sweep of 6 runs" in made.stderr
 
 
-def test_what_was_deleted_when_the_answer_was_lost_is_deleted(fake, record):
+def test_deleting_again_after_a_lost_answer_succeeds(fake, record):
     path, gone = f"runs/{record['id']}", record | {"deleted_at": "2026-01-01T00:00:00Z"}
     problem = {"content-type": "application/problem+json"}
     there = httpx.Response(404, headers=problem, json={"detail": "It is in the bin."})
@@ -159,7 +159,7 @@ def test_tokens(told):
     assert asked[-1][:2] == ("DELETE", f"tokens/{TOKEN['id']}")
 
 
-def test_what_people_write_is_no_markup(told, record, monkeypatch):
+def test_names_are_never_read_as_markup(told, record, monkeypatch):
     """Nor is an id broken where there is little room."""
     monkeypatch.setitem(TOKEN, "name", "lap[/top]")
     monkeypatch.setitem(record, "name", "swims [bold]far[/nowhere]")

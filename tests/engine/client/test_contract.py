@@ -32,7 +32,7 @@ def sent(fake):
 
 
 @pytest.mark.parametrize("action", ["pause", "resume", "cancel", "restore"])
-def test_what_a_run_is_told_to_do(fake, record, action):
+def test_actions_on_a_run_are_requests(fake, record, action):
     served = fake({("POST", f"runs/{record['id']}/{action}"): record | {"status": "paused"}})
     run = Run(served.client.connection, record)
     assert getattr(run, action)() is run

@@ -2,7 +2,6 @@
 
 import json
 import re
-import struct
 from base64 import b64decode
 from html import unescape
 
@@ -13,29 +12,19 @@ from microcosmos.client import Replay
 from microcosmos.client import replay as module
 
 
-def recording(frames, nodes, size):
-    random = np.random.default_rng(0)
-    positions = random.uniform(0, 50, (frames, nodes, 2)).astype("<f4")
-    levels = random.integers(-127, 128, (frames, *size)).astype(np.int8)
-    header = {
-        "format": "microcosmos-replay/2",
-        "creature": "</script><b>" + "ab" * 26,
-        "frames": frames,
-        "every": 5,
-        "nodes": nodes,
-        "edges": [[k, k + 1] for k in range(nodes - 1)],
-        "size": list(size),
-        "joints": [],
-        "vorticity": {"scale": 0.5},
-        "velocity": {"scale": 1.0},
-        "energy": {"scale": 1.0, "frames": 0},
-    }
-    text = json.dumps(header).encode()
-    text += b" " * (-len(text) % 4)
-    lengths = np.ones((frames, nodes - 1), "<f4")
-    velocity = np.zeros((frames, 2, *size), np.int8)
-    arrays = b"".join(x.tobytes() for x in (positions, lengths, levels, velocity))
-    return struct.pack("<I", len(text)) + text + arrays, positions, levels
+@pytest.fixture
+def recording(replay_bytes):
+    """A function that makes the bytes of a random replay, its positions and its levels."""
+
+    def make(frames, nodes, size):
+        random = np.random.default_rng(0)
+        positions = random.uniform(0, 50, (frames, nodes, 2)).astype("<f4")
+        levels = random.integers(-127, 128, (frames, *size)).astype(np.int8)
+        edges = [[k, k + 1] for k in range(nodes - 1)]
+        creature = "</script><b>" + "ab" * 26
+        return replay_bytes(positions, edges, levels, creature=creature), positions, levels
+
+    return make
 
 
 def within(page, name):
@@ -43,7 +32,7 @@ def within(page, name):
     return found
 
 
-def test_a_small_replay_is_embedded_whole():
+def test_a_small_replay_is_embedded_whole(recording):
     data, positions, levels = recording(31, 10, (32, 24))
     replay = Replay(data)
     header = json.loads(within(replay.html, "header"))
@@ -52,7 +41,7 @@ def test_a_small_replay_is_embedded_whole():
     assert b64decode(within(replay.html, "levels")) == levels.tobytes()
 
 
-def test_a_large_one_is_thinned_with_a_note():
+def test_a_large_one_is_thinned_with_a_note(recording):
     data, positions, levels = recording(251, 400, (256, 128))
     page = Replay(data).html
     header = json.loads(within(page, "header"))
@@ -69,7 +58,7 @@ def test_a_large_one_is_thinned_with_a_note():
     assert kept[0, 1, 2] == round(mean)
 
 
-def test_a_notebook_keeps_it_in_a_frame_of_its_own():
+def test_a_notebook_keeps_it_in_a_frame_of_its_own(recording):
     data, _, _ = recording(3, 4, (16, 8))
     replay = Replay(data)
     bundle = replay._repr_mimebundle_()
@@ -83,13 +72,13 @@ def test_a_notebook_keeps_it_in_a_frame_of_its_own():
     assert not re.search(r"https?://|src=|@import|fetch\(", replay.html)  # No network.
 
 
-def test_it_is_saved_as_a_page_or_as_it_came(tmp_path):
+def test_a_replay_is_saved_as_a_page_or_as_its_bytes(tmp_path, recording):
     data, _, _ = recording(3, 4, (16, 8))
     replay = Replay(data)
     assert replay.save(tmp_path / "one.replay").read_bytes() == data
     assert replay.save(tmp_path / "one.html").read_text() == replay.html
 
 
-def test_what_is_no_replay_is_refused():
+def test_bytes_that_hold_no_replay_are_refused():
     with pytest.raises(ValueError, match="header"):
         Replay(b"\xff\xff\xff\xff{}")

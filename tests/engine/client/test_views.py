@@ -1,4 +1,4 @@
-"""How a run looks where it is watched."""
+"""Views of a run in terminals and notebooks."""
 
 import re
 import sys
@@ -50,7 +50,7 @@ def test_a_step_is_drawn_without_a_gap():
     }  # fmt: skip
 
 
-def test_what_is_unknown_is_a_gap_and_what_is_constant_a_line():
+def test_unknown_values_are_gaps_and_constants_a_line():
     assert dots(drawing.braille([2.0, None, 2.0, 2.0], 2, 1)) == {(0, 0), (2, 0), (3, 0)}
     assert drawing.braille([None], 3, 1) == ["⠀⠀⠀"]
     assert drawing.polyline([None, 1.0, 3.0], 10, 4) == "5.0,4.0 10.0,0.0"
@@ -74,7 +74,7 @@ def test_a_terminal_shows_how_it_stands(record):
     assert max(map(len, narrow.splitlines())) <= 40
 
 
-def test_how_far_and_how_long_stand_on_one_line_of_a_usual_terminal(record):
+def test_progress_and_time_left_share_a_line_of_80_columns(record):
     (line,) = (one for one in shown(RunState(record), 80).splitlines() if "50 %" in one)
     assert "1 min 15 s left" in line
 

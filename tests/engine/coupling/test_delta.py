@@ -1,4 +1,4 @@
-"""Peskin's delta and the transfer between nodes and cells."""
+"""Regularised deltas, and the transfer between nodes and cells."""
 
 import jax
 import jax.numpy as jnp
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from microcosmos import coupling
+from microcosmos.coupling import delta
 
 SIZE = (16, 12)
 
@@ -29,15 +30,6 @@ def interpolate(plane, at):
     return coupling.interpolate(plane[None], at)[:, 0]
 
 
-def test_the_delta_is_a_partition_of_unity(samples):
-    np.testing.assert_allclose(jnp.sum(coupling.peskin(samples), 1), 1, rtol=1e-14)
-
-
-def test_the_delta_has_no_first_moment(samples):
-    moment = jnp.sum(samples * coupling.peskin(samples), 1)
-    np.testing.assert_allclose(moment, 0, atol=1e-14)
-
-
 def test_even_and_odd_cells_have_half_of_the_delta_each(samples):
     delta = coupling.peskin(samples)
     np.testing.assert_allclose(delta[:, 0] + delta[:, 2], 0.5, rtol=1e-14)
@@ -45,29 +37,6 @@ def test_even_and_odd_cells_have_half_of_the_delta_each(samples):
 
 def test_the_sum_of_the_squared_delta_is_three_eighths(samples):
     np.testing.assert_allclose(jnp.sum(coupling.peskin(samples) ** 2, 1), 3 / 8, rtol=1e-14)
-
-
-def test_the_delta_is_even_and_ends_at_two_cells(float64):
-    r = jnp.linspace(0, 3, 61)
-    np.testing.assert_array_equal(coupling.peskin(-r), coupling.peskin(r))
-    assert np.all(np.asarray(coupling.peskin(r))[r >= 2] == 0)
-
-
-def test_the_gradient_of_the_delta_is_finite_everywhere(dtype):
-    r = jnp.asarray([-3, -2, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 1e-30, 2 - 1e-6], dtype)
-    for count in (1, 2):
-        slope = coupling.peskin
-        for _ in range(count):
-            slope = jax.grad(slope)
-        assert np.all(np.isfinite(jax.vmap(slope)(r)))
-
-
-def test_the_gradient_of_the_delta_agrees_with_finite_differences(float64):
-    # Away from 0, 1 and 2, where the second derivative jumps.
-    r = jnp.asarray([-1.9, -1.2, -0.7, -0.1, 0.05, 0.5, 0.95, 1.05, 1.5, 1.95, 2.5])
-    slope, h = jax.vmap(jax.grad(coupling.peskin))(r), 1e-5
-    difference = (coupling.peskin(r + h) - coupling.peskin(r - h)) / (2 * h)
-    np.testing.assert_allclose(slope, difference, atol=1e-8)
 
 
 def test_interpolation_is_the_transpose_of_spreading(nodes):
@@ -113,15 +82,183 @@ def test_a_node_on_the_border_reaches_across_it(float64):
     assert set(y) == {10, 11, 0, 1}
 
 
-def test_interpolation_can_be_differentiated_by_position(float64):
+def test_interpolation_can_be_differentiated_by_position(require_slope, float64):
     positions = jnp.asarray(np.random.default_rng(0).uniform(0, 12, (5, 2)))
     field = jnp.asarray(np.random.default_rng(1).normal(size=SIZE))
 
-    @jax.jit
     def total(positions):
         return jnp.sum(interpolate(field, coupling.windows(positions, SIZE)) ** 2)
 
-    direction = jnp.asarray(np.random.default_rng(2).normal(size=positions.shape))
-    slope, h = jnp.sum(jax.jit(jax.grad(total))(positions) * direction), 1e-5
-    difference = (total(positions + h * direction) - total(positions - h * direction)) / (2 * h)
-    np.testing.assert_allclose(slope, difference, rtol=1e-7)
+    require_slope(total, positions, h=1e-5, rtol=1e-7)
+
+
+KERNELS = pytest.mark.parametrize(
+    "kernel", [coupling.ROMA, coupling.HAT, coupling.PESKIN], ids=lambda k: k.weight.__name__
+)
+
+
+def around(points):
+    """Distances of the nearest cells, and one more to each side, from anywhere in a cell."""
+    return jnp.asarray(np.linspace(-0.5, 0.5, 101)[:, None] + np.arange(-points, points + 1.0))
+
+
+@KERNELS
+def test_weights_sum_to_one_wherever_the_point_is(kernel, float64):
+    weights = kernel.weight(around(kernel.points))
+    np.testing.assert_allclose(jnp.sum(weights, 1), 1, rtol=1e-14)
+
+
+@KERNELS
+def test_weights_have_no_first_moment(kernel, float64):
+    r = around(kernel.points)
+    np.testing.assert_allclose(jnp.sum(r * kernel.weight(r), 1), 0, atol=1e-14)
+
+
+def test_the_sum_of_squares_of_the_three_point_delta_is_a_half(float64):
+    # The condition from which Roma, Peskin and Berger (1999) have it.
+    np.testing.assert_allclose(jnp.sum(coupling.roma(around(3)) ** 2, 1), 0.5, rtol=1e-13)
+
+
+@KERNELS
+def test_a_delta_is_even_and_ends_where_its_points_do(kernel, float64):
+    r = jnp.linspace(0, 3, 61)
+    weights = np.asarray(kernel.weight(r))
+    np.testing.assert_array_equal(kernel.weight(-r), weights)
+    ends = np.asarray(r) >= kernel.points / 2
+    assert np.all(weights[ends] == 0)
+    assert np.all(weights[~ends] > 0)
+
+
+@KERNELS
+def test_both_derivatives_are_finite_at_every_seam(kernel, dtype):
+    ends = [1e-30, 1.5 - 1e-6, 2 - 1e-6]
+    r = jnp.asarray([-3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, *ends], dtype)
+    slope = jax.grad(kernel.weight)
+    assert np.all(np.isfinite(jax.vmap(slope)(r)))
+    assert np.all(np.isfinite(jax.vmap(jax.grad(slope))(r)))
+
+
+@KERNELS
+def test_gradients_agree_with_finite_differences_between_seams(kernel, float64):
+    r = [-1.9, -1.2, -0.7, -0.3, -0.1, 0.05, 0.45, 0.55, 0.95, 1.05, 1.45, 1.55, 1.95, 2.5]
+    r = jnp.asarray(r)
+    slope, h = jax.vmap(jax.grad(kernel.weight))(r), 1e-6
+    difference = (kernel.weight(r + h) - kernel.weight(r - h)) / (2 * h)
+    np.testing.assert_allclose(slope, difference, atol=1e-8)
+
+
+@KERNELS
+def test_windows_hold_every_cell_of_the_support(kernel, float64):
+    size = (16, 12)
+    points = np.random.default_rng(0).uniform(-20, 20, (30, 2))
+    points = np.concatenate([points, [[3.0, 4.0], [3.5, 4.5]]])
+
+    @jax.jit
+    def covered(points):
+        at = coupling.windows(points, size, kernel)
+        return coupling.spread(jnp.eye(len(points)), at, size)
+
+    found = covered(jnp.asarray(points))
+    for axis, side in enumerate(size):
+        away = np.arange(side)[None] - points[:, axis, None]
+        away = away - side * np.round(away / side)
+        expected = kernel.weight(jnp.asarray(away))
+        np.testing.assert_allclose(jnp.sum(found, 2 - axis), expected, atol=1e-13)
+
+
+@pytest.fixture
+def many(float64, monkeypatch):
+    """Points in two chunks of ten and a third not quite full, with values."""
+    monkeypatch.setattr(delta, "CHUNK", 10)
+    random = np.random.default_rng(0)
+    points = random.uniform(-20, 20, (29, 2))
+    return jnp.asarray(points), jnp.asarray(random.normal(size=(29, 3)))
+
+
+@pytest.fixture
+def field(float64):
+    return jnp.asarray(np.random.default_rng(9).uniform(1, 2, (2, *SIZE)))
+
+
+def written_out(points):
+    """Weights of all cells for each point, (point, x, y)."""
+    weights = []
+    for axis, side in enumerate(SIZE):
+        away = np.arange(side)[None] - np.asarray(points)[:, axis, None]
+        weights.append(coupling.peskin(jnp.asarray(away - side * np.round(away / side))))
+    return np.einsum("px,py->pxy", *weights)
+
+
+def test_more_points_than_a_chunk_are_worked_on_in_chunks(many):
+    at = coupling.windows(many[0], SIZE)
+    assert at.cells.shape[:2] == (-(-len(many[0]) // 10), 10)
+
+
+def test_spreading_by_chunks_is_the_plain_sum(many):
+    points, values = many
+    found = jax.jit(lambda x, q: coupling.spread(q, coupling.windows(x, SIZE), SIZE))(
+        points, values
+    )
+    expected = np.einsum("pxy,pc->cxy", written_out(points), values)
+    np.testing.assert_allclose(found, expected, atol=1e-13)
+
+
+def test_interpolation_by_chunks_is_the_plain_sum(many, field):
+    points, _ = many
+    found = coupling.interpolate(field, coupling.windows(points, SIZE))
+    expected = np.einsum("pxy,cxy->pc", written_out(points), field)
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_windows_by_chunks_can_be_divided_by_a_plane(many, field):
+    points, _ = many
+    at = coupling.divided(coupling.windows(points, SIZE), field[1])
+    expected = np.einsum("pxy,xy->p", written_out(points), field[0] / field[1])
+    np.testing.assert_allclose(coupling.interpolate(field[:1], at)[:, 0], expected, rtol=1e-12)
+
+
+def test_transfers_by_chunks_are_transposes(many, field):
+    points, values = many
+    at = coupling.windows(points, SIZE)
+    there = jnp.sum(coupling.spread(values[:, :2], at, SIZE) * field)
+    back = jnp.sum(coupling.interpolate(field, at) * values[:, :2])
+    np.testing.assert_allclose(there, back, rtol=1e-12)
+
+
+def test_transfers_by_chunks_have_the_gradient_of_the_plain_ones(field, monkeypatch):
+    random = np.random.default_rng(0)
+    given = (
+        jnp.asarray(random.uniform(-20, 20, (29, 2))),
+        jnp.asarray(random.normal(size=(29, 1))),
+    )
+
+    def slope(chunk):
+        monkeypatch.setattr(delta, "CHUNK", chunk)
+
+        @jax.jit
+        def total(points, values):
+            at = coupling.windows(points, SIZE)
+            read = coupling.interpolate(field[:1], at)
+            return jnp.sum(coupling.spread(values, at, SIZE) ** 2) + jnp.sum(read**2)
+
+        return jax.grad(total, (0, 1))(*given)
+
+    for by_chunks, plain in zip(slope(10), slope(100), strict=True):
+        np.testing.assert_allclose(by_chunks, plain, atol=1e-12)
+
+
+@pytest.mark.parametrize("kernel", [coupling.PESKIN, coupling.HAT])
+def test_the_temporary_memory_of_spreading_is_bounded(kernel):
+    size = (64, 64)
+
+    def needed(points):
+        shapes = jax.ShapeDtypeStruct((points, 2), jnp.float32)
+        at = jax.eval_shape(lambda x: coupling.windows(x, size, kernel), shapes)
+        program = jax.jit(lambda values, at: coupling.spread(values, at, size))
+        return program.lower(shapes, at).compile().memory_analysis().temp_size_in_bytes
+
+    # A chunk's amounts in two channels, its windows and its values, and the planes.
+    cells = kernel.points**2
+    most = 4 * (delta.CHUNK * (2 * cells + 2 * cells + 4) + 4 * size[0] * size[1])
+    assert needed(4 * delta.CHUNK) <= most
+    assert needed(8 * delta.CHUNK) <= most

@@ -1,4 +1,4 @@
-"""What is wrong with a machine is found, and it is said what to do."""
+"""The doctor finds faults of a machine and says how to fix them."""
 
 import json
 import os
@@ -35,7 +35,7 @@ def test_a_driver_that_hangs_is_told(tmp_path, monkeypatch):
     assert "a driver hangs" in found.found
 
 
-def test_what_jax_says_where_it_fails_is_told(tmp_path, monkeypatch):
+def test_an_error_of_jax_is_reported(tmp_path, monkeypatch):
     monkeypatch.setenv("JAX_PLATFORMS", "nonsense")
     *_, found = devices.devices(tmp_path)
     assert found.level == "problem"
@@ -191,7 +191,7 @@ def test_redis_has_to_answer_and_to_keep_its_messages(changed, levels):
     assert [one.level for one in server.redis(REDIS | changed)] == levels
 
 
-def test_one_thing_that_cannot_be_looked_at_leaves_the_rest(monkeypatch, tmp_path):
+def test_a_check_that_fails_leaves_the_other_checks(monkeypatch, tmp_path):
     def broken():
         yield problem("memory", "little", "get more")
         raise KeyError("MemAvailable")

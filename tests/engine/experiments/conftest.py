@@ -6,9 +6,12 @@ from dataclasses import replace
 from functools import cache
 from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 
+from microcosmos.archive import creature
 from microcosmos.build import build
+from microcosmos.build.experiments import with_initial
 from microcosmos.spec import parse
 
 SMALL = {
@@ -37,7 +40,6 @@ NUMBERS = {"encoding": "direct", "period": 20}
 
 
 def learner(control, **emitter):
-    """A search by one emitter that learns."""
     search = {"generations": 5, "batch": 8, "block": 4, "emitters": [emitter]}
     return TINY | {"control": control, "search": search}
 
@@ -88,7 +90,7 @@ SPECS = {
     },
 }
 PACKAGES = {"cma-me": "qdax", "tensorneat": "tensorneat"}
-"""What some need beside what is installed."""
+"""Optional packages that some runs need."""
 
 
 class Course(NamedTuple):
@@ -102,12 +104,11 @@ class Course(NamedTuple):
 
 @pytest.fixture(scope="session")
 def specs():
-    """The document of each run."""
     return SPECS
 
 
 @pytest.fixture(scope="session")
-def course_of():
+def course_of(carry_out):
     """A function that gives the whole run of a spec by its name in `SPECS`."""
 
     @cache
@@ -120,26 +121,24 @@ def course_of():
             pytest.skip(f"{PACKAGES[name]} is not installed: make peers, make tensorneat")
         spec = parse(document)
         experiment = build(spec)
-        return Course(*_carried_out(experiment), experiment, spec)
+        return Course(*carry_out(experiment), experiment, spec)
 
     return course
 
 
-@pytest.fixture(scope="session")
-def course(course_of):
-    """The search that fills an archive."""
-    return course_of("quality-diversity")
+@pytest.fixture(scope="module")
+def course(request, course_of):
+    """The whole run of the module's `EXPERIMENT`, or of the search that fills an archive."""
+    return course_of(getattr(request.module, "EXPERIMENT", "quality-diversity"))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def experiment(course):
     return course.experiment
 
 
 @pytest.fixture(scope="session")
 def small():
-    """A function that makes the small spec, parts of it changed."""
-
     def make(**changes):
         return parse(SMALL | {k: {**SMALL.get(k, {}), **v} for k, v in changes.items()})
 
@@ -149,22 +148,20 @@ def small():
 @pytest.fixture(scope="session")
 def carry_out():
     """A function that gives states and reports of a whole run, the initial state first."""
-    return _carried_out
 
+    def run(experiment):
+        states, reports = [experiment.init()], []
+        while not experiment.done(states[-1]):
+            state, report = experiment.advance(states[-1])
+            states.append(state)
+            reports.append(report)
+        return states, reports
 
-def _carried_out(experiment):
-    states, reports = [experiment.init()], []
-    while not experiment.done(states[-1]):
-        state, report = experiment.advance(states[-1])
-        states.append(state)
-        reports.append(report)
-    return states, reports
+    return run
 
 
 @pytest.fixture(scope="session")
 def finish():
-    """A function that carries a run on to its end; the file."""
-
     def run(experiment, state):
         while not experiment.done(state):
             state, _ = experiment.advance(state)
@@ -175,8 +172,6 @@ def finish():
 
 @pytest.fixture(scope="session")
 def lasting():
-    """A function that gives an experiment another number of generations, and its programs."""
-
     def change(experiment, generations):
         spec = json.loads(experiment.plan.spec)
         spec["search"]["generations"] = generations
@@ -186,3 +181,27 @@ def lasting():
         )
 
     return change
+
+
+@pytest.fixture(scope="session")
+def elite_files():
+    """A function that gives creature files of elites at the end of a run, at most so many."""
+
+    def files(course, most=None):
+        state = course.states[-1]
+        cells = np.flatnonzero(state.elites.occupied).tolist()[:most]
+        return [creature.parse(course.experiment.creature(state, cell)) for cell in cells]
+
+    return files
+
+
+@pytest.fixture(scope="session")
+def forked_from():
+    """A function that gives a run from creatures with the programs of another."""
+
+    def fork(experiment, chosen, files):
+        text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
+        plan = replace(experiment.plan, spec=text, generations=chosen.search.generations)
+        return replace(experiment, plan=with_initial(plan, chosen, files))
+
+    return fork

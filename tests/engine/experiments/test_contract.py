@@ -24,7 +24,7 @@ OTHER = {
     "gaits": {"period": 31},
     "scaling": {"steps": 11},
 }
-"""What makes another run of each."""
+"""Changes that make another run of each."""
 
 
 def marked(*names, long=LONG):
@@ -40,7 +40,6 @@ def computed(request, course_of):
 
 @pytest.fixture(scope="module", params=OTHER)
 def course(request, course_of):
-    """The run of any experiment."""
     return course_of(request.param)
 
 
@@ -67,6 +66,20 @@ def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, fini
     states, _, experiment, spec = course_of(name)
     again = build(spec)
     assert finish(again, again.init()) == experiment.save(states[-1])
+
+
+@pytest.mark.parametrize(
+    ("name", "generations"),
+    [("quality-diversity", 2), ("neuroevolution", 3), ("neuroevolution", 4)],
+)
+def test_an_extended_run_ends_like_a_longer_one(name, generations, course_of, finish, lasting):
+    """Neuroevolution evaluates its elites again after 3 generations and at the end."""
+    states, _, experiment, _ = course_of(name)
+    shorter = lasting(experiment, generations)
+    ended = finish(shorter, shorter.init())
+    assert shorter.save(shorter.restore(ended)) == ended
+    assert ended != experiment.save(states[generations]), "the file says that it is done"
+    assert finish(experiment, experiment.restore(ended)) == experiment.save(states[-1])
 
 
 def test_it_stops_when_it_is_asked_to_and_leaves_the_state_as_it_was(course):
@@ -139,7 +152,6 @@ def states_devices(experiment, state):
 
 
 def on(experiment, device):
-    """The experiment on another kind of device."""
     if hasattr(experiment, "plan"):
         return replace(experiment, plan=replace(experiment.plan, device=device))
     return replace(experiment, device=device)

@@ -18,15 +18,7 @@ from microcosmos.viz.figures import experiments
 from microcosmos.viz.replay import record
 from microcosmos.viz.replay_file import read_replay
 
-
-@pytest.fixture(scope="module")
-def course(course_of):
-    return course_of("folding")
-
-
-@pytest.fixture(scope="module")
-def folding(course):
-    return course.experiment
+EXPERIMENT = "folding"
 
 
 @pytest.fixture(scope="module")
@@ -55,29 +47,29 @@ def test_every_filament_is_a_creature_whose_replay_ends_at_its_loss(course):
         np.testing.assert_allclose(loss, row.values["least"], rtol=1e-3)
 
 
-def test_the_best_is_the_creature_with_the_least_loss(folding, course):
+def test_the_best_is_the_creature_with_the_least_loss(experiment, course):
     state = course[0][-1]
-    best = folding.best(state)
+    best = experiment.best(state)
     assert best["sha256"] == state.table.rows[np.argmin(state.folds.least)].creature
 
 
-def test_the_figure_shows_moments_pictures_and_losses(folding, course):
+def test_the_figure_shows_moments_pictures_and_losses(experiment, course):
     state = course[0][-1]
-    figure = experiments.of(folding.save(state))
+    figure = experiments.of(experiment.save(state))
     titles = [axes.get_title() for axes in figure.axes]
     assert sum(bool(title) for title in titles) == 2
     assert len(figure.axes) == 2 * 4 + 1
     losses = figure.axes[-1].get_lines()
     np.testing.assert_array_equal(losses[1].get_ydata(), state.losses[:, 1])
     with pytest.raises(ValueError, match="without"):
-        experiments.of(folding.save(folding.init()))
+        experiments.of(experiment.save(experiment.init()))
 
 
-def test_a_step_that_is_not_finite_begins_anew_from_the_best(folding):
-    fold = jax.tree.map(lambda x: jnp.asarray(x[:1]), folding.start)
+def test_a_step_that_is_not_finite_begins_anew_from_the_best(experiment):
+    fold = jax.tree.map(lambda x: jnp.asarray(x[:1]), experiment.start)
     best = jnp.full_like(fold.genes, 0.01)
     broken = replace(fold, genes=fold.genes.at[0, 3].set(jnp.inf), best=best)
-    after, loss = folding.program(broken)
+    after, loss = experiment.program(broken)
     assert not np.isfinite(loss[0])
     np.testing.assert_array_equal(after.genes, best)
     assert after.rate_share[0] == 0.5
@@ -122,7 +114,7 @@ def test_in_a_fluid_and_in_segments_it_learns_the_same_at_first(document):
     ("change", "needed"),
     [
         ({"targets": []}, "at least 1 item"),
-        ({"targets": [{"digit": 3}, {"digit": 3}]}, "names that differ"),
+        ({"targets": [{"digit": 3}, {"digit": 3}]}, "must have different names"),
         ({"targets": [{"digit": 10}]}, "less than or equal to 9"),
         ({"targets": [{"kind": "film"}]}, "one of digit, picture"),
         ({"targets": [3]}, "one of digit, picture"),
@@ -153,9 +145,9 @@ def test_a_spec_that_cannot_be_carried_out_is_refused(document, change, needed):
         parse(document | change)
 
 
-def test_the_table_has_a_row_for_each_picture(folding, course):
+def test_the_table_has_a_row_for_each_picture(experiment, course):
     state = course[0][-1]
-    table = read_table(folding.save(state))
+    table = read_table(experiment.save(state))
     assert [row["picture"] for row in table.rows] == ["1", "3"]
     assert [row["failed"] for row in table.rows] == [0, 0]
     blank = [row["empty"] for row in table.rows]

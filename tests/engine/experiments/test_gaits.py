@@ -1,4 +1,4 @@
-"""A sweep of gaits: its rows, what they agree with, and what has no numbers."""
+"""A sweep of gaits: its rows, their agreement with creatures, and rows without numbers."""
 
 import json
 import math
@@ -19,15 +19,7 @@ from microcosmos.experiments.table_file import TableRun
 from microcosmos.spec import EXPERIMENTS, parse
 from microcosmos.viz.replay import FRAMES, interval
 
-
-@pytest.fixture(scope="module")
-def course(course_of):
-    return course_of("gaits")
-
-
-@pytest.fixture(scope="module")
-def sweep(course):
-    return course.experiment
+EXPERIMENT = "gaits"
 
 
 def file_of(row):
@@ -82,8 +74,8 @@ def test_soft_actuators_have_a_larger_sperm_number(course):
     assert len(set(paper)) == 1
 
 
-def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
-    stroke = build_strokes(parse(json.loads(sweep.spec)))[0]
+def test_a_simulation_that_does_not_stay_finite_has_no_numbers(experiment):
+    stroke = build_strokes(parse(json.loads(experiment.spec)))[0]
     names = search.STROKE_MEASURES
     values = np.ones((3, len(names)), np.float32)
     values[1, names.index("mach")] = np.nan
@@ -91,7 +83,9 @@ def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
     found = search.Evaluation(*map(jnp.asarray, (values[:, 0], values, np.array([0, 1, 2]))))
     found = jax.device_get(found)
     rows = partial(gaits.stroke_rows, replace(stroke, program=None), block=3, device="cpu")
-    broken = TableRun(sweep.spec, sweep.device, 1, lambda _, stop: rows(stop), gaits.report)
+    broken = TableRun(
+        experiment.spec, experiment.device, 1, lambda _, stop: rows(stop), gaits.report
+    )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "evaluate_blocks", lambda *_, **__: found)
         state, report = broken.advance(broken.init())
@@ -106,9 +100,9 @@ def test_a_simulation_that_does_not_stay_finite_has_no_numbers(sweep):
     assert broken.restore(broken.save(state)) == state
 
 
-def test_the_spacing_that_warns_is_the_widest(sweep):
-    strokes = build_strokes(parse(json.loads(sweep.spec)))
-    assert all(stroke.spacing <= units.WIDEST for stroke in strokes)
+def test_the_spacing_that_warns_is_the_widest(experiment):
+    strokes = build_strokes(parse(json.loads(experiment.spec)))
+    assert all(stroke.spacing <= units.MAX_SPACING for stroke in strokes)
 
 
 @pytest.mark.fast

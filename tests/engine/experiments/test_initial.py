@@ -1,21 +1,15 @@
 """A run from the command line that begins from creatures in files."""
 
 import json
-import signal
 
-import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from microcosmos import device
 from microcosmos.archive import creature, creature_h5, file
-from microcosmos.cli import app
 from microcosmos.cli.fork import creatures, with_initial
 
 
 @pytest.fixture(scope="module")
 def archive(experiment, course, tmp_path_factory):
-    """The small run's file."""
     path = tmp_path_factory.mktemp("beginning") / "archive.h5"
     path.write_bytes(experiment.save(course[0][-1]))
     return path
@@ -27,29 +21,17 @@ def best(experiment, course):
 
 
 @pytest.fixture
-def evolve(tmp_path, monkeypatch):
-    """A function that runs the command; signals and JAX stay as the tests have them."""
-    monkeypatch.setattr(device, "prepare", lambda **_: None)
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-
+def evolve(invoke, tmp_path):
     def run(spec, *arguments, code=0):
         (tmp_path / "spec.json").write_text(json.dumps(spec.model_dump(mode="json")))
-        command = ["evolve", str(tmp_path / "spec.json"), *map(str, arguments)]
-        done = CliRunner().invoke(app, command)
-        assert done.exit_code == code, done.output
-        return " ".join(done.output.split())
+        return invoke("evolve", "spec.json", *arguments, code=code)
 
-    yield run
-    for number, handler in before.items():
-        signal.signal(number, handler)
+    return run
 
 
-def test_an_archive_gives_the_creature_files_of_its_elites(archive, experiment, course, best):
-    state = course[0][-1]
-    cells = np.flatnonzero(state.elites.occupied).tolist()
-    found = creatures(archive)
-    assert found == [creature.parse(experiment.creature(state, cell)) for cell in cells]
-    assert best in found
+def test_an_archive_gives_the_creature_files_of_its_elites(archive, course, best, elite_files):
+    assert creatures(archive) == elite_files(course)
+    assert best in creatures(archive)
 
 
 def test_a_creature_is_read_as_json_or_hdf5(best, tmp_path):
@@ -88,7 +70,7 @@ def test_a_spec_that_names_creatures_takes_only_those_of_the_files(
     assert "--from needs the creatures that `search.initial` names; got none of 0000" in text
 
 
-def test_what_cannot_be_begun_from_is_refused(small, archive, evolve, tmp_path):
+def test_a_file_without_fitting_creatures_is_refused(small, archive, evolve, tmp_path):
     (tmp_path / "note.txt").write_text("a note")
     (tmp_path / "broken.h5").write_bytes(archive.read_bytes()[:2000])
     for name in ("note.txt", "broken.h5"):

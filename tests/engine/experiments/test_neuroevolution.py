@@ -1,49 +1,24 @@
 """A NEAT run keeps whole lineages, tells of its species, and ends when it was asked to."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from microcosmos.archive import creature, file
+from microcosmos.archive import file
 from microcosmos.build import build
-from microcosmos.build.experiments import begun
 from microcosmos.spec import parse
 
-
-@pytest.fixture(scope="module")
-def course(course_of):
-    return course_of("neuroevolution")
-
-
-@pytest.fixture(scope="module")
-def experiment(course):
-    return course.experiment
+EXPERIMENT = "neuroevolution"
 
 
 @pytest.fixture(scope="module")
 def searching(specs):
-    """A function that makes the spec, parts of its search changed."""
-
     def change(**parts):
         document = specs["neuroevolution"]
         return parse({**document, "search": {**document["search"], **parts}})
 
     return change
-
-
-@pytest.mark.parametrize("generations", [3, 4])
-def test_an_extended_run_ends_like_a_longer_one(
-    experiment, course, finish, lasting, generations
-):
-    """Whether or not elites were evaluated again only because the shorter one ended."""
-    shorter = lasting(experiment, generations)
-    ended = finish(shorter, shorter.init())
-    assert shorter.save(shorter.restore(ended)) == ended
-    whole = experiment.save(course[0][-1])
-    assert ended != whole
-    assert finish(experiment, experiment.restore(ended)) == whole
 
 
 def test_every_forebear_that_is_named_was_recorded_before(course):
@@ -65,12 +40,8 @@ def test_crossed_creatures_name_two_forebears(course):
     assert all(elite.operator == "crossover" for elite in pairs)
 
 
-def test_the_fittest_creature_of_all_is_kept(experiment, course):
-    states, reports, *_ = course
-    best = experiment.best(states[-1])
-    assert best["measured"]["fitness"] == reports[-1].best
-    assert creature.parse(best)["sha256"] == best["sha256"]
-    bests = [report.best for report in reports]
+def test_the_fittest_creature_of_all_is_kept(course):
+    bests = [report.best for report in course.reports]
     assert bests == sorted(bests)
 
 
@@ -116,15 +87,12 @@ def test_no_clock_is_in_a_file_unless_it_decides(experiment, course, searching):
     assert again.device_seconds == state.device_seconds > 0
 
 
-def test_a_population_begins_with_creatures_of_before(experiment, course, searching, finish):
-    state = course[0][-1]
-    cells = np.flatnonzero(state.elites.occupied).tolist()[:5]
-    files = [creature.parse(experiment.creature(state, cell)) for cell in cells]
+def test_a_population_begins_with_creatures_of_before(
+    experiment, course, searching, finish, elite_files, forked_from
+):
+    files = elite_files(course, 5)
     names = sorted(file["sha256"] for file in files)
-    chosen = searching(initial=names, generations=3)
-    text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
-    plan = begun(replace(experiment.plan, spec=text, generations=3), chosen, files)
-    fork = replace(experiment, plan=plan)
+    fork = forked_from(experiment, searching(initial=names, generations=3), files)
     after, report = fork.advance(fork.init())
     mine = {elite.creature: elite for elite in report.elites}
     assert set(names) <= set(mine)

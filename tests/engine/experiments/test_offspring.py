@@ -9,7 +9,8 @@ import pytest
 from microcosmos.archive import creature
 from microcosmos.archive.initial import counters, fitting, genes_of, renumbered
 from microcosmos.build import build
-from microcosmos.build.experiments import begun
+from microcosmos.build.creatures import frame
+from microcosmos.build.experiments import build_plan, with_initial
 from microcosmos.experiments.offspring import next_offspring
 from microcosmos.naming import decode, encode
 from microcosmos.search import OPERATORS, never
@@ -19,11 +20,8 @@ GAUSSIAN = {"emitters": [{"operator": "gaussian"}]}
 
 
 @pytest.fixture(scope="module")
-def files(experiment, course):
-    """The creature files of the small run's elites."""
-    state = course[0][-1]
-    cells = np.flatnonzero(state.elites.occupied).tolist()[:20]
-    return [creature.parse(experiment.creature(state, cell)) for cell in cells]
+def files(course, elite_files):
+    return elite_files(course, 20)
 
 
 def names_of(files):
@@ -45,7 +43,7 @@ def forking(forked, carry_out):
     return carry_out(forked)
 
 
-def test_all_that_it_begins_from_are_evaluated_first_each_once(forked, forking, files):
+def test_initial_creatures_are_evaluated_first_each_once(forked, forking, files):
     _, reports = forking
     assert [report.evaluations for report in reports] == [16, 32, 48, 64]
     begun = [e for report in reports for e in report.elites if e.operator == "fork"]
@@ -59,7 +57,7 @@ def test_all_that_it_begins_from_are_evaluated_first_each_once(forked, forking, 
         assert json.loads(elite.identity)["world"]["viscosity"] == 0.2
 
 
-def test_whoever_comes_later_descends_from_it(forking, files):
+def test_later_creatures_descend_from_the_initial_ones(forking, files):
     born, initial = set(), set(names_of(files))
     for report in forking[1]:
         for elite in report.elites:
@@ -70,7 +68,6 @@ def test_whoever_comes_later_descends_from_it(forking, files):
 
 
 def test_a_fork_taken_up_from_any_generation_ends_the_same(forked, forking, finish, lasting):
-    """Also where nobody has the creatures any more: the file does."""
     states, _ = forking
     whole = forked.save(states[-1])
     alone = replace(forked, plan=replace(forked.plan, initial=None))
@@ -82,13 +79,11 @@ def test_a_fork_taken_up_from_any_generation_ends_the_same(forked, forking, fini
         alone.init()
 
 
-def test_in_its_own_world_a_creature_is_itself_and_not_its_child(
-    small, experiment, files, finish
+def test_a_creature_forked_into_its_own_world_keeps_its_identity(
+    small, experiment, files, finish, forked_from
 ):
     chosen = small(search={"initial": [files[3]["sha256"]], "generations": 2})
-    text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
-    plan = replace(experiment.plan, spec=text, generations=2)
-    again = replace(experiment, plan=begun(plan, chosen, files))
+    again = forked_from(experiment, chosen, files)
     state, report = again.advance(again.init())
     same = next(e for e in report.elites if e.creature == files[3]["sha256"])
     assert (same.operator, same.parents) == ("fork", ())
@@ -104,14 +99,8 @@ def test_in_its_own_world_a_creature_is_itself_and_not_its_child(
 def test_new_genes_get_numbers_that_no_ancestor_has(small, files):
     chosen = small(search={"initial": names_of(files)})
     after, _ = counters(genes_of(chosen, files))
-    plan = begun(build_plan_of(chosen), chosen, files)
+    plan = with_initial(build_plan(chosen), chosen, files)
     assert int(plan.counters.innovation) == after > 6
-
-
-def build_plan_of(chosen):
-    from microcosmos.build.experiments import build_plan
-
-    return build_plan(chosen)
 
 
 def test_numbers_of_one_run_stay_and_those_of_another_do_not_mix(files):
@@ -146,7 +135,7 @@ def test_numbers_of_one_run_stay_and_those_of_another_do_not_mix(files):
         ({"control": {"encoding": "direct"}, "search": GAUSSIAN}, "control.encoding"),
     ],
 )  # fmt: skip
-def test_what_does_not_fit_is_refused_with_the_field(small, files, changes, field):
+def test_creatures_that_do_not_fit_are_refused_with_the_field(small, files, changes, field):
     large = max(files, key=lambda file: len(file["identity"]["genome"]["nodes"]["id"]))
     grown = json.loads(json.dumps(large))
     nodes = grown["identity"]["genome"]["nodes"]
@@ -160,8 +149,6 @@ def test_vectors_need_the_same_body_and_terms(small):
     direct = {"encoding": "direct", "terms": 2}
     chosen = small(control=direct, search=GAUSSIAN)
     scene = chosen.scene
-    from microcosmos.build.creatures import frame
-
     genome = {**frame(scene)["genome"], "values": encode(np.zeros(4 * (10 + 11)))}
     identity = {**frame(scene), "genome": genome}
     file = creature.parse(creature.document(identity, None, None))
@@ -178,7 +165,7 @@ def test_vectors_need_the_same_body_and_terms(small):
         fitting(longer, file)
 
 
-def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish):
+def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish, forked_from):
     """Vectors: the first slots are creatures of before, whoever would have filled them."""
     direct = {"encoding": "direct", "terms": 2, "period": 30}
     emitters = [{"operator": "cma-mae"}, {"operator": "iso+line"}]
@@ -189,9 +176,7 @@ def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish):
     chosen = small(
         control=direct, search=search | {"initial": [best["sha256"]], "generations": 3}
     )
-    text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
-    plan = replace(first.plan, spec=text, generations=3)
-    fork = replace(first, plan=begun(plan, chosen, [best]))
+    fork = forked_from(first, chosen, [best])
     before = fork.init()
     after, report = fork.advance(before)
     assert str(after.emitters[0]) == str(before.emitters[0]), "it neither asked nor was told"

@@ -15,18 +15,15 @@ from microcosmos.build import build_cells
 from microcosmos.search import MEASURES
 from microcosmos.spec import parse
 
-
-@pytest.fixture(scope="module")
-def course(course_of):
-    return course_of("refinement")
+EXPERIMENT = "refinement"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def spec(course):
     return course.spec
 
 
-def test_it_becomes_fitter_and_never_less_fit(course):
+def test_refinement_never_lowers_the_fitness(course):
     fitness = [row.values["fitness"] for row in course[0][-1].table.rows]
     assert len(fitness) == 1 + course.spec.steps
     assert all(b >= a for a, b in itertools.pairwise(fitness))
@@ -42,7 +39,7 @@ def test_the_first_row_is_the_creature_as_it_was_measured_in_its_search(spec, co
     )
 
 
-def test_it_does_not_leave_its_cell(spec, course):
+def test_refinement_stays_in_the_cell(spec, course):
     cells = build_cells(spec.archive)
     measures = [row.measured["measures"] for row in course[0][-1].table.rows]
     places = np.array([[one[name] for name in MEASURES] for one in measures], np.float32)
@@ -51,7 +48,7 @@ def test_it_does_not_leave_its_cell(spec, course):
 
 @pytest.mark.long
 @pytest.mark.optimised
-def test_what_it_has_become_repeats_bit_for_bit_and_has_a_parent(spec, course):
+def test_a_refined_creature_repeats_bit_for_bit_and_has_a_parent(spec, course):
     best = course.experiment.best(course[0][-1])
     assert creature.parse(best)["sha256"] == best["sha256"]
     assert best["provenance"]["parents"] == [spec.creature["sha256"]]
@@ -72,14 +69,14 @@ def test_reports_count_gradients_and_trials(course):
     assert course[1][-1].best == course[0][-1].fitness
 
 
-def test_as_a_function(spec, course):
+def test_the_function_refine_gives_the_creature_of_the_run(spec, course):
     refined, rows = microcosmos.refine(spec.creature, steps=2, block=4)
     assert rows[-1]["fitness"] >= rows[0]["fitness"]
     assert json.dumps(refined)
     assert refined["sha256"] == course[0][-1].table.rows[2].creature
 
 
-def test_what_cannot_be_refined_is_refused(spec):
+def test_damaged_creatures_and_measures_without_derivatives_are_refused(spec):
     file = spec.creature
     with pytest.raises(ValidationError, match=r"creature\.sha256"):
         parse({"experiment": "refinement", "creature": {**file, "sha256": "0" * 64}})

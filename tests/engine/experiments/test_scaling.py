@@ -63,7 +63,7 @@ def test_too_few_numbers_have_no_exponent():
 
 
 @pytest.mark.fast
-def test_where_all_are_few_the_largest_three_are_fitted():
+def test_the_exponent_of_few_nodes_is_fitted_to_the_largest_three():
     rows = [row(n, 2.0 + 1e-4 * n) for n in (1_000, 2_000, 4_000, 8_000)]
     rows[0]["seconds"] = 50.0
     found = summary(rows)
@@ -72,7 +72,7 @@ def test_where_all_are_few_the_largest_three_are_fitted():
 
 
 @pytest.mark.fast
-def test_what_did_not_stay_finite_counts_for_nothing():
+def test_rows_that_did_not_stay_finite_are_ignored():
     rows = [row(16_000, 4.0), row(32_000, 6.0), row(64_000, 99.0, status="non-finite")]
     assert summary(rows)["exponent"] == pytest.approx(1.0)
     assert summary([row(16_000, 4.0, memory_bytes=None)])["peak_memory_bytes"] is None

@@ -16,15 +16,12 @@ ITERATIONS = 10
 
 @pytest.fixture(params=["chain", "star"])
 def crowd(request, monkeypatch):
-    """Seven equal creatures, of which a chunk holds three."""
     one = bodies.chain(9, 1.0) if request.param == "chain" else bodies.star(3, 3, 1.0)
     monkeypatch.setattr(chunks, "CHUNK", 3 * len(one.positions) + 1)
     return bodies.together([bodies.placed(one, (20.0 * i, 0.0)) for i in range(7)])
 
 
 def all_at_once(body, rods):
-    """The rods with the colours of all bodies."""
-
     def pairings(colours):
         parts = [(c.partner, c.constraint, c.sign) for c in colours]
         return tuple(filaments.Pairing(*map(jnp.asarray, part)) for part in parts)

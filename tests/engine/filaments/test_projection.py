@@ -1,4 +1,4 @@
-"""Constraint projection: what sweeps keep and how errors fall."""
+"""Constraint projection: conserved sums, falling errors, rest shapes and gradients."""
 
 from dataclasses import replace
 
@@ -7,25 +7,37 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import filaments
+from microcosmos import bodies, filaments
+from microcosmos.bodies import swimmers
 from microcosmos.build import build_rods
-
-
-@pytest.fixture(params=["chain", "ring"])
-def disturbed(request, float64, chain, ring):
-    """A body, its rods, disturbed positions and the angles that belong to them."""
-    body = chain(17) if request.param == "chain" else ring(17)
-    rods = build_rods(body, float64)
-    noise = 0.2 * np.random.default_rng(0).normal(size=body.positions.shape)
-    positions = jnp.asarray(body.positions + noise)
-    return body, rods, positions, filaments.edge_angles(positions, rods)
-
 
 project = jax.jit(filaments.project, static_argnames="iterations")
 
 
-def rest_of(body):
-    return filaments.Rest(jnp.asarray(body.rest_angle), jnp.asarray(body.rest_length))
+def prepared(body, dtype, noise=0.0):
+    """The body's rods and rest shape, and disturbed positions with their angles."""
+    rods = build_rods(body, dtype)
+    shift = noise * np.random.default_rng(0).normal(size=body.positions.shape)
+    positions = jnp.asarray(body.positions + shift, dtype)
+    shape = (body.rest_angle, body.rest_length)
+    rest = filaments.Rest(*(jnp.asarray(values, dtype) for values in shape))
+    return rods, rest, positions, filaments.edge_angles(positions, rods)
+
+
+@pytest.fixture(params=[bodies.chain, bodies.ring], ids=["chain", "ring"])
+def body(request):
+    return request.param(17, 1.0)
+
+
+@pytest.fixture
+def disturbed(body, float64):
+    return prepared(body, float64, 0.2)
+
+
+@pytest.fixture
+def urchin():
+    """A ring of 40 nodes with six branches of eight."""
+    return swimmers.cilia(body_nodes=40, hairs=6, hair_nodes=8).body
 
 
 def length_error(positions, rods, rest):
@@ -39,33 +51,36 @@ def joint_error(angles, body, rest):
     return float(jnp.sqrt(jnp.mean(error**2)))
 
 
+def edge_error(positions, body):
+    """Root mean square of the edges' vectors, less those at rest turned to fit best."""
+    ends = jnp.asarray(body.edges)
+    v = np.asarray(positions[ends[:, 1]] - positions[ends[:, 0]]) @ [1, 1j]
+    rest = (body.positions[body.edges[:, 1]] - body.positions[body.edges[:, 0]]) @ [1, 1j]
+    turn = np.vdot(rest, v)
+    return np.sqrt(np.mean(np.abs(v - rest * turn / abs(turn)) ** 2))
+
+
 def test_displacements_sum_to_zero(disturbed):
-    body, rods, positions, angles = disturbed
-    moved, _ = project(positions, angles, rods, rest_of(body), iterations=50)
+    rods, rest, positions, angles = disturbed
+    moved, _ = project(positions, angles, rods, rest, iterations=50)
     np.testing.assert_allclose(jnp.sum(moved - positions, 0), 0, atol=1e-13)
 
 
-def test_displacements_sum_to_zero_in_float32(chain):
-    body = chain(100)
-    rods = build_rods(body)
-    noise = 0.2 * np.random.default_rng(0).normal(size=body.positions.shape)
-    positions = jnp.asarray(body.positions + noise, jnp.float32)
-    angles = filaments.edge_angles(positions, rods)
-    rest = filaments.Rest(jnp.zeros(len(body.joints)), jnp.ones(len(body.edges)))
+def test_displacements_sum_to_zero_in_float32():
+    rods, rest, positions, angles = prepared(bodies.chain(100, 1.0), np.float32, 0.2)
     moved, _ = project(positions, angles, rods, rest, iterations=50)
     total = np.sum(np.asarray(moved, float) - np.asarray(positions, float), 0)
     np.testing.assert_allclose(total, 0, atol=1e-4)
 
 
 def test_bending_keeps_the_mean_angle(disturbed):
-    body, rods, positions, angles = disturbed
-    _, turned = project(positions, angles, rods, rest_of(body), iterations=50)
+    rods, rest, positions, angles = disturbed
+    _, turned = project(positions, angles, rods, rest, iterations=50)
     np.testing.assert_allclose(jnp.mean(turned), jnp.mean(angles), atol=1e-13)
 
 
-def test_errors_of_length_and_angle_fall(disturbed):
-    body, rods, positions, angles = disturbed
-    rest = rest_of(body)
+def test_errors_of_length_and_angle_fall(disturbed, body):
+    rods, rest, positions, angles = disturbed
     lengths, joints = [], []
     for iterations in (0, 10, 100, 1000):
         x, theta = project(positions, angles, rods, rest, iterations=iterations)
@@ -78,50 +93,26 @@ def test_errors_of_length_and_angle_fall(disturbed):
 
 
 @pytest.mark.parametrize("stiffness", [0.25, 1.0])
-def test_a_sweep_takes_the_share_of_its_stiffness_off_an_error(float64, chain, stiffness):
-    body = chain(3)
-    rods = replace(build_rods(body, float64), bend=jnp.full(1, stiffness))
-    rest, angles = filaments.Rest(jnp.full(1, 0.2), jnp.ones(2)), jnp.asarray([0.3, -0.4])
-    positions = jnp.asarray(body.positions)
+def test_a_sweep_takes_the_share_of_its_stiffness_off_an_error(float64, stiffness):
+    rods, rest, positions, _ = prepared(bodies.chain(3, 1.0), float64)
+    rods = replace(rods, bend=jnp.full(1, stiffness))
+    rest, angles = replace(rest, angle=jnp.full(1, 0.2)), jnp.asarray([0.3, -0.4])
     _, turned = filaments.project(positions, angles, rods, rest, iterations=1)
     error = turned[1] - turned[0] - 0.2
     np.testing.assert_allclose(error, -0.9 * (1 - stiffness), atol=1e-12)
 
 
-def test_a_straight_chain_becomes_the_circle_it_is_asked_for(float64, chain):
-    body = chain(32)
-    rods = build_rods(body, float64)
-    rest = filaments.Rest(jnp.full(30, 2 * np.pi / 31), jnp.ones(31))
-    positions = jnp.asarray(body.positions)
-    angles = filaments.edge_angles(positions, rods)
-    positions, _ = project(positions, angles, rods, rest, iterations=10_000)
-    centre = jnp.mean(positions[1:], 0)
-    radius = jnp.sqrt(jnp.sum((positions - centre[None]) ** 2, 1))
-    np.testing.assert_allclose(radius, 0.5 / np.sin(np.pi / 31), rtol=1e-5)
-
-
-def test_a_satisfied_body_is_not_moved_at_all(dtype, chain):
-    body = chain(12)
-    rods = build_rods(body, dtype)
-    positions = jnp.asarray(body.positions, dtype)
-    angles = filaments.edge_angles(positions, rods)
-    rest = filaments.Rest(jnp.zeros(10, dtype), jnp.ones(11, dtype))
+def test_a_satisfied_body_is_not_moved_at_all(dtype):
+    rods, rest, positions, angles = prepared(bodies.chain(12, 1.0), dtype)
     moved, turned = project(positions, angles, rods, rest, iterations=10)
     np.testing.assert_array_equal(moved, positions)
     np.testing.assert_array_equal(turned, angles)
 
 
 def test_a_stiffness_of_zero_leaves_its_error(disturbed):
-    body, rods, positions, angles = disturbed
-    soft = filaments.Rods(
-        rods.edges,
-        rods.edge_colours,
-        rods.joint_colours,
-        stretch=0 * rods.stretch,
-        shear=rods.shear,
-        bend=0 * rods.bend,
-    )
-    moved, turned = project(positions, angles, soft, rest_of(body), iterations=10)
+    rods, rest, positions, angles = disturbed
+    soft = replace(rods, stretch=0 * rods.stretch, bend=0 * rods.bend)
+    moved, turned = project(positions, angles, soft, rest, iterations=10)
     np.testing.assert_array_equal(moved, positions)
     np.testing.assert_array_equal(turned, angles)
 
@@ -134,10 +125,9 @@ def test_wrapped_angles_lie_within_half_a_turn_and_have_slope_one(float64):
     np.testing.assert_array_equal(jax.vmap(jax.grad(filaments.wrap))(angle), 1)
 
 
-def test_angles_follow_a_body_through_many_turns(float64, ring):
-    body = ring(9)
-    rods = build_rods(body, float64)
-    angles = filaments.edge_angles(jnp.asarray(body.positions), rods)
+def test_angles_follow_a_body_through_many_turns(float64):
+    body = bodies.ring(9, 1.0)
+    rods, _, _, angles = prepared(body, float64)
     start = angles
     for turn in np.arange(0.1, 20, 0.1):
         c, s = np.cos(turn), np.sin(turn)
@@ -146,38 +136,75 @@ def test_angles_follow_a_body_through_many_turns(float64, ring):
     np.testing.assert_allclose(angles - start, turn, rtol=1e-12)
 
 
-def test_projection_can_be_differentiated(disturbed):
-    body, rods, positions, angles = disturbed
-    random = np.random.default_rng(5)
-    rest = rest_of(body)
-    inputs = (positions, angles, rest.angle, rest.length, rods.stretch * 0.9, rods.bend * 0.9)
+def test_projection_can_be_differentiated(disturbed, require_slope):
+    rods, rest, positions, angles = disturbed
+    stiffness = (rods.stretch * 0.9, rods.bend * 0.9)
 
-    def total(positions, angles, angle, length, stretch, bend):
-        soft = filaments.Rods(
-            rods.edges, rods.edge_colours, rods.joint_colours, stretch, rods.shear, bend
-        )
-        rest = filaments.Rest(angle, length)
+    def total(inputs):
+        positions, angles, rest, (stretch, bend) = inputs
+        soft = replace(rods, stretch=stretch, bend=bend)
         x, theta = project(positions, angles, soft, rest, iterations=5)
         return jnp.sum(jnp.sin(x)) + jnp.sum(theta**2)
 
-    direction = [jnp.asarray(random.normal(size=x.shape)) for x in inputs]
-    gradient = jax.grad(total, range(len(inputs)))(*inputs)
-    slope = sum(jnp.sum(g * d) for g, d in zip(gradient, direction, strict=True))
-
-    def along(h):
-        return total(*(x + h * d for x, d in zip(inputs, direction, strict=True)))
-
-    np.testing.assert_allclose(slope, (along(1e-6) - along(-1e-6)) / 2e-6, rtol=1e-6)
+    require_slope(total, (positions, angles, rest, stiffness), seed=5)
 
 
-def test_the_gradient_is_finite_where_two_nodes_coincide(float64, chain):
-    body = chain(4)
-    rods = build_rods(body, float64)
-    positions = jnp.zeros((4, 2))
-    angles = jnp.zeros(3)
+def test_the_gradient_is_finite_where_two_nodes_coincide(float64):
+    rods, rest, positions, angles = prepared(bodies.chain(4, 1.0), float64)
 
     def total(positions):
-        rest = filaments.Rest(jnp.zeros(2), jnp.ones(3))
-        return jnp.sum(project(positions, angles, rods, rest, iterations=3)[0] ** 2)
+        return jnp.sum(project(positions, 0 * angles, rods, rest, iterations=3)[0] ** 2)
 
-    assert np.all(np.isfinite(jax.grad(total)(positions)))
+    assert np.all(np.isfinite(jax.grad(total)(0 * positions)))
+
+
+def test_displacements_of_one_sweep_sum_to_zero_at_branches_too(float64, urchin):
+    for body in (urchin, bodies.star(7, 5, 1.0), bodies.tree(5, 2, 6, 1.0, 1.6)):
+        rods, rest, positions, angles = prepared(body, float64, 0.3)
+        moved, turned = project(positions, angles, rods, rest, iterations=1)
+        assert np.abs(moved - positions).max() > 0.05
+        np.testing.assert_allclose(jnp.sum(moved - positions, 0), 0, atol=1e-13)
+        np.testing.assert_allclose(jnp.sum(turned - angles), 0, atol=1e-13)
+
+
+def test_displacements_of_each_creature_sum_to_zero(float64, urchin):
+    body = bodies.together([urchin, bodies.placed(bodies.star(5, 6, 1.0), (60.0, 0.0))])
+    rods, rest, positions, angles = prepared(body, float64, 0.3)
+    moved, _ = project(positions, angles, rods, rest, iterations=10)
+    for number in range(body.count):
+        own = body.member == number
+        np.testing.assert_allclose(jnp.sum((moved - positions)[own], 0), 0, atol=1e-12)
+
+
+def test_a_branched_body_comes_back_to_its_rest_shape(dtype, urchin):
+    rods, rest, positions, angles = prepared(urchin, dtype, 0.3)
+    moved, turned = project(positions, angles, rods, rest, iterations=1000)
+    assert edge_error(positions, urchin) > 0.1
+    assert edge_error(moved, urchin) <= 1e-5
+    assert joint_error(turned, urchin, rest) <= 1e-5
+
+
+@pytest.fixture
+def closing(dtype):
+    """A straight chain that is asked to become a circle."""
+    rods, rest, positions, angles = prepared(bodies.chain(32, 1.0), dtype)
+    return rods, replace(rest, angle=jnp.full(30, 2 * np.pi / 31, dtype)), positions, angles
+
+
+def test_a_straight_chain_becomes_a_circle(closing):
+    rods, rest, positions, angles = closing
+    body = bodies.chain(32, 1.0)
+    assert joint_error(angles, body, rest) > 0.2
+    positions, angles = project(positions, angles, rods, rest, iterations=1000)
+    shown = filaments.edge_angles(positions, rods)
+    assert joint_error(angles, body, rest) <= 2e-3
+    assert joint_error(shown, body, rest) <= 2e-3
+
+
+@pytest.mark.parametrize("dtype", ["float64"], indirect=True)
+def test_the_circle_of_a_closed_chain_has_the_radius_of_its_turns(closing):
+    rods, rest, positions, angles = closing
+    positions, _ = project(positions, angles, rods, rest, iterations=10_000)
+    centre = jnp.mean(positions[1:], 0)
+    radius = jnp.sqrt(jnp.sum((positions - centre[None]) ** 2, 1))
+    np.testing.assert_allclose(radius, 0.5 / np.sin(np.pi / 31), rtol=1e-5)

@@ -1,8 +1,11 @@
-"""Networks compute what a plain recursion over their genes computes."""
+"""CPPNs compute the recursion over their genes and control bodies within their scales."""
 
+import json
 import math
+import runpy
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import jax
 import jax.numpy as jnp
@@ -10,6 +13,8 @@ import numpy as np
 import pytest
 
 from microcosmos import genomes, naming, neat
+from microcosmos.build import build_controls
+from microcosmos.spec import Chain, Control, shape
 
 INPUTS, OUTPUTS = 3, 2
 
@@ -30,8 +35,6 @@ FUNCTIONS = {
 
 @pytest.fixture(scope="module")
 def networks():
-    """Forty networks, each grown by ten mutations."""
-
     @jax.jit
     @jax.vmap
     def grow(key):
@@ -100,3 +103,63 @@ def test_genes_survive_the_file(networks):
 
 def test_minus_zero_is_written_as_zero():
     assert naming.encode(np.array([-0.0])) == naming.encode(np.array([0.0]))
+
+
+BODY = shape(Chain(nodes=12))
+STEPS = 120
+
+
+def controls(**changes):
+    return build_controls(Control(period=40, **changes), BODY, STEPS)
+
+
+@pytest.fixture(scope="module")
+def network():
+    return neat.minimal(jax.random.key(2), 3, 2, 8, 8)
+
+
+def test_actuation_grows_from_the_rest_shape_over_the_ramp(network):
+    rest = genomes.develop(network, controls(ramp=2))
+    np.testing.assert_array_equal(rest.angle[0], BODY.rest_angle)
+    np.testing.assert_array_equal(rest.length[0], BODY.rest_length)
+    full = genomes.develop(network, controls(ramp=0))
+    np.testing.assert_allclose(rest.angle[20], 0.25 * full.angle[20], rtol=1e-6)
+    np.testing.assert_array_equal(rest.angle[80:], full.angle[80:])
+
+
+def test_angles_and_lengths_stay_within_their_scales():
+    networks = [neat.minimal(jax.random.key(k), 3, 2, 8, 8) for k in range(20)]
+    for network in networks:
+        rest = genomes.develop(network, controls(angle_scale=0.7, length_scale=0.2))
+        assert np.abs(rest.angle).max() <= 0.7
+        assert np.abs(rest.length - 1).max() <= 0.2
+
+
+def test_a_periodic_timer_repeats_the_shape(network):
+    rest = genomes.develop(network, controls(ramp=0))
+    np.testing.assert_allclose(rest.angle[:40], rest.angle[40:80], atol=1e-5)
+
+
+def test_a_linear_timer_runs_from_zero_towards_one():
+    found = controls(timer="linear", position="unit")
+    np.testing.assert_allclose(found.position, BODY.arc)
+    np.testing.assert_allclose(found.timer, np.arange(STEPS)[None] / STEPS)
+
+
+def test_signed_positions_run_from_minus_one_to_one():
+    position = controls().position
+    assert (position[0], position[-1]) == (-1, 1)
+
+
+WEB = Path(__file__).parents[3] / "web"
+
+
+@pytest.mark.optimised
+def test_the_fixture_of_the_page_is_what_the_engine_computes_now():
+    kept = json.loads((WEB / "src" / "decode" / "networks.fixture.json").read_text())
+    made = json.loads(
+        json.dumps(runpy.run_path(str(WEB / "scripts" / "networks.py"))["cases"]())
+    )
+    assert [case["genome"] for case in made] == [case["genome"] for case in kept]
+    for now, then in zip(made, kept, strict=True):
+        np.testing.assert_allclose(now["expected"], then["expected"], rtol=1e-4, atol=1e-4)

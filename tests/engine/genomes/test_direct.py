@@ -1,11 +1,11 @@
-"""A direct encoding's genes are measures of the body and the control of its parts."""
+"""Direct encodings: waveforms, weights of layers and measures of the body are genes."""
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import bodies, spec
+from microcosmos import bodies, genomes, spec
 from microcosmos.build import build_task
 from microcosmos.filaments import edge_angles, wrap
 from microcosmos.genomes import Vector
@@ -121,16 +121,89 @@ def test_newcomers_differ_and_stay_within_their_spread(grow):
     assert abs(np.corrcoef(*strength)[0, 1]) < 0.25
 
 
-def test_start_shapes_can_be_differentiated(grow):
+def test_start_shapes_can_be_differentiated(grow, require_slope):
     task, _ = grow({"nodes": 6}, {}, **FREE)
-    count = sum(task.encoding.parts.values())
 
     def tip(values):
         driven = task.encoding.drive(task.world, task.start, Vector(values), None)
         return driven.start.positions[0, 1] + driven.inputs.length[3, 2]
 
-    at = jnp.asarray(np.random.default_rng(0).uniform(-1, 1, count))
-    along = jnp.asarray(np.random.default_rng(1).normal(size=count))
-    slope = jnp.sum(jax.grad(tip)(at) * along)
-    numeric = (tip(at + 1e-6 * along) - tip(at - 1e-6 * along)) / 2e-6
-    np.testing.assert_allclose(slope, numeric, rtol=1e-6)
+    count = sum(task.encoding.parts.values())
+    require_slope(tip, np.random.default_rng(0).uniform(-1, 1, count), seed=1)
+
+
+PERIOD, STEPS = 24.0, 60
+
+
+@pytest.fixture
+def weights():
+    return np.random.default_rng(4).uniform(-0.3, 0.3, (3, 6))
+
+
+@pytest.fixture
+def phase(float64):
+    return genomes.phases(genomes.sine_cosine(STEPS, PERIOD), float64)
+
+
+@pytest.mark.fast
+def test_a_series_is_the_sum_of_its_harmonics(weights, phase):
+    found = genomes.wave(genomes.fourier(phase, 3), jnp.asarray(weights.reshape(-1)), 3)
+    t = 2 * np.pi * np.arange(STEPS) / PERIOD
+    for item, (*sines, a, b, c) in enumerate(weights):
+        expected = sum(s * np.sin((k + 1) * t) for k, s in enumerate(sines))
+        expected += a * np.cos(t) + b * np.cos(2 * t) + c * np.cos(3 * t)
+        np.testing.assert_allclose(found[:, item], expected, atol=1e-13)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("terms", [2, 5, 6])
+def test_a_table_is_interpolated_and_closes_upon_itself(weights, phase, terms):
+    rows = weights[:, :terms]
+    found = genomes.wave(genomes.table(phase, terms), jnp.asarray(rows.reshape(-1)), 3)
+    places = np.arange(STEPS) / PERIOD * terms
+    for item, row in enumerate(rows):
+        expected = np.interp(places, np.arange(terms), row, period=terms)
+        np.testing.assert_allclose(found[:, item], expected, atol=1e-12)
+
+
+@pytest.mark.fast
+def test_a_linear_timer_runs_through_the_table_once(weights, float64):
+    phase = genomes.phases(genomes.linear(STEPS, PERIOD), float64)
+    found = genomes.wave(genomes.table(phase, 6), jnp.asarray(weights.reshape(-1)), 3)
+    places = 6 * np.arange(STEPS) / STEPS
+    expected = np.interp(places, np.arange(6), weights[1], period=6)
+    np.testing.assert_allclose(found[:, 1], expected, atol=1e-12)
+
+
+@pytest.mark.fast
+def test_waves_stay_within_one(phase):
+    found = genomes.wave(genomes.fourier(phase, 2), jnp.ones(8), 2)
+    assert (np.max(found), np.min(found)) == (1, -1)
+
+
+SIZES, SCALE = (3, 5, 4, 2), 1.7
+
+
+def test_layers_compute_what_matrices_do(float64):
+    layers = genomes.Layers(SIZES, "sin", SCALE)
+    random = np.random.default_rng(0)
+    genes, inputs = random.uniform(-1, 1, layers.genes), random.normal(size=(3, 7))
+    values, rest = inputs, genes
+    for before, after in ((3, 5), (5, 4), (4, 2)):
+        rows, rest = rest[: after * (before + 1)], rest[after * (before + 1) :]
+        rows = SCALE * rows.reshape(after, before + 1)
+        values = rows[:, 1:] @ values + rows[:, :1]
+        values = np.sin(values) if after != 2 else values
+    found = genomes.forward(layers, jnp.asarray(genes), jnp.asarray(inputs))
+    np.testing.assert_allclose(found, values, rtol=1e-12)
+    assert not len(rest)
+
+
+def test_size_and_genes_are_those_of_the_layers():
+    control = spec.Weights(hidden=(5, 4))
+    task = build_task(spec.Scene(control=control))
+    genotype = task.encoding.newcomer(key=jax.random.key(0))
+    hidden, connections = task.encoding.size(genotype)
+    assert (hidden, connections) == (9, 3 * 5 + 5 * 4 + 4 * 2)
+    assert genotype.values.shape == (3 * 5 + 5 + 5 * 4 + 4 + 4 * 2 + 2,)
+    assert spec.gene_count(control, spec.shape(spec.Chain())) == len(genotype.values)

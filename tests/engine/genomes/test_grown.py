@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import genomes, spec
+from microcosmos import spec
 from microcosmos.build import build_task
 
 NODES = 10
@@ -31,27 +31,23 @@ def task(float64):
     return build_task(scene, float64, room=(16, 32))
 
 
-def network(float64, slopes, biases):
-    """Outputs that are straight lines over the position."""
-    genes, outputs = genomes.empty(16, 32), len(slopes)
-    used = 3 + outputs
-    genes.node_used[:used] = True
-    genes.node_id[:used] = np.arange(used)
-    genes.bias[3:used] = biases
-    genes.connection_used[:outputs] = genes.enabled[:outputs] = True
-    genes.innovation[:outputs] = np.arange(outputs)
-    genes.target[:outputs] = 3 + np.arange(outputs)
-    genes.weight[:outputs] = slopes
-    return jax.tree.map(
-        lambda x: jnp.asarray(x, float64 if x.dtype == np.float32 else None), genes
-    )
+@pytest.fixture
+def lines(network_of, float64):
+    """A function that makes a network whose outputs are straight lines over the position."""
+
+    def make(slopes, biases):
+        links = {(0, 3 + output): slope for output, slope in enumerate(slopes)}
+        identities = ["identity"] * len(slopes)
+        return network_of(links, 3, identities, biases, dtype=float64, room=(16, 32))
+
+    return make
 
 
 @pytest.mark.parametrize(
     ("slope", "bias", "nodes"), [(0, 1, 10), (0, -1, 4), (-1, 0.4, 7), (1, 0.9, 4)]
 )
-def test_the_chain_ends_where_growth_stops(task, float64, slope, bias, nodes):
-    genes = network(float64, [0, 0, 0, 0, 0, 0, slope], [0, 0, 0, 0, 0, 0, bias])
+def test_the_chain_ends_where_growth_stops(task, lines, slope, bias, nodes):
+    genes = lines([0, 0, 0, 0, 0, 0, slope], [0, 0, 0, 0, 0, 0, bias])
     driven = task.encoding.drive(task.world, task.start, genes, None)
     np.testing.assert_array_equal(driven.world.present, np.arange(NODES) < nodes)
     there = driven.start.positions[:nodes]
@@ -61,10 +57,10 @@ def test_the_chain_ends_where_growth_stops(task, float64, slope, bias, nodes):
     assert jnp.count_nonzero(driven.world.rods.bend) == nodes - 2
 
 
-def test_measures_are_read_at_nodes_and_between_them(task, float64):
+def test_measures_are_read_at_nodes_and_between_them(task, lines):
     slopes = [0, 0, 0.5, 0.3, -0.4, 0.2, 0]
     biases = np.array([0, 0, 0.1, 0.2, 0.3, -0.1, 1])
-    genes = network(float64, slopes, biases)
+    genes = lines(slopes, biases)
     driven = task.encoding.drive(task.world, task.start, genes, None)
     p = 2 * np.arange(NODES) / (NODES - 1) - 1
     lines = np.array(slopes)[:, None] * p[None] + biases[:, None]

@@ -41,7 +41,6 @@ def shrinking(settings):
 
 @pytest.fixture(scope="session")
 def begin():
-    """A function that gives the program which divides a first population, compiled once."""
     return cache(lambda settings: jax.jit(lambda n: neat.first_species(n, settings)))
 
 
@@ -59,8 +58,6 @@ def advance():
 
 @pytest.fixture(scope="session")
 def evolve(begin, advance):
-    """A function that runs a population with arbitrary fitness and keeps every generation."""
-
     def run(settings, generations, seed=0, broken=0.1):
         key = jax.random.key(seed)
         networks = newcomers(jax.random.split(key, BATCH))
@@ -94,7 +91,6 @@ def newcomers(keys):
 
 @pytest.fixture(scope="session")
 def grown(evolve, settings):
-    """Fourteen generations of the paper's NEAT."""
     return evolve(settings, 14)
 
 
@@ -102,6 +98,32 @@ def grown(evolve, settings):
 def shrunk(evolve, shrinking):
     """Fourteen generations in which genes are lost as well."""
     return evolve(shrinking, 14)
+
+
+@pytest.fixture(scope="session")
+def vary():
+    """The program that mutates and numbers a batch without selection."""
+    rates = neat.Rates(0.5, 0.5, 0.1, 0.2, toggle=0.1, add_node=0.6, add_connection=0.8)
+
+    @jax.jit
+    def program(networks, counters, key):
+        mutate = jax.vmap(lambda n, k: neat.mutate(n, rates, INPUTS, key=k))
+        keys = jax.random.split(key, networks.weight.shape[0])
+        return neat.number(*mutate(networks, keys), counters)
+
+    return program
+
+
+@pytest.fixture(scope="session")
+def mutated(vary):
+    """Fifteen generations of unselected mutation, as `evolve` keeps them."""
+    networks = newcomers(jax.random.split(jax.random.key(0), 32))
+    counters = neat.first_counters(INPUTS, OUTPUTS)
+    history = [(networks, None, None, counters)]
+    for number in range(15):
+        networks, counters = vary(networks, counters, jax.random.key(number + 1))
+        history.append((networks, None, None, counters))
+    return jax.device_get(history)
 
 
 @pytest.fixture(scope="session")
@@ -152,8 +174,6 @@ def plain_distance(genes_of):
 
 @pytest.fixture(scope="session")
 def each():
-    """A function that splits a batch of networks."""
-
     def split(networks):
         return [genomes.take(networks, i) for i in range(networks.weight.shape[0])]
 

@@ -1,5 +1,6 @@
 """Populations under selection: species, children, and what networks stay."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import jax
@@ -19,13 +20,20 @@ def history(request):
     return request.getfixturevalue(request.param)
 
 
+@pytest.fixture(scope="module", params=["grown", "shrunk", "mutated"])
+def networks_of(request):
+    """The networks and counters of every generation, selected or only mutated."""
+    history = request.getfixturevalue(request.param)
+    return [(networks, counters) for networks, _, _, counters, *_ in history]
+
+
 @pytest.fixture(scope="module")
 def rules(history, settings, shrinking, grown):
     return settings if history is grown else shrinking
 
 
-def test_no_network_ever_holds_a_cycle_or_joins_two_nodes_twice(history, each):
-    for networks, *_ in history:
+def test_no_network_ever_holds_a_cycle_or_joins_two_nodes_twice(networks_of, each):
+    for networks, _ in networks_of:
         for network in each(networks):
             n, c = network.node_used.sum(), network.connection_used.sum()
             joined = np.zeros((n, n), int)
@@ -35,8 +43,8 @@ def test_no_network_ever_holds_a_cycle_or_joins_two_nodes_twice(history, each):
             assert not np.linalg.matrix_power(joined, n).any()
 
 
-def test_rows_stay_canonical(history, each):
-    for networks, _, _, counters, *_ in history:
+def test_rows_stay_canonical(networks_of, each):
+    for networks, counters in networks_of:
         for network in each(networks):
             for used, number, end in (
                 (network.node_used, network.node_id, counters.node),
@@ -53,9 +61,9 @@ def test_rows_stay_canonical(history, each):
             assert not network.enabled[c:].any()
 
 
-def test_a_number_means_the_same_ends_for_ever(history, each, genes_of):
+def test_a_number_means_the_same_ends_for_ever(networks_of, each, genes_of):
     ends = {}
-    for networks, *_ in history:
+    for networks, _ in networks_of:
         for network in each(networks):
             for number, gene in genes_of(network)[1].items():
                 assert ends.setdefault(number, gene[:2]) == gene[:2]
@@ -189,7 +197,7 @@ def test_a_population_without_any_finite_fitness_stays(grown, advance, settings,
     assert after.innovation == counters.innovation
 
 
-def test_what_dead_rows_of_species_hold_does_not_matter(grown, advance, settings):
+def test_representatives_of_extinct_species_do_not_matter(grown, advance, settings):
     networks, fitness, species, counters, *_ = next(
         now for now in grown[:-1] if not now[2].alive.all()
     )
@@ -200,9 +208,7 @@ def test_what_dead_rows_of_species_hold_does_not_matter(grown, advance, settings
 
     other = jax.tree.map(scrambled, species.representatives)
     species = jax.tree.map(jnp.asarray, species)
-    changed = neat.Species(
-        **{**vars(species), "representatives": jax.tree.map(jnp.asarray, other)}
-    )
+    changed = replace(species, representatives=jax.tree.map(jnp.asarray, other))
     results = [
         advance(settings)(
             *jax.tree.map(jnp.asarray, (networks, fitness, one, counters)),
@@ -216,10 +222,9 @@ def test_what_dead_rows_of_species_hold_does_not_matter(grown, advance, settings
 
 
 def test_shared_fitness_allots_children_by_the_mean_of_each_species(settings):
-    """Two species of 2 and 4 with means 3 and 1 get three quarters and one quarter."""
     species = _two_species(settings)
     fitness = jnp.array([2.0, 4.0, 1.0, 1.0, 0.5, 1.5])
-    now = offspring.standing(species, fitness)
+    now = offspring.ranking(species, fitness)
     share = offspring.shares(species.alive, fitness, species, now, settings)
     np.testing.assert_allclose(share, [0.75, 0.25, 0.0], rtol=1e-6)
 
@@ -228,7 +233,7 @@ def test_a_species_that_does_not_improve_has_no_children_but_the_best_has(settin
     species = _two_species(settings)
     fitness = jnp.array([2.0, 4.0, 1.0, 1.0, 0.5, 1.5])
     for generation, expected in ((3, [True, True]), (4, [True, False])):
-        now = offspring.standing(species, fitness)
+        now = offspring.ranking(species, fitness)
         noted = offspring.recorded(species, now, jnp.asarray(0))
         able, _ = offspring.allowed(noted, now, settings, jnp.asarray(generation))
         np.testing.assert_array_equal(able[:2], expected)
@@ -264,12 +269,10 @@ def _two_species(settings):
     keys = jax.random.split(jax.random.key(0), 6)
     networks = jax.vmap(lambda k: neat.minimal(k, INPUTS, OUTPUTS, 8, 12))(keys)
     empty = division.no_species(networks, 3, settings.threshold)
-    return neat.Species(
-        **{
-            **vars(empty),
-            "alive": jnp.array([True, True, False]),
-            "number": jnp.array([0, 1, -1]),
-            "members": jnp.array([2, 4, 0]),
-            "of": jnp.array([0, 0, 1, 1, 1, 1]),
-        }
+    return replace(
+        empty,
+        alive=jnp.array([True, True, False]),
+        number=jnp.array([0, 1, -1]),
+        members=jnp.array([2, 4, 0]),
+        of=jnp.array([0, 0, 1, 1, 1, 1]),
     )

@@ -1,9 +1,11 @@
-"""Loading of plug-in modules: declarations and errors."""
+"""Plug-in modules: declarations, errors and commands."""
 
 import importlib.util
+import json
 import os
 import sys
 from hashlib import sha256
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -24,8 +26,6 @@ def none_before(monkeypatch):
 
 @pytest.fixture
 def write(tmp_path):
-    """A function that writes a module's file."""
-
     def write(text, name="mine.py"):
         (tmp_path / name).write_text(text)
         return tmp_path / name
@@ -54,7 +54,7 @@ def test_a_file_that_is_loaded_again_takes_the_place_of_what_it_was(write):
         plugins.find(("fitness",), "mine.far", first.source)
 
 
-def test_what_runs_is_what_the_hash_is_of_though_the_clock_stood_still(write, monkeypatch):
+def test_a_module_changed_within_a_second_is_loaded_anew(write, monkeypatch):
     """Python would take what it compiled of a file of the same size and second."""
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     for value in ("1", "2"):
@@ -103,7 +103,7 @@ def test_a_file_that_broke_leaves_what_was_loaded_of_it(write):
         (HEAD + '@plugins.encoding("e", title="E")\ndef e(g, c): ...', "must be at least 1"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_with_a_module_is_said_and_ends_nobody(write, text, words):
+def test_a_module_with_a_mistake_is_reported_and_others_load(write, text, words):
     file = write(text)
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         plugins.load(file)
@@ -122,7 +122,7 @@ def test_two_modules_of_one_name_are_refused(write, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["mine.txt", "none.py"])
-def test_what_is_no_python_file_is_refused(write, name):
+def test_a_file_that_is_not_python_is_refused(write, name):
     write(ONE, "mine.txt")
     with pytest.raises(ValueError, match="must be a Python file"):
         plugins.load(name)
@@ -163,3 +163,28 @@ def test_errors_of_a_function_are_named_as_its_own(write):
         plugins.Broken, match=r"mine\.far .*, line 5\) failed with AttributeError"
     ):
         plugins.find(("fitness",), "mine.far", one.source)(7, settings={})
+
+
+EXAMPLE = str(Path(__file__).parents[3] / "examples" / "plugin_task.py")
+
+
+def test_the_declarations_of_a_module_are_listed_with_its_version(invoke):
+    text = invoke("plugins", "--module", EXAMPLE)
+    assert "plugin_task.straight fitness Straight way in cells (" in text
+    assert "plugin_task.cross body A cross (" in text
+
+
+@pytest.mark.parametrize("command", ["evolve", "replay", "audit", "refine", "gradient"])
+def test_a_module_that_is_none_ends_a_command_with_the_reason(command, invoke, tmp_path):
+    (tmp_path / "file.json").write_text("{}")
+    (tmp_path / "bad.py").write_text("1 / 0")
+    text = invoke(command, tmp_path / "file.json", "--module", tmp_path / "bad.py", code=2)
+    assert "ZeroDivisionError: division by zero" in text
+
+
+def test_a_spec_that_needs_a_module_says_which_option_gives_it(invoke, tmp_path):
+    spec = {"experiment": "quality-diversity", "task": {"fitness": "plugin_task.straight"}}
+    (tmp_path / "spec.json").write_text(json.dumps(spec))
+    text = invoke("evolve", tmp_path / "spec.json", code=2)
+    assert "`fitness` must be known, got 'plugin_task.straight': none is loaded" in text
+    assert "--module" in text

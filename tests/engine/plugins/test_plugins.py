@@ -98,7 +98,6 @@ def module(tmp_path_factory):
 
 @pytest.fixture(autouse=True)
 def loaded(module, monkeypatch):
-    """The module is loaded, and forgotten after the test."""
     monkeypatch.setattr(registry, "_plugins", {})
     return plugins.load(module)
 
@@ -110,7 +109,6 @@ def away(monkeypatch):
 
 @pytest.fixture(scope="module")
 def course(module):
-    """A whole run: its experiment, its last state and its reports."""
     before, registry._plugins = registry._plugins, {}
     plugins.load(module)
     experiment = build(parse(SPEC))
@@ -138,7 +136,7 @@ def test_a_spec_says_the_version_and_all_settings_of_what_it_names(loaded):
 
 
 @pytest.mark.fast
-def test_what_a_spec_says_can_be_read_where_nobody_can_carry_it_out(away):
+def test_a_spec_can_be_read_without_its_module(away):
     chosen = parse(SPEC)
     away()
     again = parse(chosen.model_dump(mode="json"))
@@ -166,7 +164,7 @@ def test_what_a_spec_says_can_be_read_where_nobody_can_carry_it_out(away):
         ("control", {"encoding": "extra.stick"}, "`encoding` must be known"),
     ],
 )
-def test_what_cannot_be_is_refused_with_the_reason(part, value, words):
+def test_a_spec_that_does_not_fit_its_module_is_refused(part, value, words):
     with pytest.raises(ValidationError) as refused:
         parse({**SPEC, part: value})
     assert words in str(refused.value)
@@ -215,7 +213,7 @@ def test_a_creature_says_what_it_needs_and_repeats_bit_for_bit(course, away):
         check(file)
 
 
-def test_who_only_lacks_measures_can_still_be_watched(course, module, monkeypatch):
+def test_a_creature_is_replayed_without_its_measures(course, module, monkeypatch):
     experiment, state, _ = course
     file = experiment.best(state)
     kept = {key: one for key, one in registry._plugins.items() if key[0] == "encoding"}
@@ -233,7 +231,9 @@ def test_who_only_lacks_measures_can_still_be_watched(course, module, monkeypatc
 def test_a_measure_that_is_no_number_is_refused_by_name():
     axes = {"descriptors": [{"name": "extra.broken", "bins": 2}]}
     experiment = build(parse({**SPEC, "archive": axes}))
-    with pytest.raises(plugins.Broken, match=r"extra\.broken must give one number, got shape"):
+    with pytest.raises(
+        plugins.Broken, match=r"extra\.broken must return one number, got shape"
+    ):
         experiment.advance(experiment.init())
 
 

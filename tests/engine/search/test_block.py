@@ -20,21 +20,29 @@ def bits(devices: int, tmp_path: Path) -> dict[str, str]:
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory):
-    """What one and three host devices found, then one again after a restart."""
-    cache = tmp_path_factory.mktemp("cache")
+def cache(tmp_path_factory):
+    return tmp_path_factory.mktemp("cache")
+
+
+@pytest.fixture(scope="module")
+def runs(cache):
     # Of three devices one has two of the four blocks: they need not share evenly.
-    return [bits(devices, cache) for devices in (1, 3, 1)]
+    return [bits(devices, cache) for devices in (1, 3)]
 
 
 def test_slots_and_neighbours_make_no_difference(runs):
     for run in runs:
-        assert run["slot 0"] == run["slot 15"] == run["among others"] == run["alone"]
+        assert run["first slot"] == run["last slot"] == run["among others"] == run["alone"]
 
 
-def test_the_number_of_devices_and_a_restart_make_no_difference(runs):
-    assert runs[0] == runs[1] == runs[2]
+def test_the_number_of_devices_makes_no_difference(runs):
+    assert runs[0] == runs[1]
 
 
-def test_all_devices_take_part(runs):
+@pytest.mark.long
+def test_a_restart_makes_no_difference(runs, cache):
+    assert bits(1, cache) == runs[0]
+
+
+def test_all_creatures_differ(runs):
     assert all(len(set(run["batch"])) == len(run["batch"]) for run in runs)

@@ -1,4 +1,6 @@
-"""Where children come from: what each emitter draws, and from whom."""
+"""Emitters: their offspring and parents, and the evolution strategy of CMA-MAE."""
+
+from dataclasses import replace
 
 import jax
 import jax.numpy as jnp
@@ -8,6 +10,7 @@ import pytest
 from microcosmos import neat, search
 from microcosmos.genomes import Vector, minimal
 from microcosmos.search import emitters
+from microcosmos.search.emitters import matrix_adaptation as es
 
 SLOTS, GENES = 2000, 3
 
@@ -33,9 +36,7 @@ def archive():
         )
         occupied = empty.occupied.at[place].set(True)
         fitness = empty.fitness.at[place].set(jnp.arange(len(cells), dtype=jnp.float32))
-        return search.Elites(
-            **{**vars(empty), "genotypes": whole, "occupied": occupied, "fitness": fitness}
-        )
+        return replace(empty, genotypes=whole, occupied=occupied, fitness=fitness)
 
     return make
 
@@ -95,16 +96,16 @@ def test_so_many_children_have_two_parents_as_was_asked_for(archive, crossover):
     assert int(counters.innovation) > 6
 
 
-def test_where_nobody_lives_all_children_are_newcomers(archive):
+def test_all_children_of_an_empty_archive_are_newcomers(archive):
     nobody = archive(Vector(jnp.zeros((1, GENES))), [0])
-    nobody = search.Elites(**{**vars(nobody), "occupied": jnp.zeros(5, bool)})
+    nobody = replace(nobody, occupied=jnp.zeros(5, bool))
     children, _ = emitted(emitters.IsoLine(64, lambda *, key: vector(key), 0.1, 0.2), nobody)
     assert (np.asarray(children.parents) == search.NO_PARENT).all()
     assert (np.asarray(children.operator) == search.OPERATORS.index("random")).all()
     assert len(np.unique(children.genotypes.values, axis=0)) == 64
 
 
-def test_each_emitter_is_told_of_its_own_children_alone(archive):
+def test_each_emitter_is_told_of_its_own_children_alone(outcome_of):
     class Listener:
         slots = 2
 
@@ -117,16 +118,135 @@ def test_each_emitter_is_told_of_its_own_children_alone(archive):
         def tell(self, state, outcome):
             return outcome.fitness
 
-    nobody = jnp.zeros(4, jnp.int32)
-    outcome = search.Outcome(
-        genotypes=Vector(jnp.zeros((4, GENES))),
-        fitness=jnp.arange(4.0),
-        measures=jnp.zeros((4, 1)),
-        sound=nobody == 0,
-        cell=nobody,
-        entered=nobody == 0,
-        fresh=nobody == 0,
-        improvement=jnp.zeros(4),
-    )
+    outcome = outcome_of(Vector(jnp.zeros((4, GENES))), jnp.arange(4.0))
     told = search.emitters.tell((Listener(), Listener()), (None, None), outcome)
     assert [x.tolist() for x in told] == [[0.0, 1.0], [2.0, 3.0]]
+
+
+def minimise(function, start, children, generations, sigma=0.3, seed=0):
+    strategy = es.Strategy(len(start), children)
+
+    def generation(distribution, key):
+        values, z = es.draw(distribution, keys=jax.random.split(key, children))
+        found = jax.vmap(function)(values)
+        order = jnp.argsort(found)
+        return es.update(distribution, z, order, strategy), jnp.min(found)
+
+    keys = jax.random.split(jax.random.key(seed), generations)
+    return jax.lax.scan(generation, es.start(jnp.asarray(start), sigma), keys)
+
+
+def test_a_sphere_is_descended_at_the_rate_of_the_method(float64):
+    # log-linear; Hansen (2016, fig. 5) needs some 1,500 evaluations for 1e-9 in 10 dimensions.
+    _, best = minimise(lambda x: jnp.sum(x * x), np.full(10, 0.5), 10, 200)
+    assert best.min() < 1e-9
+
+
+def test_an_ellipsoid_of_condition_a_million_is_learnt(float64):
+    scales = 10.0 ** (6 * np.arange(8) / 7)
+    end, best = minimise(lambda x: jnp.sum(scales * x * x), np.full(8, 0.5), 10, 800)
+    assert best.min() < 1e-8
+    # M Mᵀ has become the inverse Hessian, up to a factor.
+    covariance = np.asarray(end.m @ end.m.T)
+    levels = np.diag(covariance) * scales
+    assert levels.max() / levels.min() < 30
+
+
+def test_turning_the_problem_turns_the_search(float64):
+    scales, start = 10.0 ** np.arange(4), np.array([0.5, -0.3, 0.2, 0.1])
+    turn = np.linalg.qr(np.random.default_rng(0).normal(size=(4, 4)))[0]
+    strategy = es.Strategy(4, 8)
+    straight, turned = (
+        es.start(jnp.asarray(start), 0.3),
+        es.start(jnp.asarray(turn @ start), 0.3),
+    )
+    for z in jnp.asarray(np.random.default_rng(3).normal(size=(30, 8, 4))):
+        values = straight.mean[None] + straight.sigma * z @ straight.m.T
+        order = jnp.argsort(jnp.sum(scales[None] * values**2, 1))
+        straight = es.update(straight, z, order, strategy)
+        z = z @ turn.T
+        values = turned.mean[None] + turned.sigma * z @ turned.m.T
+        order = jnp.argsort(jnp.sum(scales[None] * (values @ turn) ** 2, 1))
+        turned = es.update(turned, z, order, strategy)
+    np.testing.assert_allclose(turned.mean, turn @ straight.mean, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(turned.sigma, straight.sigma, rtol=1e-9)
+
+
+def test_weights_are_of_the_better_half_and_sum_to_one():
+    for children in (1, 2, 3, 10, 64):
+        weights = es.Strategy(5, children).weights
+        assert weights.sum() == pytest.approx(1)
+        assert (np.diff(weights) <= 0).all()
+        assert len(weights) == max(1, children // 2)
+
+
+@pytest.fixture
+def emitter():
+    def make(**changes):
+        options = {"cells": 4, "step": 0.2, "learning_rate": 0.3, "threshold": 1.0}
+        newcomer = lambda *, key: Vector(jnp.zeros(2))  # noqa: E731
+        return emitters.CmaMae(slots=6, newcomer=newcomer, **(options | changes))
+
+    return make
+
+
+@pytest.fixture
+def told(outcome_of):
+    """A function that gives an emitter's state after an outcome of six children."""
+
+    def tell(emitter, fitness, cell, sound=(True,) * 6, **changes):
+        state = emitter.init(key=jax.random.key(0))
+        z = jax.random.normal(jax.random.key(1), (6, 2))
+        sound = jnp.asarray(sound)
+        flags = {"sound": sound, "entered": sound, "fresh": sound}
+        place = jnp.where(sound, jnp.asarray(cell), 4)
+        outcome = outcome_of(Vector(jnp.zeros((6, 2))), fitness, cell=place, **flags)
+        return emitter.tell(replace(state, **{"z": z} | changes), outcome)
+
+    return tell
+
+
+def test_thresholds_follow_what_was_found_above_them(emitter, told):
+    found = told(emitter(), [2.0, 2.0, 2.0, 0.5, 3.0, 4.0], [0, 0, 0, 0, 1, 2])
+    # One after another, t ← t + 0.3 (f − t), which for equal fitness is the batch's rule.
+    first = 1.0
+    for _ in range(3):
+        first += 0.3 * (2.0 - first)
+    expected = [first, 1 + 0.3 * 2, 1 + 0.3 * 3, 1.0]
+    np.testing.assert_allclose(found.thresholds, expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("rate", "expected"), [(0.0, 1.0), (1.0, 2.5)])
+def test_a_threshold_stays_or_is_replaced_at_the_ends_of_the_rate(
+    emitter, told, rate, expected
+):
+    found = told(emitter(learning_rate=rate), [2.0, 3.0, 0.0, 0.0, 0.0, 0.0], [0] * 6)
+    np.testing.assert_allclose(found.thresholds, [expected, 1, 1, 1])
+
+
+def test_diverged_children_rank_last_and_move_no_threshold(emitter, told):
+    fitness = [np.nan, np.inf, 3.0, 2.0, 1.5, 1.2]
+    sound = [False, False, True, True, True, True]
+    found = told(emitter(), fitness, [0, 0, 1, 1, 2, 3], sound=sound)
+    assert np.isfinite(found.thresholds).all()
+    assert np.isfinite(found.distribution.mean).all()
+    assert found.thresholds[0] == 1.0
+
+
+def test_a_spent_distribution_begins_anew_at_an_elite(emitter, told):
+    chosen = emitter()
+    state = chosen.init(key=jax.random.key(0))
+    spent = replace(state.distribution, sigma=jnp.float32(1e-30), mean=jnp.full(2, 0.5))
+    assert es.spent(spent)
+    after = told(chosen, np.arange(6.0), [0] * 6, z=state.z, distribution=spent)
+    assert after.restart
+    archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))
+    elite = archive.genotypes.values.at[2].set(jnp.asarray([0.7, -0.1]))
+    archive = replace(
+        archive, occupied=archive.occupied.at[2].set(True), genotypes=Vector(elite)
+    )
+    keys, counters = jax.random.split(jax.random.key(0), 6), neat.first_counters(1, 1)
+    children, again, _ = chosen.emit(after, archive, counters, keys=keys)
+    np.testing.assert_allclose(again.distribution.mean, [0.7, -0.1], rtol=1e-6)
+    assert not again.restart
+    assert np.abs(children.genotypes.values).max() <= 1

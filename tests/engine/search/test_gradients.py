@@ -14,8 +14,7 @@ from microcosmos.search import gradients
 STEPS = 200
 OF = ("fitness", "path_length", "bending_effort", "stretching_effort", "power", "symmetry")
 SIZES = (1e-3, 1e-4, 1e-5, 1e-6)
-"""Of finite differences; the best counts: stiffnesses matter little, a path's length bends
-sharply near rest."""
+"""Steps of finite differences; the best counts: a path's length bends sharply near rest."""
 
 CONTROLS = {
     "cppn": {"period": 50, "angle_scale": 0.1, "length_scale": 0.05},
@@ -23,7 +22,7 @@ CONTROLS = {
 }
 
 
-@pytest.fixture(params=CONTROLS)
+@pytest.fixture(params=["cppn", pytest.param("direct", marks=pytest.mark.long)])
 def creature(request, float64):
     """A small swimmer of each encoding in double precision, no limit acting."""
     scene = spec.Scene.model_validate(
@@ -64,7 +63,7 @@ def test_derivatives_by_every_part_are_those_of_finite_differences(creature):
             assert np.abs(slope[0]) > 1e-6, name
 
 
-def test_what_cannot_be_differentiated_is_refused():
+def test_measures_and_genes_without_derivatives_are_refused():
     task = build_task(spec.Scene())
     genotype = task.encoding.newcomer(key=jax.random.key(0))
     with pytest.raises(ValueError, match=r"`by` must be of .*, got colour"):

@@ -1,4 +1,4 @@
-"""Emitters that learn by slopes, on functions whose slopes are known."""
+"""Emitters that learn by gradients, and Adam."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ import pytest
 
 from microcosmos import neat, search
 from microcosmos.genomes import Vector, minimal
-from microcosmos.search import emitters
+from microcosmos.search import adam, emitters
 from microcosmos.search.gradients import CONSTANT, genes_of
 from microcosmos.spec.emitters import WITHOUT_GRADIENT
 
@@ -29,20 +29,6 @@ def archive(genotype, occupied):
     none = search.no_elites(CELLS, len(search.MEASURES), genotype)
     first = jax.tree.map(lambda x, one: x.at[0].set(one), none.genotypes, genotype)
     return replace(none, occupied=none.occupied.at[0].set(occupied), genotypes=first)
-
-
-def outcome(children, fitness, entered):
-    fitness = jnp.asarray(fitness)
-    return search.Outcome(
-        genotypes=children.genotypes,
-        fitness=fitness,
-        measures=jnp.zeros((SLOTS, len(search.MEASURES))),
-        sound=jnp.isfinite(fitness),
-        cell=jnp.zeros(SLOTS, jnp.int32),
-        entered=jnp.asarray(entered),
-        fresh=jnp.zeros(SLOTS, bool),
-        improvement=fitness,
-    )
 
 
 def emitted(emitter, state, elites):
@@ -66,7 +52,7 @@ def test_children_of_cma_mega_are_theta_and_combinations_of_unit_slopes():
     assert (state.weights[:, 0] >= 0).all()
 
 
-def test_cma_mega_begins_with_newcomers_and_then_at_an_elite():
+def test_cma_mega_begins_with_newcomers_and_then_at_an_elite(outcome_of):
     emitter = mega()
     nobody = archive(Vector(jnp.zeros(GENES)), False)
     children, state = emitted(emitter, emitter.init(key=KEYS[0]), nobody)
@@ -74,12 +60,12 @@ def test_cma_mega_begins_with_newcomers_and_then_at_an_elite():
     children, state = emitter.learn(state, children, slopes(np.ones((3, GENES))))
     np.testing.assert_array_equal(children.genotypes.values, first)
     assert not children.operator.any()
-    state = emitter.tell(state, outcome(children, np.zeros(SLOTS), [True] * SLOTS))
+    state = emitter.tell(state, outcome_of(children.genotypes, np.zeros(SLOTS)))
     _, state = emitted(emitter, state, archive(Vector(jnp.full(GENES, 0.3)), True))
     np.testing.assert_allclose(state.theta, 0.3)
 
 
-def test_cma_mega_climbs_a_sphere():
+def test_cma_mega_climbs_a_sphere(outcome_of):
     emitter, top = mega(step=0.2), np.linspace(-0.5, 0.5, GENES)
     state = emitter.init(key=KEYS[0])
     elites = archive(Vector(jnp.zeros(GENES)), True)
@@ -92,20 +78,26 @@ def test_cma_mega_climbs_a_sphere():
         children, state = emitter.learn(state, children, slopes(rows))
         values = np.asarray(children.genotypes.values)
         fitness = -np.sum((values - top) ** 2, 1)
-        state = emitter.tell(state, outcome(children, fitness, fitness > best))
+        state = emitter.tell(
+            state, outcome_of(children.genotypes, fitness, entered=jnp.asarray(fitness > best))
+        )
         best = max(best, fitness.max())
         # Without this a step that overshoots would begin anew at the middle for ever.
         elites = archive(Vector(jnp.asarray(values[np.argmax(fitness)])), True)
     assert best > -0.02 * np.sum(top**2)
 
 
-def test_cma_mega_begins_anew_where_nothing_enters_and_stays_where_slopes_are_unsound():
+def test_cma_mega_begins_anew_where_nothing_enters_and_stays_where_slopes_are_unsound(
+    outcome_of,
+):
     emitter = mega()
     elites = archive(Vector(jnp.full(GENES, 0.2)), True)
     children, state = emitted(emitter, emitter.init(key=KEYS[0]), elites)
     children, state = emitter.learn(state, children, slopes(np.ones((3, GENES)), sound=False))
     np.testing.assert_allclose(children.genotypes.values, 0.2, atol=1e-7)
-    state = emitter.tell(state, outcome(children, np.zeros(SLOTS), [False] * SLOTS))
+    state = emitter.tell(
+        state, outcome_of(children.genotypes, np.zeros(SLOTS), entered=jnp.zeros(SLOTS, bool))
+    )
     assert state.restart
 
 
@@ -145,3 +137,37 @@ def test_both_are_learners_and_plain_neat_is_not(lamarckian):
 
 def test_the_spec_knows_which_measures_have_no_slope():
     assert set(WITHOUT_GRADIENT) == set(CONSTANT)
+
+
+def test_the_first_step_is_as_long_as_the_rate_whatever_the_slope(float64):
+    slope = jnp.asarray([1e-3, -5.0, 200.0])
+    change, _ = adam.descend(adam.begin(slope), slope, 0.04)
+    np.testing.assert_allclose(change, [-0.04, 0.04, -0.04], rtol=1e-4)
+
+
+def test_a_slope_that_stays_is_followed_at_the_rate(float64):
+    slope, state = jnp.asarray([0.3]), adam.begin(jnp.zeros(1))
+    for _ in range(50):
+        change, state = adam.descend(state, slope, 0.1)
+        np.testing.assert_allclose(change, [-0.1], rtol=1e-6)
+    assert state.count == 50
+
+
+def test_means_are_those_of_the_paper(float64):
+    slopes = np.random.default_rng(0).normal(size=(7, 4))
+    state = adam.begin(jnp.zeros(4))
+    for slope in slopes:
+        change, state = adam.descend(state, jnp.asarray(slope), 0.01)
+    weights = 0.9 ** np.arange(6, -1, -1), 0.999 ** np.arange(6, -1, -1)
+    mean = weights[0] @ slopes / weights[0].sum()
+    square = weights[1] @ slopes**2 / weights[1].sum()
+    np.testing.assert_allclose(change, -0.01 * mean / (np.sqrt(square) + 1e-8), rtol=1e-9)
+
+
+def test_adam_finds_the_minimum_of_an_ill_conditioned_square(float64):
+    scale, at = jnp.asarray([1.0, 100.0]), jnp.asarray([3.0, -2.0])
+    state = adam.begin(at)
+    for _ in range(800):
+        change, state = adam.descend(state, 2 * scale * at, 0.05)
+        at = at + change
+    assert np.abs(at).max() < 1e-2

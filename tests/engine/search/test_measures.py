@@ -40,7 +40,7 @@ def test_a_wave_along_the_body_is_not_symmetric(float64):
 
 
 @pytest.mark.fast
-def test_what_is_absent_counts_nowhere(float64):
+def test_absent_joints_do_not_count(float64):
     random = np.random.default_rng(1)
     bent = random.normal(size=(30, 5))
     wide = np.concatenate([bent, np.zeros((30, 3))], 1)
@@ -113,7 +113,6 @@ def test_measures_are_what_numpy_makes_of_the_states(swum):
 
 
 def test_power_is_what_the_fluid_gains_and_dissipates(swum):
-    """Swimming against a viscous fluid costs work: it is positive on the whole."""
     _, _, _, measures, values = swum
     assert values["power"] == pytest.approx(float(np.mean(measures.power)))
     assert values["power"] > 0

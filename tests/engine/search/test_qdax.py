@@ -35,7 +35,6 @@ def lenient():
 
 
 def filled(cells, count=40):
-    """An archive with some elites, vectors with their measures."""
     random = np.random.default_rng(3)
     measures = random.uniform(0.02, 1.0, (count, 3))
     rows = search.Elites(
@@ -117,7 +116,6 @@ def test_their_map_elites_runs_on_our_scores_and_what_diverged_never_enters():
 
 
 def looped(generations, emitter, archive, state, begin=0):
-    """Our loop on the stand-in."""
     for number in range(begin, begin + generations):
         children, (state,), _ = search.emitters.emit(
             (emitter,),

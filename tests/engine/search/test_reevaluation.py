@@ -1,4 +1,4 @@
-"""Disturbed conditions are the world's symmetries, or what they say; repeats add up."""
+"""Repeated, disturbed and displaced evaluations."""
 
 from dataclasses import replace
 
@@ -7,8 +7,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import neat, search
+from microcosmos import neat, search, spec
 from microcosmos.build import build_task
+from microcosmos.genomes import Vector
 from microcosmos.search import reevaluation
 from microcosmos.search.reevaluation import Disturbance
 from microcosmos.spec import Chain, Control, Energy, Scene, Task, World
@@ -28,10 +29,14 @@ def task():
 
 
 @pytest.fixture(scope="module")
-def network():
-    made = neat.minimal(jax.random.key(5), 4, 2, 12, 16)
+def sensing():
+    return neat.minimal(jax.random.key(5), 4, 2, 12, 16)
+
+
+@pytest.fixture(scope="module")
+def network(sensing):
     # Energy has no weight: elsewhere it must not change the motion.
-    return replace(made, weight=jnp.where(made.source == 3, 0.0, made.weight))
+    return replace(sensing, weight=jnp.where(sensing.source == 3, 0.0, sensing.weight))
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +102,7 @@ def test_a_factor_of_viscosity_is_that_viscosity(disturbed, task, network):
     agree(disturbed(viscosity=1.05), expected)
 
 
-def test_what_is_drawn_stays_within_the_spread():
+def test_disturbances_stay_within_the_spread():
     spread = reevaluation.Spread(viscosity=0.05)
     keys = jax.random.split(jax.random.key(0), 4000)
     drawn = jax.vmap(lambda key: reevaluation.disturbance(spread, (30, 20), key=key))(keys)
@@ -110,3 +115,135 @@ def test_what_is_drawn_stays_within_the_spread():
     assert (none.phase, none.turn, none.viscosity) == (0, 0, 1)
     assert not none.shift.any()
     assert not none.energy.any()
+
+
+CELLS = 4
+
+
+@pytest.fixture
+def found():
+    def make(fitness, measure, status=(0, 0, 0, 0)):
+        return search.Evaluation(
+            jnp.asarray(fitness, jnp.float32),
+            jnp.asarray(measure, jnp.float32)[:, None],
+            jnp.asarray(status),
+        )
+
+    return make
+
+
+@pytest.fixture
+def repeated(one_axis, found):
+    """A function that adds evaluations, each given as `found` takes it, to no repeats."""
+    add = jax.jit(reevaluation.add)
+
+    def total(*evaluations, done=(True, True, True, True)):
+        repeats = reevaluation.no_repeats(CELLS, 1)
+        for given in evaluations:
+            repeats = add(repeats, jnp.asarray(done), found(*given), one_axis(CELLS))
+        return repeats
+
+    return total
+
+
+def test_means_and_spreads_are_those_of_all_samples(repeated):
+    random = np.random.default_rng(0)
+    samples = random.normal(2.0, 1.0, (20, CELLS)).astype(np.float32)
+    repeats = repeated(*((row, row / 8) for row in samples), done=(True, True, True, False))
+    assert repeats.count.tolist() == [20, 20, 20, 0]
+    np.testing.assert_allclose(repeats.fitness[:3], samples.mean(0)[:3], rtol=1e-5)
+    spread = np.sqrt(np.asarray(repeats.squares)[:3] / 19)
+    np.testing.assert_allclose(spread, samples.std(0, ddof=1)[:3], rtol=1e-5)
+    assert repeats.fitness[3] == 0
+
+
+def test_diverged_repeats_are_counted_and_in_no_mean(repeated):
+    bad = [np.nan, np.inf, 3.0, 1.0], [np.nan, np.inf, 0.3, 0.1], (1, 1, 0, 0)
+    repeats = repeated(([1.0, 1, 1, 1], [0.1] * 4), bad)
+    assert repeats.failed.tolist() == [1, 1, 0, 0]
+    np.testing.assert_allclose(repeats.fitness, [1, 1, 2, 1])
+    np.testing.assert_allclose(repeats.measures[:, 0], [0.1, 0.1, 0.2, 0.1], rtol=1e-6)
+
+
+def test_a_hit_is_a_repeat_in_the_elites_own_cell(repeated):
+    measures = [0.1, 0.3, 0.6, 0.9], [0.1, 0.1, 0.6, 0.6]
+    assert repeated(*(([1.0] * 4, row) for row in measures)).hits.tolist() == [2, 1, 2, 1]
+
+
+def test_a_new_elite_has_no_repeats(repeated):
+    repeats = repeated(([1.0, 2, 3, 4], [0.1] * 4))
+    entered = jnp.asarray([True, False])
+    repeats = reevaluation.forget(repeats, jnp.asarray([2, 0]), entered)
+    assert repeats.count.tolist() == [1, 1, 0, 1]
+    assert repeats.fitness.tolist() == [1, 2, 0, 4]
+
+
+def test_the_corrected_archive_holds_the_best_mean_of_each_cell(repeated, one_axis):
+    # The elites of cells 0 and 1 belong in cell 2, where one of them is better.
+    values = [5.0, 4.0, 1.0, 9.0], [0.6, 0.6, 0.6, 0.1]
+    repeats = repeated(values, done=(True, True, True, False))
+    elites = search.no_elites(CELLS, 1, Vector(jnp.zeros(1)))
+    elites = replace(elites, occupied=jnp.ones(CELLS, bool))
+    corrected = reevaluation.corrected(elites, repeats, one_axis(CELLS))
+    np.testing.assert_array_equal(corrected, [np.nan, np.nan, 5.0, np.nan])
+
+
+PLACE = {"width": 24, "height": 24, "energy": {"packets": 2, "width": 2.0, "placements": 3}}
+ENERGY = search.MEASURES.index("energy")
+
+
+@pytest.fixture(scope="module")
+def foraging():
+    scene = spec.Scene.model_validate(
+        {
+            "world": PLACE,
+            "body": {"nodes": 8},
+            "control": {"period": 20, "sense_energy": True, "angle_scale": 0.3},
+            "task": {"steps": 20, "fitness": "displacement+energy", "energy_weight": 0.5},
+        }
+    )
+    return build_task(scene, room=(12, 16))
+
+
+def moved(task, shift):
+    energy = jnp.roll(task.start.energy, shift, (0, 1))
+    return replace(task, start=replace(task.start, energy=energy), placements=None)
+
+
+def test_measures_are_means_over_all_placements(foraging, sensing):
+    task, network = foraging, sensing
+    found = jax.jit(lambda: search.evaluate(task, network))()
+    one = jax.jit(lambda shift: search.evaluate(moved(task, shift), network))
+    each = [one(shift) for shift in task.placements]
+    measures = np.mean([e.measures for e in each], 0)
+    np.testing.assert_allclose(found.measures, measures, rtol=1e-5, atol=1e-7)
+    np.testing.assert_allclose(found.fitness, np.mean([e.fitness for e in each]), rtol=1e-5)
+    assert np.ptp([e.measures[ENERGY] for e in each]) > 0.01
+
+
+def test_the_first_placement_is_the_world_as_it_is_and_all_differ(foraging):
+    assert not foraging.placements[0].any()
+    assert len({tuple(shift.tolist()) for shift in foraging.placements}) == 3
+
+
+def test_a_simulation_that_fails_in_one_world_fails(foraging, sensing):
+    broken = replace(sensing, weight=sensing.weight.at[0].set(jnp.nan))
+    assert jax.jit(lambda: search.evaluate(foraging, broken).status)() == 1
+
+
+def test_gradients_are_of_the_mean(foraging, sensing, float64):
+    task, network = jax.tree.map(
+        lambda x: x.astype(float64) if jnp.issubdtype(x.dtype, jnp.floating) else x,
+        (foraging, sensing),
+    )
+    values = search.gradients.parts(task, network, ("genes",))
+    whole = jax.jit(lambda v: search.gradients.measures(task, network, v, ("energy",)))
+    one = jax.jit(
+        lambda v, shift: search.gradients.measures(moved(task, shift), network, v, ("energy",))
+    )
+    each = [one(values, shift)[0] for shift in task.placements]
+    np.testing.assert_allclose(whole(values)[0], np.mean(each), rtol=1e-10)
+
+
+def test_a_task_of_one_placement_has_no_axis_of_placements():
+    assert build_task(spec.Scene(world=spec.World(energy=spec.Energy()))).placements is None

@@ -1,10 +1,11 @@
-"""The reference of all fields is complete, and is the one that is there to be read."""
+"""Every field of every experiment is documented, and the committed reference is current."""
 
 from pathlib import Path
 
 import pytest
 
 from microcosmos.spec.experiments import EXPERIMENTS
+from microcosmos.spec.measures import MEASURES
 from microcosmos.spec.reference.document import reference
 from microcosmos.spec.reference.fields import experiment, parts
 
@@ -67,3 +68,17 @@ def test_every_part_that_a_field_links_to_is_there():
         for field in part.fields:
             for link in field.kind.split("[")[1:]:
                 assert link.partition("]")[0] in names
+
+
+def test_bounds_of_inherited_angles_are_in_rad():
+    parts = EXPERIMENTS["quality-diversity"].spec.model_json_schema()["$defs"]
+    for part in ("Direct", "Grown"):
+        assert parts[part]["properties"]["rest_angle"]["unit"] == "rad"
+
+
+def test_ends_of_an_axis_have_the_unit_of_what_is_measured():
+    parts = EXPERIMENTS["quality-diversity"].spec.model_json_schema()["$defs"]
+    for end in ("low", "high"):
+        field = parts["Descriptor"]["properties"][end]
+        assert field["unit_of"] in parts["Descriptor"]["properties"]
+        assert field["units"] == {name: one.unit for name, one in MEASURES.items()}

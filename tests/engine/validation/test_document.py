@@ -54,7 +54,7 @@ def test_a_missed_bar_is_written_and_fails_the_program(tmp_path, capsys):
         assert (tmp_path / picture).stat().st_size > 1000
 
 
-def test_where_every_line_passes_the_program_succeeds(tmp_path):
+def test_the_program_succeeds_if_every_line_passes(tmp_path):
     assert program.main((section(Found([holds("a fact", True, "logic")])),), tmp_path) == 0
     assert "FAIL" not in (tmp_path / "validation.md").read_text(encoding="utf-8")
 

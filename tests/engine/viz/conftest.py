@@ -1,43 +1,9 @@
-"""Replays that tests of pictures write themselves."""
-
-import json
-import struct
+"""The replay of a made-up swimmer."""
 
 import numpy as np
 import pytest
 
 from microcosmos.viz.replay_file import read_replay
-
-
-@pytest.fixture(scope="session")
-def replay_bytes():
-    """A function that writes a replay of positions, edges and vorticity levels, all else 0."""
-
-    def write(positions, edges, levels, /, scale=0.01, **change):
-        frames, nodes, _ = positions.shape
-        header = {
-            "format": "microcosmos-replay/2",
-            "frames": frames,
-            "every": 5,
-            "nodes": nodes,
-            "edges": edges,
-            "joints": [],
-            "size": list(levels.shape[1:]),
-            "vorticity": {"scale": scale},
-            "velocity": {"scale": 1.0},
-            "energy": {"scale": 1.0, "frames": 0},
-        }
-        text = json.dumps(header | change).encode()
-        text += b" " * (-len(text) % 4)
-        arrays = (
-            positions.astype("<f4"),
-            np.zeros((frames, len(edges)), "<f4"),
-            levels.astype(np.int8),
-            np.zeros((frames, 2, *levels.shape[1:]), np.int8),
-        )
-        return struct.pack("<I", len(text)) + text + b"".join(x.tobytes() for x in arrays)
-
-    return write
 
 
 @pytest.fixture(scope="session")
@@ -53,5 +19,4 @@ def eel(replay_bytes):
 
 @pytest.fixture(scope="session")
 def swimming(eel):
-    """The replay of the eel."""
     return read_replay(eel)

@@ -1,6 +1,7 @@
-"""Films have the frames, the size and the pace that were asked for."""
+"""Films have the requested frames, size and pace; notebooks play them."""
 
 import io
+from base64 import b64decode
 from platform import machine
 
 import av
@@ -10,14 +11,15 @@ from PIL import Image
 
 from microcosmos.viz import film as module
 from microcosmos.viz.film import export, gif, mp4
+from microcosmos.viz.notebook import filmed, show
 from microcosmos.viz.raster import frame
+from microcosmos.viz.replay_file import read_replay
 
 pytestmark = pytest.mark.long
 
 
 @pytest.fixture(scope="module")
 def film(swimming):
-    """The bytes of an MP4 of the eel."""
     return mp4(swimming, width=160, rate=20)
 
 
@@ -112,3 +114,23 @@ def test_an_export_is_what_its_name_says(eel, tmp_path, name, begins):
 def test_an_export_of_another_kind_is_refused(eel, tmp_path):
     with pytest.raises(ValueError, match=r"`path` must end in .png, .gif, .mp4, got .*\.avi"):
         export(eel, tmp_path / "film.avi")
+
+
+def test_own_frames_become_a_replay_of_the_same_motion(swimming):
+    made = filmed(swimming.positions, swimming.edges, swimming.vorticity, every=5)
+    np.testing.assert_array_equal(made.positions, swimming.positions)
+    np.testing.assert_array_equal(made.edges, swimming.edges)
+    np.testing.assert_allclose(made.vorticity, swimming.vorticity, atol=made.quantum)
+    assert (made.size, made.step(2)) == (swimming.size, 10)
+
+
+def test_a_replay_plays_as_a_picture_in_the_page(eel):
+    html = show(eel, width=64, frames=4)._repr_html_()
+    data = b64decode(html.split("base64,")[1].partition('"')[0])
+    assert data.startswith(b"GIF89a")
+    assert data == show(read_replay(eel), width=64, frames=4).data
+
+
+def test_frames_that_do_not_match_are_refused(swimming):
+    with pytest.raises(ValueError, match=r"`positions` must be \(frame, node, 2\)"):
+        filmed(swimming.positions[1:], swimming.edges, swimming.vorticity)

@@ -1,56 +1,29 @@
-"""Gradients through network, development, body and fluid at once."""
+"""Gradients through network, body and fluid; absent nodes do nothing."""
 
 from dataclasses import replace
+from functools import partial
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import genomes, world
+from microcosmos import bodies, fields, filaments, genomes, world
 from microcosmos.build import build_controls
 from microcosmos.spec import Control
 
-STEPS, SIZE, VISCOSITY = 200, (48, 48), 0.1
-
-H = 1e-5
-"""Step of the finite differences: their error was 2e-9 here and from 1e-4 on it grows."""
-
 
 @pytest.fixture
-def network():
-    """A function that makes a CPPN with one hidden node, smooth everywhere."""
-
-    def cppn(dtype):
-        genes = genomes.empty(8, 16)
-        names = {name: number for number, name in enumerate(genomes.ACTIVATIONS)}
-        links = [(0, 3), (1, 3), (2, 3), (1, 4), (2, 4), (0, 5), (1, 5), (5, 3), (5, 4)]
-        genes.node_used[:6], genes.node_id[:6] = True, np.arange(6)
-        genes.activation[3:6] = [names["sin"], names["tanh"], names["gaussian"]]
-        count = len(links)
-        genes.connection_used[:count] = genes.enabled[:count] = True
-        genes.innovation[:count] = np.arange(count)
-        genes.source[:count], genes.target[:count] = np.transpose(links)
-        random = np.random.default_rng(0)
-        genes.weight[:count] = random.normal(size=count)
-        genes.bias[3:6] = 0.3 * random.normal(size=3)
-        return jax.tree.map(
-            lambda x: jnp.asarray(x, dtype if x.dtype == np.float32 else None), genes
-        )
-
-    return cppn
-
-
-@pytest.fixture
-def loss(immerse, chain, network):
-    """A function that makes, for a precision, what to differentiate and where."""
-
+def loss(immerse, network_of):
     def make(dtype, **form):
-        body, cppn = chain(24), network(dtype)
-        box, start = immerse(body, dtype, viscosity=VISCOSITY, size=SIZE, **form)
-        controls = build_controls(
-            Control(period=100, angle_scale=0.15, length_scale=0.05), body, STEPS
-        )
+        body, random = bodies.chain(24, 1.0), np.random.default_rng(0)
+        ends = [(0, 3), (1, 3), (2, 3), (1, 4), (2, 4), (0, 5), (1, 5), (5, 3), (5, 4)]
+        links = dict(zip(ends, random.normal(size=len(ends)), strict=True))
+        biases = 0.3 * random.normal(size=3)
+        cppn = network_of(links, 3, ("sin", "tanh", "gaussian"), biases, dtype=dtype)
+        box, start = immerse(body, dtype, viscosity=0.1, size=(48, 48), **form)
+        control = Control(period=100, angle_scale=0.15, length_scale=0.05)
+        controls = build_controls(control, body, 200)
 
         def travelled(inputs):
             weights, viscosity = inputs
@@ -63,26 +36,14 @@ def loss(immerse, chain, network):
     return make
 
 
-def difference(value, inputs, along):
-    """The slope along a direction by central differences."""
-    ahead, behind = (jax.tree.map(lambda x, d, h=h: x + h * d, inputs, along) for h in (H, -H))
-    return (value(ahead) - value(behind)) / (2 * H)
-
-
-def test_gradients_of_200_coupled_steps_agree_with_finite_differences(loss, float64):
+def test_gradients_of_200_coupled_steps_agree_with_finite_differences(
+    loss, require_slope, float64
+):
     travelled, inputs = loss(float64, limits=False)
-    value = jax.jit(travelled)
-    gradient = jax.jit(jax.grad(travelled))(inputs)
-    random = np.random.default_rng(1)
-    direction = jnp.asarray(random.normal(size=inputs[0].shape))
-    for name, along in {
-        "weights": (direction, jnp.zeros(())),
-        "viscosity": (jnp.zeros_like(direction), jnp.asarray(0.1)),
-    }.items():
-        slope = sum(jnp.sum(g * d) for g, d in zip(gradient, along, strict=True))
-
-        expected = difference(value, inputs, along)
-        np.testing.assert_allclose(slope, expected, rtol=1e-6, err_msg=name)
+    direction = np.random.default_rng(1).normal(size=inputs[0].shape)
+    by_weights, by_viscosity = (direction, 0.0), (0 * direction, 0.1)
+    # The error was 2e-9 at this step, and from 1e-4 on it grows.
+    require_slope(travelled, inputs, h=1e-5, directions=[by_weights, by_viscosity])
 
 
 @pytest.mark.parametrize("limits", [True, False])
@@ -92,3 +53,85 @@ def test_gradients_are_finite_in_float32(loss, limits):
         assert gradient.dtype == jnp.float32
         assert np.all(np.isfinite(gradient))
         assert np.any(np.asarray(gradient) != 0)
+
+
+STEPS, GROWN, ALL = 100, 9, 14
+
+
+@pytest.fixture
+def pair(immerse, float64):
+    """A function that makes a whole short chain, and as much of a longer one, in two worlds."""
+
+    def make(**options):
+        form = {name: options.pop(name) for name in ("layers",) if name in options}
+        boxes = []
+        for nodes in (GROWN, ALL):
+            body = bodies.chain(nodes, 1.0, bend=0.7)
+            box, _ = immerse(body, float64, viscosity=0.05, size=(32, 32), **form)
+            positions = jnp.asarray(body.positions) + jnp.array([[11.0, 16.0]])
+            box = replace(box, **options)
+            if nodes == ALL:
+                present = jnp.arange(ALL) < GROWN
+                box = replace(box, rods=world.grown_rods(box.rods, present), present=present)
+            boxes.append((box, world.at_rest(box, positions)))
+        return boxes
+
+    return make
+
+
+def gait(nodes):
+    t, joint = np.arange(STEPS)[:, None], np.arange(nodes - 2)[None]
+    angle = 0.3 * np.sin(2 * np.pi * t / 40 - 0.7 * joint)
+    edge = np.arange(nodes - 1)[None]
+    length = 1 + 0.1 * np.sin(2 * np.pi * t / 30 + 0.4 * edge)
+    return filaments.Rest(jnp.asarray(angle), jnp.asarray(length))
+
+
+def see(state, measures):
+    return measures
+
+
+def both_fields():
+    packets = fields.packets((32, 32), fields.Packets(3, 3.0, 1.0, 2))
+    return {
+        "steric": fields.Steric(jnp.asarray(2.0), jnp.asarray(0.1), fields.binomial),
+        "energy": fields.Energy(jnp.asarray(packets), jnp.asarray(0.05), jnp.asarray(0.1)),
+    }
+
+
+@pytest.mark.parametrize("options", [dict, lambda: {"layers": 2}, both_fields])
+def test_some_nodes_of_a_chain_swim_as_a_shorter_chain(pair, options):
+    (short, start), (long, begun) = pair(**options())
+    run = jax.jit(lambda box, start, rest: world.rollout(box, start, rest, see))
+    whole, seen = run(short, start, gait(GROWN))
+    part, other = run(long, begun, gait(ALL))
+    np.testing.assert_allclose(part.positions[:GROWN], whole.positions, atol=1e-10)
+    np.testing.assert_array_equal(part.positions[GROWN:], begun.positions[GROWN:])
+    np.testing.assert_allclose(part.angles[: GROWN - 1], whole.angles, atol=1e-10)
+    np.testing.assert_allclose(part.populations[3], whole.populations[3], atol=1e-12)
+    if whole.collected is not None:
+        np.testing.assert_allclose(part.collected[:GROWN], whole.collected, atol=1e-12)
+        np.testing.assert_array_equal(part.collected[GROWN:], 0)
+    for name in ("speed", "node_speed", "held", "force", "centre", "heading", "power"):
+        ours, theirs = getattr(other, name), getattr(seen, name)
+        np.testing.assert_allclose(ours, theirs, atol=1e-10, err_msg=name)
+    np.testing.assert_allclose(other.curvature[:, : GROWN - 2], seen.curvature, atol=1e-10)
+    np.testing.assert_array_equal(other.curvature[:, GROWN - 2 :], 0)
+    np.testing.assert_allclose(other.force, 0, atol=1e-13)
+    assert jnp.linalg.norm(whole.positions[0] - start.positions[0]) > 0.01
+
+
+def test_gradients_of_a_part_are_those_of_a_shorter_chain(pair):
+    @partial(jax.jit, static_argnums=2)
+    def slope(box, start, nodes):
+        def end(size):
+            rest = jax.tree.map(lambda x: x[:8], gait(nodes))
+            rest = replace(rest, angle=size * rest.angle)
+            return jnp.sum(world.rollout(box, start, rest)[0].positions[:GROWN, 1] ** 2)
+
+        return jax.grad(end)(1.0)
+
+    (short, start), (long, begun) = pair()
+    found = slope(long, begun, ALL)
+    np.testing.assert_allclose(found, slope(short, start, GROWN), rtol=1e-8)
+    assert abs(found) > 1e-6

@@ -1,11 +1,14 @@
-"""Limits of displacement and force, which random controllers need."""
+"""Limits of displacement and force, tired actuators, and bodies without a fluid."""
+
+from dataclasses import replace
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import coupling, filaments, world
+from microcosmos import bodies, coupling, filaments, world
+from validation import scenes
 
 LIMIT = 0.1
 
@@ -16,9 +19,8 @@ def swim(box, start, rest):
 
 
 @pytest.fixture
-def wild(immerse, chain, float64):
-    """A filament that is asked to fold up at once."""
-    body = chain(24)
+def wild(immerse, float64):
+    body = bodies.chain(24, 1.0)
     box, start = immerse(body, float64, viscosity=0.1, size=(48, 48))
     turn = np.random.default_rng(0).uniform(-1, 1, len(body.joints))
     return box, start, filaments.Rest(jnp.asarray(turn), jnp.asarray(body.rest_length))
@@ -53,21 +55,21 @@ def test_no_forcing_exceeds_the_limit_and_sums_stay_zero(wild):
     np.testing.assert_allclose(jnp.sum(x[:, 0] * q[:, 1] - x[:, 1] * q[:, 0]), 0, atol=1e-13)
 
 
-def test_without_limits_the_same_body_moves_further(wild, immerse, chain):
+def test_without_limits_the_same_body_moves_further(wild, immerse):
     _, start, rest = wild
     free, _ = immerse(
-        chain(24), start.positions.dtype, viscosity=0.1, size=(48, 48), limits=False
+        bodies.chain(24, 1.0), start.positions.dtype, viscosity=0.1, size=(48, 48), limits=False
     )
     motion = world.move(free, start, rest, jnp.zeros_like(start.positions))
     assert np.max(np.sum(np.asarray(motion.target) ** 2, 1)) > (2 * LIMIT) ** 2
 
 
 @pytest.mark.parametrize("viscosity", [0.001, 0.01, 0.05, 2.0])
-def test_random_control_stays_finite_and_slower_than_sound(immerse, chain, erratic, viscosity):
-    dtype, body = jnp.dtype("float32"), chain(32)
+def test_random_control_stays_finite_and_slower_than_sound(immerse, viscosity):
+    dtype, body = jnp.dtype("float32"), bodies.chain(32, 1.0)
     box, start = immerse(body, dtype, viscosity=viscosity)
     for seed in (0, 1):
-        end = swim(box, start, erratic(body, 1500, dtype, seed))
+        end = swim(box, start, scenes.erratic(body, 1500, dtype, seed))
         assert all(np.all(np.isfinite(leaf)) for leaf in jax.tree.leaves(end))
         u = world.flow(box, end)
         assert np.sqrt(np.max(np.sum(np.asarray(u) ** 2, 0))) < 3**-0.5
@@ -76,3 +78,77 @@ def test_random_control_stays_finite_and_slower_than_sound(immerse, chain, errat
 def test_a_torque_free_projection_is_refused_where_angles_ignore_the_geometry():
     with pytest.raises(ValueError, match="theta_feedback"):
         world.Form(theta_feedback=0.0)
+
+
+VISCOSITY = 0.1
+
+
+@pytest.fixture
+def bending(float64):
+    """A filament that is asked to bend, with half of the stiffness and with all of it."""
+    one, half = (bodies.chain(12, 1.0, bend=bend) for bend in (1.0, 0.5))
+    box, start = scenes.immersed(one, VISCOSITY, float64, size=(32, 32))
+    softer, _ = scenes.immersed(half, VISCOSITY, float64, size=(32, 32))
+    rest = jax.tree.map(lambda x: x[0], scenes.rest(one, np.full((1, 10), 0.2), float64))
+
+    def moved(box):
+        return world.move(box, start, rest, jnp.zeros_like(start.positions)).target
+
+    return box, softer, moved
+
+
+def test_at_nu_c_bends_have_half_of_their_stiffness(bending):
+    box, softer, moved = bending
+    tired = replace(box, nu_c=jnp.asarray(VISCOSITY))
+    np.testing.assert_allclose(moved(tired), moved(softer), atol=1e-14)
+    assert np.abs(moved(tired) - moved(box)).max() > 0.01
+
+
+def test_far_below_nu_c_nothing_tires(bending):
+    box, _, moved = bending
+    fresh = replace(box, nu_c=jnp.asarray(1e9 * VISCOSITY))
+    np.testing.assert_allclose(moved(fresh), moved(box), atol=1e-8)
+
+
+def test_far_above_nu_c_nothing_moves(bending):
+    box, _, moved = bending
+    spent = replace(box, nu_c=jnp.asarray(1e-9 * VISCOSITY))
+    np.testing.assert_allclose(moved(spent), 0, atol=1e-7)
+
+
+FORM = {"projection": "force", "theta_feedback": 0, "limits": False}
+
+
+@pytest.fixture
+def dry(immerse, float64):
+    def make(angle, steps, **form):
+        body = bodies.chain(9, 1.0)
+        given = {"viscosity": 0.05, "size": (48, 48), "fluid": False} | FORM | form
+        rest = scenes.rest(body, np.full((steps, 7), angle), float64)
+        return *immerse(body, float64, **given), rest
+
+    return make
+
+
+@pytest.mark.parametrize("layers", [1, 2])
+def test_a_filament_takes_its_rest_shape_and_its_middle_stays(dry, layers):
+    box, start, rest = dry(0.3, 300, layers=layers)
+    end, seen = jax.jit(lambda: world.rollout(box, start, rest, lambda s, m: m.force))()
+    np.testing.assert_allclose(np.diff(end.angles), 0.3, atol=1e-6)
+    steps = np.diff(end.positions, axis=0)
+    np.testing.assert_allclose(np.hypot(*steps.T), 1.0, atol=1e-6)
+    np.testing.assert_allclose(np.mean(end.positions, 0), np.mean(start.positions, 0))
+    assert not np.any(seen)
+
+
+def test_without_a_fluid_there_is_no_flow(dry):
+    box, start, rest = dry(0.3, 20)
+    end, _ = jax.jit(lambda: world.rollout(box, start, rest))()
+    assert not np.any(world.flow(box, end))
+
+
+def test_limits_hold_without_a_fluid_too(dry):
+    box, start, rest = dry(1.0, 1, limits=True, max_displacement=0.01)
+    end, _ = jax.jit(lambda: world.rollout(box, start, rest))()
+    way = np.hypot(*(np.asarray(end.positions) - np.asarray(start.positions)).T)
+    assert 0.0099 < way.max() <= 0.01 + 1e-12

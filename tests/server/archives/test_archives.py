@@ -151,12 +151,12 @@ def test_unknown_measures_and_too_long_histories_are_refused(api, run_id, record
     record(1, {5: 1.0, 3: 2.0})
     asked = {"measures": "energy,displacement"}
     (error,) = errors(api.get(f"runs/{run_id}/archive", params=asked))
-    assert (error["field"], error["got"]) == ("measures", ["energy"])
+    assert (error["field"], error["got"]) == ("measures", "energy")
     assert "displacement" in error["needed"]
     history = f"runs/{run_id}/archive/history"
     assert fields(api.get(history, params={"measures": "beauty"}))[0] == "measures"
     monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
-    assert "has 2 entries, of which at most 1" in detail(api.get(history), 422)
+    assert "has 2 entries, more than the 1" in detail(api.get(history), 422)
 
 
 @pytest.mark.parametrize("descriptors", [(0.5,), (1.0, 2.0, 3.0)])

@@ -16,16 +16,16 @@ from server.auth.authorize import authorize, public
 from server.auth.principal import ADMIN, READ, SHARE, WRITE
 from server.creatures import storage as creatures
 from server.runs.deps import own_run
-from server.runs.submission import submit
+from server.runs.submission import Request, submit
 from server.services.services import connect
 from server.settings import Settings
 from server.shares import publishing
 from server.shares.routes import own_share
-from server.shares.schemas import ShareAsked
+from server.shares.schemas import ShareCreate
 from server.sweeps.deps import own_sweep
-from server.sweeps.planning import plan
-from server.sweeps.schemas import SweepSent
-from server.sweeps.submission import submit_sweep
+from server.sweeps.plan import plan
+from server.sweeps.schemas import SweepCreate
+from server.sweeps.submission import request_of, submit_sweep
 from server.tables import Token
 
 ROOT = "/api/v1"
@@ -157,14 +157,14 @@ def parameters(services, secrets, spec, identity):
     owner = tokens.principal_of(services, secrets["owner"])
 
     def run() -> str:
-        return str(submit(services, parse(spec), owner=owner.token)[0].id)
+        return str(submit(services, parse(spec), Request(spec, owner=owner.token))[0].id)
 
     def sweep() -> str:
-        planned = plan(SweepSent(spec=spec), parse)
-        return str(submit_sweep(services, planned, owner=owner.token)[0])
+        planned = plan(SweepCreate(spec=spec), parse)
+        return str(submit_sweep(services, planned, request_of(planned, owner=owner.token))[0])
 
     def share() -> str:
-        asked = ShareAsked(creature=file["sha256"], title=uuid4().hex)
+        asked = ShareCreate(creature=file["sha256"], title=uuid4().hex)
         with services.sessions.write.begin() as session:
             return publishing.publish(session, asked, owner)[0].slug
 

@@ -12,7 +12,7 @@ from sqlalchemy.exc import OperationalError
 from server.auth import authenticate, tokens
 from server.auth.cookies import COOKIE
 from server.auth.ratelimit import ADDRESSES, BURST, INTERVAL, RateLimit, network_of
-from server.settings import SHORTEST, Settings
+from server.settings import MIN_TOKEN_LENGTH, Settings
 
 
 def test_only_loopback_goes_without_a_token_unless_configured():
@@ -20,7 +20,7 @@ def test_only_loopback_goes_without_a_token_unless_configured():
         assert Settings(host=host, token=None).needs_token, host
     assert not Settings(host="127.0.0.1", token=None).needs_token
     assert Settings(host="127.0.0.1", token=None, auth="required").needs_token
-    assert Settings(host="127.0.0.1", token=SecretStr("s" * SHORTEST)).needs_token
+    assert Settings(host="127.0.0.1", token=SecretStr("s" * MIN_TOKEN_LENGTH)).needs_token
     assert not Settings(host="127.0.0.1", token=SecretStr("")).needs_token
 
 

@@ -67,7 +67,7 @@ def test_a_revoked_token_is_refused_at_once_by_name(required, client, admin, ser
 def test_an_expired_token_is_refused_and_its_name_is_free(required, client, services):
     soon = datetime.now(UTC) + timedelta(hours=1)
     made = tokens.create(services, "carol", "read", soon)
-    with pytest.raises(ProblemError, match="named 'carol' is there already"):
+    with pytest.raises(ProblemError, match="name 'carol' is taken"):
         tokens.create(services, "carol", "read")
     expire(services, made.token.id)
     answer = client(required, made.secret).get("/runs")
@@ -221,14 +221,14 @@ def settings(services, tmp_path):
 def test_the_first_start_beyond_loopback_creates_an_admin_token(serve, services, settings):
     open_to_all = settings.model_copy(update={"host": "0.0.0.0"})
     exposed = with_settings(services, open_to_all)
-    secret = bootstrap.begin(exposed)
+    secret = bootstrap.create_first_token(exposed)
     assert secret is not None
     file = settings.data / bootstrap.FILE
     assert file.read_text() == f"{secret}\n"
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
-    assert secret in bootstrap.told(open_to_all, secret)
-    assert str(file) in bootstrap.told(open_to_all, secret)
-    assert bootstrap.begin(exposed) is None  # The second start makes none.
+    assert secret in bootstrap.announcement(open_to_all, secret)
+    assert str(file) in bootstrap.announcement(open_to_all, secret)
+    assert bootstrap.create_first_token(exposed) is None  # The second start makes none.
     assert tokens.principal_of(services, secret).scope == "admin"
 
 
@@ -237,9 +237,9 @@ def with_settings(services, settings):
 
 
 def test_no_token_is_created_when_unneeded_or_given(rows, services, settings):
-    assert bootstrap.begin(services) is None
+    assert bootstrap.create_first_token(services) is None
     told = settings.model_copy(update={"host": "0.0.0.0", "token": SecretStr("secret")})
-    assert bootstrap.begin(with_settings(services, told)) is None
+    assert bootstrap.create_first_token(with_settings(services, told)) is None
     assert rows() == []
 
 
@@ -247,7 +247,7 @@ def test_a_server_without_admins_does_not_listen(rows, services, settings, admin
     exposed = with_settings(services, settings.model_copy(update={"host": "0.0.0.0"}))
     bootstrap.refuse_without_admin(exposed)
     tokens.revoke(services, rows()[0].id, last=True)
-    for begin in (bootstrap.begin, bootstrap.refuse_without_admin):
+    for begin in (bootstrap.create_first_token, bootstrap.refuse_without_admin):
         with pytest.raises(ValueError, match=r"python -m server\.auth create"):
             begin(exposed)
 

@@ -128,7 +128,7 @@ def test_a_table_comes_as_rows(client, services, sweep_id, table):
     found = client.run(str(sweep_id)).results()
     assert found.rows[0]["speed"] == 0.5
     assert found.summary == {"fastest": 0.5}
-    with pytest.raises(NotFound, match="fills no archive"):
+    with pytest.raises(NotFound, match="has no archive"):
         client.run(str(sweep_id)).archive()
 
 

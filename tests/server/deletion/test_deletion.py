@@ -167,8 +167,8 @@ def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, ch
 
 def test_a_purge_may_be_killed_anywhere(api, services, spec, report, run_id, monkeypatch):
     """After every single transaction; what was begun is not to be restored."""
-    monkeypatch.setattr(purge, "AT_ONCE", 2)
-    monkeypatch.setattr("server.deletion.garbage.AT_ONCE", 2)
+    monkeypatch.setattr(purge, "ROWS_PER_TRANSACTION", 2)
+    monkeypatch.setattr("server.deletion.garbage.CREATURES_PER_TRANSACTION", 2)
     before = rows(services), files(services)
     doomed = another(services, spec, 3)
     finish(services, doomed, *(report(g, {0: g, 1: g, 2: g}) for g in range(1, 4)))
@@ -218,13 +218,13 @@ def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
     """Both prove in their own transaction that the time is over, or is not."""
     finish(services, run_id, report(1, {0: 1.0}))
     api.delete(f"runs/{run_id}")
-    assert not purge.take_apart(services)
+    assert not purge.purge_rows(services)
     let_time_pass(services, run_id)
     with services.sessions.write.begin() as session:
         run = session.get_one(Run, run_id)
         with pytest.raises(Exception, match="to restore a run"):
             bin.restore(session, run)
-    assert purge.take_apart(services)
+    assert purge.purge_rows(services)
 
 
 def test_a_creature_that_comes_into_use_during_a_purge_stays(
@@ -235,7 +235,7 @@ def test_a_creature_that_comes_into_use_during_a_purge_stays(
     finish(services, run_id, report(1, {0: 1.0}))
     api.delete(f"runs/{run_id}")
     let_time_pass(services, run_id)
-    while purge.take_apart(services):
+    while purge.purge_rows(services):
         pass
     assert rows(services)["garbage_creatures"] == 1
     claim(services, other, "worker").record(report(1, {0: 1.0}), 1.0)

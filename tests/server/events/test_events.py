@@ -176,7 +176,7 @@ def test_a_client_that_missed_too_much_is_reset(address, services, last):
         services.events.publish("run", uuid4(), {"number": 1})
         later = [event for event in take(found, 1) if event[1] == "run"]
     assert later
-    assert fanout.place(later[0][0]) > fanout.place(identifier)
+    assert fanout.position(later[0][0]) > fanout.position(identifier)
 
 
 def test_an_emptied_stream_resets_its_clients(address, services, flush):
@@ -191,10 +191,12 @@ def test_an_emptied_stream_resets_its_clients(address, services, flush):
 
 def test_a_slow_listener_is_reset():
     listener = fanout.Listener("0-0")
-    for number in range(fanout.ROOM + 1):
+    for number in range(fanout.QUEUE_SIZE + 1):
         listener.put(fanout.Entry(f"{number + 1}-0", "run"))
     waiting = [listener.waiting.get_nowait() for _ in range(listener.waiting.qsize())]
-    assert [(entry.id, entry.kind) for entry in waiting] == [(f"{fanout.ROOM + 1}-0", "reset")]
+    assert [(entry.id, entry.kind) for entry in waiting] == [
+        (f"{fanout.QUEUE_SIZE + 1}-0", "reset")
+    ]
 
 
 def test_the_stream_is_trimmed(services, monkeypatch):

@@ -85,7 +85,7 @@ def test_null_clears_an_optional_field():
         "control": {"rest_length": None, "period": None, "nobody": None},
         "search": {"stop": None},
     }
-    document = forking.emptied(forking.patched(before, patch), before, patch, parse)
+    document = forking.with_nulls(forking.patched(before, patch), before, patch, parse)
     spec = parse(document).model_dump(mode="json")
     assert before["control"]["rest_length"] is not None
     assert spec == {**before, "control": {**before["control"], "rest_length": None}}

@@ -75,7 +75,7 @@ def test_three_silent_workers_end_a_run(services, run_id, row):
         silence(services)
         reconcile(services)
     assert row().status == "failed"
-    assert "no word from worker worker for 20 s" in row().error
+    assert "worker worker has not reported for 20 s" in row().error
 
 
 @pytest.mark.parametrize(("action", "status"), [("pause", "paused"), ("cancel", "cancelled")])

@@ -23,7 +23,7 @@ def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
     services.jobs.give_up(job, f"Traceback\n{type(error).__module__}.CreatureError: {error}\n")
     answer = api.get(f"creatures/{known}/replay")
     assert answer.status_code == 500
-    said = "The replay could not be made: `task.steps` needs at most 1 cell step"
+    said = "The replay failed: `task.steps` needs at most 1 cell step"
     assert answer.json()["detail"].startswith(said)
     assert services.jobs.renderings.count == 0
 
@@ -69,7 +69,7 @@ def test_each_kind_is_made_once_and_then_kept(api, services, known, kind, media_
         f"creatures/{known}/{kind}", headers={"If-None-Match": answer.headers["etag"]}
     )
     assert again.status_code == 304
-    assert renderings.kept(services, known, kind) == b"what was made"
+    assert renderings.existing(services, known, kind) == b"what was made"
 
 
 def test_a_film_is_saved_under_the_creatures_name(api, services, known):
@@ -85,7 +85,7 @@ def test_a_film_is_saved_under_the_creatures_name(api, services, known):
         ("ValueError: too large to refine", "ValueError: too large"),
         (
             "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)",
-            "OperationalError: database is locked. It can",
+            "OperationalError: database is locked. Try again",
         ),
     ],
 )
@@ -96,7 +96,7 @@ def test_a_failed_kind_reports_its_error_and_leaves_the_others(
     job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
     services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
     found = detail(api.get(f"creatures/{known}/audit"), 500)
-    assert "The audit could not be made: " in found
+    assert "The audit failed: " in found
     assert reported in found
     assert api.get(f"creatures/{known}/film.gif").status_code == 202
 
@@ -116,7 +116,7 @@ def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
         row = session.scalars(select(Artifact).where(Artifact.kind == REPLAY)).one()
         assert row.number == REPLAY_VERSION
         row.number = None  # As it was before formats were counted.
-    assert renderings.kept(services, known, REPLAY) is None
+    assert renderings.existing(services, known, REPLAY) is None
     assert api.get(f"creatures/{known}/replay").status_code == 202
     assert api.get(f"creatures/{known}/film.gif").content == b"GIF"
     renderings.save(services, known, REPLAY, b"of now again")
@@ -187,4 +187,4 @@ def test_a_measurement_that_failed_says_why(api, services, measured):
     services.jobs.give_up(job, "Traceback\nValueError: out of memory\n")
     answer = api.get(f"creatures/{measured}/measurement")
     assert answer.status_code == 500
-    assert "The measurement could not be made: ValueError: out of memory" in answer.text
+    assert "The measurement failed: ValueError: out of memory" in answer.text

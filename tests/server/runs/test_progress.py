@@ -174,4 +174,4 @@ def test_targets_are_scaled_as_the_filaments_see_them(api, services, run_id):
     ink = targets.decoded(first["pixels"], 32, 32)
     assert abs(ink - targets.fitted(targets.digit(3), 32)).max() < 1 / 255
     assert base64.b64decode(first["pixels"]) != base64.b64decode(second["pixels"])
-    assert "folds nothing" in detail(api.get(f"runs/{run_id}/targets"), 404)
+    assert "has no pictures" in detail(api.get(f"runs/{run_id}/targets"), 404)

@@ -72,7 +72,7 @@ def test_a_past_generation_is_shared_without_a_file(api, through, run_id, attemp
     assert (answer.status_code, answer.json()["generation"]) == (201, 1)
     slug, under = answer.json()["slug"], f"runs/{run_id}"
     assert through(slug, f"{under}/archive").json()["fitness"] == [1.0]
-    assert "No file was kept" in through(slug, f"{under}/archive.h5").json()["detail"]
+    assert "The share has no file" in through(slug, f"{under}/archive.h5").json()["detail"]
     beyond = api.post("shares", json={"run": str(run_id), "generation": 3})
     assert beyond.json()["errors"][0]["field"] == "generation"
 
@@ -80,7 +80,7 @@ def test_a_past_generation_is_shared_without_a_file(api, through, run_id, attemp
 def test_renderings_for_shares_wait_last_and_are_limited(
     through, services, archive, attempt, monkeypatch
 ):
-    monkeypatch.setattr(renderings, "STRANGERS", 2)
+    monkeypatch.setattr(renderings, "ANONYMOUS_LIMIT", 2)
     (cover,) = (job.args[0] for job in services.jobs.renderings.get_jobs())
     names = through(archive["slug"], f"runs/{archive['run']}/archive/history").json()
     for sha in names["creature"]:

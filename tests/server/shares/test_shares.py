@@ -110,7 +110,7 @@ def test_a_revoked_share_is_gone(api, through, shared, known):
         through(slug, f"creatures/{known}"),
         through(slug, f"creatures/{known}/replay"),
     ):
-        assert detail(answer, 410) == "Whoever shared this has taken it back."
+        assert detail(answer, 410) == "Its owner has revoked this share."
     assert api.delete(f"shares/{'A' * 32}").status_code == 404
 
 
@@ -122,7 +122,7 @@ def test_an_expired_share_is_gone(api, through, services, known):
     with services.sessions.write.begin() as session:
         session.get_one(Share, slug).expires_at = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
     answer = through(slug, f"creatures/{known}")
-    assert detail(answer, 410) == "This was shared until 02 January 2026, 03:04 UTC."
+    assert detail(answer, 410) == "This share expired on 02 January 2026, 03:04 UTC."
     assert api.get("commons").json()["items"] == []
     assert api.get("shares").json()["items"][0]["state"] == "expired"
 
@@ -209,7 +209,5 @@ def test_holders_of_a_share_do_not_read_renderer_errors(api, services, shared, k
     owner = api.get(f"creatures/{known}/preview.png")
     assert "/home/ada" in owner.json()["detail"]
     stranger = api.get(f"shares/{shared['slug']}/preview.png")
-    assert detail(stranger, 500) == (
-        "The picture could not be made. It can be tried again in a minute."
-    )
+    assert detail(stranger, 500) == ("The picture failed. Try again in a minute.")
     assert stranger.headers["retry-after"] == "60"

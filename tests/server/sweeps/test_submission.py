@@ -6,8 +6,8 @@ import pytest
 from sqlalchemy import select
 
 from microcosmos.archive import creature
+from server.creatures import initial
 from server.maintenance.reconcile import reconcile
-from server.sweeps import submission
 from server.tables import Run, Sweep
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
@@ -59,7 +59,11 @@ def test_a_path_reaches_into_lists_whole_parts_and_parts_that_are_off(api, post)
         ({"grid": {"viscosity": [1]}}, "grid.viscosity", "did you mean `world.viscosity`"),
         ({"grid": {"archive.descriptors.2.bins": [4]}}, "grid.archive.descriptors.2.bins", ""),
         ({"grid": {"seed": [1]}}, "grid.seed", "`seeds`"),
-        ({"grid": {"experiment": ["folding"]}}, "grid.experiment", "one experiment"),
+        (
+            {"grid": {"experiment": ["folding"]}},
+            "grid.experiment",
+            "cannot contain",
+        ),
         ({"grid": {"seed.low": [1]}}, "grid.seed.low", "no field"),
         ({"grid": {"world.viscosity": []}}, "grid.world.viscosity", "at least 1 item"),
         ({"grid": {"world.viscosity": [1, 1.0]}}, "grid.world.viscosity[1]", "viscosity[0]"),
@@ -117,7 +121,7 @@ def test_memory_is_refused_at_the_value_that_needs_it(api, post, spec):
     grid = {"archive.descriptors.0.bins": [16, 900, 1000], **VISCOSITIES}
     answer = post(grid=grid)
     problem = answer.json()
-    assert (answer.status_code, problem["title"]) == (422, "More memory than there is")
+    assert (answer.status_code, problem["title"]) == (422, "Not enough memory")
     fields = [error["field"] for error in problem["errors"]]
     assert fields == [f"grid.archive.descriptors.0.bins[{place}]" for place in (1, 2)]
     assert "with archive.descriptors.0.bins=900, world.viscosity=0.05" in problem["detail"]
@@ -128,7 +132,7 @@ def test_a_write_that_fails_half_way_leaves_nothing(services, post, monkeypatch)
     def fail(*_):
         raise RuntimeError("half way")
 
-    monkeypatch.setattr(submission, "_first_entry", fail)
+    monkeypatch.setattr(initial, "keep", fail)
     assert post(seeds=3).status_code == 500
     with services.sessions.read() as session:
         assert not session.scalars(select(Run.id)).all()

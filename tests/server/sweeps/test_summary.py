@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from sqlalchemy import event, insert, update
 
-from server.sweeps.comparison import common_generation
-from server.sweeps.summary import summary
+from server.sweeps.summary import common_generation, summary
 from server.tables import Generation, Run, Sweep
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}

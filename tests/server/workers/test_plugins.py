@@ -8,7 +8,7 @@ from declared import STRICT, A, B, declared
 
 from server.attempts.claim import claim
 from server.workers import plugins, registry
-from server.workers.plugins import Reported
+from server.workers.plugins import KnownPlugins
 from worker.supervisor import runnable_queues
 
 
@@ -156,9 +156,9 @@ def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, have, mine
     have("with", plugins=declared()), have("without"), have("other", plugins=declared(B))
     run = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
     with services.sessions.read() as session:
-        known = Reported(session, services.settings.lease)
+        known = KnownPlugins(services, session)
         pinned = run["spec"]["body"]["plugin"]["source"]
-        (able,) = known.having(pinned)
+        (able,) = known.workers_with(pinned)
     names = {"with": A, "other": B}
     for worker in ("without", next(name for name in names if name != able), "nobody"):
         assert claim(services, UUID(run["id"]), worker) is None
@@ -218,7 +218,7 @@ def test_a_run_set_aside_continues_when_resumed(api, services, run_id):
 def test_plug_ins_that_no_worker_has_together_are_named(services, have):
     have("one", plugins=declared()), have("two", plugins=declared(B))
     with services.sessions.read() as session:
-        alive = Reported(session, services.settings.lease).alive
+        alive = KnownPlugins(services, session).alive
     task = {"fitness": "mine.straight", "plugin": {"source": A, "title": "x"}}
     body = {"builder": "mine.cross", "plugin": {"source": B, "title": "x"}}
     assert plugins.needed_versions({"task": task, "body": body}) == [A, B]

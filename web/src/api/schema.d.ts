@@ -13,7 +13,7 @@ export interface paths {
         };
         /**
          * Read Commons
-         * @description What is published for everybody to find, newest first.
+         * @description Return the live listed shares, newest first.
          */
         get: operations["read_commons_api_v1_commons_get"];
         put?: never;
@@ -35,9 +35,9 @@ export interface paths {
         put?: never;
         /**
          * Import Creature
-         * @description Keep a creature file, JSON or HDF5; its hash is verified. 200 where it is known.
+         * @description Import a creature file, JSON or HDF5, after verifying its hash. 200 if it is known.
          *
-         *     Files of its ancestors, listed in `ancestors`, are verified and kept likewise.
+         *     The files of its ancestors, listed in `ancestors`, are verified and imported too.
          */
         post: operations["import_creature_api_v1_creatures_post"];
         delete?: never;
@@ -55,7 +55,7 @@ export interface paths {
         };
         /**
          * Read Creature
-         * @description The creature file; with `ancestors` those that are kept of them come along.
+         * @description Return the creature file; with `ancestors` also the files of its ancestors.
          */
         get: operations["read_creature_api_v1_creatures__sha__get"];
         put?: never;
@@ -75,7 +75,7 @@ export interface paths {
         };
         /**
          * Read Ancestors
-         * @description Parents and theirs, nearest first; who never was an elite is known by name alone.
+         * @description Return parents and theirs, nearest first. Only elites have more than a name.
          */
         get: operations["read_ancestors_api_v1_creatures__sha__ancestors_get"];
         put?: never;
@@ -95,7 +95,7 @@ export interface paths {
         };
         /**
          * Read Audit
-         * @description The audit, or 202 while it is made.
+         * @description Return the audit, or 202 while it is computed.
          */
         get: operations["read_audit_api_v1_creatures__sha__audit_get"];
         put?: never;
@@ -115,7 +115,7 @@ export interface paths {
         };
         /**
          * Read Children
-         * @description Elites that came from this creature, best first, and how many there are in all.
+         * @description Return elites with this creature as a parent, best first, and their number.
          */
         get: operations["read_children_api_v1_creatures__sha__children_get"];
         put?: never;
@@ -135,7 +135,7 @@ export interface paths {
         };
         /**
          * Read Creature H5
-         * @description The creature file as HDF5, with its body and genes as arrays.
+         * @description Return the creature file as HDF5, with its body and genes as arrays.
          */
         get: operations["read_creature_h5_api_v1_creatures__sha__creature_h5_get"];
         put?: never;
@@ -155,7 +155,7 @@ export interface paths {
         };
         /**
          * Read Film Gif
-         * @description The film, or 202 while it is made.
+         * @description Return the film, or 202 while it is computed.
          */
         get: operations["read_film_gif_api_v1_creatures__sha__film_gif_get"];
         put?: never;
@@ -175,7 +175,7 @@ export interface paths {
         };
         /**
          * Read Film Mp4
-         * @description The film, or 202 while it is made.
+         * @description Return the film, or 202 while it is computed.
          */
         get: operations["read_film_mp4_api_v1_creatures__sha__film_mp4_get"];
         put?: never;
@@ -197,7 +197,7 @@ export interface paths {
         put?: never;
         /**
          * Measure
-         * @description Have it evaluated again, by the program that measured it; then read `measurement`.
+         * @description Have the program that measured it evaluate the creature again; read `measurement`.
          */
         post: operations["measure_api_v1_creatures__sha__measure_post"];
         delete?: never;
@@ -215,7 +215,7 @@ export interface paths {
         };
         /**
          * Read Measurement
-         * @description What came of it; 202 while it is measured, 204 where nobody has asked for it.
+         * @description Return the measurement; 202 while it is computed, 204 if nobody has ordered one.
          */
         get: operations["read_measurement_api_v1_creatures__sha__measurement_get"];
         put?: never;
@@ -235,7 +235,7 @@ export interface paths {
         };
         /**
          * Read Motion
-         * @description The body's motion alone, of the same recording as the replay; or 202 while it is made.
+         * @description Return the body's motion from the replay, without the fluid, or 202.
          */
         get: operations["read_motion_api_v1_creatures__sha__motion_get"];
         put?: never;
@@ -255,7 +255,7 @@ export interface paths {
         };
         /**
          * Read Network Dot
-         * @description The network for Graphviz.
+         * @description Return the network as a graph for Graphviz.
          */
         get: operations["read_network_dot_api_v1_creatures__sha__network_dot_get"];
         put?: never;
@@ -275,7 +275,7 @@ export interface paths {
         };
         /**
          * Read Network Npz
-         * @description The network as a genome of TensorNEAT.
+         * @description Return the network as a genome of TensorNEAT.
          */
         get: operations["read_network_npz_api_v1_creatures__sha__network_npz_get"];
         put?: never;
@@ -295,7 +295,7 @@ export interface paths {
         };
         /**
          * Read Network Py
-         * @description The network as a Python module that needs NumPy alone.
+         * @description Return the network as a Python module that needs NumPy alone.
          */
         get: operations["read_network_py_api_v1_creatures__sha__network_py_get"];
         put?: never;
@@ -315,7 +315,7 @@ export interface paths {
         };
         /**
          * Read Network Svg
-         * @description The network as a picture.
+         * @description Return the network as a picture.
          */
         get: operations["read_network_svg_api_v1_creatures__sha__network_svg_get"];
         put?: never;
@@ -335,7 +335,7 @@ export interface paths {
         };
         /**
          * Read Preview Png
-         * @description The picture, or 202 while it is made.
+         * @description Return the picture, or 202 while it is computed.
          */
         get: operations["read_preview_png_api_v1_creatures__sha__preview_png_get"];
         put?: never;
@@ -355,7 +355,7 @@ export interface paths {
         };
         /**
          * Read Replay
-         * @description The replay, or 202 while it is made.
+         * @description Return the replay, or 202 while it is computed.
          */
         get: operations["read_replay_api_v1_creatures__sha__replay_get"];
         put?: never;
@@ -375,7 +375,7 @@ export interface paths {
         };
         /**
          * Read Strip Png
-         * @description The picture, or 202 while it is made.
+         * @description Return the picture, or 202 while it is computed.
          */
         get: operations["read_strip_png_api_v1_creatures__sha__strip_png_get"];
         put?: never;
@@ -395,7 +395,7 @@ export interface paths {
         };
         /**
          * Events
-         * @description One stream of everything, or of one run; it goes on after Last-Event-ID.
+         * @description Stream all events, or those of one run. It goes on after `Last-Event-ID`.
          */
         get: operations["events_api_v1_events_get"];
         put?: never;
@@ -455,7 +455,7 @@ export interface paths {
         };
         /**
          * Read Queue
-         * @description How many runs wait, and the first of them, in order, each with the reason.
+         * @description Return the number of queued runs, and the first of them with the reasons for waiting.
          */
         get: operations["read_queue_api_v1_queue_get"];
         put?: never;
@@ -475,19 +475,16 @@ export interface paths {
         };
         /**
          * List Runs
-         * @description Runs of any of these states and experiments, with this tag and this text.
+         * @description Return runs with any of these states and experiments, this tag and this text.
          *
-         *     `q` is looked for in names, tags and notes and at the beginning of ids; `sweep` is one, or
-         *     `none`. With `-`, the sort is descending; runs without a value come last. `deleted` ones
-         *     lie in the bin.
+         *     `q` searches names, tags, notes and the start of ids. `sweep` is an id, or `none`. With `-`
+         *     the sort is descending; runs without a value come last. `deleted` selects the bin.
          */
         get: operations["list_runs_api_v1_runs_get"];
         put?: never;
         /**
          * Create Run
-         * @description Queue a run. The same key with the same spec is the same run, answered with 200.
-         *
-         *     `name` is what it is called, as `PATCH` could say later.
+         * @description Queue a run. The same key with the same spec gives the same run, with 200.
          */
         post: operations["create_run_api_v1_runs_post"];
         delete?: never;
@@ -507,7 +504,7 @@ export interface paths {
         put?: never;
         /**
          * Estimate Run
-         * @description What a run will need, and what it is about, without queueing it.
+         * @description Return the needs of a run and a drawing, without queueing it.
          */
         post: operations["estimate_run_api_v1_runs_estimate_post"];
         delete?: never;
@@ -536,7 +533,7 @@ export interface paths {
         head?: never;
         /**
          * Change Run
-         * @description Say what a run is called, its tags or a note; what it computes stays as it is.
+         * @description Change a run's name, tags or note.
          */
         patch: operations["change_run_api_v1_runs__run_id__patch"];
         trace?: never;
@@ -550,11 +547,10 @@ export interface paths {
         };
         /**
          * Read Archive
-         * @description The elite of each cell, now or as of a generation.
+         * @description Return the elite of each cell, now or as of a generation.
          *
-         *     With `measures`, names with commas between them, what was recorded of the elites under
-         *     those names too: an archive can be looked at along any of them. With `after`, a generation,
-         *     only the elites that entered later, for who knows the others.
+         *     `measures` names recorded measures, separated by commas, to return with the elites. With
+         *     `after`, a generation, only the elites that entered later are returned.
          */
         get: operations["read_archive_api_v1_runs__run_id__archive_get"];
         put?: never;
@@ -573,10 +569,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Download Table
-         * @description The last checkpoint's archive in the columns of pyribs.
+         * Download Archive Csv
+         * @description Return the archive of the last checkpoint in the columns of pyribs.
          */
-        get: operations["download_table_api_v1_runs__run_id__archive_csv_get"];
+        get: operations["download_archive_csv_api_v1_runs__run_id__archive_csv_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -594,7 +590,7 @@ export interface paths {
         };
         /**
          * Download Archive
-         * @description The last checkpoint's file; of a run without an archive it holds the table.
+         * @description Return the file of the last checkpoint; it contains the archive or the table.
          */
         get: operations["download_archive_api_v1_runs__run_id__archive_h5_get"];
         put?: never;
@@ -614,7 +610,7 @@ export interface paths {
         };
         /**
          * Read Centroids
-         * @description The cells of a CVT archive; null until its first checkpoint is there.
+         * @description Return the centroids of a CVT archive; null before its first checkpoint.
          */
         get: operations["read_centroids_api_v1_runs__run_id__archive_centroids_get"];
         put?: never;
@@ -634,7 +630,7 @@ export interface paths {
         };
         /**
          * Read History
-         * @description Every elite that ever entered: the archive of each generation can be told from it.
+         * @description Return every elite that ever entered, from which each generation's archive follows.
          */
         get: operations["read_history_api_v1_runs__run_id__archive_history_get"];
         put?: never;
@@ -713,9 +709,9 @@ export interface paths {
         };
         /**
          * Read Generations
-         * @description All generations, or about so many of them, evenly spaced.
+         * @description Return all generations, or about so many of them, evenly spaced.
          *
-         *     What `summary` tells is thinned to the newest value since the point before.
+         *     `summary` has the newest values since the previous point.
          */
         get: operations["read_generations_api_v1_runs__run_id__generations_get"];
         put?: never;
@@ -735,9 +731,9 @@ export interface paths {
         };
         /**
          * Read Log
-         * @description The newest entries, the oldest of them first; `after` the id of one, those that follow.
+         * @description Return the newest entries, oldest first; or those that follow the entry `after`.
          *
-         *     Of the checkpoints of an attempt only the first and the last are told.
+         *     An attempt keeps the first and the last entry about checkpoints.
          */
         get: operations["read_log_api_v1_runs__run_id__log_get"];
         put?: never;
@@ -794,7 +790,7 @@ export interface paths {
         };
         /**
          * Read Results
-         * @description All rows so far, in the order in which they were measured.
+         * @description Return all rows so far, in the order in which they were measured.
          */
         get: operations["read_results_api_v1_runs__run_id__results_get"];
         put?: never;
@@ -814,7 +810,7 @@ export interface paths {
         };
         /**
          * Download Results
-         * @description The same as a table.
+         * @description Return the rows as CSV.
          */
         get: operations["download_results_api_v1_runs__run_id__results_csv_get"];
         put?: never;
@@ -851,9 +847,9 @@ export interface paths {
         };
         /**
          * Read Species
-         * @description How many members each species had, in about so many generations, evenly spaced.
+         * @description Return the sizes of the species in about so many generations, evenly spaced.
          *
-         *     There are none where the search keeps no species, or was computed before they were told.
+         *     The columns are empty if the search has no species.
          */
         get: operations["read_species_api_v1_runs__run_id__species_get"];
         put?: never;
@@ -873,7 +869,7 @@ export interface paths {
         };
         /**
          * Read Targets
-         * @description In the order of the spec; at most 256 pixels along a side.
+         * @description Return the pictures in the order of the spec, at most 256 pixels along a side.
          */
         get: operations["read_targets_api_v1_runs__run_id__targets_get"];
         put?: never;
@@ -917,15 +913,15 @@ export interface paths {
         };
         /**
          * List Shares
-         * @description One's own shares, newest first, with those that were taken back or have expired.
+         * @description Return one's own shares, newest first, also revoked and expired ones.
          *
-         *     An admin sees everybody's: who knows an address sees what was shared.
+         *     An admin gets everybody's.
          */
         get: operations["list_shares_api_v1_shares_get"];
         put?: never;
         /**
          * Publish
-         * @description Publish a creature or an archive. What is live already is answered again, with 200.
+         * @description Publish a creature or an archive. A live share with the same content is returned, 200.
          */
         post: operations["publish_api_v1_shares_post"];
         delete?: never;
@@ -947,7 +943,7 @@ export interface paths {
         post?: never;
         /**
          * Revoke
-         * @description Take it back: from now on its address shows nothing.
+         * @description Revoke a share: its address shows nothing from now on.
          */
         delete: operations["revoke_api_v1_shares__slug__delete"];
         options?: never;
@@ -984,13 +980,13 @@ export interface paths {
         };
         /**
          * List Sweeps
-         * @description Newest first; of `deleted` ones all runs lie in the bin.
+         * @description Return sweeps, newest first; `deleted` selects those with all runs in the bin.
          */
         get: operations["list_sweeps_api_v1_sweeps_get"];
         put?: never;
         /**
          * Create Sweep
-         * @description Queue all runs of a sweep, or none. The same key with the same request is the same.
+         * @description Queue all runs of a sweep, or none. The same key with the same request is one sweep.
          */
         post: operations["create_sweep_api_v1_sweeps_post"];
         delete?: never;
@@ -1010,7 +1006,7 @@ export interface paths {
         put?: never;
         /**
          * Estimate Sweep
-         * @description What all runs of a sweep will need, without queueing them.
+         * @description Return the needs of all runs of a sweep, without queueing them.
          */
         post: operations["estimate_sweep_api_v1_sweeps_estimate_post"];
         delete?: never;
@@ -1032,14 +1028,14 @@ export interface paths {
         post?: never;
         /**
          * Delete Sweep
-         * @description Every run into the bin; `skipped` tells of those that wait or are at work.
+         * @description Move every run to the bin; `skipped` lists queued and running ones.
          */
         delete: operations["delete_sweep_api_v1_sweeps__sweep_id__delete"];
         options?: never;
         head?: never;
         /**
          * Change Sweep
-         * @description Say what a sweep is called; its runs keep their names.
+         * @description Rename a sweep; its runs keep their names.
          */
         patch: operations["change_sweep_api_v1_sweeps__sweep_id__patch"];
         trace?: never;
@@ -1055,7 +1051,7 @@ export interface paths {
         put?: never;
         /**
          * Cancel Sweep
-         * @description Cancel every run that has not ended; `skipped` tells of those that have.
+         * @description Cancel every run that has not ended; `skipped` lists the others.
          */
         post: operations["cancel_sweep_api_v1_sweeps__sweep_id__cancel_post"];
         delete?: never;
@@ -1073,7 +1069,7 @@ export interface paths {
         };
         /**
          * Read Curves
-         * @description The curves of every run by itself, over the same generations.
+         * @description Return the curves of every run over the same generations.
          */
         get: operations["read_curves_api_v1_sweeps__sweep_id__curves_get"];
         put?: never;
@@ -1095,7 +1091,7 @@ export interface paths {
         put?: never;
         /**
          * Pause Sweep
-         * @description Pause every run that can be paused; `skipped` tells of those that cannot.
+         * @description Pause every run that can be paused; `skipped` lists the others.
          */
         post: operations["pause_sweep_api_v1_sweeps__sweep_id__pause_post"];
         delete?: never;
@@ -1115,7 +1111,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Sweep
-         * @description Every run that lies in the bin out of it, as it was.
+         * @description Restore all runs of the sweep from the bin.
          */
         post: operations["restore_sweep_api_v1_sweeps__sweep_id__restore_post"];
         delete?: never;
@@ -1135,7 +1131,7 @@ export interface paths {
         put?: never;
         /**
          * Resume Sweep
-         * @description Resume every run that is paused; `skipped` tells of the others.
+         * @description Resume every paused run; `skipped` lists the others.
          */
         post: operations["resume_sweep_api_v1_sweeps__sweep_id__resume_post"];
         delete?: never;
@@ -1153,10 +1149,9 @@ export interface paths {
         };
         /**
          * Read Summary
-         * @description Median and spread of each case, by generation and at last.
+         * @description Return median and spread of each case, by generation and at the common generation.
          *
-         *     Of all generations, or of about so many, evenly spaced; of fewer where there are very many
-         *     runs.
+         *     `points` limits the generations, which are evenly spaced; so do very many runs.
          */
         get: operations["read_summary_api_v1_sweeps__sweep_id__summary_get"];
         put?: never;
@@ -1176,7 +1171,7 @@ export interface paths {
         };
         /**
          * List Tags
-         * @description All of them, by name.
+         * @description Return all tags by name.
          */
         get: operations["list_tags_api_v1_tags_get"];
         put?: never;
@@ -1260,7 +1255,7 @@ export interface paths {
         };
         /**
          * List Workers
-         * @description By name, each with how busy its device is and the run that it carries out.
+         * @description Return the live workers by name, with their load and their runs.
          */
         get: operations["list_workers_api_v1_workers_get"];
         put?: never;
@@ -1309,18 +1304,6 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
-        /**
-         * Again
-         * @description A recorded figure and the same one measured here; None where it is not finite.
-         */
-        Again: {
-            /** Measured */
-            measured: number | null;
-            /** Name */
-            name: string;
-            /** Recorded */
-            recorded: number;
-        };
         /** Ancestors */
         Ancestors: {
             /** Items */
@@ -1334,8 +1317,8 @@ export interface components {
          * ArchiveRead
          * @description Columns, one entry per filled cell.
          *
-         *     The cells of a grid are numbered in C order over the bins of its axes; those of a CVT in
-         *     the order of their centroids, and the bins of its axes are none.
+         *     The cells of a grid are numbered in C order over the bins of its axes. Those of a CVT are in
+         *     the order of their centroids, and its axes have no bins.
          */
         ArchiveRead: {
             /** Axes */
@@ -1383,27 +1366,8 @@ export interface components {
             scale: "log10" | "linear";
         };
         /**
-         * Beginning
-         * @description The creatures that a fork begins from: one of these.
-         */
-        Beginning: {
-            /** Archive */
-            archive?: true | null;
-            /** Cells */
-            cells?: number[] | null;
-            /** Creatures */
-            creatures?: string[] | null;
-            /** Region */
-            region?: {
-                [key: string]: [
-                    number,
-                    number
-                ];
-            } | null;
-        };
-        /**
          * BodyRead
-         * @description A body at rest in its world; of one with many nodes some are left out.
+         * @description A body at rest in its world; a large one is drawn with a part of its nodes.
          */
         BodyRead: {
             /** Edges */
@@ -1431,7 +1395,7 @@ export interface components {
         };
         /**
          * CaseSummary
-         * @description What the runs of one case say together; columns have one entry per generation.
+         * @description Statistics over the runs of a case; columns have one entry per generation.
          */
         CaseSummary: {
             best: components["schemas"]["Quantiles"];
@@ -1454,7 +1418,7 @@ export interface components {
         };
         /**
          * CentroidsRead
-         * @description Where the cells of a CVT archive are, from 0 to 1 along each axis on its own scale.
+         * @description Centroids of a CVT archive, from 0 to 1 along each axis on its own scale.
          *
          *     Null before the first checkpoint.
          */
@@ -1468,6 +1432,18 @@ export interface components {
             items: components["schemas"]["Relative"][];
             /** Total */
             total: number;
+        };
+        /**
+         * Comparison
+         * @description A recorded figure and the same one measured here; None if it is not finite.
+         */
+        Comparison: {
+            /** Measured */
+            measured: number | null;
+            /** Name */
+            name: string;
+            /** Recorded */
+            recorded: number;
         };
         /** CreatureName */
         CreatureName: {
@@ -1542,7 +1518,7 @@ export interface components {
         };
         /**
          * DrawingRead
-         * @description Bodies, each in a world of its own, and the pictures that they are to become.
+         * @description Bodies, each in a world of its own, and the pictures that they fold into.
          */
         DrawingRead: {
             /** Bodies */
@@ -1587,7 +1563,7 @@ export interface components {
         };
         /**
          * Extension
-         * @description How many generations more.
+         * @description Generations to add.
          */
         Extension: {
             /** Generations */
@@ -1621,10 +1597,10 @@ export interface components {
         };
         /**
          * Fork
-         * @description What a new run takes of another, and what is different.
+         * @description The initial creatures of a fork, and the changes of its spec.
          */
         Fork: {
-            from: components["schemas"]["Beginning"];
+            from: components["schemas"]["ForkStart"];
             /** Generation */
             generation?: number | null;
             /** Name */
@@ -1638,8 +1614,27 @@ export interface components {
             };
         };
         /**
+         * ForkStart
+         * @description The creatures that a fork starts from, given by one of these fields.
+         */
+        ForkStart: {
+            /** Archive */
+            archive?: true | null;
+            /** Cells */
+            cells?: number[] | null;
+            /** Creatures */
+            creatures?: string[] | null;
+            /** Region */
+            region?: {
+                [key: string]: [
+                    number,
+                    number
+                ];
+            } | null;
+        };
+        /**
          * ForkedFrom
-         * @description Where a fork began.
+         * @description The origin of a fork.
          */
         ForkedFrom: {
             /** Creatures */
@@ -1703,7 +1698,7 @@ export interface components {
         };
         /**
          * LogEntryRead
-         * @description What happened to a run.
+         * @description An event in the history of a run.
          */
         LogEntryRead: {
             /**
@@ -1725,7 +1720,7 @@ export interface components {
         };
         /**
          * Measure
-         * @description What is recorded of every elite, and where an axis of it begins and ends by default.
+         * @description A measure that is recorded of every elite, with the default ends of an axis.
          */
         Measure: {
             /** High */
@@ -1746,7 +1741,7 @@ export interface components {
         };
         /**
          * MeasuredSpeed
-         * @description How fast earlier runs of the same kind were, on a device that there is.
+         * @description Speed of earlier runs of the same kind on a device of a live worker.
          */
         MeasuredSpeed: {
             /** Cell Steps Per Second */
@@ -1762,7 +1757,7 @@ export interface components {
         };
         /**
          * Measurement
-         * @description What came of evaluating a creature again by the program that measured it.
+         * @description The result of evaluating a creature again with the program that measured it.
          */
         Measurement: {
             /** Creature */
@@ -1772,8 +1767,8 @@ export interface components {
             /** Exact */
             exact: boolean;
             /** Figures */
-            figures: components["schemas"]["Again"][];
-            fitness: components["schemas"]["Again"];
+            figures: components["schemas"]["Comparison"][];
+            fitness: components["schemas"]["Comparison"];
             /** Recorded Device */
             recorded_device: string;
         };
@@ -1790,7 +1785,7 @@ export interface components {
         };
         /**
          * PluginRead
-         * @description Something of users' own that a worker has.
+         * @description A plug-in that a worker has.
          */
         PluginRead: {
             /**
@@ -1858,7 +1853,7 @@ export interface components {
         };
         /**
          * Quantiles
-         * @description A spread at each generation, as columns.
+         * @description A `Spread` at each generation, as columns.
          */
         Quantiles: {
             /** High */
@@ -1952,7 +1947,7 @@ export interface components {
         };
         /**
          * Relative
-         * @description Somebody in a creature's lineage.
+         * @description An ancestor or a child of a creature.
          */
         Relative: {
             /** Creature */
@@ -2004,7 +1999,7 @@ export interface components {
         };
         /**
          * RunBrief
-         * @description A run as it is named beside a worker or in the queue.
+         * @description A run in short.
          */
         RunBrief: {
             /** Attempt */
@@ -2034,7 +2029,7 @@ export interface components {
         };
         /**
          * RunChange
-         * @description What people may say of a run; what is left out stays as it is.
+         * @description New name, tags or note of a run; omitted fields stay as they are.
          */
         RunChange: {
             /** Name */
@@ -2049,7 +2044,7 @@ export interface components {
         };
         /**
          * RunCurves
-         * @description The curves of one run; None beyond the last generation that it has recorded.
+         * @description The curves of one run; None after its last recorded generation.
          */
         RunCurves: {
             /** Best */
@@ -2162,10 +2157,10 @@ export interface components {
             warning: string | null;
         };
         /**
-         * ShareAsked
-         * @description What is to be published; what is left out is taken from the creature's file.
+         * ShareCreate
+         * @description What to share; by default the creature's file decides title, credit and licence.
          */
-        ShareAsked: {
+        ShareCreate: {
             /** Creature */
             creature?: string | null;
             /**
@@ -2198,7 +2193,7 @@ export interface components {
         };
         /**
          * ShareRead
-         * @description Either `creature` or `run` is what was shared, an archive up to `generation`.
+         * @description A share of a `creature`, or of the archive of a `run` up to a `generation`.
          */
         ShareRead: {
             /** Cover */
@@ -2243,7 +2238,7 @@ export interface components {
         };
         /**
          * SkippedRun
-         * @description A run that was left as it is.
+         * @description A run that did not change, with the reason.
          */
         SkippedRun: {
             /** Reason */
@@ -2261,7 +2256,7 @@ export interface components {
         };
         /**
          * Species
-         * @description Columns, one entry for each generation that tells its species, those that live.
+         * @description Columns, one entry for each generation with recorded species.
          */
         Species: {
             /** Generation */
@@ -2273,7 +2268,7 @@ export interface components {
         };
         /**
          * SweepChange
-         * @description What a sweep is called; without anything in it, it has no name.
+         * @description New name of a sweep; an empty one removes the name.
          */
         SweepChange: {
             /** Name */
@@ -2323,6 +2318,30 @@ export interface components {
             };
             /** Total */
             total: number;
+        };
+        /**
+         * SweepCreate
+         * @description A request for many runs: each case of the grid with each seed.
+         */
+        SweepCreate: {
+            /**
+             * Grid
+             * @default {}
+             */
+            grid: {
+                [key: string]: unknown[];
+            };
+            /** Name */
+            name?: string | null;
+            /**
+             * Seeds
+             * @default 1
+             */
+            seeds: number | number[];
+            /** Spec */
+            spec: {
+                [key: string]: unknown;
+            };
         };
         /** SweepCurves */
         SweepCurves: {
@@ -2400,7 +2419,7 @@ export interface components {
         };
         /**
          * SweepRun
-         * @description A run as its sweep tells of it.
+         * @description A run of a sweep in short.
          */
         SweepRun: {
             /** Generation */
@@ -2419,30 +2438,6 @@ export interface components {
              * @enum {string}
              */
             status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-        };
-        /**
-         * SweepSent
-         * @description One request for many runs: each case of the grid with each seed.
-         */
-        SweepSent: {
-            /**
-             * Grid
-             * @default {}
-             */
-            grid: {
-                [key: string]: unknown[];
-            };
-            /** Name */
-            name?: string | null;
-            /**
-             * Seeds
-             * @default 1
-             */
-            seeds: number | number[];
-            /** Spec */
-            spec: {
-                [key: string]: unknown;
-            };
         };
         /** SweepSummary */
         SweepSummary: {
@@ -2465,7 +2460,7 @@ export interface components {
         };
         /**
          * Target
-         * @description A picture that a filament folds into, made as large as the filament sees it.
+         * @description A picture that a filament folds into, scaled to its world.
          */
         Target: {
             /** Height */
@@ -2557,7 +2552,7 @@ export interface components {
         };
         /**
          * UnloadedRead
-         * @description A module of users' own that a worker could not load.
+         * @description A plug-in module that a worker could not load.
          */
         UnloadedRead: {
             /** Module */
@@ -3002,7 +2997,7 @@ export interface operations {
                     "application/json": components["schemas"]["Rendering"];
                 };
             };
-            /** @description Nobody has had it measured here */
+            /** @description Nobody has ordered this measurement */
             204: {
                 headers: {
                     [name: string]: unknown;
@@ -3699,7 +3694,7 @@ export interface operations {
             };
         };
     };
-    download_table_api_v1_runs__run_id__archive_csv_get: {
+    download_archive_csv_api_v1_runs__run_id__archive_csv_get: {
         parameters: {
             query?: never;
             header?: never;
@@ -4322,7 +4317,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["ShareAsked"];
+                "application/json": components["schemas"]["ShareCreate"];
             };
         };
         responses: {
@@ -4501,7 +4496,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["SweepSent"];
+                "application/json": components["schemas"]["SweepCreate"];
             };
         };
         responses: {
@@ -4534,7 +4529,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["SweepSent"];
+                "application/json": components["schemas"]["SweepCreate"];
             };
         };
         responses: {

@@ -1,19 +1,23 @@
 /** The comparison of runs: curves, figures, and differences of their specs. */
 
+import { useMemo } from "preact/hooks";
 import type { Experiment, Run } from "../api/types";
+import { CurveOptions } from "../charts/curves/CurveOptions";
+import { Curves } from "../charts/curves/Curves";
+import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/look";
+import { type Plot, scoresOf } from "../charts/curves/plots";
+import { LineKey, MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
+import { StatusBadge, timeOf } from "../run/RunStatus";
+import { SCORES } from "../run/figures";
+import { differences, written } from "../run/spec/difference";
 import type { Curves as Columns } from "../store/curves";
 import { useCurvesOf, useExperiments } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { useRuns } from "../store/store";
-import { Curves } from "../charts/curves/Curves";
-import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/look";
-import { type Plot, scoresOf } from "../charts/curves/plots";
-import { short, titleOf } from "../ui/format";
-import { LineKey, MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
-import { StatusBadge } from "../run/RunStatus";
 import { Card, Empty, Page } from "../ui/Page";
-import { type Compared, Figures, Specs } from "./Tables";
-import { CurveOptions } from "../charts/curves/CurveOptions";
+import { Table } from "../ui/Table";
+import { Term } from "../ui/Term";
+import { short, titleOf, DASH, count, duration, number } from "../ui/format";
 import { text } from "./text";
 
 export function ComparePage({ query }: { query: URLSearchParams }) {
@@ -30,7 +34,7 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
       title={text.compare}
       crumbs={[["/", text.runs]]}
       error={error}
-      loading={ids.length > 0 && runs.length === 0 && text.loading}
+      loading={ids.length > 0 && runs.length === 0}
     >
       {asked.length > MAX_LINES && <p class="banner warning">{text.tooMany(MAX_LINES, asked.length)}</p>}
       {ids.length === 0 && (
@@ -102,3 +106,74 @@ const NO_X: readonly number[] = [];
 
 const oneLinePerRun = (curves: Columns): Plot[] =>
   scoresOf(curves).map((plot) => ({ ...plot, series: plot.series.slice(0, 1) }));
+
+interface Compared {
+  run: Run;
+  name: string;
+  /** Index of the line's colour and dash. */
+  place: number;
+}
+
+type Written = [title: string, write: (run: Run) => string];
+
+const FIGURES: Written[] = [
+  ...SCORES.map(([name, title, write]): Written => [title, (run) => write(run[name], 5)]),
+  [text.generations, (run) => `${count(run.generation)} / ${count(run.generations)}`],
+  [text.evaluations, (run) => count(run.evaluations)],
+  [text.diverged, (run) => count(run.diverged)],
+  [text.evaluationsPerSecond, (run) => number(run.evaluations_per_second)],
+  [text.time, (run) => (run.eta_seconds ? text.left(duration(run.eta_seconds)) : timeOf(run).text)],
+  [text.device, (run) => run.device ?? DASH],
+];
+
+function Figures({ runs }: { runs: Compared[] }) {
+  const rows = FIGURES.map(([title, write]) => ({ title, values: runs.map(({ run }) => write(run)) }));
+  return (
+    <Card id="figures" title={text.figures}>
+      <RunTable runs={runs} corner={text.figure} rows={rows} />
+    </Card>
+  );
+}
+
+function Specs({ runs }: { runs: Compared[] }) {
+  const specs = runs.map(({ run }) => run.spec);
+  const differing = useMemo(() => differences(specs), specs);
+  const rows = differing.map(({ path, values }) => ({ title: path, values: values.map(written) }));
+  return (
+    <Card id="specs" title={text.differences}>
+      {rows.length === 0 && <p class="quiet">{text.noDifferences}</p>}
+      {rows.length > 0 && <RunTable runs={runs} corner={text.field} rows={rows} code />}
+    </Card>
+  );
+}
+
+interface RunTableProps {
+  runs: Compared[];
+  corner: string;
+  rows: { title: string; values: string[] }[];
+  /** True if the titles are paths of the spec. */
+  code?: boolean;
+}
+
+function RunTable({ runs, corner, rows, code = false }: RunTableProps) {
+  const columns = runs.map(({ name, place }, i) => ({
+    title: (
+      <>
+        <LineKey index={place} /> {name}
+      </>
+    ),
+    cell: ({ values }: (typeof rows)[0]) => values[i]!,
+  }));
+  const first = {
+    title: corner,
+    cell: ({ title }: (typeof rows)[0]) => (code ? <code>{title}</code> : <Term name={title} />),
+  };
+  return (
+    <Table
+      label={text.tableOf(corner)}
+      columns={[first, ...columns]}
+      rows={rows}
+      keyOf={({ title }) => title}
+    />
+  );
+}

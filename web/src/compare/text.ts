@@ -5,7 +5,6 @@ export const text = {
   compare: "Compare",
   tooMany: (limit: number, asked: number) =>
     `At most ${limit} runs can be compared. The first ${limit} of ${asked} are shown.`,
-  loading: "Loading runs …",
   nothingChosen: "No runs selected",
   nothingChosenHint: "Select two or more runs in the list of runs, then press Compare.",
   showRuns: "Show all runs",

@@ -3,7 +3,7 @@
 import type { Experiment } from "../api/types";
 import { formatCells } from "../store/cellRanges";
 import type { Base, ForkSource, Draft } from "../store/draft";
-import { equalPreset } from "./form/changes";
+import { equalPreset } from "./form/document";
 import { openCreature } from "../ui/DropTarget";
 import { count, short } from "../ui/format";
 import { titleOfBase } from "./sources";

@@ -124,18 +124,17 @@ function SubmitBar({ editor, illegible, refusal }: SubmitProps) {
   const wanted = !forking && isSweep(sweep) ? sweep.total : 1;
   return (
     <div class="submit-bar">
-      <div class="submit-inner">
+      <div class="row">
         <Costs {...{ estimate, runs }} problem={illegible ? text.invalidJson : problem} />
-        <span class="submit-how">
-          {refusal ? (
-            <span class="quiet">{refusal}</span>
-          ) : (
-            <kbd class="quiet wide-only">{text.submitKey}</kbd>
-          )}
-          <button class="primary" type="submit" disabled={submission.busy || refusal !== null}>
-            {submission.busy ? text.starting : startLabel(wanted)}
-          </button>
-        </span>
+        <span class="spring" />
+        {refusal ? (
+          <span class="quiet">{refusal}</span>
+        ) : (
+          <kbd class="quiet small wide-only">{text.submitKey}</kbd>
+        )}
+        <button class="primary" type="submit" disabled={submission.busy || refusal !== null}>
+          {submission.busy ? text.starting : startLabel(wanted)}
+        </button>
       </div>
     </div>
   );

@@ -4,7 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 import type { Experiment } from "../api/types";
 import { useExperiments } from "../store/fetch";
 import { setQuery } from "../store/router";
-import { Page } from "../ui/Page";
+import { Loading, Page } from "../ui/Page";
 import { ExperimentPicker } from "./ExperimentPicker";
 import { BaseBar } from "./BaseBar";
 import { Editor } from "./Editor";
@@ -18,7 +18,7 @@ import "./new-run.css";
 export function NewRunPage({ query }: { query: URLSearchParams }) {
   const { value: experiments, error } = useExperiments();
   return (
-    <Page error={error} loading={!experiments && text.loading}>
+    <Page error={error} loading={!experiments}>
       {experiments && <NewRunForm experiments={experiments} query={query} />}
     </Page>
   );
@@ -58,7 +58,7 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
           one.presets[0] ? draft.startFrom(ofPreset(one.presets[0], one)) : setPicked(one)
         }
       />
-      {!current && <p class="quiet loading">{text.loading}</p>}
+      {!current && <Loading />}
       {current && own && (
         <>
           <BaseBar {...{ draft, current, experiments, file }} />

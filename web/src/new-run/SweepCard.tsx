@@ -8,10 +8,8 @@ import { Card } from "../ui/Page";
 import { Options } from "../ui/Select";
 import { NameEntry } from "./ForkCard";
 import { Messages } from "./form/Entry";
-import { type Axis, nameOf } from "./sweepGrid";
-import { type SweepForm, isSweep, complaintsOf } from "./sweep";
+import { type Axis, nameOf, type SweepForm, isSweep, complaintsOf } from "./sweep";
 import { text } from "./text";
-import "./sweep.css";
 
 interface Props {
   sweeping: SweepForm;

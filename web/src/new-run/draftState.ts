@@ -15,33 +15,17 @@ import {
 } from "../store/draft";
 import { dismissToast, offerUndo } from "../store/toasts";
 import { setQuery } from "../store/router";
-import { changedPaths } from "./form/changes";
+import { changedPaths } from "./form/document";
 import { withInitial } from "./initialCreatures";
 import { addressed, load, ofPreset } from "./sources";
 import { text } from "./text";
-
-export interface DraftState {
-  current: Draft | null;
-  /** Paths at which the spec differs from its source. */
-  changed: ReadonlySet<string>;
-  /** The number of times that the whole spec was replaced. */
-  revision: number;
-  /** True if an earlier draft is shown. */
-  restored: boolean;
-  problem: string | null;
-  change: (next: (spec: Spec) => Spec) => void;
-  startFrom: (base: Base) => void;
-  reset: () => void;
-  /** Start from random creatures; changes stay. */
-  dropFork: () => void;
-}
 
 const WORDS = ["preset", "from", "fork", "begin", ...FORK_PARAMETERS];
 const UNNAMED = Object.fromEntries(WORDS.map((word) => [word, null]));
 
 const NONE: ReadonlySet<string> = new Set();
 
-export function useDraft(query: URLSearchParams, experiments: Experiment[]): DraftState {
+export function useDraft(query: URLSearchParams, experiments: Experiment[]) {
   const wanted = addressed(query);
   const [current, setCurrent] = useState(() => loadDraft(wanted));
   const [restored, setRestored] = useState(current !== null);
@@ -74,7 +58,7 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]): Dra
     revision,
     restored: restored && changed.size > 0,
     problem,
-    change: (next) => setCurrent((now) => now && { ...now, spec: next(now.spec) }),
+    change: (next: (spec: Spec) => Spec) => setCurrent((now) => now && { ...now, spec: next(now.spec) }),
     startFrom,
     reset: () => current && replace({ ...current, spec: current.base.spec }, text.undone),
     dropFork: () => {
@@ -82,6 +66,8 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]): Dra
     },
   };
 }
+
+export type DraftState = ReturnType<typeof useDraft>;
 
 function withoutFork({ base: { fork: _, ...base }, spec }: Draft): Draft {
   return { base: { ...base, spec: withInitial(base.spec, []) }, spec: withInitial(spec, []) };

@@ -3,7 +3,7 @@ import type { DrawnBody, Estimate } from "../api/types";
 import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../store/draft";
 import { EXPERIMENTS, experiment } from "./form/presets.fixture";
 import { load, ofPreset, titleOfBase } from "./sources";
-import { branchesOf, dotsOf, linesOf, tilesOf } from "./bodyPaths";
+import { branchesOf, dotsOf, linesOf, tilesOf } from "./BodyDrawing";
 import { about, basis, rough, wait } from "./Costs";
 
 describe("a draft", () => {

@@ -1,23 +1,11 @@
-/** The state of a sweep: seeds, and fields of the grid. */
+/** The state of a sweep: seeds, and the typed values of the fields of a grid. */
 
 import { useEffect, useMemo, useState } from "preact/hooks";
-import type { Experiment, FieldError, Spec, SweepRequest } from "../api/types";
+import type { Experiment, FieldError, Spec, SweepRequest, Json } from "../api/types";
+import { words } from "../ui/format";
+import { complaint, leavesOf, typed } from "./form/document";
 import type { Leaf, Section } from "./form/fields";
-import { type Axis, MOST, hasSeed, readSeeds, readValues, sweepable } from "./sweepGrid";
 import { text } from "./text";
-
-export interface SweepForm {
-  seeded: boolean;
-  seeds: string;
-  axes: readonly Axis[];
-  name: string;
-  fields: readonly Leaf[];
-  problems: { seeds: string | null; axes: (string | null)[]; total: string | null };
-  total: number;
-  /** The request; null for a single run or invalid values. */
-  sent: SweepRequest | null;
-  change: (change: Partial<Typed>) => void;
-}
 
 interface Typed {
   seeds: string;
@@ -28,13 +16,15 @@ interface Typed {
 const SINGLE: Typed = { seeds: "1", axes: [], name: "" };
 
 /** Keep typed values while the spec changes; report fields that no longer exist. */
-export function useSweepForm(form: Section, spec: Spec, experiment: Experiment): SweepForm {
+export function useSweepForm(form: Section, spec: Spec, experiment: Experiment) {
   const [typed, setTyped] = useState(SINGLE);
   useEffect(() => setTyped(SINGLE), [experiment]);
   const read = useMemo(() => readAll(form, spec, hasSeed(experiment), typed), [form, spec, typed]);
   const change = (next: Partial<Typed>) => setTyped((now) => ({ ...now, ...next }));
   return { ...typed, ...read, change };
 }
+
+export type SweepForm = ReturnType<typeof useSweepForm>;
 
 function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   const fields = sweepable(form, spec);
@@ -49,7 +39,8 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   const right = !problem && !many && readings.every((one) => one.problem === null);
   const grid = Object.fromEntries(typed.axes.map(({ path }, i) => [path, readings[i]!.values]));
   const wanted = right && (total > 1 || typed.axes.length > 0);
-  const sent = wanted ? { spec, seeds, grid, name: typed.name.trim() || null } : null;
+  // A single run is no sweep.
+  const sent: SweepRequest | null = wanted ? { spec, seeds, grid, name: typed.name.trim() || null } : null;
   return { seeded, fields, problems, total, sent };
 }
 
@@ -61,3 +52,100 @@ export function complaintsOf(errors: readonly FieldError[], path: string): strin
   const mine = errors.filter(({ field }) => field === path || field.startsWith(`${path}[`));
   return mine.map(({ message }) => message);
 }
+
+/** One field of a grid, with the typed values. */
+export interface Axis {
+  path: string;
+  text: string;
+}
+
+/** Fields that a grid can run over; seeds have an entry of their own. */
+export function sweepable(form: Section, spec: Spec): Leaf[] {
+  const leaves = leavesOf(form, spec) as Leaf[];
+  return leaves.filter(({ kind, path }) => (kind as string) !== "constant" && path !== "seed");
+}
+
+/** Section and title of a field: “World: viscosity”. */
+export function nameOf({ path, title }: Leaf): string {
+  const around = path.split(".").slice(0, -1).map(words);
+  return around.length > 0 ? `${around.join(" ")}: ${title.toLowerCase()}` : title;
+}
+
+export interface Reading {
+  values: Json[];
+  /** The error; null for valid values. */
+  problem: string | null;
+}
+
+/** Values between commas or blanks, or a JSON list. */
+export function readValues(field: Leaf, input: string): Reading {
+  const values = valuesOf(field, input.trim());
+  if (values === null) return { values: [], problem: text.needsList };
+  if (values.length === 0) return { values, problem: text.needsValues };
+  const wrong = values.map((value) => wrongWith(field, value)).find((said) => said !== null);
+  const twice = values.find((value, i) => values.findIndex((one) => same(one, value)) < i);
+  const repeated = twice === undefined ? null : text.repeated(JSON.stringify(twice));
+  return { values, problem: wrong ?? repeated };
+}
+
+const COMPOUND = ["list", "several", "nested"];
+
+function valuesOf(field: Leaf, text: string): Json[] | null {
+  if (text.startsWith("[") || COMPOUND.includes(field.kind)) return listOf(text);
+  return text
+    .split(/[\s,;]+/)
+    .filter(Boolean)
+    .map((word) => valueOf(field, word));
+}
+
+function listOf(text: string): Json[] | null {
+  if (text === "") return [];
+  try {
+    const found = JSON.parse(text) as Json;
+    return Array.isArray(found) ? found : null;
+  } catch {
+    return null;
+  }
+}
+
+const FLAGS: Record<string, boolean> = {
+  true: true,
+  on: true,
+  yes: true,
+  false: false,
+  off: false,
+  no: false,
+};
+const NOTHING = ["null", "none", "auto"];
+
+function valueOf(field: Leaf, word: string): Json {
+  if (field.kind === "flag") return FLAGS[word.toLowerCase()] ?? word;
+  if ("nullable" in field && field.nullable && NOTHING.includes(word)) return null;
+  if (field.kind === "number") return typed(word);
+  if (field.kind !== "choice") return word;
+  return field.options.find((option) => String(option) === word) ?? word;
+}
+
+function wrongWith(field: Leaf, value: Json): string | null {
+  if (field.kind === "number") return complaint(field, value);
+  if (field.kind === "flag" && typeof value !== "boolean") return text.needsFlag(value);
+  if (field.kind !== "choice" || value === null) return null;
+  const known = field.options.includes(value);
+  return known ? null : text.needsOption(field.options.join(", "), String(value));
+}
+
+const same = (one: Json, other: Json) => JSON.stringify(one) === JSON.stringify(other);
+
+/** The typed number of seeds, or an error. */
+export function readSeeds(input: string): { seeds: number; problem: string | null } {
+  const seeds = typed(input);
+  const whole = typeof seeds === "number" && Number.isInteger(seeds);
+  if (whole && seeds >= 1 && seeds <= MOST) return { seeds, problem: null };
+  return { seeds: 1, problem: text.needsSeeds(MOST.toLocaleString("en")) };
+}
+
+/** The largest number of runs in one request. */
+const MOST = 1000;
+
+/** True if an experiment depends on a random seed. */
+const hasSeed = ({ schema }: Experiment) => "seed" in ((schema.properties ?? {}) as Record<string, Json>);

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Json } from "../api/types";
 import { formOf, type Leaf } from "./form/fields";
-import { nameOf, readSeeds, readValues, sweepable } from "./sweepGrid";
+import { nameOf, readSeeds, readValues, sweepable } from "./sweep";
 
 const FORM = formOf({
   properties: {

@@ -60,7 +60,6 @@ export const text = {
     "The initial creatures are evaluated first, in the world, body and task of this spec. All other creatures descend from them.",
   runName: "Name of the run",
   optional: "optional",
-  loading: "Loading …",
   newRun: "New run",
   dropHint: "Paste or drop a spec, a run or a creature file, or",
   pasteSpec: "Paste spec",

@@ -9,14 +9,12 @@ import { useRefusal } from "../store/principal";
 import { useStore } from "../store/store";
 import { editRun } from "../store/commands";
 import { forceFreeShare } from "../ui/coupling";
-import { RunActivity } from "./RunActivity";
-import { endReasonOf } from "./endReason";
+import { RunActivity, CommandButtons, StatusBadge, RunProgress, timeOf } from "./RunStatus";
+import { endReasonOf, type Figure, figuresOf, generationsOf } from "./figures";
 import { count, moment, number, short, titleOf } from "../ui/format";
 import { NotForceFree } from "../ui/NotForceFree";
 import { Page, useTitle } from "../ui/Page";
 import { NotFound } from "../ui/NotFound";
-import { type Figure, figuresOf, generationsOf } from "./figures";
-import { CommandButtons, StatusBadge, RunProgress, timeOf } from "./RunStatus";
 import { NameField } from "./NameField";
 import { ArchiveRun } from "./ArchiveRun";
 import { FilesCard } from "./FilesCard";
@@ -45,11 +43,7 @@ export function RunPage({ id, query }: { id: string; query: URLSearchParams }) {
   const title = run ? titleOf(run, experiments) : text.run;
   useTitle(title);
   if (!run) {
-    return (
-      <Page loading={!error && text.loadingRun}>
-        {error && <NotFound what={text.noSuchRun} reason={error} id={id} />}
-      </Page>
-    );
+    return <Page loading={!error}>{error && <NotFound what={text.noSuchRun} reason={error} id={id} />}</Page>;
   }
   const sweep = run.sweep ? [[`/sweeps/${run.sweep}`, text.sweep] as const] : [];
   return (

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { LogEntry, Run } from "../api/types";
-import { endReasonOf } from "./endReason";
-import { activityOf, elapsedOf } from "./RunActivity";
+import { endReasonOf } from "./figures";
+import { activityOf, elapsedOf } from "./RunStatus";
 import { atLeast, summaryOf, textOf } from "./LogCard";
 
 describe("a log", () => {

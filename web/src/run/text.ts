@@ -55,7 +55,6 @@ export const text = {
   renameRun: (title: string) => `Rename ${title}`,
   rename: "Rename",
   noSuchRun: "Run not found",
-  loadingRun: "Loading run …",
   runs: "Runs",
   sweep: "Sweep",
   fork: "Start a new run from the creatures of this run",

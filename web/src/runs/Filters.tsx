@@ -10,7 +10,7 @@ import { NO_FILTERS, NEWEST, ORDERS, isFiltered } from "./runQuery";
 import { text } from "./text";
 
 type Pair = [value: string, title: string];
-const ANY: Pair = ["", text.any];
+type Selection = [name: string, title: string, value: string | undefined, choices: Pair[]];
 /** Delay between the last key and the request. */
 const SETTLE_MS = 200;
 
@@ -64,29 +64,29 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
 }
 
 function Selects({ query, experiments, tags, onChange }: Props) {
-  const known = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
+  const knownTags = query.tag && !tags.includes(query.tag) ? [query.tag, ...tags] : tags;
+  const selects: Selection[] = [
+    ["status", text.state, query.status?.[0], STATES.map((state) => [state, words(state)])],
+    [
+      "experiment",
+      text.experiment,
+      query.experiment?.[0],
+      experiments.map(({ experiment, title }) => [experiment, title]),
+    ],
+    ["tag", text.tag, query.tag ?? undefined, knownTags.map((tag) => [tag, tag])],
+  ];
+  if (knownTags.length === 0) selects.pop();
   return (
     <>
-      <Select
-        title={text.state}
-        value={query.status?.[0] ?? ""}
-        choices={[ANY, ...STATES.map((state): Pair => [state, words(state)])]}
-        onChange={(status) => onChange({ status: status || null })}
-      />
-      <Select
-        title={text.experiment}
-        value={query.experiment?.[0] ?? ""}
-        choices={[ANY, ...experiments.map(({ experiment, title }): Pair => [experiment, title])]}
-        onChange={(experiment) => onChange({ experiment: experiment || null })}
-      />
-      {known.length > 0 && (
+      {selects.map(([name, title, value = "", choices]) => (
         <Select
-          title={text.tag}
-          value={query.tag ?? ""}
-          choices={[ANY, ...known.map((tag): Pair => [tag, tag])]}
-          onChange={(tag) => onChange({ tag: tag || null })}
+          key={name}
+          title={title}
+          value={value}
+          choices={[["", text.any], ...choices]}
+          onChange={(chosen) => onChange({ [name]: chosen || null })}
         />
-      )}
+      ))}
       <Select
         title={text.order}
         value={query.sort ?? NEWEST}

@@ -6,7 +6,6 @@ import { setQuery } from "../store/router";
 import { InlineText } from "../ui/InlineText";
 import { useDisclosure } from "../ui/disclosure";
 import { text } from "./text";
-import "./labels.css";
 
 interface Props {
   run: Run;
@@ -23,7 +22,7 @@ export function TagList({ run, name, fixed, known }: Props & { known: string }) 
     if (tag) addTag(run, tag);
   };
   return (
-    <span class="tags">
+    <span class="tags row">
       {run.tags.map((tag) => (
         <span key={tag} class="tag">
           <button title={text.runsTagged(tag)} onClick={() => setQuery({ tag })}>

@@ -39,7 +39,7 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
       <th scope="row">
         <RowTitle {...{ run, title, name, fixed }} />
         <RowNotes run={run} />
-        <span class="labels">
+        <span class="labels row">
           <TagList {...{ run, name, fixed }} known={knownTags} />
           <NoteField {...{ run, name, fixed }} />
         </span>

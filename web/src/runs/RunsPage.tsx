@@ -55,7 +55,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       title={query.deleted ? text.bin : text.runs}
       actions={<HeaderLinks bin={query.deleted ?? false} />}
       error={error}
-      loading={!fetched && listed.length === 0 && text.loadingRuns}
+      loading={!fetched && listed.length === 0}
     >
       <Welcome />
       {(listed.length > 0 || swept || isFiltered(query)) && (

@@ -4,7 +4,6 @@ import type { SweepPage } from "../api/types";
 import { moment } from "../ui/format";
 import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../sweeps/SweepStatus";
 import { text } from "./text";
-import "./sweepRows.css";
 
 interface Props {
   page: SweepPage;

@@ -37,7 +37,6 @@ export const text = {
   time: "Time",
   bin: "Bin",
   newRun: "New run",
-  loadingRuns: "Loading runs …",
   binEmpty: "The bin is empty.",
   compare: "Compare",
   actions: "Actions",

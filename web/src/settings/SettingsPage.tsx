@@ -5,15 +5,14 @@ import type { Principal } from "../api/types";
 import { usePrincipal } from "../store/principal";
 import { showFailure } from "../store/toasts";
 import { Card, Page } from "../ui/Page";
-import { Tokens } from "./Tokens";
-import { day } from "./tokenText";
+import { Tokens, day } from "./Tokens";
 import { text } from "./text";
 import "./settings.css";
 
 export function SettingsPage() {
   const { value, error } = usePrincipal();
   return (
-    <Page title={text.settings} error={error} loading={!value && text.loading}>
+    <Page title={text.settings} error={error} loading={!value}>
       {value && (
         <>
           <PrincipalCard principal={value} />

@@ -2,7 +2,6 @@
 
 export const text = {
   settings: "Settings",
-  loading: "Loading …",
   allowed: {
     read: "You can read everything and change nothing.",
     write: "You can read everything, create runs, and change your own.",

@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
 import type { Token } from "../api/types";
-import { endOf, isExpired, tokenStatus } from "./tokenText";
+import { endOf, isExpired, tokenStatus } from "./Tokens";
 
 const NOW = Date.parse("2026-06-15T12:00:00Z");
 

@@ -14,7 +14,7 @@ export function CommonsPage() {
   const { items: shares, error, more } = usePages(api.readCommons, ({ slug }) => slug);
   useTitle(text.commons);
   return (
-    <Page title={text.commons} error={error} loading={!shares && text.loading}>
+    <Page title={text.commons} error={error} loading={!shares}>
       {shares?.length === 0 && <Empty title={text.nothingListed} hint={text.nothingListedHint} />}
       <ul class="commons">
         {shares?.map((share) => (

@@ -11,7 +11,7 @@ import { NotFound } from "../ui/NotFound";
 import { ArchiveRun } from "../run/ArchiveRun";
 import { CreatureView } from "../creature/CreaturePage";
 import { FilesCard } from "../run/FilesCard";
-import { Card, Page, useTitle } from "../ui/Page";
+import { Card, Loading, Page, useTitle } from "../ui/Page";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import "./shares.css";
@@ -33,7 +33,7 @@ export function SharedPage({ slug, sha, query }: Props) {
       </main>
     );
   }
-  if (!share) return <Page loading={text.loading} />;
+  if (!share) return <Page loading />;
   const creature = sha ?? share.creature;
   const [title, id] = headingOf(share, creature, sha !== null);
   return (
@@ -98,7 +98,7 @@ type PartProps = Pick<Props, "query"> & { share: Share; id: string };
 function SharedCreature({ share, id, query }: PartProps) {
   const { value: creature, error } = useFetched(() => api.readCreature(id), [id]);
   if (error) return <p class="banner wrong">{error}</p>;
-  if (!creature) return <p class="quiet loading">{text.loadingCreature}</p>;
+  if (!creature) return <Loading />;
   return (
     <>
       <CreatureView {...{ creature, query }} />
@@ -126,7 +126,7 @@ function SharedArchive({ share, id, query }: PartProps) {
   const run = useStore((state) => state.runs.get(id));
   const detail = useStore((state) => state.details.get(id));
   if (!run) {
-    return error ? <p class="banner wrong">{error}</p> : <p class="quiet loading">{text.loading}</p>;
+    return error ? <p class="banner wrong">{error}</p> : <Loading />;
   }
   return (
     <>

@@ -17,7 +17,7 @@ export function SharesPage() {
   const refusal = useRefusal();
   const { items: shares, error, more, replace: put } = usePages(api.readShares, ({ slug }) => slug);
   return (
-    <Page title={text.shares} error={error} loading={!shares && text.loading}>
+    <Page title={text.shares} error={error} loading={!shares}>
       {shares?.length === 0 && <Empty title={text.nothingShared} hint={refusal ?? text.nothingSharedHint} />}
       {shares && shares.length > 0 && (
         <section class="card">

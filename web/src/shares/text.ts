@@ -2,7 +2,6 @@
 
 export const text = {
   commons: "Commons",
-  loading: "Loading …",
   nothingListed: "Nothing is listed yet",
   nothingListedHint: "Publish a creature or the archive of a run, and choose to list it in the commons.",
   showMore: "Show more",
@@ -18,7 +17,6 @@ export const text = {
   licence: "Licence",
   shared: "Shared",
   until: "Until",
-  loadingCreature: "Loading creature …",
   filesAbout: (generation: string, version: string, device: string | null) =>
     `State after generation ${generation}. Computed by version ${version}${device ? ` on ${device}` : ""}.`,
   shares: "Shares",

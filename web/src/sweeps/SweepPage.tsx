@@ -32,7 +32,7 @@ export function SweepPage({ id, query }: { id: string; query: URLSearchParams })
   const title = value ? sweepTitle(value.sweep) : text.sweep;
   useTitle(title);
   return (
-    <Page crumbs={[["/", text.runs]]} error={value && error} loading={!value && !error && text.loadingSweep}>
+    <Page crumbs={[["/", text.runs]]} error={value && error} loading={!value && !error}>
       {error && !value && <NotFound what={text.noSuchSweep} reason={error} id={id} />}
       {value && <LoadedSweep {...{ value, query, each }} />}
     </Page>

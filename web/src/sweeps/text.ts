@@ -20,7 +20,6 @@ export const text = {
   range: (low: string, high: string) => `${low} to ${high}`,
   sweep: "Sweep",
   noSuchSweep: "Sweep not found",
-  loadingSweep: "Loading sweep …",
   status: "Status of the sweep",
   curves: "Curves",
   curvesAbout: "median and quartiles of each case",

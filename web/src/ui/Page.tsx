@@ -12,8 +12,8 @@ interface PageProps {
   /** Links to the pages above this one. */
   crumbs?: (readonly [href: string, name: string])[];
   error?: string | null;
-  /** Shown instead of content until there is some. */
-  loading?: string | false;
+  /** True until there is content. */
+  loading?: boolean;
   children?: ComponentChildren;
 }
 
@@ -36,11 +36,13 @@ export function Page({ title, actions, crumbs, error, loading, children }: PageP
         </header>
       )}
       {error && <p class="banner wrong">{error}</p>}
-      {loading && !error && <p class="quiet loading">{loading}</p>}
+      {loading && !error && <Loading />}
       {children}
     </main>
   );
 }
+
+export const Loading = () => <p class="quiet loading">{text.loading}</p>;
 
 /** Name the browser's tab after the page; null keeps the name. */
 export function useTitle(title: string | null): void {

@@ -11,7 +11,7 @@ import "./workers.css";
 export function WorkersPage() {
   const { value, error } = useWorkers();
   return (
-    <Page title={text.workers} error={error} loading={!value && text.loading}>
+    <Page title={text.workers} error={error} loading={!value}>
       {value?.workers.length === 0 && <NoWorkers />}
       {value && value.workers.length > 0 && (
         <ul class="workers" aria-label={text.workers}>

@@ -2,7 +2,6 @@
 
 export const text = {
   workers: "Workers",
-  loading: "Loading workers …",
   noWorkers: "No live workers",
   noWorkersHint: "Runs wait for a worker. Start one with ",
   orBeside: ", or beside a running server with ",

@@ -1,5 +1,7 @@
 """All tables."""
 
+from typing import Any
+
 import sqlalchemy as sa
 from alembic import op
 
@@ -8,81 +10,126 @@ down_revision = None
 branch_labels = None
 depends_on = None
 
+HASH, MOMENT = sa.LargeBinary(length=32), sa.DateTime(timezone=True)
+JSON_OR_NULL = sa.JSON(none_as_null=True)
+
+
+def _required(kind: Any, *names: str) -> list[sa.Column[Any]]:
+    return [sa.Column(name, kind, nullable=False) for name in names]
+
+
+def _optional(kind: Any, *names: str) -> list[sa.Column[Any]]:
+    return [sa.Column(name, kind) for name in names]
+
+
+def _to_creature() -> sa.ForeignKey:
+    return sa.ForeignKey("creatures.sha256")
+
+
+def _to_run() -> sa.ForeignKey:
+    return sa.ForeignKey("runs.id", ondelete="CASCADE")
+
 
 def upgrade() -> None:
+    for create in (
+        _creatures,
+        _workers,
+        _runs,
+        _sweeps_and_logs,
+        _tokens,
+        _files,
+        _results,
+        _shares,
+    ):
+        create()
+
+
+def _creatures() -> None:
     op.create_table(
         "creatures",
-        sa.Column("sha256", sa.LargeBinary(length=32), primary_key=True),
+        sa.Column("sha256", HASH, primary_key=True),
         sa.Column("identity", sa.LargeBinary(), nullable=False),
-        sa.Column("parents", sa.JSON(), nullable=False),
+        *_required(sa.JSON(), "parents", "credit"),
         sa.Column("operator", sa.Text()),
-        sa.Column("measured", sa.JSON(none_as_null=True)),
-        sa.Column("provenance", sa.JSON(none_as_null=True)),
+        *_optional(JSON_OR_NULL, "measured", "provenance"),
         sa.Column("licence", sa.Text(), nullable=False),
-        sa.Column("credit", sa.JSON(), nullable=False),
-        sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
+        sa.Column("created_at", MOMENT, nullable=False),
         sa.Column("imported", sa.Boolean(), nullable=False),
     )
     op.create_table(
         "garbage_creatures",
         sa.Column("run_id", sa.Uuid(), primary_key=True),
-        sa.Column("creature", sa.LargeBinary(length=32), primary_key=True),
+        sa.Column("creature", HASH, primary_key=True),
     )
     op.create_table(
-        "garbage_files",
-        sa.Column("path", sa.String(length=255), primary_key=True),
+        "parents",
+        sa.Column("child", HASH, _to_creature(), primary_key=True),
+        sa.Column("position", sa.Integer(), primary_key=True, autoincrement=False),
+        sa.Column("parent", HASH, nullable=False),
     )
+    op.create_index("ix_parents_parent", "parents", ["parent"])
+
+
+def _workers() -> None:
     op.create_table(
         "plugins",
         sa.Column("kind", sa.String(length=16), primary_key=True),
         sa.Column("name", sa.String(length=128), primary_key=True),
-        sa.Column("source", sa.LargeBinary(length=32), primary_key=True),
+        sa.Column("source", HASH, primary_key=True),
         sa.Column("declaration", sa.JSON(), nullable=False),
-        sa.Column("seen_at", sa.DateTime(timezone=True), nullable=False),
+        sa.Column("seen_at", MOMENT, nullable=False),
     )
+    op.create_table(
+        "workers",
+        sa.Column("name", sa.String(length=255), primary_key=True),
+        sa.Column("device", sa.Text(), nullable=False),
+        *_required(sa.String(length=16), "kind", "status"),
+        sa.Column("memory_bytes", sa.BigInteger(), nullable=False),
+        sa.Column("memory_used_bytes", sa.BigInteger()),
+        sa.Column("load", sa.Double()),
+        sa.Column("run_id", sa.Uuid()),
+        *_required(MOMENT, "since", "heartbeat_at"),
+        *_required(sa.JSON(), "plugins", "unloaded"),
+    )
+
+
+def _runs() -> None:
     op.create_table(
         "runs",
         sa.Column("id", sa.Uuid(), primary_key=True),
-        sa.Column("experiment", sa.String(length=64), nullable=False),
-        sa.Column("spec", sa.JSON(none_as_null=True), nullable=False),
-        sa.Column("plugin_versions", sa.JSON(none_as_null=True)),
-        sa.Column("version", sa.String(length=64), nullable=False),
+        *_required(sa.String(length=64), "experiment", "version"),
+        sa.Column("spec", JSON_OR_NULL, nullable=False),
+        *_optional(JSON_OR_NULL, "plugin_versions", "summary"),
         sa.Column("demonstration", sa.Boolean(), nullable=False),
         sa.Column("name", sa.String(length=200)),
         sa.Column("tags", sa.JSON(), nullable=False),
-        sa.Column("note", sa.Text()),
+        *_optional(sa.Text(), "note", "device", "error", "warning"),
         sa.Column("status", sa.String(length=16), nullable=False),
-        sa.Column("requested_state", sa.String(length=16)),
-        sa.Column("requested_at", sa.DateTime(timezone=True)),
-        sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
-        sa.Column("queued_at", sa.DateTime(timezone=True), nullable=False),
-        sa.Column("started_at", sa.DateTime(timezone=True)),
-        sa.Column("finished_at", sa.DateTime(timezone=True)),
-        sa.Column("attempt", sa.Integer(), nullable=False),
-        sa.Column("attempts_without_checkpoint", sa.Integer(), nullable=False),
+        *_optional(sa.String(length=16), "requested_state", "device_override"),
+        *_optional(
+            MOMENT,
+            "requested_at",
+            "started_at",
+            "finished_at",
+            "heartbeat_at",
+            "deleted_at",
+            "purge_at",
+        ),
+        *_required(MOMENT, "created_at", "queued_at"),
+        *_required(
+            sa.Integer(),
+            "attempt",
+            "attempts_without_checkpoint",
+            "generations",
+            "generation",
+            "checkpoint_generation",
+        ),
         sa.Column("worker", sa.String(length=255)),
-        sa.Column("device", sa.Text()),
-        sa.Column("device_override", sa.String(length=16)),
-        sa.Column("heartbeat_at", sa.DateTime(timezone=True)),
-        sa.Column("generations", sa.Integer(), nullable=False),
-        sa.Column("generation", sa.Integer(), nullable=False),
-        sa.Column("checkpoint_generation", sa.Integer(), nullable=False),
-        sa.Column("evaluations", sa.BigInteger(), nullable=False),
-        sa.Column("diverged", sa.BigInteger(), nullable=False),
+        *_required(sa.BigInteger(), "evaluations", "diverged"),
         sa.Column("seconds", sa.Double(), nullable=False),
-        sa.Column("qd_score", sa.Double()),
-        sa.Column("coverage", sa.Double()),
-        sa.Column("best", sa.Double()),
-        sa.Column("summary", sa.JSON(none_as_null=True)),
-        sa.Column("error", sa.Text()),
-        sa.Column("warning", sa.Text()),
-        sa.Column("sweep", sa.Uuid()),
-        sa.Column("sweep_index", sa.Integer()),
-        sa.Column("deleted_at", sa.DateTime(timezone=True)),
-        sa.Column("purge_at", sa.DateTime(timezone=True)),
-        sa.Column("n_initial", sa.Integer()),
-        sa.Column("forked_from", sa.Uuid()),
-        sa.Column("owner", sa.Uuid()),
+        *_optional(sa.Double(), "qd_score", "coverage", "best"),
+        *_optional(sa.Uuid(), "sweep", "forked_from", "owner"),
+        *_optional(sa.Integer(), "sweep_index", "n_initial"),
         sa.CheckConstraint(
             "requested_state IN ('paused', 'cancelled')", name="requested_state"
         ),
@@ -95,29 +142,50 @@ def upgrade() -> None:
     op.create_index("ix_runs_purge_at", "runs", ["purge_at"])
     op.create_index("ix_runs_status_heartbeat_at", "runs", ["status", "heartbeat_at"])
     op.create_index("ix_runs_sweep_sweep_index", "runs", ["sweep", "sweep_index"])
+
+
+def _sweeps_and_logs() -> None:
     op.create_table(
         "sweeps",
         sa.Column("id", sa.Uuid(), primary_key=True),
         sa.Column("experiment", sa.String(length=64), nullable=False),
         sa.Column("name", sa.String(length=200)),
-        sa.Column("spec", sa.JSON(none_as_null=True), nullable=False),
+        *_required(JSON_OR_NULL, "spec", "grid"),
         sa.Column("seeds", sa.JSON(), nullable=False),
-        sa.Column("grid", sa.JSON(none_as_null=True), nullable=False),
-        sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
+        sa.Column("created_at", MOMENT, nullable=False),
         sa.Column("owner", sa.Uuid()),
     )
     op.create_index("ix_sweeps_created_at_id", "sweeps", ["created_at", "id"])
     op.create_table(
+        "idempotency",
+        sa.Column("key", sa.String(length=255), primary_key=True),
+        sa.Column("body_sha256", HASH, nullable=False),
+        sa.Column("run_id", sa.Uuid(), _to_run()),
+        sa.Column("sweep", sa.Uuid(), sa.ForeignKey("sweeps.id", ondelete="CASCADE")),
+        sa.Column("created_at", MOMENT, nullable=False),
+    )
+    op.create_table(
+        "log_entries",
+        sa.Column("id", sa.Integer(), primary_key=True),
+        sa.Column("run_id", sa.Uuid(), _to_run(), nullable=False),
+        sa.Column("at", MOMENT, nullable=False),
+        sa.Column("level", sa.String(length=16), nullable=False),
+        sa.Column("attempt", sa.Integer(), nullable=False),
+        sa.Column("kind", sa.String(length=16)),
+        sa.Column("text", sa.Text(), nullable=False),
+    )
+    op.create_index("ix_log_entries_run_id_id", "log_entries", ["run_id", "id"])
+
+
+def _tokens() -> None:
+    op.create_table(
         "tokens",
         sa.Column("id", sa.Uuid(), primary_key=True),
         sa.Column("name", sa.String(length=64), nullable=False),
-        sa.Column("secret_sha256", sa.LargeBinary(length=32), nullable=False),
-        sa.Column("prefix", sa.String(length=16), nullable=False),
-        sa.Column("scope", sa.String(length=16), nullable=False),
-        sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
-        sa.Column("expires_at", sa.DateTime(timezone=True)),
-        sa.Column("revoked_at", sa.DateTime(timezone=True)),
-        sa.Column("last_used_at", sa.DateTime(timezone=True)),
+        sa.Column("secret_sha256", HASH, nullable=False),
+        *_required(sa.String(length=16), "prefix", "scope"),
+        sa.Column("created_at", MOMENT, nullable=False),
+        *_optional(MOMENT, "expires_at", "revoked_at", "last_used_at"),
         sa.CheckConstraint("scope IN ('read', 'write', 'admin')", name="scope"),
         sa.UniqueConstraint("secret_sha256"),
     )
@@ -129,143 +197,78 @@ def upgrade() -> None:
         sqlite_where=sa.text("revoked_at IS NULL"),
         postgresql_where=sa.text("revoked_at IS NULL"),
     )
+
+
+def _files() -> None:
     op.create_table(
-        "workers",
-        sa.Column("name", sa.String(length=255), primary_key=True),
-        sa.Column("device", sa.Text(), nullable=False),
-        sa.Column("kind", sa.String(length=16), nullable=False),
-        sa.Column("memory_bytes", sa.BigInteger(), nullable=False),
-        sa.Column("memory_used_bytes", sa.BigInteger()),
-        sa.Column("load", sa.Double()),
-        sa.Column("status", sa.String(length=16), nullable=False),
-        sa.Column("run_id", sa.Uuid()),
-        sa.Column("since", sa.DateTime(timezone=True), nullable=False),
-        sa.Column("heartbeat_at", sa.DateTime(timezone=True), nullable=False),
-        sa.Column("plugins", sa.JSON(), nullable=False),
-        sa.Column("unloaded", sa.JSON(), nullable=False),
+        "garbage_files",
+        sa.Column("path", sa.String(length=255), primary_key=True),
     )
     op.create_table(
         "artifacts",
         sa.Column("path", sa.String(length=255), primary_key=True),
         sa.Column("kind", sa.String(length=16), nullable=False),
-        sa.Column("run_id", sa.Uuid(), sa.ForeignKey("runs.id", ondelete="CASCADE")),
-        sa.Column("number", sa.Integer()),
-        sa.Column("generation", sa.Integer()),
-        sa.Column("creature", sa.LargeBinary(length=32), sa.ForeignKey("creatures.sha256")),
+        sa.Column("run_id", sa.Uuid(), _to_run()),
+        *_optional(sa.Integer(), "number", "generation"),
+        sa.Column("creature", HASH, _to_creature()),
         sa.Column("size", sa.BigInteger(), nullable=False),
-        sa.Column("sha256", sa.LargeBinary(length=32), nullable=False),
-        sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
+        sa.Column("sha256", HASH, nullable=False),
+        sa.Column("created_at", MOMENT, nullable=False),
         sa.UniqueConstraint("creature", "kind"),
         sa.UniqueConstraint("run_id", "kind", "number"),
     )
     op.create_table(
+        "initial_creatures",
+        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
+        sa.Column("creature", HASH, _to_creature(), primary_key=True),
+    )
+    op.create_index("ix_initial_creatures_creature", "initial_creatures", ["creature"])
+
+
+def _results() -> None:
+    op.create_table(
         "elites",
-        sa.Column(
-            "run_id", sa.Uuid(), sa.ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
-        ),
+        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
         sa.Column("cell", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("fitness", sa.Double(), nullable=False),
         sa.Column("descriptors", sa.JSON(), nullable=False),
-        sa.Column(
-            "creature",
-            sa.LargeBinary(length=32),
-            sa.ForeignKey("creatures.sha256"),
-            nullable=False,
-        ),
+        sa.Column("creature", HASH, _to_creature(), nullable=False),
     )
     op.create_index("ix_elites_creature", "elites", ["creature"])
     op.create_table(
         "generations",
-        sa.Column(
-            "run_id", sa.Uuid(), sa.ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
-        ),
+        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
         sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
-        sa.Column("qd_score", sa.Double()),
-        sa.Column("coverage", sa.Double()),
-        sa.Column("best", sa.Double()),
-        sa.Column("mean", sa.Double()),
-        sa.Column("evaluations", sa.BigInteger(), nullable=False),
-        sa.Column("diverged", sa.BigInteger(), nullable=False),
+        *_optional(sa.Double(), "qd_score", "coverage", "best", "mean"),
+        *_required(sa.BigInteger(), "evaluations", "diverged"),
         sa.Column("seconds", sa.Double(), nullable=False),
-        sa.Column("summary", sa.JSON(none_as_null=True)),
+        sa.Column("summary", JSON_OR_NULL),
     )
-    op.create_table(
-        "idempotency",
-        sa.Column("key", sa.String(length=255), primary_key=True),
-        sa.Column("body_sha256", sa.LargeBinary(length=32), nullable=False),
-        sa.Column("run_id", sa.Uuid(), sa.ForeignKey("runs.id", ondelete="CASCADE")),
-        sa.Column("sweep", sa.Uuid(), sa.ForeignKey("sweeps.id", ondelete="CASCADE")),
-        sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
-    )
-    op.create_table(
-        "initial_creatures",
-        sa.Column(
-            "run_id", sa.Uuid(), sa.ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
-        ),
-        sa.Column(
-            "creature",
-            sa.LargeBinary(length=32),
-            sa.ForeignKey("creatures.sha256"),
-            primary_key=True,
-        ),
-    )
-    op.create_index("ix_initial_creatures_creature", "initial_creatures", ["creature"])
-    op.create_table(
-        "log_entries",
-        sa.Column("id", sa.Integer(), primary_key=True),
-        sa.Column(
-            "run_id", sa.Uuid(), sa.ForeignKey("runs.id", ondelete="CASCADE"), nullable=False
-        ),
-        sa.Column("at", sa.DateTime(timezone=True), nullable=False),
-        sa.Column("level", sa.String(length=16), nullable=False),
-        sa.Column("attempt", sa.Integer(), nullable=False),
-        sa.Column("kind", sa.String(length=16)),
-        sa.Column("text", sa.Text(), nullable=False),
-    )
-    op.create_index("ix_log_entries_run_id_id", "log_entries", ["run_id", "id"])
-    op.create_table(
-        "parents",
-        sa.Column(
-            "child",
-            sa.LargeBinary(length=32),
-            sa.ForeignKey("creatures.sha256"),
-            primary_key=True,
-        ),
-        sa.Column("position", sa.Integer(), primary_key=True, autoincrement=False),
-        sa.Column("parent", sa.LargeBinary(length=32), nullable=False),
-    )
-    op.create_index("ix_parents_parent", "parents", ["parent"])
     op.create_table(
         "results",
-        sa.Column(
-            "run_id", sa.Uuid(), sa.ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
-        ),
+        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
         sa.Column("number", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("generation", sa.Integer(), nullable=False),
-        sa.Column("values", sa.JSON(none_as_null=True), nullable=False),
-        sa.Column("creature", sa.LargeBinary(length=32), sa.ForeignKey("creatures.sha256")),
+        sa.Column("values", JSON_OR_NULL, nullable=False),
+        sa.Column("creature", HASH, _to_creature()),
     )
     op.create_index("ix_results_creature", "results", ["creature"])
+
+
+def _shares() -> None:
     op.create_table(
         "shares",
         sa.Column("slug", sa.String(length=43), primary_key=True),
-        sa.Column("creature", sa.LargeBinary(length=32), sa.ForeignKey("creatures.sha256")),
-        sa.Column("run_id", sa.Uuid(), sa.ForeignKey("runs.id", ondelete="CASCADE")),
+        sa.Column("creature", HASH, _to_creature()),
+        sa.Column("run_id", sa.Uuid(), _to_run()),
         sa.Column("generation", sa.Integer()),
-        sa.Column(
-            "cover",
-            sa.LargeBinary(length=32),
-            sa.ForeignKey("creatures.sha256"),
-            nullable=False,
-        ),
-        sa.Column("title", sa.Text(), nullable=False),
+        sa.Column("cover", HASH, _to_creature(), nullable=False),
+        *_required(sa.Text(), "title", "licence"),
         sa.Column("credit", sa.JSON(), nullable=False),
-        sa.Column("licence", sa.Text(), nullable=False),
         sa.Column("listed", sa.Boolean(), nullable=False),
-        sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
-        sa.Column("expires_at", sa.DateTime(timezone=True)),
-        sa.Column("revoked_at", sa.DateTime(timezone=True)),
+        sa.Column("created_at", MOMENT, nullable=False),
+        *_optional(MOMENT, "expires_at", "revoked_at"),
         sa.Column("owner", sa.Uuid()),
         sa.CheckConstraint("(creature IS NULL) <> (run_id IS NULL)", name="one_thing"),
     )
@@ -273,23 +276,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    for name in (
-        "shares",
-        "results",
-        "parents",
-        "log_entries",
-        "initial_creatures",
-        "idempotency",
-        "generations",
-        "elites",
-        "artifacts",
-        "workers",
-        "tokens",
-        "sweeps",
-        "runs",
-        "plugins",
-        "garbage_files",
-        "garbage_creatures",
-        "creatures",
-    ):
-        op.drop_table(name)
+    tables = sa.inspect(op.get_bind()).get_table_names()
+    metadata = sa.MetaData()
+    metadata.reflect(op.get_bind(), only=[name for name in tables if name != "alembic_version"])
+    metadata.drop_all(op.get_bind())

@@ -5,6 +5,8 @@ import pytest
 
 from microcosmos.bodies import swimmers
 
+pytestmark = pytest.mark.fast
+
 TIMES = np.arange(240) / 240
 
 
@@ -15,7 +17,6 @@ def ends(body, joints):
     return first.sum(1) - node, node, second.sum(1) - node
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("name", swimmers.SWIMMERS)
 def test_a_gait_repeats_every_period(name):
     swimmer = swimmers.SWIMMERS[name]()
@@ -24,7 +25,6 @@ def test_a_gait_repeats_every_period(name):
         np.testing.assert_allclose(now, later, atol=1e-9)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("name", swimmers.SWIMMERS)
 def test_a_gait_moves_little_in_a_small_part_of_a_period(name):
     body, gait = swimmers.SWIMMERS[name]().body, swimmers.SWIMMERS[name]().gait
@@ -35,7 +35,6 @@ def test_a_gait_moves_little_in_a_small_part_of_a_period(name):
     assert np.abs(np.diff(length, axis=0)).max() <= 0.01
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("name", swimmers.SWIMMERS)
 def test_a_swimmer_has_the_stiffness_that_it_is_given(name):
     body = swimmers.SWIMMERS[name](stretch=0.9, shear=0.8, bend=0.7).body
@@ -43,7 +42,6 @@ def test_a_swimmer_has_the_stiffness_that_it_is_given(name):
         np.testing.assert_array_equal(getattr(body, field), value)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize(("waves", "shift"), [(1.0, 0.25), (2.0, 0.125)])
 def test_a_wave_runs_along_the_worm_from_its_first_joint(waves, shift):
     angle, length = swimmers.worm(nodes=43, amplitude=0.2, waves=waves).gait(TIMES)
@@ -54,7 +52,6 @@ def test_a_wave_runs_along_the_worm_from_its_first_joint(waves, shift):
     assert not length.any()
 
 
-@pytest.mark.fast
 def test_the_tadpole_is_a_worm_with_a_rigid_head():
     swimmer = swimmers.tadpole(head_nodes=14, tail_nodes=24)
     angle, length = swimmer.gait(TIMES)
@@ -72,7 +69,6 @@ def test_the_tadpole_is_a_worm_with_a_rigid_head():
     assert sorted(degree) == [1, *[2] * 36, 3]
 
 
-@pytest.mark.fast
 def test_the_ray_beats_at_one_joint_and_comes_back_the_way_it_went():
     angle, length = swimmers.ray().gait(TIMES)
     assert not length.any()
@@ -84,7 +80,6 @@ def test_the_ray_beats_at_one_joint_and_comes_back_the_way_it_went():
     np.testing.assert_allclose(there[0], back[0], atol=1e-12)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("name", ["worm", "tadpole", "cilia", "jellyfish"])
 def test_no_other_swimmer_comes_back_the_way_it_went(name):
     gait = swimmers.SWIMMERS[name]().gait
@@ -94,7 +89,6 @@ def test_no_other_swimmer_comes_back_the_way_it_went(name):
     assert nearest > 0.2 * size
 
 
-@pytest.mark.fast
 def test_the_jellyfish_bends_and_stretches_alike_everywhere():
     swimmer = swimmers.jellyfish(bending=0.25, stretching=0.08)
     angle, length = swimmer.gait(TIMES)
@@ -134,7 +128,6 @@ def hairs():
     return swimmer, at
 
 
-@pytest.mark.fast
 def test_cilia_turn_at_their_root_alike_to_both_sides_of_the_body(hairs):
     swimmer, _ = hairs
     body = swimmer.body
@@ -148,7 +141,6 @@ def test_cilia_turn_at_their_root_alike_to_both_sides_of_the_body(hairs):
     np.testing.assert_allclose(np.ptp(np.abs(angle[:, root]), axis=1), 0, atol=1e-12)
 
 
-@pytest.mark.fast
 def test_hairs_beat_in_mirror_image_on_both_flanks(hairs):
     _, at = hairs
     for time in TIMES[::20]:
@@ -157,7 +149,6 @@ def test_hairs_beat_in_mirror_image_on_both_flanks(hairs):
         np.testing.assert_allclose(np.conj(lower[::-1]), upper, atol=1e-9)
 
 
-@pytest.mark.fast
 def test_hairs_sweep_backward_straight_and_come_back_faster_and_curled(hairs):
     _, at = hairs
     upright = np.array([at(t)[1] for t in TIMES])  # The upper hair in the middle.
@@ -170,7 +161,6 @@ def test_hairs_sweep_backward_straight_and_come_back_faster_and_curled(hairs):
     assert np.abs(tips[~power]).min() < 0.8 * 8
 
 
-@pytest.mark.fast
 def test_the_tip_of_a_hair_lags_behind_on_its_way_back(hairs):
     _, at = hairs
     hair = at(0.875)[1]
@@ -180,7 +170,6 @@ def test_the_tip_of_a_hair_lags_behind_on_its_way_back(hairs):
     np.testing.assert_allclose(np.diff(heading), 0.35, rtol=1e-9)
 
 
-@pytest.mark.fast
 @pytest.mark.parametrize("count", [0, 1, 5])
 def test_cilia_need_as_many_hairs_on_both_flanks(count):
     with pytest.raises(ValueError, match="`hairs` must be an even number"):

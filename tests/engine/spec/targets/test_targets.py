@@ -76,7 +76,7 @@ def test_large_pictures_are_made_small_enough_for_a_spec(tmp_path):
     )
 
 
-def test_what_is_no_picture_or_shows_nothing_is_refused(tmp_path):
+def test_a_file_that_shows_nothing_is_refused(tmp_path):
     (tmp_path / "text.png").write_bytes(b"no picture")
     Image.fromarray(np.full((3, 3), 255, np.uint8)).save(tmp_path / "white.png")
     with pytest.raises(ValueError, match="must be a picture"):

@@ -13,8 +13,6 @@ AXES = ({"name": "bending_effort", "bins": 4}, {"name": "straightness", "bins": 
 
 @pytest.fixture
 def made():
-    """A function that makes an archive of elites: each its cell, fitness and measures."""
-
     def make(elites, *, axes=AXES, centroids=None, best=(1.0, 2.0), lineage=None, **more):
         cells = {} if centroids is None else {"centroids": len(centroids)}
         document = {"experiment": "quality-diversity", **more}

@@ -1,4 +1,4 @@
-"""Curves show medians and quartiles over seeds, and tell specs apart by what differs."""
+"""Curves, contact sheets and family trees of archives."""
 
 from dataclasses import replace
 
@@ -7,6 +7,8 @@ import pytest
 
 from microcosmos.viz.figures import caption, curves, style
 from microcosmos.viz.figures.groups import grouped
+from microcosmos.viz.figures.lineage import family, heights, lineage
+from microcosmos.viz.figures.sheet import Motion, layout, numerals, reading_order, sheet
 
 pytestmark = pytest.mark.long
 
@@ -84,3 +86,133 @@ def test_coverage_is_drawn_in_per_cent(runs):
     (line,) = lines(panel)
     np.testing.assert_allclose(line.get_ydata(), [0, 25, 50])
     assert panel.get_ylabel() == "Coverage [%]"
+
+
+@pytest.fixture
+def found(made):
+    """Three elites in the lower left, of which the second is fittest, and one far away."""
+    places = [(1e-4, 0.0), (2e-4, 0.1), (3e-4, 0.05), (90.0, 0.95)]
+    return made(
+        [
+            {"cell": k, "fitness": f, "bending_effort": x, "straightness": y}
+            for k, ((x, y), f) in enumerate(zip(places, (1.0, 3.0, 2.0, 0.5), strict=True))
+        ]
+    )
+
+
+def swimming(length, frames=9):
+    x = np.linspace(0, length, 5)
+    y = np.arange(frames)[:, None] * np.ones(5)
+    places = np.stack([np.broadcast_to(x, y.shape), y], -1).astype(np.float32)
+    return Motion(places, np.stack([np.arange(4), np.arange(1, 5)], 1))
+
+
+def test_the_fittest_of_each_region_is_shown_where_it_belongs(found):
+    plan = layout(found, columns=3, rows=2)
+    assert [(r.column, r.row, r.elite) for r in plan.regions] == [(0, 0, 1), (2, 1, 3)]
+    assert reading_order(plan.regions) == [1, 0]
+
+
+def test_all_bodies_are_drawn_at_one_scale_inside_their_regions(found):
+    plan, motions = layout(found, columns=3, rows=2), [swimming(20.0), swimming(5.0)]
+    with style.styled():
+        panel = sheet(found, plan, motions, moments=3).axes[0]
+    spans = []
+    for lines in panel.collections:
+        x = np.concatenate(lines.get_segments())[:, 0]
+        spans.append((np.floor(x.min()), np.floor(x.max()), np.ptp(x)))
+    first, second = spans[:4], spans[4:]
+    assert {(a, b) for a, b, _ in first} == {(0, 0)}
+    assert {(a, b) for a, b, _ in second} == {(2, 2)}
+    np.testing.assert_allclose([span for *_, span in first], 0.8)
+    np.testing.assert_allclose([span for *_, span in second], 0.2)
+
+
+def test_gaits_are_numbered_as_in_the_paper():
+    assert numerals(10) == ["i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x"]
+    assert [numerals(99)[k - 1] for k in (14, 40, 49, 90, 99)] == [
+        "xiv", "xl", "xlix", "xc", "xcix",
+    ]  # fmt: skip
+
+
+def test_a_sheet_over_one_axis_is_refused(found):
+    with pytest.raises(ValueError, match="`axes` must be two"):
+        layout(found, axes=["straightness"])
+    with pytest.raises(ValueError, match="`rows` must be from 1 to 20, got 0"):
+        layout(found, rows=0)
+
+
+PARENTS = [(), (), (0,), (0, 1), (2,), (3, 2), (1,)]
+"""The parents of seven entries: two newcomers, and two entries with two parents."""
+
+GENERATIONS = [1, 1, 2, 3, 4, 5, 5]
+CELLS = [0, 1, 2, 3, 0, 4, 1]
+"""Entries 4 and 6 replaced 0 and 1."""
+
+
+def name(entry):
+    return np.full(32, entry + 1, np.uint8)
+
+
+@pytest.fixture
+def archive(made):
+    parents = np.zeros((7, 2, 32), np.uint8)
+    for entry, own in enumerate(PARENTS):
+        for k, parent in enumerate(own):
+            parents[entry, k] = name(parent)
+    columns = {
+        "creature": np.stack([name(entry) for entry in range(7)]),
+        "parents": parents,
+        "generation": np.array(GENERATIONS),
+        "cell": np.array(CELLS),
+        "fitness": np.arange(7.0),
+    }
+    elites = [
+        {"cell": cell, "fitness": float(e)}
+        for cell, e in zip(range(5), (4, 6, 2, 3, 5), strict=True)
+    ]
+    return made(elites, best=range(1, 6), lineage=columns)
+
+
+def test_elites_are_the_latest_entries_of_their_cells(archive):
+    assert family(archive).tips.tolist() == [4, 6, 2, 3, 5]
+
+
+def test_ancestors_are_those_of_both_parents(archive):
+    found = family(archive)
+    assert found.ancestors(5) == [5, 3, 2, 1, 0]
+    assert found.ancestors(4) == [4, 2, 0]
+    assert found.closure([5], both=False) == [5, 3, 0]
+
+
+def test_no_two_entries_of_a_generation_stand_at_one_height(archive):
+    found = family(archive)
+    places = heights(found, list(range(7)))
+    assert sorted(places) == list(range(7))
+    ends = [places[entry] for entry in (4, 5, 6)]
+    assert sorted(ends) == [0, 1, 2]
+    assert places[0] == (places[2] + places[3]) / 2
+
+
+def test_the_chosen_elite_and_all_its_ancestors_are_drawn_in_colour(archive):
+    with style.styled():
+        panel = lineage(archive, cell=4).axes[0]
+    chosen, ring = panel.collections[-2:]
+    generations = sorted(int(x) for x, _ in chosen.get_offsets())
+    assert generations == [1, 1, 2, 3, 5]
+    assert ring.get_offsets()[0][0] == 5
+    dashed = [line for line in panel.get_lines() if line.get_linestyle() == "--"]
+    assert len(dashed) == 2
+
+
+def test_an_empty_cell_is_refused_with_those_that_are_not(archive):
+    with pytest.raises(ValueError, match="`cell` must be one of the 5 that have an elite"):
+        lineage(archive, cell=17)
+
+
+def test_the_caption_counts_ancestors_and_names_the_elite(archive):
+    told = caption.of_lineage(archive, 4, 4)
+    assert told.startswith(
+        "Descent of 5 elites (grey) and the 4 ancestors of the elite of cell 4"
+    )
+    assert "Dashed lines lead from second parents." in told

@@ -3,14 +3,13 @@
 import re
 import subprocess
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from microcosmos import spec
 from microcosmos.build import local
-from microcosmos.cli import app
 from microcosmos.viz.figures import drawing, motions, reading
 
 pytestmark = pytest.mark.long
@@ -35,16 +34,14 @@ TINY = {
 
 @pytest.fixture(scope="module")
 def archive(tmp_path_factory):
-    """The file of a small run."""
     path = tmp_path_factory.mktemp("run") / "tiny.h5"
     assert local.evolve(spec.parse(TINY), path)
     return path
 
 
-def invoked(*arguments, code=0):
-    found = CliRunner().invoke(app, ["figure", *map(str, arguments)])
-    assert found.exit_code == code, found.output
-    return found.output.replace("\n", "")
+@pytest.fixture
+def figure(invoke):
+    return partial(invoke, "figure")
 
 
 def test_elites_of_a_file_are_simulated_as_they_were_measured(archive):
@@ -65,46 +62,46 @@ def test_a_sheet_is_drawn_with_its_progress_told(archive, tmp_path):
     assert "at 3 moments of its 60 steps" in told
 
 
-def test_each_command_writes_its_figure_and_its_caption(archive, tmp_path):
+def test_each_command_writes_its_figure_and_its_caption(archive, tmp_path, figure):
     for name, *options in (
         ("archive", "--axes", "straightness,bending_effort", "--latex", "--caption"),
         ("curves", "--against", "generations"),
         ("lineage", "--palette", "magma"),
     ):
         out = tmp_path / f"{name}.pdf"
-        assert str(out) in invoked(name, archive, out, *options)
+        assert str(out) in figure(name, archive, out, *options)
         assert out.read_bytes().startswith(b"%PDF")
         told = out.with_suffix(".caption.txt").read_text()
         assert "3 generations of 16 (48 evaluations, seed 0)" in told
     assert (tmp_path / "archive.caption.tex").exists()
 
 
-def test_a_file_without_a_command_is_drawn_by_its_kind(archive, tmp_path):
-    invoked(archive, tmp_path / "map.png")
+def test_a_file_without_a_command_is_drawn_by_its_kind(archive, tmp_path, figure):
+    figure(archive, tmp_path / "map.png")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_name_without_an_output_gets_a_pdf_beside_the_file(archive):
-    invoked("archive", archive)
+def test_a_name_without_an_output_gets_a_pdf_beside_the_file(archive, figure):
+    figure("archive", archive)
     assert archive.with_suffix(".archive.pdf").exists()
 
 
-def test_the_help_names_every_figure():
-    told = invoked("--help")
+def test_the_help_names_every_figure(figure):
+    told = figure("--help")
     for name in ("file", "archive", "curves", "sheet", "lineage"):
         assert re.search(rf"\b{name}\b", told)
 
 
-def test_mistakes_are_said_with_what_is_needed(archive, tmp_path):
-    assert "must end in .pdf" in invoked("archive", archive, tmp_path / "map.bmp", code=2)
-    assert "`cell` must be one of" in invoked(
+def test_mistakes_are_said_with_what_is_needed(archive, tmp_path, figure):
+    assert "must end in .pdf" in figure("archive", archive, tmp_path / "map.bmp", code=2)
+    assert "`cell` must be one of" in figure(
         "lineage", archive, tmp_path / "a.svg", "--cell", "9999", code=2
     )
-    assert "seed 0 twice" in invoked("curves", archive, archive, tmp_path / "a.svg", code=2)
-    assert "FILE... OUT needs" in invoked("curves", archive, code=2)
+    assert "seed 0 twice" in figure("curves", archive, archive, tmp_path / "a.svg", code=2)
+    assert "FILE... OUT needs" in figure("curves", archive, code=2)
     broken = tmp_path / "broken.h5"
     broken.write_bytes(b"nothing")
-    assert "must be HDF5" in invoked("archive", broken, tmp_path / "a.svg", code=2)
+    assert "must be HDF5" in figure("archive", broken, tmp_path / "a.svg", code=2)
 
 
 def test_a_file_whose_run_has_a_table_has_no_map(tmp_path):

@@ -47,13 +47,11 @@ def read(name: str) -> Reference:
 
 @pytest.fixture(scope="session", params=["ff_bias", "ff_default", "ff_origin", "recurrent"])
 def reference(request):
-    """Each of the files in turn."""
     return read(request.param)
 
 
 @pytest.fixture(scope="session")
 def plain():
-    """Feed-forward genomes of sums."""
     return read("ff_bias")
 
 
@@ -110,5 +108,4 @@ def grow(random: np.random.Generator) -> dict:
 
 
 def leads(links: dict, start: int, end: int) -> bool:
-    """Whether a way leads from one node to another."""
     return start == end or any(leads(links, t, end) for s, t in links if s == start)

@@ -1,6 +1,6 @@
 /** The sections of a form, with counts of errors and changes. */
 
-import { countWithin } from "./changes";
+import { countWithin } from "./document";
 import type { FormState } from "./Entry";
 import type { Section, Union } from "./fields";
 import { text } from "./text";

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Spec } from "../../api/types";
-import { countWithin, changedPaths, equalPreset } from "./changes";
+import { countWithin, changedPaths, equalPreset } from "./document";
 import { type NumberField, type Section, formOf } from "./fields";
 import { EXPERIMENTS, PRESETS, experiment } from "./presets.fixture";
 import { rangeText } from "./Entry";

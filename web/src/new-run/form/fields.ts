@@ -15,7 +15,7 @@ interface Common {
   when?: { path: string; is: string };
 }
 
-export interface PluginOption {
+interface PluginOption {
   title: string;
   about: string;
   workers: string[];

@@ -3,8 +3,7 @@
 import { describe, expect, it } from "vitest";
 import type { Schema, Spec } from "../../api/types";
 import { completed } from "./defaults";
-import { changedPaths } from "./changes";
-import { complaints, valueAt, withChoice } from "./document";
+import { changedPaths, complaints, valueAt, withChoice } from "./document";
 import { type Choice, type Section, formOf } from "./fields";
 
 const settings: Schema = {

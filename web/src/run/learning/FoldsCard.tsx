@@ -9,7 +9,7 @@ import { setQuery } from "../../store/router";
 import { number, short } from "../../ui/format";
 import { Card } from "../../ui/Page";
 import { FoldPlayer } from "./FoldPlayer";
-import { pictureOf } from "./fold";
+import { pictureOf } from "./FoldPlayer";
 import { RecordingStatus, useReplays } from "../../replay/recordings";
 import { hrefOf } from "../results/resultsPage";
 import { text } from "./text";

@@ -2,7 +2,8 @@ import { describe, expect, it } from "vitest";
 import { NO_CURVES } from "../../store/curves";
 import type { Run } from "../../api/types";
 import { ticksOf } from "../../charts/plot/scale";
-import { courseOf } from "./learning";
+import { placeOf } from "./FoldPlayer";
+import { courseOf } from "./LearningRun";
 
 describe("a course", () => {
   const curves = (summary: Record<string, number[]>) => ({ ...NO_CURVES, generation: [1, 2, 3], summary });
@@ -24,5 +25,12 @@ describe("a course", () => {
     const { lines } = courseOf(run("folding"), curves(told));
     expect(lines.map(({ name }) => name)).toEqual(["3", "7"]);
     expect(lines[1]!.points.map(({ y }) => y)).toEqual([0.1, 0.04, 0.01]);
+  });
+});
+
+describe("the picture under a filament", () => {
+  it("lies in the middle of the world, as large as the spec has it", () => {
+    const target = { name: "3", width: 8, height: 16, size: 32, pixels: "" };
+    expect(placeOf(target, [48, 64])).toEqual({ left: 15.5, top: 47.5, wide: 16, high: 32 });
   });
 });

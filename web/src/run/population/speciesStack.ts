@@ -3,7 +3,7 @@
 import type { SpeciesHistory } from "../../api/types";
 import { css, viridis } from "../../ui/colours";
 
-export interface Area {
+interface Area {
   number: number;
   /** Lower and upper edge in each generation, from 0 to the size of the population. */
   from: number[];

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { ResultRow, Run } from "../../api/types";
 import { figuresOf, keyFigureOf } from "../figures";
-import { timeLines } from "./scaling";
+import { timeLines } from "./ScalingRun";
 
 const row = (values: Partial<ResultRow>): ResultRow => ({ creature: null, ...values });
 
@@ -15,10 +15,7 @@ describe("a measurement of scaling", () => {
   it("has a line for each part that was timed, and the exponents beside them", () => {
     const lines = timeLines(rows, { exponent: 1.02, exponent_all_pairs: null });
     expect(lines.map(({ name }) => name)).toEqual(["all parts", "fluid", "all-pairs repulsion"]);
-    expect(lines[0]!.points.map(({ x, y }) => [x, y])).toEqual([
-      [1000, 3],
-      [2000, 4],
-    ]);
+    expect(lines[0]!.points.map(({ x, y }) => `${x} ${y}`)).toEqual(["1000 3", "2000 4"]);
     expect([lines[0]!.power, lines[2]!.power]).toEqual([1.02, null]);
   });
 

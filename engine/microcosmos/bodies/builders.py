@@ -1,0 +1,165 @@
+"""Builders of bodies: filaments, circles, stars, trees and graphs."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Unpack
+
+import numpy as np
+
+from .graph import Body
+from .shape import Stiffness, from_edges
+
+NARROWING = 0.9
+"""Ratio of the angles of successive forks: equal forks would overlap."""
+
+
+def chain(
+    nodes: int, spacing: float, *, stretch: float = 1.0, shear: float = 1.0, bend: float = 1.0
+) -> Body:
+    """Build a straight filament along x, its nodes `spacing` cells apart."""
+    _refuse_fewer("nodes", nodes, 2)
+    number = np.arange(nodes)
+    return Body(
+        positions=np.stack([number * spacing, np.zeros(nodes)], 1),
+        edges=np.stack([number[:-1], number[1:]], 1),
+        joints=np.stack([number[:-2], number[1:-1]], 1),
+        rest_length=np.full(nodes - 1, float(spacing)),
+        rest_angle=np.zeros(nodes - 2),
+        stretch=np.full(nodes - 1, float(stretch)),
+        shear=np.full(nodes - 1, float(shear)),
+        bend=np.full(nodes - 2, float(bend)),
+        arc=number / (nodes - 1),
+    )
+
+
+def walk(
+    nodes: int, spacing: float, deviation: float, seed: int, **stiffness: Unpack[Stiffness]
+) -> Body:
+    """Build a filament along a random walk, which may cross itself.
+
+    The angle at each joint is normally distributed with `deviation` rad.
+    """
+    straight = chain(nodes, spacing, **stiffness)
+    if not (np.isfinite(deviation) and deviation >= 0):
+        raise ValueError(f"`deviation` must be finite and at least 0, got {deviation}.")
+    turns = deviation * np.random.default_rng(seed).standard_normal(nodes - 2)
+    angle = np.concatenate([[0.0], np.cumsum(turns)])
+    steps = spacing * np.stack([np.cos(angle), np.sin(angle)], 1)
+    positions = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, 0)])
+    return replace(straight, positions=positions, rest_angle=turns, crossing=True)
+
+
+def ring(nodes: int, spacing: float, **stiffness: Unpack[Stiffness]) -> Body:
+    """Build a closed circle, anticlockwise from the node furthest along x."""
+    _refuse_fewer("nodes", nodes, 3)
+    number, turn = np.arange(nodes), 2 * np.pi / nodes
+    places = _on_circle(number * turn, turn, spacing)
+    edges = np.stack([number, (number + 1) % nodes], 1)
+    return from_edges(places, edges, number / nodes, **stiffness)
+
+
+def arc(nodes: int, spacing: float, gap: float, **stiffness: Unpack[Stiffness]) -> Body:
+    """Build a circle with its share `gap` missing about the x axis, anticlockwise."""
+    _refuse_fewer("nodes", nodes, 2)
+    if not 0 < gap < 1:
+        raise ValueError(f"`gap` must be between 0 and 1, got {gap:g}.")
+    number, turn = np.arange(nodes), 2 * np.pi * (1 - gap) / (nodes - 1)
+    places = _on_circle(np.pi * gap + number * turn, turn, spacing)
+    edges = np.stack([number[:-1], number[1:]], 1)
+    return from_edges(places, edges, number / (nodes - 1), **stiffness)
+
+
+def _on_circle(angle: np.ndarray, turn: float, spacing: float) -> np.ndarray:
+    """Return positions at `angle` on the circle on which `turn` makes a chord of `spacing`."""
+    radius = 0.5 * spacing / np.sin(turn / 2)
+    return radius * np.stack([np.cos(angle), np.sin(angle)], 1)
+
+
+def star(arms: int, arm_nodes: int, spacing: float, **stiffness: Unpack[Stiffness]) -> Body:
+    """Build straight arms of `arm_nodes` nodes, evenly about the first node in the middle."""
+    _refuse_fewer("arms", arms, 1)
+    _refuse_fewer("arm_nodes", arm_nodes, 1)
+    turn = 2 * np.pi * np.arange(arms) / arms
+    along = spacing * np.arange(1, arm_nodes + 1)
+    tips = np.stack([np.cos(turn), np.sin(turn)], 1)[:, None] * along[None, :, None]
+    outer = 1 + np.arange(arms * arm_nodes).reshape(arms, arm_nodes)
+    inner = np.concatenate([np.zeros((arms, 1), int), outer[:, :-1]], 1)
+    positions = np.concatenate([np.zeros((1, 2)), tips.reshape(-1, 2)])
+    return from_edges(positions, np.stack([inner.ravel(), outer.ravel()], 1), **stiffness)
+
+
+def tree(
+    levels: int,
+    branches: int,
+    segment_nodes: int,
+    spacing: float,
+    angle: float,
+    **stiffness: Unpack[Stiffness],
+) -> Body:
+    """Build a stem along x that forks into `branches` at the end of every level.
+
+    A segment adds `segment_nodes` nodes; `angle` in radians lies between the outermost
+    branches of the first fork and narrows with every level. The first node is the root.
+    """
+    for name, value in (("levels", levels), ("branches", branches)):
+        _refuse_fewer(name, value, 1)
+    _refuse_fewer("segment_nodes", segment_nodes, 1)
+    spread = angle * (np.linspace(-0.5, 0.5, branches) if branches > 1 else np.zeros(1))
+    positions, edges, tips = [np.zeros(2)], [], [(0, 0.0)]
+    for level in range(levels):
+        turns = NARROWING ** (level - 1) * spread if level else np.zeros(1)
+        tips = [
+            _segment(positions, edges, tip, heading + turn, segment_nodes, spacing)
+            for tip, heading in tips
+            for turn in turns
+        ]
+    return from_edges(np.array(positions), np.array(edges), **stiffness)
+
+
+def _segment(
+    positions: list, edges: list, start: int, heading: float, nodes: int, spacing: float
+) -> tuple[int, float]:
+    """Append a straight segment; return its tip and heading."""
+    step = spacing * np.array([np.cos(heading), np.sin(heading)])
+    origin, tip = positions[start], start
+    for number in range(1, nodes + 1):
+        edges.append((tip, len(positions)))
+        tip = len(positions)
+        positions.append(origin + number * step)
+    return tip, heading
+
+
+def _refuse_fewer(name: str, value: int, least: int) -> None:
+    if value < least:
+        raise ValueError(f"`{name}` must be at least {least}, got {value}.")
+
+
+def graph(
+    nodes: Sequence[Any] | np.ndarray,
+    edges: Sequence[Any] | np.ndarray,
+    **stiffness: Unpack[Stiffness],
+) -> Body:
+    """Build any filaments, at rest as drawn, from positions and pairs of node numbers."""
+    positions = np.array(nodes, float).reshape(-1, 2)
+    return from_edges(positions, np.array(edges, int).reshape(-1, 2), **stiffness)
+
+
+def from_graph(
+    graph: Any, *, stretch: float = 1.0, shear: float = 1.0, bend: float = 1.0
+) -> Body:
+    """Build the body of a networkx graph whose nodes have a position `pos` in cells.
+
+    Edges may have their own `rest_length`, `stretch` or `shear`.
+    """
+    places = dict(graph.nodes(data="pos"))
+    for name, place in places.items():
+        if place is None or np.shape(place) != (2,):
+            raise ValueError(f"`pos` of node {name!r} must be two numbers, got {place!r}.")
+    number = {name: i for i, name in enumerate(places)}
+    ends = np.array([(number[a], number[b]) for a, b in graph.edges()], int).reshape(-1, 2)
+    usual = {"rest_length": np.nan, "stretch": stretch, "shear": shear}
+    found = {
+        name: np.array([data.get(name, value) for _, _, data in graph.edges(data=True)], float)
+        for name, value in usual.items()
+    }
+    return from_edges(np.array(list(places.values()), float), ends, **found, bend=bend)

@@ -1,0 +1,156 @@
+"""Plan a sweep: check the specs of all its runs before any run is created."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+from pydantic import ValidationError
+from sqlalchemy.orm import Session
+
+from microcosmos.archive.creature import CreatureError
+from microcosmos.spec import Spec
+
+from ..core.errors import ProblemError, bad_creature, brief, field_errors
+from ..core.schemas import FieldError
+from ..creatures import initial
+from ..runs.submission import TOO_LARGE, too_large
+from ..specs.parsing import Parse
+from . import fields
+from .grid import MAX_ERRORS, Case, cases_of, combination, concerned, moved, refused, run_name
+from .schemas import MAX_RUNS, SweepCreate
+
+FIXED = {
+    "seed": "a grid cannot contain `seed`; use `seeds`",
+    "experiment": "a grid cannot contain `experiment`: all runs of a sweep share one",
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All runs of a sweep."""
+
+    name: str | None
+    spec: Spec
+    seeds: list[int]
+    grid: dict[str, list[Any]]
+    cases: list[Case]
+
+    @property
+    def total(self) -> int:
+        return len(self.cases) * max(1, len(self.seeds))
+
+    def runs(self) -> Iterator[tuple[str | None, Spec, dict[str, Any]]]:
+        """Yield name, spec and document: all cases with the first seed, then with the next."""
+        documents = [case.spec.model_dump(mode="json") for case in self.cases]
+        for seed in self.seeds or [None]:
+            for case, document in zip(self.cases, documents, strict=True):
+                seeded = document if seed is None else {**document, "seed": seed}
+                yield run_name(self.name, case.values, seed), case.spec, seeded
+
+
+def plan(sent: SweepCreate, parse: Parse) -> Plan:
+    """Return the plan of a request; raise `ProblemError` if any of its runs is invalid."""
+    base = _base(sent.spec, parse)
+    document = base.model_dump(mode="json")
+    _refuse_paths(document, sent.grid)
+    seeds = _seeds(sent, document, parse)
+    _refuse_many(sent, max(1, len(seeds)))
+    if seeds:
+        document = {**document, "seed": seeds[0]}
+    cases = cases_of(document, sent.grid, parse)
+    return Plan(sent.name or None, base, seeds, dict(sent.grid), cases)
+
+
+def _base(document: Mapping[str, Any], parse: Parse) -> Spec:
+    try:
+        return parse(document)
+    except ValidationError as error:
+        raise refused([moved(e, f"spec.{e.field}") for e in field_errors(error)]) from None
+
+
+def _refuse_paths(document: dict[str, Any], asked: Mapping[str, Sequence[Any]]) -> None:
+    errors = [error for path in asked if (error := _wrong_path(document, path, asked))]
+    if errors:
+        raise refused(errors)
+
+
+def _wrong_path(
+    document: dict[str, Any], path: str, asked: Mapping[str, Any]
+) -> FieldError | None:
+    if path in FIXED:
+        return FieldError(field=f"grid.{path}", message=FIXED[path])
+    if not fields.exists(document, path):
+        near = fields.nearest(document, path)
+        meant = f"; did you mean `{near}`?" if near else ""
+        message = f"the spec has no field `{path}`{meant}"
+        return FieldError(field=f"grid.{path}", message=message, needed=near, got=path)
+    outer = next((one for one in asked if one != path and fields.inside(path, one)), None)
+    if outer is not None:
+        message = f"`{path}` lies in `{outer}`, which the grid replaces as a whole"
+        return FieldError(field=f"grid.{path}", message=message)
+    return None
+
+
+def _seeds(sent: SweepCreate, document: dict[str, Any], parse: Parse) -> list[int]:
+    """Return the seeds; none if the experiment has no seed."""
+    if "seed" not in document:
+        if sent.seeds == 1:
+            return []
+        message = (
+            f"a run of `{document['experiment']}` has no seed, so all runs would be the same; "
+            "omit `seeds`"
+        )
+        raise refused([FieldError(field="seeds", message=message, got=brief(sent.seeds))])
+    if isinstance(sent.seeds, list):
+        return sent.seeds
+    first, last = document["seed"], document["seed"] + sent.seeds - 1
+    try:
+        parse({**document, "seed": last})
+    except ValidationError as error:
+        (found,) = field_errors(error)
+        message = f"from the spec's own, {first}, {sent.seeds} seeds end at {last}: "
+        raise refused([moved(found, "seeds", message)]) from None
+    return list(range(first, last + 1))
+
+
+def _refuse_many(sent: SweepCreate, seeds: int) -> None:
+    lengths = [len(values) for values in sent.grid.values()]
+    total = prod(lengths) * seeds
+    if total <= MAX_RUNS:
+        return
+    factors = " x ".join(f"{count}" for count in (*lengths, seeds))
+    message = f"needs at most {MAX_RUNS:,} runs in all; got {factors} = {total:,}"
+    field = "grid" if sent.grid else "seeds"
+    raise refused([FieldError(field=field, message=message, needed=f"{MAX_RUNS}", got=total)])
+
+
+def refuse_too_large(plan: Plan, limit: int) -> None:
+    """Raise `ProblemError` if no worker has the memory for one of the runs."""
+    errors: dict[str, FieldError] = {}
+    for case in plan.cases:
+        if found := too_large(case.spec, limit):
+            placed = _placed(found, case)
+            errors.setdefault(placed.field, placed)
+    if errors:
+        some = list(errors.values())[:MAX_ERRORS]
+        raise ProblemError(422, TOO_LARGE, "; ".join(error.message for error in some), some)
+
+
+def refuse_initial(session: Session, plan: Plan) -> None:
+    """Raise `ProblemError` if one of the runs cannot start from its initial creatures."""
+    include = initial.COMPATIBILITY_FIELDS
+    alike = {case.spec.model_dump_json(include=include): case for case in plan.cases}
+    for case in alike.values():
+        try:
+            initial.check(session, case.spec)
+        except CreatureError as error:
+            found = bad_creature(error).errors or []
+            raise refused([_placed(one, case) for one in found]) from error
+
+
+def _placed(found: FieldError, case: Case) -> FieldError:
+    """Move an error of a case's spec to the field of the request."""
+    concerning = concerned(found.field, case.values)
+    field = case.field(concerning[0]) if concerning else f"spec.{found.field}"
+    return moved(found, field, f"with {combination(case.values)}: " if case.values else "")

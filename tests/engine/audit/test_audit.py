@@ -1,0 +1,129 @@
+"""Audits tell swimming by the fluid from artefacts; gradients agree with finite differences."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import bodies, neat, spec
+from microcosmos.archive import creature
+from microcosmos.audit.derivatives import gradient, gradient_health
+from microcosmos.audit.physics import audit
+from microcosmos.audit.variants import reciprocal, refine
+from microcosmos.build import build_stroke, build_task, frame
+from microcosmos.experiments.lineage import identity
+from microcosmos.filaments import Rest
+
+GAITS = spec.Gaits(period=500, cycles=2)
+
+
+def audited(form, swimmer, viscosity):
+    found = audit(creature.document(frame(GAITS.scene(form, swimmer, viscosity)), None, None))
+    return found["verdict"], {row["name"]: row for row in found["rows"]}
+
+
+@pytest.mark.long
+def test_a_worm_that_pushes_on_fluid_survives():
+    verdict, rows = audited("ours", "worm", 0.5)
+    assert verdict == {"survives": True, "reasons": []}
+    assert 0.9 < rows["refined"]["value"] < 1.3
+    assert rows["reciprocal"]["value"] < 0.015
+    assert rows["impulse"]["value"] < 1e-4
+
+
+@pytest.mark.long
+def test_a_ray_that_pushes_itself_does_not():
+    verdict, rows = audited("paper", "ray", 2.0)
+    assert not verdict["survives"]
+    assert rows["impulse"]["passed"] is False
+    assert "it pushes itself: this form of the coupling lets it" in verdict["reasons"]
+
+
+@pytest.mark.parametrize("senses", [pytest.param(False, marks=pytest.mark.long), True])
+def test_creatures_with_networks_are_audited_too(senses):
+    scene = spec.Scene(
+        world=spec.World(width=32, height=32, energy=spec.Energy() if senses else None),
+        body=spec.Chain(nodes=12),
+        control=spec.Control(period=30, sense_energy=senses),
+        task=spec.Task(steps=60),
+    )
+    inputs = len(scene.control.inputs)
+    network = neat.minimal(jax.random.key(0), inputs, 2, 8, 16)
+    found = audit(creature.document(identity(frame(scene), network), None, None))
+    assert {row["name"] for row in found["rows"]} >= {"refined", "delta", "reciprocal"}
+    assert all(row["value"] is not None for row in found["rows"])
+
+
+@pytest.mark.fast
+def test_a_reciprocal_gait_retraces_its_first_half():
+    steps = np.arange(8.0)[:, None]
+    back = reciprocal(Rest(jnp.asarray(steps), jnp.asarray(steps)))
+    np.testing.assert_array_equal(back.angle[:, 0], [0, 1, 2, 3, 3, 2, 1, 0])
+
+
+@pytest.mark.fast
+def test_refinement_keeps_the_body_the_gait_and_the_dimensionless_numbers():
+    scene = GAITS.scene("ours", "cilia", 0.1)
+    rest = build_stroke(scene.control, scene.task.steps)
+    coarse, (fine, finer) = build_task(scene), refine(scene, rest)
+    body = spec.shape(scene.body)
+    half = bodies.subdivided(body)
+    # The same turns at the same joints, none between; edges of the same length in cells.
+    np.testing.assert_array_equal(finer.angle[::2, half.joints], rest.angle)
+    straight = np.delete(np.asarray(finer.angle), half.joints, 1)
+    assert np.all(straight == 0)
+    np.testing.assert_array_equal(finer.length[::2], rest.length[:, half.edges])
+    # Twice the cells, twice the steps: Reynolds number, actuators' strength and Mach limits.
+    assert fine.world.size == (128, 128)
+    assert len(finer.angle) == 2 * len(rest.angle)
+    np.testing.assert_allclose(
+        fine.length / fine.world.viscosity, coarse.length / coarse.world.viscosity
+    )
+    np.testing.assert_allclose(
+        fine.world.viscosity / fine.world.nu_c, coarse.world.viscosity / coarse.world.nu_c
+    )
+    assert fine.world.limits.force == coarse.world.limits.force
+    # Node for node in the same place of the box.
+    np.testing.assert_allclose(
+        fine.start.positions[half.nodes], 2 * coarse.start.positions, rtol=1e-6
+    )
+
+
+def test_an_audit_that_takes_too_long_is_refused():
+    scene = GAITS.scene("ours", "worm", 0.5)
+    longer = scene.model_copy(update={"task": spec.Task(steps=1_000_000)})
+    with pytest.raises(creature.CreatureError, match=r"task\.steps"):
+        audit(creature.document(frame(longer), None, None))
+
+
+STEPS = 60
+SCENE = {
+    "world": {"width": 24, "height": 24, "viscosity": 0.1},
+    "body": {"nodes": 8},
+    "control": {"encoding": "direct", "period": 30, "terms": 1},
+    "task": {"steps": STEPS},
+}
+
+
+@pytest.fixture(scope="module")
+def file():
+    scene = spec.Scene.model_validate(SCENE)
+    encoding = build_encoding(scene, (8, 8))
+    newcomer = jax.tree.map(np.asarray, encoding.newcomer(key=jax.random.key(1)))
+    return creature.document(identity(frame(scene), newcomer), None, None)
+
+
+@pytest.mark.long
+def test_the_report_agrees_with_finite_differences_and_tells_of_time_and_starts(file):
+    report = gradient_health(file, starts=3)
+    assert report.errors["float64"] <= 1e-6
+    assert report.errors["float32"] <= 1e-2
+    assert list(report.norms) == [15, 30, 60]
+    assert 0 <= report.sign_agreement <= 1
+    assert -1 <= report.cosine <= 1
+    assert report.limited == 0
+
+
+def test_a_derivative_by_absent_genes_is_refused(file):
+    with pytest.raises(ValueError, match="`by` must be of"):
+        gradient(file, by=("weights",))
